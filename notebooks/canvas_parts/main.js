@@ -62,7 +62,8 @@ class Workbench {
   }
 
   receive(meta, buffers) {
-    if (meta?.type === "line") this.takeLine(meta);
+    if (meta?.type === "line" && Line.possible) this.takeLine(meta); // the kernel tells all pages, asked or not
+    if (meta?.type === "alive") this.flow.arrived(0); // nothing is drawn yet
     if (meta?.type !== "frame") return;
     const sent = this.flow.arrived(meta.seq ?? 0);
     const older = this.newest; // a frame that is never drawn may still be the one that brings a text

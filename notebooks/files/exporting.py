@@ -83,10 +83,8 @@ def formats_for(device: Device) -> tuple[str, ...]:
     return tuple(name for name in format_names() if device.driven_by in load_format(name).takes)
 
 
-def prepare_icon(icon: Icon | None, rig: Rig, device: str | None = None, form: str = FORMAT) -> PreparedExport:
-    """Deliver and judge one icon; raises ValueError without one, InputError where the device cannot play it."""
-    if icon is None:
-        raise ValueError("there is no icon to export: the text has errors")
+def prepare_icon(icon: Icon, rig: Rig, device: str | None = None, form: str = FORMAT) -> PreparedExport:
+    """Deliver and judge one icon; raises InputError where the device cannot play it."""
     return prepare_icons([icon], [], rig, device, form)
 
 

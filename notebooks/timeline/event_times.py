@@ -54,8 +54,8 @@ class Span:
 def event_times_of(trace: Trace, percept: Percept) -> tuple[EventTime, ...]:
     """Return onset, felt peaks and skin peaks of the channels that respond, the earliest first.
 
-    Of an icon that is not felt only the skin's peaks are marked. A held peak of the skin counts from when the
-    temperature comes within 1 %.
+    A channel whose sensation stays below d′ = 1 has no marks, and of an icon that is not felt only the skin's peaks are
+    marked. A held peak of the skin counts from when the temperature comes within 1 %.
     """
     found: list[EventTime] = []
     if percept.onset_s is not None and percept.channel is not None:

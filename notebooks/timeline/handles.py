@@ -129,7 +129,7 @@ _NOUNS = {
 
 
 def _fields(leaf: Leaf, part: Part) -> tuple[str | None, str | None, str | None]:
-    """Fields that time and level of a part hang on, and why one of them does not move."""
+    """Fields that time and level of a part depend on, and why one of them does not move."""
     given = [name for name in (*LEVELS, *RATES) if getattr(leaf, name, None) is not None]
     level = next((name for name in given if name in LEVELS), None)
     pace = next((name for name in given if name in RATES), "duration_s")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -50,7 +51,7 @@ def read_measured(path: Path) -> Log:
     if every == 1:
         return log
     columns = {"time_s": log.time_s[::every], **{name: values[::every] for name, values in log.columns}}
-    thinned = f"{log.name}: every {every}th row of {len(log.time_s):,} is shown"
+    thinned = f"{log.name}: one row in {every} of {len(log.time_s):,} is shown"
     return Log.of(log.name, columns, sha256=log.sha256, notes=(*log.notes, thinned))
 
 
@@ -67,7 +68,7 @@ def read_uploaded(files: Mapping[str, bytes]) -> Log:
         try:
             return read_measured(Path(folder) / Path(names[0]).name)
         except LogError as wrong:
-            raise LogError(str(wrong).replace(f"{folder}/", "")) from None
+            raise LogError(str(wrong).replace(f"{folder}{os.sep}", "")) from None
 
 
 def aligned(log: Log, trace: Trace) -> Measured:

@@ -54,11 +54,6 @@ class Drawing:
     handles: tuple[Handle, ...]
     start: float
 
-    @property
-    def reason(self) -> str | None:
-        """Why the rig cannot play the icon, in one sentence; None where it can."""
-        return self.trace.reason
-
 
 @dataclass(frozen=True, slots=True)
 class Scene:
@@ -95,7 +90,8 @@ class Scene:
         return _badge(self.drawing.verdict)
 
     def __repr__(self) -> str:
-        said = f", {len(self.troubles)} errors" if self.troubles else ", stale" if self.stale else ""
+        count = len(self.troubles)
+        said = f", {count} {'error' if count == 1 else 'errors'}" if count else ", stale" if self.stale else ""
         return f"Scene({self.icon!r} of {self.count} on {self.rig.name}, {self.badge.colour}{said})"
 
 
@@ -205,7 +201,7 @@ def _kept(
     drawing = None if before is None else before.drawing
     if before is not None and not names:
         names, count = before.names, before.count
-    said = [*notes, f"and {more} more errors"] if more else list(notes)
+    said = [*notes, f"and {more} more {'error' if more == 1 else 'errors'}"] if more else list(notes)
     return Scene(text, rig, observer, icon, names, count, troubles, _once(said), True, drawing)
 
 

@@ -135,21 +135,28 @@ class Canvas(anywidget.AnyWidget):
             self.send(whole, buffers=buffers)
 
     def on_message(self, handler: Callable[[Message], None]) -> None:
-        """Call `handler` with each message from the page but those greetings that the newest frame answers."""
+        """Call `handler` with each message from the page but greetings and requests for the direct line."""
         self._handlers.append(handler)
 
     def _receive(self, widget: Canvas, content: Message, buffers: Sequence[Any]) -> None:
         if content.get("type") == "text":
             self._text = content.get("text")
-        if content.get("type") == "hello" and self._newest is not None:
-            meta, arrays = self._newest
-            self.send({**meta, "text": self._text} if "text" in meta else meta, buffers=arrays)
+        if content.get("type") == "hello":
+            self._greet()
             return
         if content.get("type") == "line":
             self._open_line()
             return
         for handler in tuple(self._handlers):
             handler(content)
+
+    def _greet(self) -> None:
+        """Send the newest frame; a page that waits for the first one hears at least that the kernel is there."""
+        if self._newest is None:
+            self.send({"type": "alive"})
+            return
+        meta, arrays = self._newest
+        self.send({**meta, "text": self._text} if "text" in meta else meta, buffers=arrays)
 
     def follow(self, sliders: Mapping[str, str]) -> None:
         """Take steps of sliders from the page's direct line too: their keys, and the ids of their models."""

@@ -59,7 +59,6 @@ class DesignModel:
         self._moving = False
         self.scene: Scene = scene(text, rig, icon, self._applied.observer)
         self.history = History(Edited(text, self.scene.icon))
-        self.last_ms = 0.0
         self._tell: list[Callable[[], None]] = []
 
     @property
@@ -83,7 +82,7 @@ class DesignModel:
         return None if self.model is None else self.model.nominal
 
     def on_change(self, tell: Callable[[], None]) -> None:
-        """Call a function after each message that changed text or rig."""
+        """Call a function after each message that changed the text, the rig or the icon that is shown."""
         self._tell.append(tell)
 
     def receive(self, message: Message) -> CanvasFrame:
@@ -107,8 +106,10 @@ class DesignModel:
         """Put the text of another file in the editor, which begins a history of its own."""
 
         def act() -> str:
-            self.scene = scene(text, self.rig, None, self._applied.observer)
+            self._drag = None
+            self.scene = scene(text, self.rig, None, self._applied.observer, notes=self._applied.notes)
             self.history = History(Edited(text, self.scene.icon))
+            self._align()
             return text
 
         return self._answer(act)
@@ -148,16 +149,8 @@ class DesignModel:
         """The frame as it is now, with the text."""
         return self._answer(lambda: self.text)
 
-    def say(self, note: str) -> CanvasFrame:
-        """Put a sentence before the notes until the next change."""
-
-        def act() -> None:
-            self.scene = with_notes(self.scene, note)
-
-        return self._answer(act)
-
     def _answer(self, act: Callable[[], str | None], seq: int = 0) -> CanvasFrame:
-        began, before = time.perf_counter(), (self.text, self.rig)
+        began, before = time.perf_counter(), (self.text, self.rig, self.scene.icon)
         self._moving = False
         shown: str | None = None
         try:
@@ -170,11 +163,11 @@ class DesignModel:
         except Exception as wrong:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
-        if (self.text, self.rig) != before:
+        if (self.text, self.rig, self.scene.icon) != before:
             for tell in self._tell:
                 tell()
-        self.last_ms = 1e3 * (time.perf_counter() - began)
-        return made.numbered(seq, self.last_ms, shown, self.history.can_undo, self.history.can_redo)
+        took_ms = 1e3 * (time.perf_counter() - began)
+        return made.numbered(seq, took_ms, shown, self.history.can_undo, self.history.can_redo)
 
     def _act(self, message: Message) -> str | None:
         """Do what a message asks; returns the text where the editor is to take it."""
@@ -249,6 +242,7 @@ class DesignModel:
         return new
 
     def _replace(self, text: str, icon: str | None) -> str:
+        self._drag = None
         self.history = self.history.changed(text)
         self._draw(icon)
         return text
@@ -288,9 +282,11 @@ class DesignModel:
 
     def _align(self) -> None:
         """Align the log with another icon; one that does not fit it stays, and the frame says why it is not drawn."""
+        from thermicon.circuit.fitting.log import LogError
+
         measured, drawing = self.measured, self.scene.drawing
         if measured is not None and not measured.by_hand and drawing is not None:
-            with contextlib.suppress(ValueError):
+            with contextlib.suppress(LogError, ValueError):
                 self.measured = aligned(measured.log, drawing.trace)
 
 

@@ -130,7 +130,7 @@ class DesignView:
         changed = knob.key in self.design.values
         unit = f" ({knob.unit})" if knob.unit else ""
         said = f"{knob.label}{unit}" + (f" · rig {knob.shown(knob.value)}" if changed else "")
-        text = f'<span class="{"changed" if changed else ""}" title="{_quoted(knob.what)}">{said}</span>'
+        text = f'<span class="{"changed" if changed else ""}" title="{_quoted(knob.what)}">{_quoted(said)}</span>'
         if self._labels[knob.key].value != text:
             self._labels[knob.key].value = text
 

@@ -35,6 +35,7 @@ class DirectLine:
     def __init__(self, answer: Callable[[dict[str, Any]], Frame]) -> None:
         self.answer = answer
         self.token = secrets.token_urlsafe(24)
+        self.sockets: set[WebSocketHandler] = set()
         self._server: HTTPServer | None = None
         self.port = 0
 
@@ -43,15 +44,20 @@ class DirectLine:
         if self._server is None:
             sockets = bind_sockets(0, HERE)
             self.port = sockets[0].getsockname()[1]
-            self._server = HTTPServer(Application([(r"/(.*)", _Socket, {"line": self})]))
+            # Without a log, since the address that it would hold is the token.
+            application = Application([(r"/(.*)", _Socket, {"line": self})], log_function=lambda _: None)
+            self._server = HTTPServer(application)
             self._server.add_sockets(sockets)
         return self.port, self.token
 
     def close(self) -> None:
-        """Close the port."""
+        """Close the port, and the pages' connections to it."""
         if self._server is not None:
             self._server.stop()
             self._server, self.port = None, 0
+        for socket in tuple(self.sockets):
+            socket.close()
+        self.sockets.clear()
 
 
 class _Socket(WebSocketHandler):
@@ -73,6 +79,10 @@ class _Socket(WebSocketHandler):
 
     def open(self, *_: str) -> None:
         self.set_nodelay(True)
+        self.line.sockets.add(self)
+
+    def on_close(self) -> None:
+        self.line.sockets.discard(self)
 
     def on_message(self, message: str | bytes) -> None:
         """Answer a message with a frame; what is none ends the line, and the page goes on the ordinary way."""

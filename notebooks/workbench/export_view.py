@@ -194,7 +194,9 @@ class ExportView(LiveView[ExportRequest]):
         for name in ("delivered", "figure", "gate"):
             self.said[name].value = ""
         self._mark(False)
-        self._say(message, "th-bad")
+
+    def _show_failure(self) -> None:
+        self._say(self._failure, "th-bad")
 
     def _device_chosen(self) -> None:
         """Offer the formats of the device; the chosen one is kept if possible."""

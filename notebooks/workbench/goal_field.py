@@ -22,6 +22,11 @@ PATTERNS = (
 )
 """Goals that are offered to begin with, and show what a goal is made of."""
 SAFETY = "safety"
+FOR_DRAWS = "judged after refining: a share of people takes draws of the model too"
+WITHOUT_DRAWS = (
+    "not judged: a share of people takes draws of the model too, and this observer has none; give an observer with "
+    "draws, such as the table (.csv) that observed --keep writes"
+)
 HELP = (
     "parts joined by commas: correct, detected, bits, d_prime, time, energy, onset or count with a comparison and a "
     "number, such as 'time <= 10 s'; 'safety green'; 'for 95 % of people' after correct, detected or bits"
@@ -56,14 +61,17 @@ class GoalField:
         self.text.observe(lambda change: self._read(change["new"]), "value")
         self.box = widgets.VBox([self.text, self.said, self.verdict]).add_class("thermicon-goal")
 
-    def show(self, reached: GoalResult | None) -> None:
-        """Show how far the goal is reached by the ranking on the page; None: nothing was judged yet."""
+    def show(self, reached: GoalResult | None, refined: bool = False) -> None:
+        """Show how far the goal is reached by the ranking on the page; None: it was not judged.
+
+        ``refined`` says that no ranking follows that could judge it.
+        """
         if reached is not None and reached.goal == self.goal:
             self.verdict.value = verdict_html(reached)
         elif self.goal is None:
             self.verdict.value = ""
         else:
-            waits = "judged after refining: a share of people takes draws of the model too"
+            waits = WITHOUT_DRAWS if refined else FOR_DRAWS if self.goal.single_people else "not judged yet"
             self.verdict.value = fragment("block", f"{self.goal.text}: {waits}", "th-soft")
 
     def _read(self, typed: str) -> None:

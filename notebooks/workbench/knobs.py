@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from thermicon.perception.observer.observer import Channel, Receptor
 
 OLDEST_YEARS, YOUNGEST_YEARS = 100.0, 18.0
-"""What ``perception.people.age_factor`` covers."""
+"""What ``age_factor`` covers."""
 LIGHTEST_TIMES, FIRMEST_TIMES = 5.5, 0.5
 """Light touch of 3e-4 to 3e-3 m²·K/W, over the 5.4e-4 m²·K/W of the shipped rigs."""
 LEAST_A = 0.1

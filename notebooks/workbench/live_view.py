@@ -33,6 +33,7 @@ class LiveView(ABC, Generic[Request]):
         self._running: Request | None = None
         self._finished: Request | None = None
         self._failed_request: Request | None = None
+        self._failure = ""
 
     def renew(self, after_s: float | None = None) -> None:
         """Compute the content anew if the tab is shown and the request has changed.
@@ -43,7 +44,12 @@ class LiveView(ABC, Generic[Request]):
         if not self.shown:
             self._stop()  # the design view needs the processor
             return
-        if request in (self._running, self._failed_request):
+        if request == self._running:
+            return
+        if request == self._failed_request:
+            self._stop()
+            self._mark_outdated(request)
+            self._show_failure()
             return
         if request == self._finished and self._has_result():
             self._stop()
@@ -92,8 +98,11 @@ class LiveView(ABC, Generic[Request]):
 
     def _failed(self, message: str) -> None:
         """A job failed; the same request is not tried again, since it would fail in the same way."""
-        self._running, self._failed_request = None, self._request()
-        self._say(message, "th-caution")
+        self._running, self._failed_request, self._failure = None, self._request(), message
+        self._show_failure()
+
+    def _show_failure(self) -> None:
+        self._say(self._failure, "th-caution")
 
     def _mark(self, stale: bool) -> None:
         for part in self._stale_parts():

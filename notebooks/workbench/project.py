@@ -10,7 +10,7 @@ from thermicon.icons import library_names
 
 from ..editing.icon_edits import only, with_copy, with_name, with_new, without
 from ..files.autosave import Autosave, Unsaved, unsaved_texts
-from ..files.cue_document import CueDocument, create_document, open_document
+from ..files.cue_document import ChangedOnDisk, CueDocument, create_document, open_document
 from ..files.kept_draft import KeptVersion
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
@@ -63,10 +63,12 @@ class Project:
     def warning(self) -> str:
         """What may cost somebody their text, in one sentence; empty where nothing does."""
         if self.document is not None and self._changed_on_disk():
-            gone = "has changed" if self.document.path.exists() else "was removed"
+            name = self.document.path.name
+            if not self.document.path.exists():
+                return f"{name} was removed on disk since it was opened here: Save as writes your text to a file again"
             return (
-                f"{self.document.path.name} {gone} on disk since it was opened here: open it again to see it, "
-                "or save your text under another name"
+                f"{name} has changed on disk since it was opened here: open it again to see it, or save your text "
+                "under another name"
             )
         if (self.dirty or self._version) and self._autosave is not None and self._autosave.failed:
             return f"{'unsaved text' if self.dirty else 'version A'} is not kept: {self._autosave.failed}"
@@ -105,14 +107,20 @@ class Project:
         self.offers = [] if own is None else unsaved_texts(own.place, self.design.text, own.path)
 
     def restore(self) -> KeptVersion | None:
-        """Put the newest unsaved text into the editor, as a step that can be undone; return the newest version A."""
+        """Put the newest unsaved text into the editor, as a step that can be undone; return the newest version A.
+
+        Other texts are dropped, but for those of editors that are running.
+        """
         offers, self.offers = self.offers, []
         text = next((each.text for each in offers if each.text is not None), None)
         if text is not None:
             self.design.show_text(text)
+        version = next((each.version for each in offers if each.version is not None), None)
         for each in offers:
-            each.path.unlink(missing_ok=True)  # it is kept again by this editor
-        return next((each.version for each in offers if each.version is not None), None)
+            taken = each.text in (None, text) and each.version in (None, version)
+            if taken or not each.alive:  # what is taken is kept again by this editor
+                each.path.unlink(missing_ok=True)
+        return version
 
     def discard(self) -> None:
         """Drop unsaved texts of editors that are gone; those of running ones stay theirs."""
@@ -130,11 +138,14 @@ class Project:
 
     def openable(self) -> list[str]:
         """What can be opened: cue files of the folder by name, and the shipped sets."""
+        return [*self.files("*.cue")[:MOST_FILES], *(f"{SHIPPED}{name}" for name in library_names())]
+
+    def files(self, pattern: str) -> list[str]:
+        """Names of files of the folder, without hidden ones; none of a folder that a page may not look into."""
         try:
-            files = sorted(path.name for path in self.folder.glob("*.cue") if not path.name.startswith("."))
-        except OSError:
-            files = []
-        return [*files[:MOST_FILES], *(f"{SHIPPED}{name}" for name in library_names())]
+            return sorted(path.name for path in self.folder.glob(pattern) if not path.name.startswith("."))
+        except (OSError, OutputError):
+            return []
 
     def open(self, source: str) -> None:
         """Open a file or a shipped set; what is unsaved of the one before stays kept beside its file."""
@@ -147,22 +158,25 @@ class Project:
             name = source.removeprefix(SHIPPED)
             document, text = None, text_of(name)
         else:
-            name, path = source, self.place(source)
-            document = open_document(path)
-            text = document.text
+            document = open_document(self.place(source))
+            name, text = document.path.name, document.text
         if not self.dirty and before is not None:
             before.forget()  # version A goes along
         self.document, self.name, self._base = document, name, text
         self._autosave = self._new_autosave()
         self.design.open_text(text)
+        self.changed()  # an equal text is no change of the design
         self.look_for_unsaved()
 
     def save(self) -> Path:
         """Save to the file it came from; pressed twice, over a file that has changed in between too."""
         if self.document is None:
             raise OutputError("this set has no file yet: save it under a name")
-        again, self._overwrites = self._overwrites, True
-        self._saved(self.document.saved(self.design.text, overwrite=again))
+        try:
+            self._saved(self.document.saved(self.design.text, overwrite=self._overwrites))
+        except ChangedOnDisk:
+            self._overwrites = True
+            raise
         return self._path
 
     def save_as(self, name: str, overwrite: bool = False) -> Path:
@@ -201,7 +215,7 @@ class Project:
         return below_start(whole.parent) / whole.name
 
     def _saved(self, document: CueDocument) -> None:
-        self.document, self._base, self._overwrites = document, document.text, False
+        self.document, self.name, self._base = document, document.path.name, document.text
         before, self._autosave = self._autosave, self._new_autosave()
         if before is not None:
             before.forget()

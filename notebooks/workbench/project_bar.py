@@ -15,9 +15,12 @@ from .log_panel import LogPanel
 from .project import SHIPPED, Project
 
 if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
     from ..files.kept_draft import KeptVersion
     from .design_view import DesignView
 
+MOST_RIGS = 50
 ICON_VERBS = ("New icon", "Duplicate", "Rename", "Delete")
 
 
@@ -28,6 +31,7 @@ class ProjectBar:
         self.project, self.view = project, view
         self.take_version: Callable[[KeptVersion], None] = lambda kept: None
         self._quiet = False
+        self._rigs: dict[str, Rig] = {}
         self.title, self.said = widgets.HTML(), widgets.HTML()
         self.buttons = {
             name: self._button(name, hint, act)
@@ -68,6 +72,12 @@ class ProjectBar:
     def renew(self) -> None:
         """Say anew what the project is, and what may cost somebody their text."""
         project, history = self.project, self.project.design.history
+        if self.shown == "download":
+            self._open(None)  # its links hold the text, the rig and the picture as they were
+        elif self.shown == "icon":
+            self._about()
+        elif self.shown == "log":
+            self.log.renew()
         kind = "th-caution" if project.dirty else ""
         self._set(self.title, fragment("marked", project.title, f"thermicon-file {kind}".strip()))
         self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.can_undo, not history.can_redo
@@ -107,10 +117,11 @@ class ProjectBar:
         self._show_offer()
 
     def take_rig(self, name: str) -> None:
-        """Load a rig by name or path, and show the icons on it."""
+        """Show the icons on a rig that was shown before, or load it by name or path."""
         from thermicon.circuit import Rig
 
-        self.view.take_rig(Rig.load(name))
+        rig = self._rigs.get(name)
+        self.view.take_rig(Rig.load(name) if rig is None else rig)
 
     def show_rig(self) -> None:
         """Show which rig is used, after something else than this bar chose it."""
@@ -124,17 +135,22 @@ class ProjectBar:
         if self._quiet:
             return
         path = self.project.folder / name
-        self.take_rig(str(path) if name.endswith(".toml") else name)
+        try:
+            self.take_rig(str(path) if name.endswith(".toml") else name)
+        except Exception:
+            self.show_rig()  # the list goes back to the rig that is still used
+            raise
         self.say("")
 
     def _offer_rigs(self) -> None:
         from thermicon.circuit import rig_names
 
-        nominal = self.project.design.nominal.name
-        files = sorted(path.name for path in Path(self.project.folder).glob("*.toml"))[:50]
-        names = list(dict.fromkeys([nominal, *rig_names(), *files]))
-        self.rig.options = names
-        self.rig.value = nominal
+        nominal = self.project.design.nominal
+        if nominal.name not in rig_names():
+            self._rigs[nominal.name] = nominal  # it may lie in another folder, so it is not loaded by its name
+        files = self.project.files("*.toml")[:MOST_RIGS]
+        self.rig.options = list(dict.fromkeys([nominal.name, *self._rigs, *rig_names(), *files]))
+        self.rig.value = nominal.name
 
     def _open_panel(self) -> widgets.Widget:
         self.files = widgets.Select(options=[], rows=9, description="open", layout={"width": "330px"})
@@ -222,8 +238,8 @@ class ProjectBar:
         if not source:
             raise OutputError("select what is to be opened, or type its path")
         self.project.open(source)
-        self.path.value = ""
-        self._offer_rigs()
+        self.path.value = self.name.value = ""
+        self.show_rig()
         self._show_offer()
         self._after("")
 

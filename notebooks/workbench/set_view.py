@@ -179,8 +179,8 @@ class SetView(LiveView[SetRequest]):
         chosen = None if self.made is None else self.made.ranking.chosen
         if chosen is None or self.keep is None:
             raise ValueError("no icons are chosen yet: say above how many")
-        self.take.layout.display = "none"
         self.keep(tuple(chosen.icons))
+        self.take.layout.display = "none"
         self.count.value = 0
         self._show_text(self.design.text)
 
@@ -237,7 +237,7 @@ class SetView(LiveView[SetRequest]):
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)
         said["choice"].value = chosen_html(ranking)
-        self.goal.show(ranking.goal)
+        self.goal.show(ranking.goal, well)
         self.take.layout.display = "none" if ranking.chosen is None else ""
         people = f"{ranking.people} people"
         self._say(f"{people}" if well else f"preliminary: {people}; refining …")

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.perception.observer.people import YOUNG_YEARS
+
 from ..editing.cue_check import read_text
 from ..files.kept_draft import KeptVersion
 from ..timeline.frames import CanvasFrame, traces_of
@@ -84,7 +86,7 @@ class Version:
                 nominal = replace(Rig.load(file), changes=kept.rig_changes)
                 applied = apply(nominal, kept.values, None if model is None else model.nominal)
             except (RigError, KeyError) as wrong:
-                why = str(wrong).replace(f"{file}: ", "").replace("\n", "; ")
+                why = str(wrong.args[0]).replace(f"{file}: ", "").replace("\n", "; ")
                 raise ValueError(f"version A cannot be restored: {why}") from None
         return cls(kept.text, kept.icon, nominal, applied.rig, applied.observer, dict(kept.values), model)
 
@@ -111,6 +113,8 @@ def rank_versions(
     a: Version, b: Version, goal: Goal | None, known: dict[Any, RankedSet], progress: Callable[[int, int], None]
 ) -> RankedVersions:
     """Rank both versions; ``known`` keeps rankings that are needed again while the other version is edited."""
+    from thermicon.circuit import InputError
+
     from .set_model import rank_set
 
     draws = DRAWS if goal is not None and goal.single_people else 0
@@ -123,7 +127,7 @@ def rank_versions(
                 known[key] = rank_set(
                     each.text, each.rig, PEOPLE, draws, progress=progress, goal=goal, observer=each.model
                 )
-        except ValueError as wrong:
+        except (InputError, ValueError) as wrong:
             rankings.append(None)
             reasons.append(str(wrong))
         else:
@@ -140,6 +144,7 @@ def both_frame(a: Version, b: Version) -> CanvasFrame:
     It is the one that is shown in B, or else the first that was changed. Where a version does not have it, the frame
     holds the other alone and says so.
     """
+    from thermicon.circuit import InputError
     from thermicon.icons import CueErrors
 
     notes, parts = [], []
@@ -147,7 +152,7 @@ def both_frame(a: Version, b: Version) -> CanvasFrame:
     for letter, each in zip("AB", (a, b), strict=True):
         try:
             part = _traces(each, icon)
-        except (CueErrors, ValueError, ArithmeticError) as wrong:
+        except (CueErrors, InputError, ValueError, ArithmeticError) as wrong:
             notes.append(f"{letter} is not drawn: {str(wrong).splitlines()[0]}")
         else:
             if part is None:
@@ -193,7 +198,8 @@ def changed_lines(a: Version, b: Version) -> list[tuple[str, str]]:
     if a.rig_words != b.rig_words:
         rows += [("A", f"rig {a.rig_words}"), ("B", f"rig {b.rig_words}")]
     if a.values.get("age") != b.values.get("age"):
-        rows += [(letter, f"age {each.values.get('age', 25.0):g} years") for letter, each in (("A", a), ("B", b))]
+        ages = (("A", a.values.get("age", YOUNG_YEARS)), ("B", b.values.get("age", YOUNG_YEARS)))
+        rows += [(letter, f"age {age:g} years") for letter, age in ages]
     for line in difflib.ndiff(a.text.splitlines(), b.text.splitlines()):
         if line[:2] in ("- ", "+ ") and line[2:].strip():
             rows.append(("A" if line[0] == "-" else "B", line[2:].strip()))

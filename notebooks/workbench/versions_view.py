@@ -50,6 +50,7 @@ class VersionsView(LiveView[Request]):
         self.kept: Version | None = None
         self._known: dict[Any, Any] = {}
         self._result = False
+        self._people = ""
         self._build()
 
     def _build(self) -> None:
@@ -135,7 +136,7 @@ class VersionsView(LiveView[Request]):
         return lambda job: self._compare(job, request)
 
     def _show_finished(self) -> None:
-        self._say("")
+        self._say(self._people)
 
     def _stale_parts(self) -> tuple[widgets.Widget, ...]:
         return (self.body,)
@@ -158,6 +159,7 @@ class VersionsView(LiveView[Request]):
         job.on_page(lambda: self._show(both, request))
 
     def _show_curves(self, frame: CanvasFrame, changes: list[tuple[str, str]]) -> None:
+        self._finished = None  # the results on the page are those of an earlier request
         self.curves.frame(frame.meta, frame.buffers)
         self.said["changes"].value = changes_html(changes)
 
@@ -166,7 +168,8 @@ class VersionsView(LiveView[Request]):
         self._mark(False)
         self.said["results"].value = results_html(both)
         people = [each.people for each in (both.a, both.b) if each is not None]
-        self._say(f"predicted for the same {people[0]} people" if people else "")
+        self._people = f"predicted for the same {people[0]} people" if people else ""
+        self._say(self._people)
 
     def _button(self, name: str, hint: str, act: Callable[[], None]) -> widgets.Button:
         made = widgets.Button(description=name, tooltip=hint, layout={"width": "auto"})

@@ -61,6 +61,8 @@ class Workbench:
     ------
     CueErrors
         For a file or a name that does not exist.
+    OutputError
+        For a cue file that cannot be edited: unreadable, not UTF-8, or too large.
     RigError
         For a rig that does not exist, or cannot be.
     ValueError
@@ -91,11 +93,12 @@ class Workbench:
         source = text if text is not None else started_with()
         chosen = rig if rig is not None else started_rig()
         loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
-        self._design = DesignModel(text_of(source), loaded, icon, _observer_of(observer))
+        document = open_document(found) if (found := file_of(source)) is not None else None
+        written = text_of(source) if document is None else document.text
+        self._design = DesignModel(written, loaded, icon, _observer_of(observer))
         self._check_icon(icon)
         if measured is not None:
             self._design.take_log(read_measured(Path(measured)))
-        document = open_document(found) if (found := file_of(source)) is not None else None
         name = document.path.name if document is not None else _name_of(source)
         self.project = Project(self._design, document, name, autosaves=has_kernel())
         self._folder = Path(folder)
@@ -183,7 +186,10 @@ class Workbench:
         return self._ranked[1]
 
     def figure(self, view: View = "design") -> Figure:
-        """Return what a view shows as a matplotlib Figure; raises ValueError for a view that there is not."""
+        """Return what a view shows as a matplotlib Figure.
+
+        Raises ValueError for a view that there is not, and CueErrors for a set or an export of a bad text.
+        """
         if view not in VIEWS:
             raise ValueError(f"there is no view {view!r}; there are {', '.join(VIEWS)}")
         if view == "design":
@@ -197,7 +203,9 @@ class Workbench:
         from ..figures.export_plot import export_figure
         from ..files.exporting import prepare_icon
 
-        return export_figure(prepare_icon(self.icon, self.rig))
+        icons = self.icons  # raises for a bad text, of which the icon before it is drawn still
+        shown = icons.find(self.scene.icon or "") or icons.icons[0]
+        return export_figure(prepare_icon(shown, self.rig))
 
     @property
     def page(self) -> Any:
@@ -243,7 +251,6 @@ class Workbench:
                 view.renew(0.0)  # who opens a tab has finished typing
 
         def changed() -> None:
-            bar.renew()
             for view in (ranked, export, versions):
                 view.renew()
 
@@ -262,7 +269,6 @@ class Workbench:
             self.design_view.take_rig(version.nominal, version.values)
             self.bar.show_rig()
         self.design_view.show_text(version.text, version.icon)
-        self.bar.renew()
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
         """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""
@@ -282,7 +288,7 @@ class Workbench:
 
 
 def text_of(source: str | Path | Icon | IconSet | None) -> str:
-    """Return the cue text of a set, an icon, a file, a shipped set by name, or text itself.
+    """Return the cue text of a set, an icon, a JSON file, a shipped set by name, or text itself.
 
     >>> text_of("cue 1; icon dip { hold for 1 s }")
     'cue 1; icon dip { hold for 1 s }'
@@ -295,12 +301,7 @@ def text_of(source: str | Path | Icon | IconSet | None) -> str:
         return _shipped(source or FIRST)
     if isinstance(source, str) and ("{" in source or "\n" in source or not source.strip()):
         return source
-    from thermicon.icons.files.shipped import file_bytes, is_json
-
-    data = None if is_json(source) else file_bytes(source)
-    if data is None:
-        return str(read_cue(source))  # JSON, or the reason why there is no such file
-    return data.decode("utf-8-sig", errors="replace")
+    return str(read_cue(source))  # or the reason why there is no such file
 
 
 def _goal_text(goal: Goal | str | None) -> str:

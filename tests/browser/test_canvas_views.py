@@ -39,6 +39,21 @@ def test_labels_of_a_heat_map_do_not_overlap(page: Any, made: Bench, count: int,
     assert first["y"] == second["y"]
 
 
+def test_a_view_without_a_drawing_waits_without_a_banner_while_the_kernel_lives(page: Any, made: Bench) -> None:
+    made.show("heat")
+    page.evaluate("deliver({ type: 'alive' }, [])")
+    page.wait_for_timeout(3_500)
+    assert page.locator(".tm-banner").is_hidden()
+    assert page.locator(".tm-waiting").is_visible()
+
+
+def test_a_page_of_another_machine_never_opens_the_direct_line(page: Any, made: Bench) -> None:
+    page.evaluate("() => { window.WebSocket = class { constructor() { window.opened = true; } }; }")
+    made.show()
+    page.evaluate("deliver({ type: 'line', port: 9, token: 'secret', sliders: {} }, [])")
+    assert page.evaluate("window.opened ?? false") is False
+
+
 @pytest.mark.parametrize("inside", [814, 952, 1094])
 def test_a_changed_knob_is_read_in_full_and_a_lost_kernel_moves_nothing(page: Any, inside: int) -> None:
     said = (

@@ -43,7 +43,7 @@ def test_a_scene_is_what_the_circuit_and_the_observer_say(dip: Scene, rig: Rig) 
     assert drawing.percept.onset_s == perceive(trace).onset_s
     assert (dip.icon, dip.names, dip.count, dip.stale, dip.troubles) == ("dip", ("dip",), 1, False, ())
     assert dip.badge.colour == "green"
-    assert drawing.reason is None
+    assert drawing.trace.reason is None
     assert drawing.missed == ()
 
 
@@ -107,7 +107,7 @@ def test_errors_keep_the_last_drawing_and_are_told_where_they_are(dip: Scene, ri
     assert trouble.hint == 'a difference such as "6 °C" or "6 K"'
     assert trouble.suggestion == "cool by 6 °C at 3 °C/s"
     assert (made.badge.colour, made.badge.text) == ("grey", "safety not judged: the text has errors")
-    assert repr(made) == "Scene('dip' of 1 on thenar, grey, 1 errors)"
+    assert repr(made) == "Scene('dip' of 1 on thenar, grey, 1 error)"
 
 
 def test_a_suggestion_taken_mends_its_line_and_no_other() -> None:

@@ -48,13 +48,13 @@ def test_a_page_that_greets_gets_the_newest_frame_with_the_newest_text(sent):
     assert [message["type"] for message in handed] == ["text"]
 
 
-def test_a_greeting_before_the_first_frame_is_handed_on(sent):
+def test_a_greeting_before_the_first_frame_is_answered_too(sent):
     canvas = Canvas()
     handed: list[dict[str, Any]] = []
     canvas.on_message(handed.append)
     canvas._receive(canvas, {"type": "hello"}, [])
-    assert handed == [{"type": "hello"}]
-    assert sent == []
+    assert handed == []
+    assert sent == [({"type": "alive"}, [])]
 
 
 def test_no_data_is_kept_in_traits_and_the_module_is_small():

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import logging
 import struct
 from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
@@ -157,6 +158,32 @@ def test_without_the_token_nobody_gets_in():
     asyncio.run(go())
     assert len(line.token) >= 32
     assert DirectLine(line.answer).token != line.token
+
+
+def test_the_token_stands_in_no_log(caplog):
+    line = DirectLine(lambda message: ({"seq": 1}, []))
+
+    async def talk(socket: WebSocketClientConnection) -> None:
+        await socket.write_message("{}")
+        assert await socket.read_message() is not None
+        with pytest.raises(HTTPClientError, match="403"):
+            await websocket_connect(f"ws://{HERE}:{line.port}/{line.token}-no")
+
+    with caplog.at_level(logging.DEBUG):
+        on_line(line, talk)
+    assert line.token not in caplog.text
+
+
+def test_a_closed_canvas_answers_nobody():
+    canvas, _ = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+
+    async def talk(socket: WebSocketClientConnection) -> object:
+        await socket.write_message(json.dumps({"type": "turn", "key": "contact", "value": 2.0, "seq": 2}))
+        assert await socket.read_message() is not None
+        canvas.close()
+        return await socket.read_message()
+
+    assert on_line(canvas._line, talk) is None
 
 
 def test_the_page_is_told_where_the_line_is_and_which_sliders_it_takes():

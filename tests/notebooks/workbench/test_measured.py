@@ -14,7 +14,7 @@ from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.start_folder import VARIABLE
-from thermicon.notebooks.timeline.measured import read_uploaded
+from thermicon.notebooks.timeline.measured import read_measured, read_uploaded
 from thermicon.notebooks.workbench.log_panel import LogPanel
 from thermicon.notebooks.workbench.project_bar import ProjectBar
 
@@ -137,3 +137,28 @@ def test_a_workbench_is_made_with_a_log(log: Path) -> None:
     assert bench._design.measured.shift_s == pytest.approx(LATE_S, abs=0.02)
     with pytest.raises(LogError, match=r"missing\.csv"):
         Workbench(TEXT, measured="missing.csv")
+
+
+def test_another_file_aligns_the_log_anew_and_one_that_does_not_fit_is_said(log: Path) -> None:
+    bench, _, panel = opened()
+    panel.path.value = log.name
+    panel.load.click()
+    bench._design.open_text(TEXT.replace("icon dip {", "icon dip { hold for 1 s;"))
+    assert panel.shift.value == pytest.approx(LATE_S + 1.0, abs=0.02)
+    columns = np.loadtxt(log, delimiter=",", skiprows=1)
+    current = log.with_name("current.csv")
+    np.savetxt(current, columns[:, :2], fmt="%.4f", delimiter=",", header="time_s,current_A", comments="")
+    panel.path.value = current.name
+    panel.load.click()
+    bench._design.take_rig(Rig.load("tcs2"))
+    frame = bench._design.receive({"type": "icon", "name": "none"})
+    assert not any("failed" in note for note in frame.meta["notes"])
+    assert "current.csv: " in frame.meta["measured"]
+
+
+def test_a_long_log_says_that_it_is_thinned(tmp_path: Path) -> None:
+    rows = np.arange(40_001) / 100
+    path = tmp_path / "long.csv"
+    text = "time_s,display_C\n" + "".join(f"{time:.2f},32\n" for time in rows)
+    path.write_text(text, encoding="utf-8")
+    assert read_measured(path).notes[-1] == "long.csv: one row in 3 of 40,001 is shown"

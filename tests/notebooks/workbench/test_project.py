@@ -5,46 +5,17 @@ from __future__ import annotations
 import re
 import time
 from base64 import b64decode
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.circuit import Rig
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.autosave import EVERY_S
 from thermicon.notebooks.files.start_folder import FILE, RIG, VARIABLE
-from thermicon.notebooks.workbench.project_bar import ProjectBar
 from thermicon.notebooks.workbench.versions_model import Version
 from thermicon.perception.observer.observer import DATA
-
-TEXT = "cue 1\n\nicon a { cool by 3 K at 2 K/s; return at 2 K/s }\n\nicon b { hold for 1 s }\n"
-TYPED = TEXT.replace("3 K", "4 K")
-
-
-@pytest.fixture
-def path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A cue file in a folder of its own, which is where the workbench runs, as in a kernel."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("thermicon.notebooks.workbench.workbench.has_kernel", lambda: True)
-    file = tmp_path / "alerts.cue"
-    file.write_text(TEXT, encoding="utf-8")
-    yield file
-
-
-def opened(path: Path | str | None) -> tuple[Workbench, ProjectBar]:
-    bench = Workbench(path)
-    assert bench.page is not None
-    assert bench.bar is not None
-    return bench, bench.bar
-
-
-def said(bar: ProjectBar) -> str:
-    return re.sub(r"<[^>]*>", "", bar.said.value)
-
-
-def title(bar: ProjectBar) -> str:
-    return re.sub(r"<[^>]*>", "", bar.title.value)
 
 
 def test_text_goes_back_to_the_file_it_came_from(path: Path) -> None:

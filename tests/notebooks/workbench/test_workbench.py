@@ -129,6 +129,14 @@ def test_a_drag_that_cannot_be_says_why_and_leaves_the_text(bench: Workbench, se
     assert "none to move" in send(type="drag", handle=9, t=1.0, y=30.0, end=True)["notes"][0]
 
 
+def test_a_drag_that_was_cut_off_does_not_bring_the_text_of_another_file_back() -> None:
+    model = DesignModel(DIP, Rig.load("thenar"))
+    model.receive({"type": "drag", "handle": 0, "t": 2.0, "y": 28.0})
+    model.open_text(DIP.replace("# deep", "# of another file"))
+    model.receive({"type": "drag", "handle": 0, "t": 2.0, "y": 28.0, "end": True})
+    assert "# of another file" in model.text
+
+
 def test_another_icon_is_shown_and_an_unknown_one_is_said(bench: Workbench, send: Send) -> None:
     assert send(type="icon", name="glow")["icon"] == "glow"
     assert bench.icon is not None
@@ -224,8 +232,12 @@ def test_figures_of_what_cannot_be_say_why() -> None:
     assert "missing unit" in wrong.figure().get_suptitle()
     with pytest.raises(CueErrors, match="missing unit"):
         wrong.figure("set")
-    with pytest.raises(ValueError, match="there is no icon to export"):
+    with pytest.raises(CueErrors, match="missing unit"):
         wrong.figure("export")
+    late = Workbench(DIP)
+    late.text = "cue 1; icon dip { cool by 4 at 2 K/s }"
+    with pytest.raises(CueErrors, match="missing unit"):
+        late.figure("export")
     with pytest.raises(ValueError, match="there is no view 'sets'; there are design, set, export"):
         wrong.figure("sets")  # type: ignore[arg-type]
 
