@@ -326,6 +326,23 @@ def test_a_second_finger_moves_no_corner(drawn: Bench) -> None:
     assert ended["t"] == pytest.approx(2.0 + 20 * per_px, abs=per_px)
 
 
+@pytest.mark.parametrize("width", [340, 1280])
+def test_meanings_of_words_open_inside_of_the_time_line(drawn: Bench, width: int) -> None:
+    page = drawn.page
+    page.set_viewport_size({"width": width, "height": 800})
+    (panel,) = design()["panels"]
+    label, terms = (
+        "sensation (d′) of the nominal person",
+        [["d′", "distance in units of noise"], ["clock", "from when"]],
+    )
+    drawn.frame(design(panels=[panel, {**panel, "key": "sensation", "label": label, "terms": terms}]))
+    page.locator(".tm-words summary").click()
+    opened, around = (page.locator(place).bounding_box() for place in (".tm-words dl", ".tm-timeline"))
+    for axis, size in (("x", "width"), ("y", "height")):
+        assert around[axis] <= opened[axis]
+        assert opened[axis] + opened[size] <= around[axis] + around[size]
+
+
 def test_labels_of_marks_are_whole_in_a_narrow_panel(drawn: Bench) -> None:
     page = drawn.page
     page.set_viewport_size({"width": 330, "height": 800})
