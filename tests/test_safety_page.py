@@ -5,12 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from thermicon.circuit import Device, Rig, SessionPlan, device_names, play_session
 from thermicon.circuit.records import Record
 from thermicon.circuit.rig.rules import LONGEST_SESSION_MIN, Limits, limit_table
 from thermicon.circuit.rig.uncertainty import uncertainty_table
 from thermicon.circuit.safety.endings import ENDING_S, ENDINGS, LATER_S
 from thermicon.circuit.safety.repeated import LONGEST_PAUSE_S, RECOVERED_K
 from thermicon.circuit.safety.single_faults import BEYOND_K, INSTANTS, MARGIN, REACTIONS_S, TEST_A, TEST_S
+from thermicon.icons import load_library
 from thermicon.icons.number_text import signed
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explain" / "safety.md"
@@ -80,3 +82,21 @@ def test_the_constants_without_a_source_are_those_of_the_code() -> None:
 
 if __name__ == "__main__":
     print("\n".join([LIMITS_HEAD, *limit_rows(), "", UNCERTAINTY_HEAD, *uncertainty_rows()]))
+
+
+def test_the_device_without_a_row_among_the_refusals_is_named() -> None:
+    page, refusals = PAGE.read_text(encoding="utf-8"), PAGE.parents[1] / "reference" / "refusals.md"
+    rows = refusals.read_text(encoding="utf-8").partition("## Causes")[0]
+    missing = [name for name in device_names() if f"| {name} |" not in rows]
+    assert missing == ["dc-coupled-audio"]
+    assert "(`dc-coupled-audio`) is judged as volts" in page
+    assert Device.load("dc-coupled-audio").driven_by == "volts"
+
+
+def test_a_session_of_a_closed_loop_is_judged_in_the_open_loop_scenarios() -> None:
+    page, rig = " ".join(PAGE.read_text(encoding="utf-8").split()), Rig.load("thenar")
+    plan = SessionPlan(("cooling-step",), 10.0)
+    looped = play_session(load_library("six-icons"), plan, rig, tracking="display")
+    assert f"**is judged in the {looped.scenarios} open-loop scenarios too**" in page
+    coldest = next(check for check in looped.checks if check.quantity == "display" and not check.upper)
+    assert coldest.value < looped.trace.display_C.min() - 1.0, "a loop would not let the display go so far"

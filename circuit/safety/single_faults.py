@@ -156,13 +156,14 @@ class Faulty:
         least, most = driver.current_min_A, driver.current_max_A
         if self.ensemble.bridge_A is not None:
             least, most = -self.ensemble.bridge_A, self.ensemble.bridge_A
-        slowest, worst, colour = REACTIONS_S[0], "no limit is passed", "green"
+        slowest, harms = REACTIONS_S[0], []
         for full in (least, most):
             reaction, values = self._stuck(full, low, high)
             slowest = min(slowest, reaction)
             text, beyond = _passed(self.limits, values)
             if beyond.any():
-                worst, colour = text, "red"
+                harms.append(f"{text} at {signed(full, '.3g')} A")
+        worst, colour = " and ".join(harms) or "no limit is passed", "red" if harms else "green"
         cut = CutOff(round(low, 1), round(high, 1), slowest)
         prevented = f"a cut-off at {cut.low:g} and {cut.high:g} °C on the measured display, within {slowest:g} s"
         if slowest == 0.0:

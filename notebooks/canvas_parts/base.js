@@ -6,7 +6,7 @@ function make(tag, attributes = {}, ...children) {
   for (const [name, value] of Object.entries(attributes)) {
     if (value === null || value === undefined || value === false) continue;
     if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
-    else element.setAttribute(name, value === true ? "" : value);
+    else element.setAttribute(name, value === true && !name.startsWith("aria-") ? "" : value); // an empty aria-hidden hides nothing
   }
   element.append(...children.filter((child) => child !== null));
   return element;
@@ -47,6 +47,23 @@ function setText(element, text) {
 function unitOf(label) {
   const found = /\(([^()]*)\)/.exec(label);
   return found ? found[1] : "";
+}
+
+/** What the workbench does at a keystroke in text and time line: "undo", "redo", "save", or null. */
+function commandOf(event) {
+  if (event.isComposing || !(event.ctrlKey || event.metaKey) || event.altKey) return null;
+  const key = event.key.toLowerCase();
+  if (key === "z") return event.shiftKey ? "redo" : "undo";
+  return { y: "redo", s: "save" }[key] ?? null;
+}
+
+/** A keystroke for the notebook around, outside of JupyterLab for nobody. */
+function passOn(event, element) {
+  const outside = element.closest(".tm-root")?.parentElement;
+  if (!outside?.closest(".jp-Notebook")) return;
+  event.preventDefault();
+  const { key, code, keyCode, ctrlKey, metaKey, shiftKey } = event;
+  outside.dispatchEvent(new KeyboardEvent("keydown", { key, code, keyCode, ctrlKey, metaKey, shiftKey, bubbles: true, cancelable: true }));
 }
 
 let uniqueCount = 0;

@@ -5,61 +5,59 @@ function strokeSeries(context, values, time, x, y, step, ratio) {
   const count = Math.min(values.length, time.n);
   const start = x(time.t0);
   const pace = x.slope * time.dt;
+  const pen = penOf(context, values, start, pace, y, step);
   context.beginPath();
-  if (count * 1 <= 2 * Math.abs(x.end - x.start) * ratio) everyRow(context, values, count, start, pace, y, step);
-  else fewestRows(context, values, count, start, pace, y, step, ratio);
+  if (count <= 2 * Math.abs(x.end - x.start) * ratio) everyRow(values, count, pen);
+  else fewestRows(values, count, pen, (row) => Math.floor((start + pace * row) * ratio));
   context.stroke();
 }
 
-function everyRow(context, values, count, start, pace, y, step) {
+/** Draws row after row of a curve: `to(row)` goes there, `lift()` leaves a gap. */
+function penOf(context, values, start, pace, y, step) {
   let before = NaN;
-  for (let row = 0; row < count; row += 1) {
-    const value = values[row];
-    if (value !== value) {
+  return {
+    to(row) {
+      const across = start + pace * row;
+      if (before !== before) context.moveTo(across, y(values[row]));
+      else {
+        if (step) context.lineTo(across, y(before));
+        context.lineTo(across, y(values[row]));
+      }
+      before = values[row];
+    },
+    lift() {
       before = NaN;
-      continue;
-    }
-    const across = start + pace * row;
-    if (before !== before) context.moveTo(across, y(value));
-    else {
-      if (step) context.lineTo(across, y(before));
-      context.lineTo(across, y(value));
-    }
-    before = value;
+    },
+  };
+}
+
+function everyRow(values, count, pen) {
+  for (let row = 0; row < count; row += 1) {
+    if (values[row] !== values[row]) pen.lift();
+    else pen.to(row);
   }
 }
 
 /** Of each column of device pixels the lowest and the highest row, in their order: no peak is lost. */
-function fewestRows(context, values, count, start, pace, y, step, ratio) {
+function fewestRows(values, count, pen, columnOf) {
   let column = NaN;
   let low = -1;
   let high = -1;
-  let before = NaN;
-  const point = (row) => {
-    const value = values[row];
-    const across = start + pace * row;
-    if (before !== before) context.moveTo(across, y(value));
-    else {
-      if (step) context.lineTo(across, y(before));
-      context.lineTo(across, y(value));
-    }
-    before = value;
-  };
   const flush = () => {
     if (low < 0) return;
-    point(Math.min(low, high));
-    if (low !== high) point(Math.max(low, high));
+    pen.to(Math.min(low, high));
+    if (low !== high) pen.to(Math.max(low, high));
     low = high = -1;
   };
   for (let row = 0; row < count; row += 1) {
     const value = values[row];
     if (value !== value) {
       flush();
-      before = NaN;
+      pen.lift();
       column = NaN;
       continue;
     }
-    const at = Math.floor((start + pace * row) * ratio);
+    const at = columnOf(row);
     if (at !== column) {
       flush();
       column = at;

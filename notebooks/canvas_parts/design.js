@@ -16,9 +16,7 @@ class DesignView {
     this.unsaved = new UnsavedText(id, (text) => this.takeBack(text), () => this.forget(), say, (type) => flow.tell({ type }));
     this.editor = new Editor(root, {
       onText: (text) => this.edited(text),
-      onUndo: () => flow.post({ type: "undo" }),
-      onRedo: () => flow.post({ type: "redo" }),
-      onSave: () => flow.post({ type: "save" }),
+      onCommand: (type) => flow.post({ type }),
       onApply: (line) => flow.post({ type: "apply", line }),
     });
     this.timeline = new Timeline(root, (message) => flow.post(message), say);

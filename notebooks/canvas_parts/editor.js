@@ -2,9 +2,9 @@
 // since a step may be a drag or an edit taken over in the set view.
 
 class Editor {
-  /** `onText`, `onUndo`, `onRedo`, `onSave` and `onApply(line)` are told what the person does; tooltips go into `root`. */
-  constructor(root, { onText, onUndo, onRedo, onSave, onApply }) {
-    Object.assign(this, { root, onText, onUndo, onRedo, onSave, livePlace: 0 });
+  /** `onText(text)`, `onCommand("undo")` and `onApply(line)` are told what the person does; tooltips go into `root`. */
+  constructor(root, { onText, onCommand, onApply }) {
+    Object.assign(this, { root, onText, onCommand, livePlace: 0 });
     this.outside = CM.Annotation.define(); // marks changes that are not typed here
     this.troubles = new Troubles(this, onApply);
     const host = make("div", { class: "tm-code" });
@@ -133,14 +133,11 @@ class Editor {
 
   /** Undo, redo and saving are the workbench's; the page around, a notebook, is saved by the same keystroke. */
   onKey(event) {
-    const key = event.key.toLowerCase();
-    if (event.isComposing || !(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y", "s"].includes(key)) return false;
+    const command = commandOf(event);
+    if (!command) return false;
     event.preventDefault();
-    if (key === "s") {
-      this.onSave();
-      passOn(event, this.element);
-    } else if (key === "y" || event.shiftKey) this.onRedo();
-    else this.onUndo();
+    this.onCommand(command);
+    if (command === "save") passOn(event, this.element);
     return true;
   }
 
@@ -161,15 +158,6 @@ class Editor {
   stop() {
     this.view.destroy();
   }
-}
-
-/** A keystroke for the notebook around, outside of JupyterLab for nobody. */
-function passOn(event, element) {
-  const outside = element.closest(".tm-root")?.parentElement;
-  if (!outside?.closest(".jp-Notebook")) return;
-  event.preventDefault();
-  const { key, code, keyCode, ctrlKey, metaKey, shiftKey } = event;
-  outside.dispatchEvent(new KeyboardEvent("keydown", { key, code, keyCode, ctrlKey, metaKey, shiftKey, bubbles: true, cancelable: true }));
 }
 
 function commonHead(one, other) {

@@ -14,9 +14,11 @@ class Handles {
   take(frame) {
     this.list = frame.handles;
     this.start = frame.time.t0;
+    if (frame.icon !== this.icon && !this.pulled) Object.assign(this, { chosen: -1, hint: "" });
+    this.icon = frame.icon;
     if (this.pulled?.done && frame.seq >= this.pulled.done) this.pulled = null;
     if (this.pulled && !this.list[this.pulled.index]) this.pulled = null;
-    if (this.chosen >= this.list.length) this.chosen = -1;
+    for (const pointer of ["chosen", "hovered"]) if (this[pointer] >= this.list.length) this[pointer] = -1;
   }
 
   get pulling() {

@@ -4,7 +4,7 @@ const SMALLEST_FOR_NUMBERS = 23;
 
 class HeatView {
   constructor(root, flow, say) {
-    Object.assign(this, { root, flow, say, shape: "", focused: [0, 0], cells: [] });
+    Object.assign(this, { root, flow, say, shape: "", focused: [0, 0], pointed: null, cells: [] });
     this.maps = make("div", { class: "tm-maps" });
     this.reading = make("div", { class: "tm-reading" }, "\u00a0");
     this.element = make("div", { class: "tm-heat" }, this.maps, this.reading);
@@ -19,12 +19,12 @@ class HeatView {
     if (shape !== this.shape) this.build(shape);
     frame.matrices.forEach((matrix, k) => this.fill(matrix, k));
     this.outline(frame.picked);
-    if (!this.maps.querySelector(".tm-pointed")) this.point(null);
+    this.point(this.pointed); // its numbers may be new
     this.fit();
   }
 
   build(shape) {
-    this.shape = shape;
+    Object.assign(this, { shape, pointed: null });
     const [row, column] = this.focused;
     const last = this.frame.labels.length - 1;
     this.focused = [Math.min(row, last), Math.min(column, last)];
@@ -123,6 +123,7 @@ class HeatView {
 
   /** Names the pair under the pointer or focus, with all its numbers, and lifts its labels. */
   point(pair) {
+    this.pointed = pair;
     this.maps.querySelectorAll(".tm-pointed").forEach((element) => element.classList.remove("tm-pointed"));
     if (!pair) return setText(this.reading, this.frame.picked ? this.readPair(...this.frame.picked) : "\u00a0");
     const [row, column] = pair;

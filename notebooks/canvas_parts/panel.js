@@ -54,7 +54,8 @@ function markRows(context, marks, x, width) {
     const across = x(mark.t);
     if (across < GUTTER - 1 || across > width - MARGIN + 1) continue;
     const wide = context.measureText(mark.label).width + 4;
-    const left = across + 3 + wide <= width - 2 ? across + 3 : across - 3 - wide;
+    const beside = across + 3 + wide <= width - 2 ? across + 3 : across - 3 - wide;
+    const left = Math.max(beside, 0); // a label wider than either side stands over its line
     let row = rows.findIndex((end) => left >= end + 6);
     if (row < 0) row = rows.push(-Infinity) - 1;
     rows[row] = Math.max(left + wide, across);

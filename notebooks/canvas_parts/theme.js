@@ -48,7 +48,7 @@ function nameControls(root) {
   }
 }
 
-/** Calls `act` when JupyterLab's theme, the system's theme or the pixel ratio changes; returns how to stop. */
+/** Calls `act` when JupyterLab's theme or the system's theme changes; returns how to stop. */
 function watchTheme(act) {
   const observer = new MutationObserver(act);
   const attributes = ["data-jp-theme-light", "data-jp-theme-name", "class", "style", "data-theme"];
@@ -61,4 +61,21 @@ function watchTheme(act) {
     observer.disconnect();
     system.removeEventListener("change", act);
   };
+}
+
+/** Calls `act` when a pixel of the page is made of more or fewer of the screen: other zoom, other screen; returns how to stop. */
+function watchRatio(act) {
+  let now = null;
+  const stop = () => now?.removeEventListener("change", changed);
+  const watch = () => {
+    stop();
+    now = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
+    now.addEventListener("change", changed);
+  };
+  function changed() {
+    watch();
+    act();
+  }
+  watch();
+  return stop;
 }

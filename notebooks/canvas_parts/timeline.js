@@ -1,16 +1,16 @@
 // The stacked panels with one time axis and one cursor. Curves lie on one canvas a panel; cursor and handles on a
 // second one above it, so that moving the pointer never draws the curves again.
 
-const STAGE_HELP =
-  "Left and right arrows move the time cursor, with Shift ten times as far. Square brackets choose a corner; " +
-  "arrows then move it, and Escape goes back to the cursor.";
+const CURSOR_HELP = "Left and right arrows move the time cursor, with Shift ten times as far, Home and End to its ends.";
+const CORNER_HELP = "Square brackets choose a corner; arrows then move it, and Escape goes back to the cursor.";
 
+const CURSOR_KEYS = { ArrowLeft: -1, ArrowRight: 1, Home: -1, End: 1 };
 const TIP_ROOM = 70; // pixels that the tallest tip needs above its corner
 
 class Timeline {
   /** `post` sends a message and returns its seq, `say` tells screen readers; without `post` nothing can be dragged. */
   constructor(root, post, say) {
-    Object.assign(this, { root, say, panels: [], shape: "", frame: null, cursor: null, view: null, onHandle: () => {} });
+    Object.assign(this, { root, post, say, panels: [], shape: "", frame: null, cursor: null, view: null, onHandle: () => {} });
     this.handles = new Handles(post, () => this.refresh(), say);
     this.sayReading = whenQuiet(() => say(this.reading()), 500);
     this.build();
@@ -25,10 +25,11 @@ class Timeline {
       this.palette = null;
       this.redraw();
     });
+    this.unwatchRatio = watchRatio(() => this.redraw());
   }
 
   build() {
-    const help = make("span", { id: uniqueId("help"), class: "tm-unseen" }, STAGE_HELP);
+    const help = make("span", { id: uniqueId("help"), class: "tm-unseen" }, this.post ? `${CURSOR_HELP} ${CORNER_HELP}` : CURSOR_HELP);
     this.axis = make("canvas", { class: "tm-axis", "aria-hidden": true });
     this.stack = make("div", { class: "tm-stack" });
     this.stage = make(
@@ -90,7 +91,8 @@ class Timeline {
   }
 
   makePanel(panel) {
-    const values = panel.series.map(() => make("output", { class: "tm-value" }));
+    // Plain elements: an <output> is read aloud at each change, and `sayReading` says all values once the cursor rests.
+    const values = panel.series.map(() => make("span", { class: "tm-value" }));
     const entries = panel.series.map((series, k) =>
       make("span", { class: "tm-entry", "data-series": series.key },
         lineSample(series.role, series.dash ?? [], Math.min(series.width, 6)), series.label, " ",
@@ -250,12 +252,12 @@ class Timeline {
     over.addEventListener("pointerdown", (event) => this.onDown(event, parts));
     over.addEventListener("pointerleave", () => this.handles.hover(-1));
     for (const name of ["pointerup", "pointercancel", "lostpointercapture"]) {
-      over.addEventListener(name, () => this.handles.release());
+      over.addEventListener(name, (event) => event.isPrimary && this.handles.release());
     }
   }
 
   onPointer(event, { lay, key, over }) {
-    if (!lay) return;
+    if (!lay || !event.isPrimary) return; // a second finger moves nothing
     const [t, y] = [lay.x.back(event.offsetX), lay.y.back(event.offsetY)];
     if (over.hasPointerCapture(event.pointerId)) this.handles.pull(t, y);
     else {
@@ -267,7 +269,7 @@ class Timeline {
   }
 
   onDown(event, { lay, key, over }) {
-    if (!lay || event.button !== 0) return;
+    if (!lay || event.button !== 0 || !event.isPrimary) return;
     const index = this.handles.nearest(key, lay, event.offsetX, event.offsetY);
     if (index < 0) {
       this.handles.chosen = -1;
@@ -280,9 +282,19 @@ class Timeline {
   }
 
   onKey(event) {
-    if ((event.ctrlKey || event.metaKey) && event.key === "s") passOn(event, this.element);
+    const command = commandOf(event);
+    if (command) this.onCommand(command, event);
     if (!this.frame || event.ctrlKey || event.metaKey || event.altKey) return;
     if (this.byKey(event.key, event.shiftKey)) event.preventDefault();
+  }
+
+  /** A drag is undone where it was made. */
+  onCommand(command, event) {
+    if (this.post) {
+      event.preventDefault();
+      this.post({ type: command });
+    }
+    if (command === "save") passOn(event, this.element);
   }
 
   /** Does what a key asks for; false if it asks for nothing here. */
@@ -293,10 +305,9 @@ class Timeline {
       this.handles.chosen = -1;
       this.refresh();
     } else if (this.handles.nudge(key, tenfold)) return true;
-    else if (key === "Home" || key === "End") this.moveCursor(key === "Home" ? this.view.from : this.view.to);
-    else if (key === "ArrowLeft" || key === "ArrowRight") {
-      const by = (tenfold ? 10 : 1) * KEY_STEPS.t * (key === "ArrowLeft" ? -1 : 1);
-      this.moveCursor(this.cursor + by);
+    else if (CURSOR_KEYS[key]) {
+      const far = key === "Home" || key === "End" ? Infinity : (tenfold ? 10 : 1) * KEY_STEPS.t;
+      this.moveCursor(this.cursor + CURSOR_KEYS[key] * far);
       this.sayReading();
     } else return false;
     return true;
@@ -305,6 +316,7 @@ class Timeline {
   stop() {
     this.observer.disconnect();
     this.unwatch();
+    this.unwatchRatio();
     this.sayReading.cancel();
     cancelAnimationFrame(this.whole);
     cancelAnimationFrame(this.part);

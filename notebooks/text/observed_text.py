@@ -23,6 +23,8 @@ MOST_PEOPLE, MOST_PAIRS, MOST_CONSTANTS = 20, 8, 8
 POOR, DOUBTFUL = 0.05, 0.1
 LEAST_TRIALS = 20
 """Answers below which a test of fit judges nobody: a single slip decides it."""
+USEFUL_PEOPLE = 5
+"""Participants from which on Student's interval is below three standard errors to either side (of two: 12.7)."""
 LEAST_LABORATORIES = 100
 """Laboratories below which widths of intervals scatter by over 15 %, and other constants are hardly tried."""
 
@@ -67,13 +69,25 @@ def _row(score: AnswerScore, timed: bool, own: str) -> list[str]:
 
 
 def observed_sentences(found: Observed) -> list[str]:
-    """Bias of the bits, and what the answers do not cover."""
+    """Bias of the bits, how little two participants say of others, and what the answers do not cover."""
     pooled, trials = found.pooled, found.trials
     lines = [
         f"Bits are corrected for bias (Miller–Madow): the plug-in estimate of the pooled answers is "
         f"{pooled.bits_plugin:.2f} bits, {pooled.bits_bias:.2f} too many by that formula; "
         "with few trials some bias is left. Further trials: predicted for the same participant."
     ]
+    if len(found.each) == 2:
+        lines.append(
+            "Two participants allow hardly any interval of all (with one degree of freedom, 12.7 standard errors to "
+            f"either side); from {USEFUL_PEOPLE} participants on it becomes useful."
+        )
+    mean = sum(score.proportion_correct for score in found.each) / len(found.each)
+    uneven = len({score.trials for score in found.each}) > 1
+    if uneven and percent(mean) != percent(pooled.proportion_correct):
+        lines.append(
+            f"In the row of all, every answer counts alike, so participants with more trials count more; the mean of "
+            f"the participants is {percent(mean)} correct."
+        )
     if trials.never_presented:
         lines.append(
             f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "
@@ -92,7 +106,8 @@ def fit_sentences(found: Observed) -> list[str]:
     lines = [
         f"Predicted for this experiment: {percent(middle)} correct ({percent_span(low, high)}), {bits:.2f} plug-in "
         f"bits ({least:.2f}–{most:.2f}). Observed: {percent(pooled.proportion_correct)}, {pooled.bits_plugin:.2f} "
-        "bits.",
+        "bits. This prediction is the median of experiments with as many participants and trials; that of the set, "
+        "below, is the mean over people and laboratories, so the two may differ.",
         f"Test of fit (posterior predictive): p = {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "
         f"answers were used{_verdict(found)}",
     ]

@@ -10,9 +10,9 @@ SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
         "Time line",
         (
             "drag a filled dot: the corner moves, and the number in the text with it",
-            "move the pointer: the cursor reads all curves; click: it stays there",
+            "move the pointer: the cursor reads all curves, and stays where the pointer leaves the curves",
             "[ and ] choose a corner, arrows move it, with Shift ten times as far, Escape goes back to the cursor",
-            "Left, Right, Home, End move the cursor",
+            "Left, Right, Home, End move the cursor; Ctrl+Z, Ctrl+Shift+Z and Ctrl+S as in the text",
         ),
     ),
     (

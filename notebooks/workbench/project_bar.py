@@ -42,8 +42,8 @@ class ProjectBar:
                 ("Download", "text, rig and pictures", lambda: self._toggle("download")),
                 ("Icon", "new, duplicate, rename, delete", lambda: self._toggle("icon")),
                 ("Log", "a measured log over the curves", lambda: self._toggle("log")),
-                ("Undo", "Ctrl+Z in the text", lambda: self._step("undo")),
-                ("Redo", "Ctrl+Shift+Z in the text", lambda: self._step("redo")),
+                ("Undo", "Ctrl+Z in text or time line", lambda: self._step("undo")),
+                ("Redo", "Ctrl+Shift+Z in text or time line", lambda: self._step("redo")),
                 ("?", "what can be dragged, clicked and pressed", lambda: self._toggle("help")),
             )
         }
@@ -103,7 +103,7 @@ class ProjectBar:
             self.buttons[name].layout.display = "none" if design else ""
 
     def saved_by_key(self) -> None:
-        """Ctrl+S in the text: where there is no file, the notebook's own saving is enough."""
+        """Ctrl+S in text or time line: where there is no file, the notebook's own saving is enough."""
         if self.project.document is not None:
             self._safely(self.save)
 

@@ -64,6 +64,10 @@ def test_a_cut_off_that_reacts_in_time_keeps_the_limits_with_the_driver_at_its_o
     assert (cut.low, cut.high) == (25.0, 39.0)
     assert cut.react_within_s > 0.0
     assert fault.fault == "driver stuck at its limit"
+    heats, cools = fault.text.split(" and ")
+    assert heats.endswith(" °C at −1.5 A"), "both directions of the current are named"
+    assert cools.startswith("skin surface reaches −")
+    assert cools.endswith(" °C at 1.5 A")
     display = WATCHED.index("display_C")
     for current in (THENAR.driver.current_min_A, THENAR.driver.current_max_A):
         values, _ = one.ensemble.hold(current, one.start, TIMES)
