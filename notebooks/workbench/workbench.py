@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_library, parse, read_cue
 
-from ..files.cue_document import open_document
+from ..files.cue_document import CueDocument, open_document
+from ..files.outputs import OutputError
 from ..files.start_folder import started_observer, started_rig, started_with
 from ..timeline.measured import read_measured
 from .design_model import DesignModel
@@ -61,13 +62,12 @@ class Workbench:
     ------
     CueErrors
         For a file or a name that does not exist.
-    OutputError
-        For a cue file that cannot be edited: unreadable, not UTF-8, or too large.
     RigError
         For a rig that does not exist, or cannot be.
     ValueError
-        For an icon that the set does not have, a goal that cannot be read (`GoalError`), a log that cannot be used
-        (`LogError`), and an observer file that cannot be read or is of another version (`RecordError`).
+        For a cue file that cannot be edited (unreadable, not UTF-8, or too large), an icon that the set does not have,
+        a goal that cannot be read (`GoalError`), a log that cannot be used (`LogError`), and an observer file that
+        cannot be read or is of another version (`RecordError`).
 
     Examples
     --------
@@ -93,7 +93,7 @@ class Workbench:
         source = text if text is not None else started_with()
         chosen = rig if rig is not None else started_rig()
         loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
-        document = open_document(found) if (found := file_of(source)) is not None else None
+        document = _document_of(source)
         written = text_of(source) if document is None else document.text
         self._design = DesignModel(written, loaded, icon, _observer_of(observer))
         self._check_icon(icon)
@@ -321,6 +321,15 @@ def _observer_of(file: str | Path | None) -> ObserverModel | None:
     from thermicon.perception.observer.observer_model import ObserverModel
 
     return ObserverModel.load(chosen)
+
+
+def _document_of(source: object) -> CueDocument | None:
+    """The cue file of a source, opened for editing; raises ValueError where it cannot be."""
+    path = file_of(source)
+    try:
+        return None if path is None else open_document(path)
+    except OutputError as wrong:
+        raise ValueError(str(wrong)) from None
 
 
 def file_of(source: object) -> Path | None:

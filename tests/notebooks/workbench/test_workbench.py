@@ -259,6 +259,13 @@ def test_what_a_workbench_can_be_made_of(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_file_that_cannot_be_edited_is_refused_with_the_cure(tmp_path: Path) -> None:
+    path = tmp_path / "own.cue"
+    path.write_bytes(DIP.encode("utf-16"))
+    with pytest.raises(ValueError, match=r"own\.cue: it is not UTF-8 text; convert it first"):
+        Workbench(path)
+
+
 def test_without_a_kernel_it_is_text_and_a_picture(bench: Workbench) -> None:
     shown = bench._repr_mimebundle_()
     assert shown["text/plain"] == repr(bench) == "Workbench('dip' of 2 on thenar, green)"
