@@ -147,6 +147,21 @@ def test_a_finer_screen_is_drawn_finely_at_once(page: Any, made: Bench) -> None:
     page.wait_for_function("wide => document.querySelector('.tm-base').width === 2 * wide", arg=wide, timeout=3_000)
 
 
+def test_a_slider_that_the_page_does_not_know_keeps_no_other_from_being_followed(page: Any, made: Bench) -> None:
+    page.evaluate(
+        """() => { window.followed = [];
+      const slider = { on: (name) => followed.push(name), off: () => {} };
+      window.manager = { get_model(id) {
+        if (id === "gone") throw new Error("widget model not found"); // as ipywidgets does
+        return Promise.resolve(slider);
+      } };
+    }"""
+    )
+    made.show()
+    page.evaluate("deliver({ type: 'line', port: 1, token: 'x', sliders: { area: 'gone', age: 'here' } }, [])")
+    page.wait_for_function("followed.length === 1", timeout=3_000)
+
+
 def test_two_icons_over_each_other_offer_no_corner(page: Any, made: Bench) -> None:
     made.show("traces")
     made.frame(design(view="traces", handles=[]))
