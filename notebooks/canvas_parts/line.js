@@ -37,8 +37,9 @@ class Line {
   async follow(sliders, models, act) {
     this.unfollow();
     const mine = (this.followed = []);
+    const find = async (id) => models?.get_model(id); // which throws at once where there is no such model
     for (const [key, id] of Object.entries(sliders ?? {})) {
-      const slider = await models?.get_model(id).catch(() => null);
+      const slider = await find(id).catch(() => null);
       if (!slider || mine !== this.followed) continue;
       const tell = () => this.isOpen && act(key, slider.get("value"));
       slider.on("change:value", tell);

@@ -8,12 +8,16 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from tests.browser.jupyter import Server, end_kernels, page_of, page_of_file, running
 from thermicon.notebooks.cli.lab import PROMPT
+
+if TYPE_CHECKING:
+    from tests.browser.staticpage import Bench
 
 CHROMIUMS = ("chromium", "chromium-browser", "google-chrome")
 WINDOW = {"width": 1280, "height": 800}
@@ -107,6 +111,18 @@ def serve_file(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> It
             return stack.enter_context(page_of_file(file, rig, tmp_path_factory.mktemp("page")))
 
         yield serve
+
+
+@pytest.fixture
+def drawn(page: Page) -> Iterator[Bench]:
+    """The design view of the canvas alone with its first frame; at the end nothing has gone wrong in the page."""
+    from tests.browser.staticpage import design, open_bench
+
+    made = open_bench(page)
+    made.show()
+    made.frame(design())
+    yield made
+    assert made.wrong == []
 
 
 @pytest.fixture

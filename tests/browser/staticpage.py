@@ -28,6 +28,7 @@ window.show = async (view, key) => {
   const model = {
     get: (name) => ({ view, key })[name], send: (message) => window.sent.push(message),
     on: (_, tell) => listeners.add(tell), off: (_, tell) => listeners.delete(tell),
+    widget_manager: window.manager,
   };
   window.leave = await widget.render({ model, el });
 };

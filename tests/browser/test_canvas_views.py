@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 import pytest
 
-from tests.browser.staticpage import IPYWIDGETS, SHADES, TEXT, TROUBLE, WORKBENCH, Bench, design, knobs_page, open_bench
+from tests.browser.staticpage import IPYWIDGETS, SHADES, TEXT, WORKBENCH, Bench, design, knobs_page, open_bench
 
 
 @pytest.fixture
@@ -132,34 +132,19 @@ def test_the_number_under_the_focus_follows_the_ranking(page: Any, made: Bench) 
     assert page.locator(".tm-reading").inner_text() == "warm → cool: confusion 20%"
 
 
-def test_the_list_of_errors_can_be_read_in_the_dark(page: Any, made: Bench) -> None:
-    page.emulate_media(color_scheme="dark")
-    made.show()
-    made.frame(design(troubles=[TROUBLE]))
-    made.set_caret(0)
-    page.keyboard.press("Control+Shift+M")
-    made.set_caret(0)
-    chosen = page.locator(".cm-panel-lint [aria-selected]")
-    assert chosen.evaluate("e => getComputedStyle(e).backgroundColor") == "rgba(79, 209, 191, 0.14)"
-    assert chosen.evaluate("e => getComputedStyle(e).color") == "rgb(232, 235, 238)"
-
-
-def test_a_finer_screen_is_drawn_finely_at_once(page: Any, made: Bench) -> None:
+def test_a_slider_that_the_page_does_not_know_keeps_no_other_from_being_followed(page: Any, made: Bench) -> None:
     page.evaluate(
-        """() => { // another screen, which Chromium's emulation says nothing of
-      const usual = matchMedia.bind(window);
-      window.screens = new EventTarget();
-      window.matchMedia = (query) => (query.includes("resolution") ? window.screens : usual(query));
+        """() => { window.followed = [];
+      const slider = { on: (name) => followed.push(name), off: () => {} };
+      window.manager = { get_model(id) {
+        if (id === "gone") throw new Error("widget model not found"); // as ipywidgets does
+        return Promise.resolve(slider);
+      } };
     }"""
     )
     made.show()
-    made.frame(design())
-    wide = page.locator(".tm-base").evaluate("canvas => canvas.width")
-    page.evaluate(
-        "() => { Object.defineProperty(window, 'devicePixelRatio', { value: 2 });"
-        " screens.dispatchEvent(new Event('change')); }"
-    )
-    page.wait_for_function("wide => document.querySelector('.tm-base').width === 2 * wide", arg=wide, timeout=3_000)
+    page.evaluate("deliver({ type: 'line', port: 1, token: 'x', sliders: { area: 'gone', age: 'here' } }, [])")
+    page.wait_for_function("followed.length === 1", timeout=3_000)
 
 
 def test_two_icons_over_each_other_offer_no_corner(page: Any, made: Bench) -> None:
