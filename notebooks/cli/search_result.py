@@ -270,8 +270,6 @@ def advice_lines(advice: Advice | None) -> Iterator[str]:
 
 def _nearer(trial: Trial, advice: Advice) -> str:
     """The part that misses most without the change, before and with it."""
-    if trial.result is None:
-        return "the goal is met" if trial.met else "nearer"
     from thermicon.perception.ranking.reach import missing
 
     place = max(range(len(advice.baseline.parts)), key=lambda k: missing(advice.baseline.parts[k]))

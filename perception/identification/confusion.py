@@ -195,11 +195,13 @@ def shared_among_identical(named: Array, distances: Array, favour: Array, identi
     The order of the file, or rounding, would decide among them otherwise.
     """
     fair = favour[:, :, None] == favour[:, None]
-    same = ((distances <= identical) & fair).astype(np.float64)
-    mean = same / same.sum(axis=2, keepdims=True)
-    if mean.max(axis=2).min() == 1.0:
+    same = (distances <= identical) & fair
+    who = np.flatnonzero((same.sum(axis=2) > 1).any(axis=1))
+    if not who.size:
         return named
-    shared: Array = mean @ named @ mean
+    mean = same[who] / same[who].sum(axis=2, keepdims=True)
+    shared = named.copy()
+    shared[who] = mean @ named[who] @ mean
     return shared
 
 

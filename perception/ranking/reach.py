@@ -52,7 +52,7 @@ class Trial:
     words: str
     met: bool
     gain: float
-    result: GoalResult | None
+    result: GoalResult
 
     def __repr__(self) -> str:
         return f"Trial({self.words}: {'met' if self.met else f'nearer by {self.gain:.2f}'})"

@@ -99,7 +99,9 @@ def usable_icons(asked: Selection, icons: Sequence[Icon], traces: Sequence[Trace
     """
     check_selection(asked, [icon.name for icon in icons])
     if asked.most_J is not None and rig.thermode is not None:
-        raise ChoiceError(f"rig {rig.name} is a thermode, which states no energy: leave out --most-energy")
+        raise ChoiceError(
+            f"rig {rig.name} is a thermode, which states no energy: leave out --most-energy, or energy of the goal"
+        )
     shapes: dict[object, str] = {}
     excluded: dict[str, str] = {}
     wanted = sorted(range(len(icons)), key=lambda k: (icons[k].name not in asked.must, k))

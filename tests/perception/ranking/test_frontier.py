@@ -134,3 +134,8 @@ def test_amber_icons_are_named_or_left_out() -> None:
     assert green.excluded[0][0] == "deep"
     assert green.excluded[0][1].startswith("is amber: ")
     assert green.points[-1].amber == ()
+
+
+def test_a_thermode_has_no_energy_to_limit() -> None:
+    with pytest.raises(ChoiceError, match=r"a thermode, which states no energy: leave out .*energy of the goal"):
+        frontier(parse(THREE), Rig.load("tcs2"), people=2, parameters=0, goal="energy <= 3 J")
