@@ -55,6 +55,7 @@ def measured(short: bool) -> BenchResult:
     commands = ranking_timings.command_section(short)  # first, while this process is small
     note("measuring circuit and percepts")
     sections = [*circuit_timings.circuit_sections(rig, short), ranking_timings.percept_section(), commands]
+    sections.append(ranking_timings.ranking_section(rig, short))
     note("measuring growth")
     curves = (*circuit_timings.circuit_curves(rig), *ranking_timings.ranking_curves(rig, short))
     return BenchResult((*facts, ("form", "short" if short else "full")), tuple(sections), curves)

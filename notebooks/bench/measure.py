@@ -78,8 +78,10 @@ def timed(run: Callable[[], Any], *, most: int = 10, budget_s: float = 2.0) -> T
     return Timing(tuple(seconds), tuple(processor))
 
 
-def command_timed(words: Sequence[str], times: int, environment: Mapping[str, str] | None = None) -> Timing:
-    """Time a command of thermicon as it is typed, the start of Python included.
+def command_timed(
+    words: Sequence[str], times: int, environment: Mapping[str, str] | None = None, code: str = COMMAND
+) -> Timing:
+    """Time a command of thermicon as it is typed, or other `code`, the start of Python included.
 
     Python keeps the byte code of what it imports, as it does unless a machine is told otherwise. Raises `RuntimeError`
     with the command's own message where it fails.
@@ -93,7 +95,7 @@ def command_timed(words: Sequence[str], times: int, environment: Mapping[str, st
         with tempfile.TemporaryFile() as messages:
             start, used = time.perf_counter(), _processor_s()
             run = subprocess.Popen(
-                [sys.executable, "-c", COMMAND, *words],
+                [sys.executable, "-c", code, *words],
                 stdout=subprocess.DEVNULL,
                 stderr=messages,
                 env=usual,

@@ -56,6 +56,25 @@ def command_section(short: bool) -> Section:
     )
 
 
+def ranking_section(rig: Rig, short: bool) -> Section:
+    """What a ranking takes beside the start of a process, and what that start takes by itself."""
+    times, icons = 2 if short else 10, load_library(SET)
+    most, budget_s = (2, 4.0) if short else (5, 15.0)
+    alone = command_timed([], times, code="import numpy, numba")
+    parts = {
+        "200 people, intervals, edit": partial(rank, icons, rig, edits="worst"),
+        "200 people and intervals": partial(rank, icons, rig),
+        "200 people": partial(rank, icons, rig, parameters=0),
+    }
+    entries = [Entry("Python with numpy and numba, before any work", alone)]
+    entries += [Entry(f"{SET}: {what}", timed(run, most=most, budget_s=budget_s)) for what, run in parts.items()]
+    about = (
+        "In a process that has ranked before, so that code is loaded. The rest of a command is the start of Python, "
+        "which no ranking can go below, and reading modules, kept machine code, rig and cue."
+    )
+    return Section("What a ranking takes", about, tuple(entries))
+
+
 def ranking_curves(rig: Rig, short: bool) -> tuple[Curve, ...]:
     """Time of a ranking without intervals over icons and over people."""
     pool = load_library(POOL)
