@@ -133,7 +133,7 @@ def rank(
     >>> ranking.worst_pair
     ('warming-step', 'linear-warming')
     """
-    from thermicon.circuit import duration_s, simulate_all
+    from thermicon.circuit import duration_s, judge_safety, simulate_all
 
     members = list(icons)
     if not members:
@@ -154,11 +154,12 @@ def rank(
         raise GoalError(NEEDS_DRAWS)
     execution = Execution(workers, cluster, keep)
     nominal, crowd = model.nominal, model.people(people, seed)
-    if workers is None or workers > 1:
-        begin()
+    compiling = (workers is None or workers > 1) and begin() > 0
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
+    if compiling:
+        judge_safety(traces[0])  # what checks limits is compiled here, while another process compiles what judges people
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())
