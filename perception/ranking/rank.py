@@ -159,7 +159,7 @@ def rank(
     end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     if compiling:
-        judge_safety(traces[0])  # what checks limits is compiled here, while another process compiles what judges people
+        judge_safety(traces[0])  # compiled here, while another process compiles what judges people
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())
