@@ -30,7 +30,7 @@ FROM_SQRT_HALF, EXPONENT_ZERO = np.int64((1024 << 52) - SQRT_HALF_BITS), np.int6
 TWO_52_BITS, TWO_52_AND_1024 = np.uint64(0x4330 << 48), 2.0**52 + 1024.0
 SQRT_TWO = math.sqrt(2.0)
 LEAST = 1e-300
-"""What a loop takes the logarithm of in place of 0."""
+"""What a loop takes the logarithm of, or divides by, in place of 0."""
 E2, E3, E4, E5, E6, E7, E8, E9, E10, E11, E12 = (1.0 / math.factorial(k) for k in range(2, 13))
 A1, A2, A3, A4, A5, A6, A7, A8, A9, A10 = (1.0 / (2 * k + 1) for k in range(1, 11))
 
@@ -49,27 +49,28 @@ bits_of: Any = intrinsic(_bits_of)
 double_of: Any = intrinsic(_double_of)
 
 
-def _exp(x: float) -> float:
-    """e^x = 2^n · e^r, |r| ≤ ln 2/2; held at e^−708 and e^709."""
+def _reduced(x: float) -> tuple[float, float, float]:
+    """X = n·ln 2 + r with |r| ≤ ln 2/2: r, (e^r − 1 − r)/r², and n with the rounder; held at e^−708 and e^709."""
     x = min(max(x, LOWEST_EXP), HIGHEST_EXP)
     rounded = x * LOG2_E + ROUNDER
     n = rounded - ROUNDER
     r = (x - n * LN2_HIGH) - n * LN2_LOW
     p = ((((((E12 * r + E11) * r + E10) * r + E9) * r + E8) * r + E7) * r + E6) * r + E5
-    p = ((((p * r + E4) * r + E3) * r + E2) * r + 1.0) * r + 1.0
+    return r, ((p * r + E4) * r + E3) * r + E2, rounded
+
+
+def _exp(x: float) -> float:
+    """e^x = 2^n · e^r."""
+    r, p, rounded = reduced(x)
+    p = (p * r + 1.0) * r + 1.0
     return double_of(bits_of(p) + (bits_of(rounded) << FRACTION_BITS))
 
 
 def _expm1(x: float) -> float:
     """e^x − 1 = 2^n · (e^r − 1) + (2^n − 1), accurate near 0."""
-    x = min(max(x, LOWEST_EXP), HIGHEST_EXP)
-    rounded = x * LOG2_E + ROUNDER
-    n = rounded - ROUNDER
-    r = (x - n * LN2_HIGH) - n * LN2_LOW
-    p = ((((((E12 * r + E11) * r + E10) * r + E9) * r + E8) * r + E7) * r + E6) * r + E5
-    p = (((p * r + E4) * r + E3) * r + E2) * r * r + r
+    r, p, rounded = reduced(x)
     whole = double_of((bits_of(rounded) << FRACTION_BITS) + EXPONENT_BIAS)
-    return p * whole + (whole - 1.0)
+    return (p * r * r + r) * whole + (whole - 1.0)
 
 
 def _log_of(above: float, n: float) -> float:
@@ -100,6 +101,7 @@ def _log1p(x: float) -> float:
 
 # Reassociation would take the rounder away again.
 vectorised: Any = kernel(nogil=True, error_model="numpy", fastmath={"contract", "nsz"})
+reduced: Any = vectorised(_reduced)
 log_of: Any = vectorised(_log_of)
 exp: Any = vectorised(_exp)
 expm1: Any = vectorised(_expm1)

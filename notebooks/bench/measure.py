@@ -83,7 +83,7 @@ def command_timed(
 ) -> Timing:
     """Time a command of thermicon as it is typed, or other `code`, the start of Python included.
 
-    Python keeps the byte code of what it imports, as it does unless a machine is told otherwise. Raises `RuntimeError`
+    Python keeps the byte code of what it imports, as it does by default. Raises `RuntimeError`
     with the command's own message where it fails.
     """
     seconds: list[float] = []

@@ -2,7 +2,7 @@
 // since a step may be a drag or an edit taken over in the set view.
 
 class Editor {
-  /** `onText(text)`, `onCommand("undo")` and `onApply(line)` are told what the person does; tooltips go into `root`. */
+  /** `onText(text)`, `onCommand("undo")` and `onApply(line)` receive what the person does; tooltips go into `root`. */
   constructor(root, { onText, onCommand, onApply }) {
     Object.assign(this, { root, onText, onCommand, livePlace: 0 });
     this.outside = CM.Annotation.define(); // marks changes that are not typed here

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from thermicon.circuit.compiled import kernel
-from thermicon.circuit.vector_math import exp, expm1, log1p, vectorised
+from thermicon.circuit.vector_math import LEAST, exp, expm1, log1p, vectorised
 
 from .passage import (
     CERTAIN,
@@ -32,7 +32,6 @@ from .passage import (
 
 AT_ONCE = 64
 """Samples that go through the processor's vectors before it is asked whether a report is certain."""
-LEAST_FALL = 1e-300
 COLD, WARM = range(2)
 
 
@@ -71,7 +70,7 @@ def _report(
         for gain in range(raised.size):
             for channel in range(2):
                 if gain > 0 and begin[channel] == samples:
-                    continue  # a channel without change is the same for every gain
+                    continue  # without change, all gains give the same
                 survive(
                     risen[channel], raised[gain], a, begin[channel], end[channel], dt, criterion[row, channel], tau,
                     corrected, room, logs[channel],
@@ -186,7 +185,7 @@ def _reports_by_cold(cold: Any, warm: Any, left: Any) -> float:
     by_cold = 0.0
     for k in range(now_left.size):
         from_cold, from_warm = max(cold[k] - now_cold[k], 0.0), max(warm[k] - now_warm[k], 0.0)
-        by_cold += (left[k] - now_left[k]) * from_cold / max(from_cold + from_warm, LEAST_FALL)
+        by_cold += (left[k] - now_left[k]) * from_cold / max(from_cold + from_warm, LEAST)
     return by_cold
 
 

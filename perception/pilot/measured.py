@@ -15,12 +15,13 @@ from thermicon.circuit.program import own_version
 from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
+from ..progress import Progress
 from .changes import ChangedConstant, changed
 from .laboratory_file import Resampling, laboratory_draws, laboratory_texts
 from .measurement_conditioning import Reweighted, reweight
 from .measurement_fit import ConditionFit, MeasurementFit, compare_measurements
 from .measurements import Measurements
-from .observed import DRAWS, LEAST_DRAWS, Progress, counted
+from .observed import DRAWS, LEAST_DRAWS, counted
 from .playing import Confusions, Stage, laboratories_for, stage
 from .prediction import ChangedPrediction
 from .simulated_measurements import Setting, predicted

@@ -15,6 +15,7 @@ from thermicon.circuit.program import own_version
 from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
+from ..progress import Progress
 from .answers import AnswerScore, score_person, score_pooled
 from .changes import ChangedConstant, changed
 from .conditioning import Conditioned, condition
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)

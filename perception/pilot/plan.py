@@ -8,7 +8,7 @@ compared within participants by the paired t test.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ from thermicon.circuit.program import own_version
 from ..arrays import Array
 from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.observer_model import ObserverModel
+from ..progress import Progress, step_counter
 from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
 from .prediction import SetPrediction, Three, three
@@ -38,7 +39,6 @@ POWER, WIDTH, LENGTH = 0.8, 0.10, 20
 Whole = NDArray[np.int64]
 FEWEST = 2
 """Participants that an interval over participants needs."""
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,15 +198,9 @@ def plan(
     sets = [icons] if other is None else [icons, other]
     prior = LaboratoryPrior.of(observer, check_norm(norm))
     number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
-    laboratories, done = prior.first(number, seed), 0
+    laboratories = prior.first(number, seed)
     total = number * len(sets) + len(participants) * len(trials) + steps_of(max(length, 1))
-
-    def step() -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, total)
-
+    step = step_counter(progress, total)
     played = [stage(each, rig, prior, seed=seed, tracking=tracking).confusions(laboratories, step) for each in sets]
     apart = None if other is None else played[0].correct - played[1].correct
     designs = []

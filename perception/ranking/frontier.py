@@ -18,6 +18,7 @@ from ..identification.run_end import RATE_HZ, run_end_s
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
+from ..progress import Progress, step_counter
 from ..selection.appraise import identified
 from ..selection.choose import limits_of, nothing_fits, pick
 from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
@@ -27,7 +28,6 @@ from ..selection.search_request import SearchRequest, soft_finding
 from ..selection.subset_identification import Objective, SubsetIdentification
 from .batches import Execution, Job, collect_batches
 from .frontier_point import FrontierPoint, PointJudge
-from .progress import Progress, steps_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -207,7 +207,7 @@ def frontier(
     able = [members[k] for k in pool.places]
     job = Job(tuple(able), rig, end, people, seed, 1, tracking, chosen, observer=model.for_jobs())
     largest = min(most, len(able))
-    step = steps_of(progress, job.batches + largest - 1)
+    step = step_counter(progress, job.batches + largest - 1)
     pooled, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
 
     def named(places: Sequence[int]) -> Array:

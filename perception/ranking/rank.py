@@ -26,6 +26,7 @@ from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, check_norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
+from ..progress import Progress, step_counter
 from ..selection.choose import Choice, choose
 from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
 from ..selection.pair_edits import with_edits
@@ -37,7 +38,6 @@ from .batches import Execution, Job, PooledResult, collect_batches
 from .first_run import begin
 from .goal_result import judge_goal
 from .outcome import outcome_of_choice, outcome_of_set
-from .progress import Progress, steps_of
 from .ranking import Ranking
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def rank(
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())
-    report = steps_of(progress, 2 + job.batches + draws + (choosing is not None))
+    report = step_counter(progress, 2 + job.batches + draws + (choosing is not None))
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
 

@@ -9,7 +9,7 @@ the one that comes nearest to the goal, or has the best objective, is the result
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +20,7 @@ from ..identification.laboratory import DRAWS
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
+from ..progress import Progress
 from .appraise import Appraisal
 from .candidates import Candidate
 from .evaluators import NominalEvaluator, PopulationEvaluator
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
-Progress = Callable[[int, int], None]
 EVALUATIONS = 2000
 BATCH = 16
 REFINING = 4

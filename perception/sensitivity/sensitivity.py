@@ -7,7 +7,6 @@ to 1; the share of a measurement is what its constants explain together.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +20,7 @@ from ..identification.run_end import run_end_s
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
+from ..progress import Progress, step_counter
 from ..ranking.ranking import with_changes
 from ..sensation.parameters import latin
 from .measurements import MEASUREMENTS, base_name
@@ -38,7 +38,6 @@ FEWEST_DRAWS = 64
 """Of fewer draws a share of some per cent is not distinguishable from chance."""
 NOTEWORTHY = 0.02
 """Measurements that would take away less of the variance are not named as the first to make."""
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -246,16 +245,14 @@ def sensitivity(
     end = run_end_s((duration_s(icon, rig) for icon in members), RATE_HZ)
     uncertain = UncertainRig.simulate(members, rig, crowd, end)
     shares = latin(2, draws, seed + 1)
-    done = 0
-
-    def step() -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, draws)
-
     each = laboratory_draws(
-        lambda place: uncertain.played(*shares[place].tolist()), crowd, chosen, model, draws=draws, seed=seed, step=step
+        lambda place: uncertain.played(*shares[place].tolist()),
+        crowd,
+        chosen,
+        model,
+        draws=draws,
+        seed=seed,
+        step=step_counter(progress, draws),
     )
     columns = [
         [parameter.at(float(share)) for share in column]

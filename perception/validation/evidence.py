@@ -15,6 +15,7 @@ from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.people import OLD_YEARS
 from ..observer.variants import VARIANTS, Model, Variable
+from ..progress import Progress, step_counter
 from ..sensation.bench import Bench, raised_cosine
 from .experiments import limits, methods, rate_curve, reaction_times
 from .experiments_timing import PULSE_K, PULSE_S, first_and_return, peak_lead, whole_body_warmth
@@ -22,7 +23,6 @@ from .identified import Identified, Shown, show, six_icons, wave_shapes
 from .predicted import Predicted
 from .waves import LIBRARY, Likeness, SkinWaves, likeness, skin_waves, with_others
 
-Progress = Callable[[int, int], None]
 SIX = "six-icons"
 
 
@@ -74,14 +74,8 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
     predicted: list[Predicted] = []
     named: dict[str, list[Identified]] = {SIX: [], "waves": []}
     pulses: list[Pulse] = []
-    done, total = 0, len(VARIANTS) * (len(_experiments("temperature", "adapting", people, draws, seed)) + 3)
-
-    def step() -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done, total)
-
+    total = len(VARIANTS) * (len(_experiments("temperature", "adapting", people, draws, seed)) + 3)
+    step = step_counter(progress, total)
     for variable, model in VARIANTS:
         for run in _experiments(variable, model, people, draws, seed):
             predicted += run()

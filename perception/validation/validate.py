@@ -22,7 +22,8 @@ from .tradeoffs import Answers, TradeOff, trade_offs
 from .verdicts import Verdict, judge_row
 
 if TYPE_CHECKING:
-    from .evidence import Evidence, Progress
+    from ..progress import Progress
+    from .evidence import Evidence
 
 PEOPLE, DRAWS, TRIALS = 200, 64, 48
 

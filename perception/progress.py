@@ -8,10 +8,10 @@ Progress = Callable[[int, int], None]
 """Called with (steps done, steps in all)."""
 
 
-def steps_of(progress: Progress | None, total: int) -> Callable[[], None]:
+def step_counter(progress: Progress | None, total: int) -> Callable[[], None]:
     """What is called after each of `total` steps.
 
-    >>> step = steps_of(lambda done, total: print(f"{done} of {total}"), 2)
+    >>> step = step_counter(lambda done, total: print(f"{done} of {total}"), 2)
     >>> step(); step()
     1 of 2
     2 of 2
