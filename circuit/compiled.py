@@ -41,6 +41,8 @@ from thermicon.icons.userfolder import (
     write_private,
 )
 
+from .compiled_ahead import as_brought, brought, read_brought
+
 STALE_S = 90 * 24 * 3600.0
 """Machine code that was not used for this long is removed."""
 
@@ -138,10 +140,13 @@ class _Store:
         self.function, self.options = function, options
 
     def load(self, key: Any) -> Any:
-        """Return what was saved under a key; None where nothing was saved or the file is damaged."""
-        if (folder := kept_in()) is None or (content := opened(read_private(self._path(folder, key)))) is None:
-            return None
-        return pickle.loads(content)
+        """Return what was saved under a key, or came with the package; None where it is neither, or damaged."""
+        content = None
+        if (folder := kept_in()) is not None:
+            content = opened(read_private(self._path(folder, key)))
+        if content is None and (folder := brought()) is not None:
+            content = read_brought(self._path(folder, as_brought(key)))
+        return None if content is None else pickle.loads(content)
 
     def save(self, key: Any, data: Any) -> None:
         """Write plain data under a key."""

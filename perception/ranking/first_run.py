@@ -67,10 +67,12 @@ def begin() -> int:
 
     They end by themselves. Where code cannot be kept, or no process can be started, there are none.
     """
-    started = 0
+    from thermicon.circuit.compiled_ahead import brought
+
+    started, ahead = 0, brought()
     for part in list(PARTS)[: cores() - 1]:
         note = _note(part)
-        if note is None or note.exists():
+        if note is None or note.exists() or (ahead is not None and (ahead / note.name).exists()):
             continue
         with suppress(OSError):
             # -P: a folder in which somebody works is no place to import from
