@@ -131,8 +131,11 @@ def cut(rows_s: Array, times_s: Array, currents_A: Array, held: bool) -> Interva
     after, before = np.minimum(insert_at, len(rows_s) - 1), np.maximum(insert_at - 1, 0)
     near = np.minimum(np.abs(rows_s[after] - times_s), np.abs(times_s - rows_s[before]))
     new = (near > 1e-9) & (times_s < rows_s[-1])  # a row and a change a rounding error apart are one
-    edges = np.insert(rows_s, insert_at[new], times_s[new])
-    row_of = np.insert(np.arange(len(rows_s)), insert_at[new], -1)
+    where, extra = insert_at[new], int(new.sum())
+    edges, row_of = np.empty(len(rows_s) + extra), np.full(len(rows_s) + extra, -1)
+    is_row = np.ones(len(edges), dtype=bool)
+    is_row[where + np.arange(extra)] = False
+    edges[is_row], edges[~is_row], row_of[is_row] = rows_s, times_s[new], np.arange(len(rows_s))
     if held:
         now = np.clip(np.searchsorted(times_s, edges[:-1] + 1e-9, side="right") - 1, 0, len(times_s) - 1)
         start = end_ = currents_A[:, now]

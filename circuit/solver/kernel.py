@@ -56,6 +56,7 @@ from .plate import (
 )
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
+inlined = kernel(nogil=True, fastmath={"contract"}, error_model="numpy", forceinline=True)  # a call has 100 arguments
 greatest_cooling = compiled(plate.greatest_cooling_A)
 current_for_heat = compiled(plate.current_for_heat_A)
 
@@ -149,7 +150,7 @@ def regulate_sink(step, p, sink):
         sink[INTEGRAL] += error * step
 
 
-@compiled
+@inlined
 def advance(n, current, squared, step, p, g0, x, top, low, sink, upper, lower, whole, y, z, first, leg):
     """One trapezoidal step in place, with the step's mean current and mean squared current; factors are for step/2.
 

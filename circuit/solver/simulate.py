@@ -255,10 +255,10 @@ def _trace(
 ) -> Trace:  # fmt: skip
     """The trace of RECORDED quantities (probes, rows); RigError where they are not physical."""
     temperatures = probes[: RECORDED.index("heat_flow_skin_W_per_m2")]
-    possible = ((temperatures > -ZERO_C_IN_K) & (temperatures < HOTTEST_C)).all(axis=0)  # False for NaN
-    if not possible.all():
-        at = int(np.argmin(possible))
-        where = RECORDED[int(np.argmax(~((temperatures[:, at] > -ZERO_C_IN_K) & (temperatures[:, at] < HOTTEST_C))))]
+    if not (temperatures.min() > -ZERO_C_IN_K and temperatures.max() < HOTTEST_C):  # so it is for NaN
+        possible = (temperatures > -ZERO_C_IN_K) & (temperatures < HOTTEST_C)
+        at = int(np.argmin(possible.all(axis=0)))
+        where = RECORDED[int(np.argmin(possible[:, at]))]
         raise RigError(
             f"rig {rig.name}: {where} leaves the physical range ({-ZERO_C_IN_K} … {HOTTEST_C:g} °C) at "
             f"{rows[at]:.2f} s, under {drive.at(rows)[at]:.4g} A; use less current, or check the rig"
