@@ -148,13 +148,10 @@ class Column:
         >>> round(column.steady_drop_K(-100.0), 6)  # −100 W/m² · 2 mm / 0.45 W/(m·K)
         -0.444444
         """
-        between = 1.0 / self.resistance_m2K_per_W[1:]
-        matrix = np.diag(self.perfusion_W_per_m2K + between)
-        matrix[np.arange(1, len(between)), np.arange(1, len(between))] += between[:-1]
-        matrix -= np.diag(between[:-1], 1) + np.diag(between[:-1], -1)
-        source = np.zeros(len(between))
-        source[0] = flux_W_per_m2
-        return float(np.linalg.solve(matrix, source)[0] + flux_W_per_m2 * self.resistance_m2K_per_W[0])
+        resistances, below = self.resistance_m2K_per_W.tolist(), 0.0  # of all that lies below a lump, in m²·K/W
+        for perfusion, resistance in zip(self.perfusion_W_per_m2K[::-1].tolist(), resistances[:0:-1], strict=True):
+            below = 1.0 / (perfusion + 1.0 / (resistance + below))
+        return flux_W_per_m2 * float(resistances[0] + below)
 
 
 def column_of(

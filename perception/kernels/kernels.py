@@ -15,6 +15,10 @@ from thermicon.circuit.compiled import kernel
 from thermicon.circuit.vector_math import LEAST, exp, log, log1p, vectorised
 
 DRAWS_AT_ONCE = 512
+SIDE_BY_SIDE = 64
+"""Values that a largest one is kept of each; LLVM takes a single largest one out of the processor's vectors."""
+TALLIES = 4
+"""Counts that take turns: adding to one number waits for the addition before, and most answers are the same."""
 
 
 def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -> None:
@@ -57,20 +61,26 @@ def _blur(psi: Any, decay: float, blurred: Any) -> None:
 def _differences(cold: Any, warm: Any, dt: float, out: Any) -> None:
     """Largest, rms and integrated difference for every pair of icons of every person."""
     people, icons, n = cold.shape
+    squared, most = np.empty(SIDE_BY_SIDE), np.empty(SIDE_BY_SIDE)
     for p in range(people):
         pair = 0
         for i in range(icons):
             for j in range(i + 1, icons):
-                largest = 0.0
-                squares = 0.0
-                total = 0.0
-                for t in range(n):
-                    c = cold[p, i, t] - cold[p, j, t]
-                    w = warm[p, i, t] - warm[p, j, t]
-                    d2 = c * c + w * w
-                    largest = max(largest, d2)
-                    squares += d2
-                    total += math.sqrt(d2)
+                largest, squares, total = 0.0, 0.0, 0.0
+                for k in range(SIDE_BY_SIDE):
+                    most[k] = 0.0
+                for start in range(0, n, SIDE_BY_SIDE):
+                    count = min(SIDE_BY_SIDE, n - start)
+                    a, b = cold[p, i, start : start + count], cold[p, j, start : start + count]
+                    c, d = warm[p, i, start : start + count], warm[p, j, start : start + count]
+                    for k in range(count):
+                        squared[k] = (a[k] - b[k]) ** 2 + (c[k] - d[k]) ** 2
+                    for k in range(count):
+                        most[k] = squared[k] if squared[k] > most[k] else most[k]
+                        squares += squared[k]
+                        total += math.sqrt(squared[k])
+                for k in range(SIDE_BY_SIDE):
+                    largest = max(largest, most[k])
                 out[p, pair, 0] = math.sqrt(largest)
                 out[p, pair, 1] = math.sqrt(squares / n)
                 out[p, pair, 2] = total * dt
@@ -81,27 +91,56 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
     """Counts of the nearest point (presented, answer) for one person; the innermost loops run over draws.
 
     `nearness` (answer, presented) speaks for an answer without noise; `projected` (answer, draw) is what noise adds.
-    Both are in single precision, of which the processor's vectors hold twice as many.
+    Both are in single precision, of which the processor's vectors hold twice as many. An answer that even the most
+    favourable noise of some draws leaves behind another, whatever that one's noise, is not looked at in them.
     """
     icons, draws = projected.shape
     score, best = np.empty(DRAWS_AT_ONCE, dtype=np.float32), np.empty(DRAWS_AT_ONCE, dtype=np.int32)
+    most, least = np.empty(SIDE_BY_SIDE, dtype=np.float32), np.empty(SIDE_BY_SIDE, dtype=np.float32)
+    highest, lowest = np.empty(icons, dtype=np.float32), np.empty(icons, dtype=np.float32)
+    tally = np.zeros((TALLIES, icons, icons), dtype=np.int32)
     for start in range(0, draws, DRAWS_AT_ONCE):
         count = min(DRAWS_AT_ONCE, draws - start)
+        for j in range(icons):
+            first = projected[j, start]
+            for k in range(SIDE_BY_SIDE):
+                most[k] = first
+                least[k] = first
+            for begin in range(start, start + count, SIDE_BY_SIDE):
+                noise = projected[j, begin : min(begin + SIDE_BY_SIDE, start + count)]
+                for k in range(noise.size):
+                    most[k] = noise[k] if noise[k] > most[k] else most[k]
+                    least[k] = noise[k] if noise[k] < least[k] else least[k]
+            highest[j], lowest[j] = first, first
+            for k in range(SIDE_BY_SIDE):
+                highest[j], lowest[j] = max(highest[j], most[k]), min(lowest[j], least[k])
         for i in range(icons):
-            noise = projected[0, start : start + count]
-            for s in range(count):
-                score[s] = nearness[0, i] + noise[s]
-                best[s] = 0
+            sure = nearness[0, i] + lowest[0]
             for j in range(1, icons):
-                noise = projected[j, start : start + count]
+                sure = max(sure, nearness[j, i] + lowest[j])
+            found = False
+            for j in range(icons):
                 name, near = np.int32(j), nearness[j, i]
+                if near + highest[j] < sure:
+                    continue
+                noise = projected[j, start : start + count]
+                if not found:
+                    found = True
+                    for s in range(count):
+                        score[s] = near + noise[s]
+                        best[s] = name
+                    continue
                 for s in range(count):
                     value = near + noise[s]
                     nearer = value > score[s]
                     best[s] = name if nearer else best[s]
                     score[s] = value if nearer else score[s]
             for s in range(count):
-                counts[i, best[s]] += 1.0
+                tally[s % TALLIES, i, best[s]] += 1
+    for i in range(icons):
+        for j in range(icons):
+            for k in range(TALLIES):
+                counts[i, j] += tally[k, i, j]
 
 
 def _bend(points: Any, distances: Any, bent: Any) -> None:
