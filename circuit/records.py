@@ -155,10 +155,9 @@ class Table:
         for key, value in keys.items():
             if value == "":
                 continue
-            known_values = {str(_field(r, key)) for r in records}
             matching = [r for r in records if _matches(_field(r, key), value, key)]
             if not matching:
-                hint = did_you_mean(str(value), known_values)
+                hint = did_you_mean(str(value), {str(_field(r, key)) for r in records})
                 raise RecordError(f"{self.name}: {quantity!r} has no record with {key} = {value!r}; {hint}")
             records = matching
         return tuple(records)

@@ -4,11 +4,12 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from .check import ASSUMED_BASELINE_C, Problem, problems
 from .context import Context, Metadata, name_fault
-from .corners import Corners, corners
+from .corners import Corners, Quantity, corners
 from .errors import CueError, CueErrors
 from .format import icon_text, statement_text
 from .motion import TOLERANCE
@@ -86,8 +87,8 @@ class Icon:
         level = rest_level(self.context, start)
         if level != rest_level(self.context):
             self._prove(level)
-        quantity = "current_A" if self.context.control == "current" else "temperature_C"
-        return corners(self.statements, level, quantity, tolerance)  # type: ignore[arg-type]
+        quantity: Quantity = "current_A" if self.context.control == "current" else "temperature_C"
+        return _corners(self.statements, level, quantity, tolerance)
 
     @property
     def content_hash(self) -> str:
@@ -121,6 +122,12 @@ class Icon:
         found = problems(self.statements, self.context.control, level)
         if found:
             raise CueErrors(tuple(problem_error(problem, self.name, self.context) for problem in found))
+
+
+@lru_cache(maxsize=512)
+def _corners(statements: tuple[Statement, ...], level: Fraction, quantity: Quantity, tolerance: float) -> Corners:
+    """Corners that were asked for lately: exact fractions take their time, and every person of a crowd asks again."""
+    return corners(statements, level, quantity, tolerance)
 
 
 def rest_level(context: Context, start: float | None = None) -> Fraction:

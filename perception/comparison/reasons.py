@@ -188,9 +188,10 @@ def _alike(a: Trace, b: Trace) -> bool:
 
 
 def _span_K(one: Array, two: Array) -> float:
-    n = max(one.size, two.size)
-    held = [np.pad(values, (0, n - values.size), mode="edge") for values in (one, two)]
-    return float(np.abs(held[0] - held[1]).max())
+    if one.size != two.size:
+        n = max(one.size, two.size)
+        one, two = (np.pad(values, (0, n - values.size), mode="edge") for values in (one, two))
+    return float(np.abs(one - two).max())
 
 
 def _name(trace: Trace) -> str:

@@ -174,8 +174,10 @@ def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Ob
 
 
 def _same_qualities(one: Episodes, i: int, other: Episodes, j: int) -> bool:
-    first, second = ([each.channel for each in held.listed(0, k)] for held, k in ((one, i), (other, j)))
-    return first == second
+    from ..kernels.episodes import QUALITY
+
+    first, second = (held.features[0, k, : held.counts[0, k], QUALITY] for held, k in ((one, i), (other, j)))
+    return np.array_equal(first, second)
 
 
 def _by_place(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> Array:
