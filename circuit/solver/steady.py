@@ -56,8 +56,9 @@ def _column(network: Network) -> tuple[Array, Array]:
     return z, e
 
 
+@lru_cache(maxsize=512)
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
-    """Return the steady state (nodes,) in °C under a constant current; see `_plates` for `in_the_end`.
+    """Return the steady state (nodes,) in °C, read-only, under a constant current; see `_plates` for `in_the_end`.
 
     Raises ArithmeticError where there is none (the module would heat without limit).
     """
@@ -66,6 +67,7 @@ def state_under_current(network: Network, current_A: float, in_the_end: bool = F
     state = _fill(network, cold, hot, z, e)
     if network.extras:
         state[SKIN + len(z) : -1] = extras_between(network, current_A, hot, cold, in_the_end)
+    state.setflags(write=False)
     return state
 
 
@@ -154,6 +156,7 @@ def check_sink(rig: Rig, state_C: Array) -> None:
         )
 
 
+@lru_cache(maxsize=512)
 def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """Return the current and the temperatures that hold a baseline in steady state.
 
@@ -171,7 +174,7 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     current_A : float
         The holding current in A.
     state_C : Array
-        Temperatures (nodes,) in °C of the circuit's nodes, in the order of `thermicon.circuit.solver.network`.
+        Temperatures (nodes,) in °C of the circuit's nodes, read-only, in the order of `thermicon.circuit.solver.network`.
 
     Raises
     ------
