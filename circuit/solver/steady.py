@@ -174,7 +174,8 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     current_A : float
         The holding current in A.
     state_C : Array
-        Temperatures (nodes,) in °C of the circuit's nodes, read-only, in the order of `thermicon.circuit.solver.network`.
+        Temperatures (nodes,) in °C of the circuit's nodes, in the order of `thermicon.circuit.solver.network`;
+        read-only.
 
     Raises
     ------

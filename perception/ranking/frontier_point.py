@@ -99,8 +99,9 @@ class PointJudge:
         named = self.named(places)
         each, middle = proportion_correct(named), np.median(own, axis=0)
         first, second = np.triu_indices(len(places), 1)
-        nearest = int(middle[first, second].argmin())
+        at = int(middle[first, second].argmin())
         names = tuple(self.names[k] for k in places)
+        nearest = names[first[at]], names[second[at]]
         correct, bits = float(each.mean()), float(information_bits(named).mean())
         detected, onset_s = pooled.detected[places], pooled.detection.onset_s[places]
         persons: dict[str, Array] = {}
@@ -120,7 +121,8 @@ class PointJudge:
             onset_s=onset_s,
             durations_s=pool.durations_s[places],
             energies_J=pool.energies_J[places],
-            worst_pair=(names[first[nearest]], names[second[nearest]]),
+            worst_pair=nearest,
+            nearest_pair=nearest,
             amber=amber,
             red=(),
             persons=persons,

@@ -28,13 +28,15 @@ class SetOutcome:
     names
         Names of all icons.
     correct, bits, d_prime
-        Means over people, and d′ of the worst pair.
+        Means over people, and d′ of the nearest pair.
     detected, onset_s
         Of every icon; onset is NaN where it is not felt.
     durations_s, energies_J
         Of every icon; energies are NaN on a thermode, which states none.
     worst_pair
         Names of the pair that is confused most; None for one icon.
+    nearest_pair
+        Names of the pair with the smallest d′; None for one icon.
     amber, red
         Names of the icons that pass a soft limit of safety, and of those that pass a hard one.
     unreached
@@ -53,6 +55,7 @@ class SetOutcome:
     durations_s: Array
     energies_J: Array
     worst_pair: tuple[str, str] | None
+    nearest_pair: tuple[str, str] | None
     amber: tuple[str, ...]
     red: tuple[str, ...]
     persons: dict[str, Array]
@@ -168,8 +171,10 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
     if part.quantity == "count":
         return f"{_listed(outcome.unplayable)} cannot be played" if outcome.unplayable else "the set has fewer icons"
     if part.quantity in ("correct", "bits", "d_prime"):
-        pair = outcome.worst_pair
-        return "there is one icon only" if pair is None else f"{pair[0]} and {pair[1]} are confused most"
+        apart = part.quantity == "d_prime"
+        if (pair := outcome.nearest_pair if apart else outcome.worst_pair) is None:
+            return "there is one icon only"
+        return f"{pair[0]} and {pair[1]} {'have the smallest d′' if apart else 'are confused most'}"
     if part.quantity == "detected":
         return f"{outcome.names[int(outcome.detected.argmin())]} is detected least"
     if part.quantity == "onset":

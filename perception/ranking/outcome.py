@@ -23,16 +23,18 @@ def outcome_of_set(
     elsewhere: NewLaboratory | None,
 ) -> SetOutcome:
     """What a goal for the whole set is judged by."""
+    nearest = min(made.pairs, key=lambda pair: pair.d_prime, default=None)
     return SetOutcome(
         names=tuple(icon.name for icon in made.icons),
         correct=float(all_.correct.mean()),
         bits=float(all_.bits.mean()),
-        d_prime=min((pair.d_prime for pair in made.pairs), default=math.nan),
+        d_prime=math.nan if nearest is None else nearest.d_prime,
         detected=all_.detected,
         onset_s=all_.detection.onset_s,
         durations_s=np.array(durations),
         energies_J=np.array(energies),
         worst_pair=worst,
+        nearest_pair=None if nearest is None else (nearest.a, nearest.b),
         amber=tuple(icon.name for icon in made.icons if icon.safe and icon.cautions),
         red=tuple(icon.name for icon in made.icons if not icon.safe),
         persons={} if elsewhere is None else elsewhere.persons,
@@ -53,6 +55,7 @@ def outcome_of_choice(whole: SetOutcome, picked: Choice) -> SetOutcome:
         durations_s=whole.durations_s[places],
         energies_J=whole.energies_J[places],
         worst_pair=own.worst_pair,
+        nearest_pair=own.worst_pair,
         amber=tuple(name for name in whole.amber if name in picked.icons),
         red=(),
         persons={} if picked.new_laboratory is None else picked.new_laboratory.persons,
