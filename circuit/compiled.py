@@ -2,8 +2,8 @@
 
 numba's own cache lies beside the sources, does not notice a change in another file, and is a pickle: whoever can write
 it can run code as the user who reads it, and a damaged file ends every run. Here the name of a file is a hash of
-everything it was made from, the file begins with a hash of its content, and it is read only from a private folder. What
-cannot be read is compiled again.
+everything it was made from, the file begins with a hash of its content, and it is read only from a private folder, or
+from the package itself (`compiled_ahead`). What cannot be read is compiled again.
 """
 
 # mypy: disable-error-code="no-untyped-call,misc,assignment,import-untyped"
@@ -122,7 +122,8 @@ class _Reduced:
     locator = _Nowhere()
 
     def reduce(self, compiled: Any) -> Any:
-        return compiled._reduce()
+        # The only text is a listing of the source with its paths, a third of the file, which nothing reads.
+        return tuple("" if isinstance(part, str) else part for part in compiled._reduce())
 
     def rebuild(self, target_context: Any, payload: Any) -> Any:
         from numba.core.compiler import CompileResult
@@ -140,7 +141,7 @@ class _Store:
         self.function, self.options = function, options
 
     def load(self, key: Any) -> Any:
-        """Return what was saved under a key, or came with the package; None where it is neither, or damaged."""
+        """Return what was saved under a key, or else what came with the package; None where there is nothing sound."""
         content = None
         if (folder := kept_in()) is not None:
             content = opened(read_private(self._path(folder, key)))
@@ -173,7 +174,7 @@ def kept_in() -> Path | None:
         with suppress(NotPrivate):
             if any(private_folder(place, writable=False).iterdir()):
                 return place  # one that an administrator filled, or a read-only home: what is there is used
-        if multiprocessing.parent_process() is None:
+        if multiprocessing.parent_process() is None and brought() is None:
             logging.getLogger("thermicon").warning(
                 "compiled code cannot be stored, so that every run compiles it again: %s", problem
             )

@@ -196,6 +196,8 @@ def test_a_wheel_that_brings_machine_code_compiles_nothing(tmp_path: Path) -> No
 
     brought = ranked(place / "thermicon-wheel")
     assert not list(cache.glob("compiled/*/*")), "something was compiled"
+    code = b"".join(path.read_bytes() for path in place.glob("thermicon-wheel/thermicon/circuit/ahead/*/*"))
+    assert code and str(ROOT).encode() not in code, "the wheel names folders of the machine that built it"
     damaged = next(place.glob("thermicon-wheel/thermicon/circuit/ahead/*/_report-*"))
     damaged.write_bytes(damaged.read_bytes()[:-1])
     assert ranked(place / "thermicon-wheel") == brought

@@ -24,7 +24,8 @@ def bench_command(
         typer.Option("-o", "--output", metavar="DIR", readable=False, help="Write the page and its figure there."),
     ] = None,
     full: Annotated[
-        bool, typer.Option("--full/--short", help="Ten runs of everything and whole commands, or about 30 seconds.")
+        bool,
+        typer.Option("--full/--short", help="Ten runs and curves of growth, in minutes, or half a minute."),
     ] = False,
 ) -> None:
     """Measure speed on this machine: circuit, perception and ranking, beside ngspice and scipy.

@@ -95,7 +95,7 @@ def command_timed(
         with tempfile.TemporaryFile() as messages:
             start, used = time.perf_counter(), _processor_s()
             run = subprocess.Popen(
-                [sys.executable, "-c", code, *words],
+                [sys.executable, "-P", "-c", code, *words],
                 stdout=subprocess.DEVNULL,
                 stderr=messages,
                 env=usual,

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from .measure import Timing
 
 TITLE, GROWTH, DPI = "Speed", "growth", 110
+CAPTION = (
+    "Processor time over the size of a problem; bars span least to most, a dotted line is proportional to the size."
+)
 COLUMNS = ("what", "elapsed", "least to most", "runs", "processor", "times", "against")
 UNITS = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
 CURVES = ("#2166ac", "#e08214", "#111111", "#6b6b6b")
@@ -37,7 +40,7 @@ def page(result: BenchResult) -> list[MarkdownBlock]:
         sentence = "; ".join(f"{curve.title.lower()}: exponent {curve.growth:.2f}" for curve in result.curves)
         blocks += [
             Heading("Growth"),
-            Picture(GROWTH, "Processor time over the size of a problem; a dotted line is proportional to the size."),
+            Picture(GROWTH, CAPTION),
             Text(f"Growth between the two largest sizes, 1 where time is proportional to size: {sentence}."),
             curve_grid(result.curves),
         ]
@@ -105,7 +108,7 @@ def growth_figure(curves: tuple[Curve, ...]) -> Figure:
         ax.set_title(curve.title, fontsize="medium")
         ax.set_xlabel(curve.axis)
         ax.set_ylabel("processor time (ms)")
-        ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.yaxis.set_major_formatter(lambda value, _: f"{value:,g}")
         ax.spines[["top", "right"]].set_visible(False)
     for ax in panels[len(curves) :]:
         ax.set_visible(False)

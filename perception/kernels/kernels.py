@@ -16,7 +16,7 @@ from thermicon.circuit.vector_math import LEAST, exp, log, log1p, vectorised
 
 DRAWS_AT_ONCE = 512
 SIDE_BY_SIDE = 64
-"""Values that a largest one is kept of each; LLVM takes a single largest one out of the processor's vectors."""
+"""Largest values are kept side by side, each of every 64th value: for a single one LLVM uses no vectors."""
 TALLIES = 4
 """Counts that take turns: adding to one number waits for the addition before, and most answers are the same."""
 
@@ -91,8 +91,9 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
     """Counts of the nearest point (presented, answer) for one person; the innermost loops run over draws.
 
     `nearness` (answer, presented) speaks for an answer without noise; `projected` (answer, draw) is what noise adds.
-    Both are in single precision, of which the processor's vectors hold twice as many. An answer that even the most
-    favourable noise of some draws leaves behind another, whatever that one's noise, is not looked at in them.
+    Both are in single precision, of which the processor's vectors hold twice as many. In a block of draws, an answer
+    whose best score is below the worst score of another cannot win and is left out; rounding keeps the order of sums,
+    so that no count changes.
     """
     icons, draws = projected.shape
     score, best = np.empty(DRAWS_AT_ONCE, dtype=np.float32), np.empty(DRAWS_AT_ONCE, dtype=np.int32)

@@ -19,6 +19,8 @@ def package(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Path]:
     """A package that brings code for these versions, on a processor that can run it; returns the folder of the code."""
     monkeypatch.setattr(compiled_ahead, "__file__", str(tmp_path / "compiled_ahead.py"))
     monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", lambda: dict.fromkeys(NEEDS, True))
+    monkeypatch.setattr(numba.config, "CPU_NAME", None)
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", None)
     folder = tmp_path / "ahead" / compiled_folder(numba.__version__, llvmlite.__version__).name
     folder.mkdir(parents=True)
     brought.cache_clear()
@@ -35,6 +37,25 @@ def test_an_older_processor_does_not(package: Path, monkeypatch: pytest.MonkeyPa
     less = {need: need != missing for need in NEEDS}
     monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", lambda: less)
     assert brought() is None
+
+
+def test_one_that_llvm_does_not_know_does_not(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def unknown() -> None:
+        raise RuntimeError("unknown processor")
+
+    monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", unknown)
+    assert brought() is None
+
+
+@pytest.mark.parametrize(
+    ("name", "features", "taken"), [(LEVEL, "", True), ("generic", None, False), (None, "+avx", False)]
+)
+def test_who_compiles_for_another_processor_is_obeyed(
+    package: Path, monkeypatch: pytest.MonkeyPatch, name: str | None, features: str | None, taken: bool
+) -> None:
+    monkeypatch.setattr(numba.config, "CPU_NAME", name)
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", features)
+    assert (brought() == package) is taken
 
 
 def test_other_versions_do_not(package: Path) -> None:

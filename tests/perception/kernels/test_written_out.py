@@ -160,16 +160,30 @@ def test_distances_of_sequences_of_any_length() -> None:
 
 
 @pytest.mark.parametrize(("icons", "draws"), [(1, 1), (3, 1), (3, 511), (3, 513), (17, 1025)])
-def test_the_nearest_of_any_number_of_draws(icons: int, draws: int) -> None:
+@pytest.mark.parametrize("apart", [1.0, 10.0, 100.0])
+def test_the_nearest_of_any_number_of_draws(icons: int, draws: int, apart: float) -> None:
+    """Far apart, most answers are left out; whole numbers make many of them equally near."""
     chance = np.random.default_rng(draws)
-    near = chance.standard_normal((icons, icons)).astype(np.float32)
-    noise = 3.0 * chance.standard_normal((icons, draws)).astype(np.float32)
+    near = (apart * chance.standard_normal((icons, icons))).round().astype(np.float32)
+    noise = (3.0 * chance.standard_normal((icons, draws))).round().astype(np.float32)
     counts, expected = np.zeros((icons, icons)), np.zeros((icons, icons))
     kernels.nearest(near, noise, counts)
     for presented in range(icons):
         named = (near[:, presented, np.newaxis] + noise).argmax(axis=0)
         expected[presented] = np.bincount(named, minlength=icons)
     assert np.array_equal(counts, expected)
+
+
+@pytest.mark.parametrize("samples", [1, 63, 64, 65, 129])
+def test_differences_of_traces_of_any_length(samples: int) -> None:
+    cold, warm = np.random.default_rng(samples).standard_normal((2, 2, 3, samples))
+    found = np.empty((2, 3, 3))
+    kernels.differences(cold, warm, 0.02, found)
+    for person in range(2):
+        for pair, (i, j) in enumerate([(0, 1), (0, 2), (1, 2)]):
+            apart = np.hypot(cold[person, i] - cold[person, j], warm[person, i] - warm[person, j])
+            expected = apart.max(), np.sqrt((apart**2).mean()), 0.02 * apart.sum()
+            assert found[person, pair] == pytest.approx(expected, rel=1e-12)
 
 
 def test_sensation_written_over_its_drive(observer: Observer) -> None:
