@@ -8,13 +8,18 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..arrays import Array
+
+STALE_S = 3600.0
+"""A draft is written in milliseconds; one as old as this was left by a run that was killed, and is removed."""
 
 
 class BatchStoreError(ValueError):
@@ -36,6 +41,10 @@ class BatchStore:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise BatchStoreError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
+        for draft in folder.glob(".*.part"):
+            with suppress(OSError):
+                if time.time() - draft.stat().st_mtime > STALE_S:
+                    draft.unlink()
         return cls(folder, key)
 
     def path(self, number: int) -> Path:

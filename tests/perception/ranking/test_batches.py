@@ -74,6 +74,19 @@ def test_a_kept_batch_is_read_back_to_the_bit(tmp_path: Path) -> None:
     assert not list(store.folder.glob(".*.part"))
 
 
+def test_what_a_killed_run_left_half_written_goes_and_what_is_being_written_stays(tmp_path: Path) -> None:
+    store = BatchStore.of("key", tmp_path)
+    left, now = store.folder / ".000001.17.18.part", store.folder / ".000002.19.20.part"
+    for draft in (left, now):
+        draft.write_bytes(b"half")
+    os.utime(left, (0.0, 0.0))
+    store.put(0, {"x": np.zeros(1)})
+    BatchStore.of("key", tmp_path)
+    assert not left.exists()
+    assert now.exists()
+    assert store.get(0) is not None
+
+
 @pytest.mark.parametrize("damage", ["cut", "flipped", "empty", "other work", "other batch"])
 def test_a_damaged_batch_counts_as_missing(damage: str, tmp_path: Path) -> None:
     asked = work(3)
