@@ -57,6 +57,18 @@ class PopulationResponse:
     duration_s: float
     peaks: tuple[Array, Array]
 
+    def of(self, icons: Sequence[int]) -> PopulationResponse:
+        """Some of the icons, without their detection."""
+        places = list(icons)
+        cold, warm = self.peaks
+        return PopulationResponse(
+            Episodes(self.episodes.features[:, places], self.episodes.counts[:, places]),
+            {norm: each[:, places][:, :, places] for norm, each in self.apart.items()},
+            None,
+            self.duration_s,
+            (cold[:, places], warm[:, places]),
+        )
+
     @property
     def probability(self) -> Array:
         """Probability (people, icons) that a person reports an icon."""

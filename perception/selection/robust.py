@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.confusion import confuse
 from ..identification.measures import information_bits, proportion_correct
+from ..identification.population import PopulationResponse, identify, memory_dprime
+from ..identification.task import USUAL
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import check_norm
-from ..observer.people import draw_people
-from .appraise import population_dprime
+from ..observer.observer import Norm, Observer, check_norm
+from ..observer.people import People, draw_people
+from .appraise import population_response
 from .request import ChoiceError
 from .subset_identification import OBJECTIVES, Objective
 
@@ -179,9 +180,11 @@ def best_set_probability(
         pool += [icon for icon in each if icon not in pool]
     rows = {name: [pool.index(icon) for icon in each] for name, each in sets.items()}
     durations = np.array([duration_s(icon, rig) for icon in pool])
-    crowd = draw_people(draws, seed)
-    d, _ = population_dprime(pool, rig, crowd, tracking, check_norm(norm), rigs=drawn_rigs(crowd.rigs(rig), seed))
-    values = np.array([_values(d, crowd.lapse, durations, rows[name], objective, seed) for name in sets])
+    crowd, chosen = draw_people(draws, seed), check_norm(norm)
+    felt, _ = population_response(pool, rig, crowd, tracking, chosen, rigs=drawn_rigs(crowd.rigs(rig), seed))
+    values = np.array(
+        [_values(felt.of(rows[name]), crowd, chosen, durations[rows[name]], objective, seed) for name in sets]
+    )
     top = values >= values.max(axis=0) - 1e-12
     best = (top / top.sum(axis=0)).mean(axis=1)
     return SetRobustness(
@@ -222,14 +225,17 @@ def _pump_drawn(rig: Rig, sink: float, gain: float) -> dict[str, float]:
     }
 
 
-def _values(d: Array, lapse: Array, durations: Array, rows: Sequence[int], objective: Objective, seed: int) -> Array:
-    own = d[np.ix_(range(len(d)), rows, rows)]
+def _values(
+    felt: PopulationResponse, crowd: People, norm: Norm, durations_s: Array, objective: Objective, seed: int
+) -> Array:
+    """The objective (people,) of icons that are a set of their own."""
+    observer = Observer.load()
     if objective == "worst":
-        first, second = np.triu_indices(len(rows), 1)
-        least: Array = own[:, first, second].min(axis=1)
+        own = memory_dprime(felt, norm, crowd.memory, observer, USUAL)
+        least: Array = own[:, *np.triu_indices(own.shape[-1], 1)].min(axis=1)
         return least
-    probability = confuse(own, lapse=lapse, seed=seed).probability
+    probability = identify(felt, norm, crowd, observer, seed)[1].probability
     if objective == "correct":
         return proportion_correct(probability)
     bits = information_bits(probability)
-    return bits if objective == "bits" else bits / float(durations[list(rows)].mean())
+    return bits if objective == "bits" else bits / float(durations_s.mean())

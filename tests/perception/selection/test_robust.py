@@ -1,10 +1,12 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig
+from thermicon.circuit import Rig, duration_s
 from thermicon.icons import Icon, load_library, parse
-from thermicon.perception import ChoiceError, compare_sets, draw_people
-from thermicon.perception.selection.appraise import population_dprime
+from thermicon.perception import ChoiceError, Observer, compare_sets, draw_people
+from thermicon.perception.identification.measures import proportion_correct
+from thermicon.perception.identification.naming import name_directly
+from thermicon.perception.selection.appraise import population_dprime, population_response
 from thermicon.perception.selection.robust import best_set_probability, drawn_rigs
 
 
@@ -39,6 +41,15 @@ def test_a_set_beats_itself_half_of_the_time(six: list[Icon], rig: Rig) -> None:
     for objective in ("worst", "correct", "bits", "bits-per-s"):
         duel = compare_sets(six[:3], six[:3], rig, objective=objective, draws=6)  # type: ignore[arg-type]
         assert (duel.probability, duel.gain) == (0.5, 0.0)
+
+
+def test_names_are_given_directly_where_the_norm_is_naming(six: list[Icon], rig: Rig) -> None:
+    found = best_set_probability({"a": six[:3], "b": six[2:5]}, rig, draws=8, objective="correct", norm="naming")
+    crowd, end_s = draw_people(8, 0), max(duration_s(icon, rig) for icon in six[:5]) + 10.0
+    rigs = drawn_rigs(crowd.rigs(rig), 0)
+    felt, _ = population_response(six[2:5], rig, crowd, None, "naming", rigs=rigs, end_s=end_s)
+    named = name_directly(felt.episodes, Observer.load(), memory=crowd.memory, lapse=crowd.lapse).probability
+    assert found.values[1] == pytest.approx(proportion_correct(named), abs=1e-12)
 
 
 def test_fewer_of_the_same_are_never_worse_in_the_worst_pair(six: list[Icon], rig: Rig) -> None:
