@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 import pytest
 
-from tests.browser.staticpage import IPYWIDGETS, SHADES, TEXT, WORKBENCH, Bench, design, knobs_page, open_bench
+from tests.browser.staticpage import IPYWIDGETS, OWN_URL, SHADES, TEXT, WORKBENCH, Bench, design, knobs_page, open_bench
 
 
 @pytest.fixture
@@ -132,7 +132,8 @@ def test_the_number_under_the_focus_follows_the_ranking(page: Any, made: Bench) 
     assert page.locator(".tm-reading").inner_text() == "warm → cool: confusion 20%"
 
 
-def test_a_slider_that_the_page_does_not_know_keeps_no_other_from_being_followed(page: Any, made: Bench) -> None:
+def test_a_slider_that_the_page_does_not_know_keeps_no_other_from_being_followed(page: Any) -> None:
+    made = open_bench(page, OWN_URL)
     page.evaluate(
         """() => { window.followed = [];
       const slider = { on: (name) => followed.push(name), off: () => {} };
@@ -145,6 +146,7 @@ def test_a_slider_that_the_page_does_not_know_keeps_no_other_from_being_followed
     made.show()
     page.evaluate("deliver({ type: 'line', port: 1, token: 'x', sliders: { area: 'gone', age: 'here' } }, [])")
     page.wait_for_function("followed.length === 1", timeout=3_000)
+    assert made.wrong == []
 
 
 def test_two_icons_over_each_other_offer_no_corner(page: Any, made: Bench) -> None:
