@@ -14,7 +14,6 @@ import hashlib
 import logging
 import multiprocessing
 import pickle
-import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
@@ -37,6 +36,7 @@ from thermicon.icons.userfolder import (
     opened,
     private_folder,
     read_private,
+    remove_unused,
     sealed,
     write_private,
 )
@@ -179,15 +179,8 @@ def kept_in() -> Path | None:
                 "compiled code cannot be stored, so that every run compiles it again: %s", problem
             )
         return None
-    _forget_stale(folder.parent)
+    remove_unused(folder.parent.glob("*/*"), STALE_S)
     return folder
-
-
-def _forget_stale(folder: Path) -> None:
-    with suppress(OSError):
-        for entry in folder.glob("*/*"):
-            if time.time() - max(entry.stat().st_atime, entry.stat().st_mtime) > STALE_S:
-                entry.unlink(missing_ok=True)
 
 
 def source_digest(function: Kernel) -> str:

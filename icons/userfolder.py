@@ -7,6 +7,9 @@ import os
 import platform
 import stat
 import sys
+import time
+from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 
 HASH_BYTES = 32  # of SHA-256
@@ -105,6 +108,14 @@ def opened(data: bytes | None) -> bytes | None:
     if data is None or hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
         return None
     return data[HASH_BYTES:]
+
+
+def remove_unused(files: Iterable[Path], longest_s: float) -> None:
+    """Remove files that nobody read or wrote for so many s; where that fails, they stay for another time."""
+    with suppress(OSError):
+        for file in files:
+            if time.time() - max(file.stat().st_atime, file.stat().st_mtime) > longest_s:
+                file.unlink(missing_ok=True)
 
 
 def write_private(path: Path, data: bytes) -> None:

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import os
 import threading
-import time
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+from thermicon.icons.userfolder import remove_unused
 
 from ..arrays import Array
 
@@ -41,10 +41,7 @@ class BatchStore:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise BatchStoreError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
-        for draft in folder.glob(".*.part"):
-            with suppress(OSError):
-                if time.time() - draft.stat().st_mtime > STALE_S:
-                    draft.unlink()
+        remove_unused(folder.glob(".*.part"), STALE_S)
         return cls(folder, key)
 
     def path(self, number: int) -> Path:
