@@ -170,7 +170,7 @@ def test_the_doctor_finds_the_installed_package_sound(stranger: Stranger) -> Non
     (sys.platform, platform.machine()) != ("linux", "x86_64"), reason="such a wheel is built for Linux on x86-64"
 )
 def test_a_wheel_that_brings_machine_code_compiles_nothing(tmp_path: Path) -> None:
-    built, place, cache = tmp_path / "built", tmp_path / "place", tmp_path / "cache"
+    built, unpacked, cache = tmp_path / "built", tmp_path / "unpacked", tmp_path / "cache"
     cache.mkdir(mode=0o700)
     build = ["bash", str(ROOT / ".ci" / "wheel"), str(built)]
     with_this = {**os.environ, "PYTHON": sys.executable}
@@ -178,31 +178,24 @@ def test_a_wheel_that_brings_machine_code_compiles_nothing(tmp_path: Path) -> No
     assert run.returncode == 0, run.stdout + run.stderr
     (wheel,) = built.glob(f"thermicon-*-cp{sys.version_info[0]}{sys.version_info[1]}-none-manylinux*_x86_64.whl")
     with zipfile.ZipFile(wheel) as archive:
-        archive.extractall(place / "thermicon-wheel")
-    alone = {**os.environ, "THERMICON_CACHE": str(cache), "THERMICON_RECOMPUTE": "1"}
+        archive.extractall(unpacked)
 
-    def ranked(path: Path | None) -> str:
-        start = (
-            ""
-            if path is None
-            else f"import sys; sys.path.insert(0, {str(path)!r}); sys.meta_path[:] = "
-            + ("[finder for finder in sys.meta_path if 'editable' not in repr(finder)]; ")
-        )
-        code = f"{start}from thermicon.notebooks.cli.main import main; main()"
-        command = [sys.executable, "-P", "-c", code, "rank", "six-icons", "--people", "20"]
+    def ranked(**variables: str) -> str:
+        alone = {**os.environ, "THERMICON_CACHE": str(cache), "THERMICON_RECOMPUTE": "1", **variables}
+        command = [sys.executable, "-P", "-m", "thermicon.notebooks", "rank", "six-icons", "--people", "20"]
         ran = subprocess.run(command, env=alone, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False)
         assert ran.returncode == 0, ran.stderr
         return ran.stdout
 
-    brought = ranked(place / "thermicon-wheel")
+    brought = ranked(PYTHONPATH=str(unpacked))
     assert not list(cache.glob("compiled/*/*")), "something was compiled"
-    code = b"".join(path.read_bytes() for path in place.glob("thermicon-wheel/thermicon/circuit/ahead/*/*"))
+    code = b"".join(path.read_bytes() for path in unpacked.glob("thermicon/circuit/ahead/*/*"))
     assert code and str(ROOT).encode() not in code, "the wheel names folders of the machine that built it"
-    damaged = next(place.glob("thermicon-wheel/thermicon/circuit/ahead/*/_report-*"))
+    damaged = next(unpacked.glob("thermicon/circuit/ahead/*/_report-*"))
     damaged.write_bytes(damaged.read_bytes()[:-1])
-    assert ranked(place / "thermicon-wheel") == brought
+    assert ranked(PYTHONPATH=str(unpacked)) == brought
     assert [path.name.partition("-")[0] for path in cache.glob("compiled/*/*")] == ["_report"]
-    assert ranked(None) == brought
+    assert ranked() == brought
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such file")
