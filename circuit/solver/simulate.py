@@ -294,16 +294,16 @@ def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
 def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
     """Sentences for a drive that exceeds the driver."""
     driver, sentences = rig.driver, []
-    if current.max() > driver.current_max_A + 1e-9 or current.min() < driver.current_min_A - 1e-9:
-        excess_A = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
+    excess_A = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
+    if excess_A.max() > 1e-9:
         most, since = int(np.argmax(excess_A)), float(rows[int(np.argmax(excess_A > 1e-9))])
         limit = driver.current_max_A if current[most] > 0 else driver.current_min_A
         sentences.append(
             f"the drive needs {significant(float(current[most]), limit)[0]} A at {rows[most]:.2f} s; this driver gives "
             f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
         )
-    if max(voltage.max(), -voltage.min()) > driver.voltage_limit_V + 1e-6:
-        needed = np.abs(voltage) - driver.voltage_limit_V
+    needed = np.abs(voltage) - driver.voltage_limit_V
+    if needed.max() > 1e-6:
         most, since = int(np.argmax(needed)), float(rows[int(np.argmax(needed > 1e-6))])
         limit = float(np.copysign(driver.voltage_limit_V, voltage[most]))
         sentences.append(

@@ -156,7 +156,6 @@ def check_sink(rig: Rig, state_C: Array) -> None:
         )
 
 
-@lru_cache(maxsize=512)
 def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
     """Return the current and the temperatures that hold a baseline in steady state.
 

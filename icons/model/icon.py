@@ -88,7 +88,7 @@ class Icon:
         if level != rest_level(self.context):
             self._prove(level)
         quantity: Quantity = "current_A" if self.context.control == "current" else "temperature_C"
-        return _corners(self.statements, level, quantity, tolerance)
+        return _kept_corners(self.statements, level, quantity, tolerance)
 
     @property
     def content_hash(self) -> str:
@@ -124,10 +124,8 @@ class Icon:
             raise CueErrors(tuple(problem_error(problem, self.name, self.context) for problem in found))
 
 
-@lru_cache(maxsize=512)
-def _corners(statements: tuple[Statement, ...], level: Fraction, quantity: Quantity, tolerance: float) -> Corners:
-    """Corners that were asked for lately: exact fractions take their time, and every person of a crowd asks again."""
-    return corners(statements, level, quantity, tolerance)
+_kept_corners = lru_cache(maxsize=512)(corners)
+"""Corners that were asked for lately: exact fractions take their time, and every person of a crowd asks again."""
 
 
 def rest_level(context: Context, start: float | None = None) -> Fraction:

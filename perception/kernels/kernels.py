@@ -119,18 +119,13 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
             sure = nearness[0, i] + lowest[0]
             for j in range(1, icons):
                 sure = max(sure, nearness[j, i] + lowest[j])
-            found = False
+            for s in range(count):
+                score[s], best[s] = -np.inf, 0
             for j in range(icons):
                 name, near = np.int32(j), nearness[j, i]
                 if near + highest[j] < sure:
                     continue
                 noise = projected[j, start : start + count]
-                if not found:
-                    found = True
-                    for s in range(count):
-                        score[s] = near + noise[s]
-                        best[s] = name
-                    continue
                 for s in range(count):
                     value = near + noise[s]
                     nearer = value > score[s]
