@@ -80,23 +80,30 @@ def quoted(value: object) -> str:
     return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 2]}…{text[-1]}"
 
 
-def read_text(path: Path, what: str, limit_MB: float, error: type[InputError] = InputError) -> str:
+def read_text(path: Path, what: str, limit_MB: float, error: type[Exception] = InputError) -> str:
     """Return the text of `path`, or raise `error` with a sentence on what is wrong with the file.
 
     `what` names the kind of file in the message ("rig file"); no more than `limit_MB` of a file is read.
     """
-    data = read_bytes(path, what, limit_MB, error)
+    return text_of(read_bytes(path, what, limit_MB, error), path, what, error)
+
+
+def text_of(data: bytes, path: Path, what: str, error: type[Exception] = InputError) -> str:
+    """Return the text in the bytes of a file, each line ended by a newline alone, as on any system; raises `error`."""
     if not data.strip():
         raise error(f"{path}: the file is empty; a {what} was expected")
     if b"\0" in data:
-        raise error(f"{path}: this is a binary file, not a {what} (a zero byte at offset {data.index(0)})")
+        zero = data.index(0)
+        raise error(
+            f"{path}: this is a binary file, not a {what} (a zero byte at offset {zero}); save it as UTF-8 text"
+        )
     try:
-        return data.decode("utf-8-sig")
+        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as problem:
         raise error(f"{path}: not UTF-8 text (byte {problem.start}); save the {what} as UTF-8") from None
 
 
-def read_bytes(path: Path, what: str, limit_MB: float, error: type[InputError] = InputError) -> bytes:
+def read_bytes(path: Path, what: str, limit_MB: float, error: type[Exception] = InputError) -> bytes:
     """Return the content of a regular file of at most `limit_MB`, or raise `error` with a sentence on what it is."""
     try:
         return read_limited(path, int(limit_MB * 1e6))
@@ -125,7 +132,7 @@ def require_pyarrow(path: str | Path, error: type[Exception] = InputError) -> No
         ) from None
 
 
-def read_toml(text: str, where: str, error: type[InputError] = InputError) -> dict[str, Any]:
+def read_toml(text: str, where: str, error: type[Exception] = InputError) -> dict[str, Any]:
     """Return a TOML text as a dictionary, or raise `error` that says which line is wrong.
 
     Tables nested more deeply than Python's reader can follow, and whole numbers beyond 64 bits (TOML's own range), are

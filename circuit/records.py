@@ -7,29 +7,20 @@ quantity, a unit, a source and a value (or an interval), and the conditions unde
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
+from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Protocol
 
 from thermicon.icons.near_words import did_you_mean
+
+from .inputs import read_text, read_toml
 
 Plain = str | float
 USES = ("calibrate", "predict", "assumed", "reference")
 CONFIDENCES = ("high", "medium", "low")
+MOST_MB = 1.0
 _NUMBERS = ("value", "low", "high")
-
-
-class Readable(Protocol):
-    """A file to read: a `Path`, or a resource inside a package."""
-
-    @property
-    def name(self) -> str:
-        """File name, for messages."""
-
-    def read_text(self, encoding: str | None = None) -> str:
-        """Whole text."""
 
 
 class RecordError(ValueError):
@@ -185,19 +176,16 @@ class Table:
         return records[0]
 
 
-def load_records(path: Readable | str, *, extra: Iterable[str] = ()) -> Table:
+def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -> Table:
     """Read a TOML table of records.
 
     `extra` names the further columns this table may have (strings or numbers); any other key is
     an error that shows the nearest one. Raises `RecordError` naming file, entry and cure.
     """
-    file: Readable = Path(path) if isinstance(path, str) else path
-    try:
-        tree = tomllib.loads(file.read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise RecordError(f"{file.name}: cannot be read ({problem.strerror}): check the path") from problem
-    except tomllib.TOMLDecodeError as problem:
-        raise RecordError(f"{file.name}: is not TOML: {problem}") from problem
+    file = Path(path) if isinstance(path, str) else path
+    what = "table of records"
+    text = read_text(file, what, MOST_MB, RecordError) if isinstance(file, Path) else file.read_text(encoding="utf-8")
+    tree = read_toml(text, file.name, RecordError)
     if set(tree) != {"record"} or not isinstance(tree["record"], list):
         raise RecordError(f"{file.name}: a table of records has [[record]] blocks and nothing else")
     declared = tuple(extra)

@@ -60,7 +60,8 @@ def private_folder(path: Path, *, writable: bool = True) -> Path:
         real = path.resolve()
         for folder in (real, *real.parents):
             if fault := _fault(folder, folder == real):
-                raise NotPrivate(f"{folder} {fault}; set THERMICON_CACHE to a folder that only you can write to")
+                cure = "set THERMICON_CACHE to a folder that only you can write to (chmod go-w)"
+                raise NotPrivate(f"{folder} {fault}; {cure}")
     if writable and not os.access(path, os.W_OK | os.X_OK):
         raise NotPrivate(f"{path} is not writable")
     return path
@@ -71,10 +72,8 @@ def _fault(folder: Path, is_last: bool) -> str | None:
     user = os.geteuid()
     if status.st_uid != user and (is_last or status.st_uid != 0):
         return "belongs to another user"
-    writable = stat.S_IMODE(status.st_mode) & WRITABLE_BY_OTHERS
-    if writable == stat.S_IWGRP and status.st_gid == user:
-        return None  # a group of the user's own, as many systems give everybody
-    if writable and (is_last or not status.st_mode & stat.S_ISVTX):
+    # A group counts as others even if it is the user's own: no number and no list says that it has no other member.
+    if status.st_mode & WRITABLE_BY_OTHERS and (is_last or not status.st_mode & stat.S_ISVTX):
         return "can be written by others"
     return None
 

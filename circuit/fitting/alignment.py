@@ -18,7 +18,7 @@ def best_shift_s(
 ) -> tuple[float, float]:
     """Return what to add to `time_s` so that `values` fit a reference best, and the correlation there.
 
-    `most_s` limits the shift. NaN are left out. Without any change in either, the shift is 0 with correlation 0.
+    `most_s` limits the shift. NaN are left out. Where either has no number or no change, shift and correlation are 0.
 
     >>> time = np.arange(0.0, 30.0, 0.1)
     >>> shift, alike = best_shift_s(time, np.sin(time / 3), time, np.sin((time + 1.3) / 3), 5.0)
@@ -26,6 +26,8 @@ def best_shift_s(
     (1.3, 1.0)
     """
     there, other = np.isfinite(reference), np.isfinite(values)
+    if not (there.any() and other.any()):
+        return 0.0, 0.0
     reference_s, reference, time_s, values = reference_s[there], reference[there], time_s[other], values[other]
     spans = reference_s[-1] - reference_s[0], time_s[-1] - time_s[0]
     step = max(STEP_S, max(spans) / MOST_STEPS)

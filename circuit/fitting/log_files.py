@@ -16,7 +16,7 @@ import numpy as np
 from thermicon.icons.near_words import nearest_words
 
 from ..arrays import Array
-from ..inputs import quoted, read_bytes
+from ..inputs import quoted, read_bytes, text_of
 from .log import DRIVES, MEASURED, MOST_ROWS, Log, LogError, is_known
 from .log_tdms import read_tdms
 
@@ -89,18 +89,7 @@ def read_log(path: str | Path) -> Log:
     digest = hashlib.sha256(data).hexdigest()
     if where.suffix.lower() == ".tdms":
         return Log.of(where.name, read_tdms(data, where.name), sha256=digest)
-    return _from_text(where, _text(data, where), digest)
-
-
-def _text(data: bytes, where: Path) -> str:
-    if not data.strip():
-        raise LogError(f"{where}: the file is empty; a log was expected")
-    if b"\0" in data:
-        raise LogError(f"{where}: a binary file, not a table; save it as CSV in UTF-8, or as .tdms")
-    try:
-        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
-    except UnicodeDecodeError as problem:
-        raise LogError(f"{where}: not UTF-8 text (byte {problem.start}); save the log as UTF-8") from None
+    return _from_text(where, text_of(data, where, "log", LogError), digest)
 
 
 def _from_text(where: Path, text: str, digest: str) -> Log:

@@ -143,8 +143,7 @@ def read_drive(path: str | Path, hold: bool = False) -> Drive:
     """
     where = Path(path)
     text = read_text(where, "drive file", MOST_MB, DriveError)
-    # Line ends may be those of Windows or of an old Macintosh; the csv reader accepts one kind only.
-    rows = csv.reader(io.StringIO(text.replace("\r\n", "\n").replace("\r", "\n")))
+    rows = csv.reader(io.StringIO(text))
     try:
         header = [name.strip() for name in next(rows, [])]
         places = _places(header, where)

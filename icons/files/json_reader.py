@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from pydantic import ValidationError
 
 from ..language.assemble import analyse
-from ..language.source import MOST_JSON_BYTES, Finding, Source
+from ..language.source import MOST_JSON_BYTES, Finding, Source, utf8_of
 from ..model.context import Metadata
 from ..model.errors import MOST_ERRORS, CueError, CueErrors, whole_file
 from ..model.format import metadata_texts, quoted
@@ -196,11 +196,7 @@ def _document(data: str | bytes, file: str) -> Any:
     if len(data) > MOST_JSON_BYTES:
         help = f"a cue set in JSON has at most {MOST_JSON_BYTES:,} bytes; split the set"
         raise whole_file("E004", file, f"{len(data):,} bytes", help)
-    try:
-        text = (data.decode("utf-8") if isinstance(data, bytes) else data).removeprefix("\ufeff")
-    except UnicodeDecodeError as error:
-        what = f"byte 0x{error.object[error.start]:02X} at byte offset {error.start} is not UTF-8"
-        raise whole_file("E007", file, what, "save the file as UTF-8 in your editor") from None
+    text = (data if isinstance(data, str) else utf8_of(data, file)).removeprefix("\ufeff")
     if not text.strip():
         raise whole_file("E005", file, "nothing but white space", "thermicon convert writes sets as JSON")
     try:

@@ -1,6 +1,5 @@
 """Read cue files and the icon sets that ship with the package."""
 
-import errno
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -10,7 +9,7 @@ from ..language.source import MOST_BYTES, MOST_JSON_BYTES
 from ..model.errors import whole_file
 from ..model.iconset import IconSet
 from ..model.words import nearest
-from .input_files import NotRegular, TooLarge, read_limited
+from .input_files import bytes_of
 
 
 def library_names() -> tuple[str, ...]:
@@ -112,28 +111,10 @@ def file_bytes(source: str | Path) -> bytes | None:
     """
     name = str(source)
     path = Path(source)
+    if "\0" in name or (name in library_names() and path.is_dir()):
+        return None
     most = MOST_JSON_BYTES if is_json(source) else MOST_BYTES
-    try:
-        if path.is_dir() and name in library_names():
-            return None
-        return read_limited(path, most)
-    except FileNotFoundError:
-        return None
-    except NotRegular as found:
-        if found.kind == "folder":
-            help = f"name a .cue file in it, such as {path / 'my-set.cue'}"
-            raise whole_file("E002", name, "a set is one file", help) from None
-        raise whole_file("E003", name, str(found), "save what it gives as a file, and name that") from None
-    except TooLarge as found:
-        help = f"a cue file has at most {most:,} bytes; split the set"
-        raise whole_file("E004", name, str(found), help) from None
-    except OSError as error:
-        if error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG):
-            return None
-        help = "check that it is there and that you may read it"
-        raise whole_file("E003", name, f"the system says: {error.strerror or error}", help) from None
-    except ValueError:  # a zero byte in the name
-        return None
+    return bytes_of(path, "set", ".cue", most, f"a cue file has at most {most:,} bytes; split the set")
 
 
 def _folder() -> Traversable:

@@ -164,7 +164,7 @@ def decode(data: str | bytes, file: str) -> str:
     size = len(data)
     if size > MOST_BYTES:
         raise whole_file("E004", file, f"{size:,} bytes", f"a cue file has at most {MOST_BYTES:,} bytes; split the set")
-    text = data if isinstance(data, str) else _utf8(data, file)
+    text = data if isinstance(data, str) else utf8_of(data, file)
     if "\0" in text:
         line = text.count("\n", 0, text.index("\0")) + 1
         raise whole_file("E006", file, f"a zero byte is on line {line}", "a cue file is plain UTF-8 text")
@@ -176,7 +176,8 @@ def decode(data: str | bytes, file: str) -> str:
     return text
 
 
-def _utf8(data: bytes, file: str) -> str:
+def utf8_of(data: bytes, file: str) -> str:
+    """Return the text in bytes; CueErrors when they are binary or not UTF-8."""
     for mark, kind in _OTHERS.items():
         if data.startswith(mark):
             raise whole_file("E006", file, f"this is {kind}", "a cue file is plain UTF-8 text")

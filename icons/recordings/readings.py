@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from ..files.input_files import NotRegular, TooLarge, read_limited
+from ..files.input_files import bytes_of
 from ..model.errors import whole_file
 from ..model.value_limits import HIGHEST_C, LONGEST_S, LOWEST_C, Control
 from ..model.words import nearest
@@ -96,20 +96,10 @@ def _read(path: Path, file: str, column: str | None) -> tuple[str, list[float], 
 
 
 def _text(path: Path, file: str) -> str:
-    try:
-        data = read_limited(path, MOST_MB * 1_000_000)
-    except NotRegular as found:
-        if found.kind == "folder":
-            raise whole_file("E002", file, "a recording is one file", "name a .csv file in it") from None
-        raise whole_file("E003", file, str(found), "save what it gives as a file, and name that") from None
-    except TooLarge as found:
-        help = f"at most {MOST_MB} MB are read; keep every tenth row"
-        raise whole_file("E004", file, f"{found.size / 1e6:,.0f} MB", help) from None
-    except FileNotFoundError:
-        raise whole_file("E001", file, "no file has this name", "check its folder and its spelling") from None
-    except (OSError, ValueError) as problem:
-        said = getattr(problem, "strerror", None) or problem
-        raise whole_file("E003", file, f"the system says: {said}", "check that you may read it") from None
+    most = int(MOST_MB * 1_000_000)
+    data = bytes_of(path, "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
+    if data is None:
+        raise whole_file("E001", file, "no file has this name", "check its folder and its spelling")
     if b"\0" in data:
         what = f"a zero byte at byte offset {data.index(0)}"
         raise whole_file("E006", file, what, "save the table as CSV in UTF-8, not as a workbook and not in UTF-16")

@@ -6,6 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from thermicon.circuit.inputs import read_bytes
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from .outputs import OutputError, check_output, complete_or_absent
@@ -60,14 +61,7 @@ class CueDocument:
 
 def open_document(path: Path) -> CueDocument:
     """Read a cue file for editing; raises OutputError for what is not a text file of an editor's size."""
-    try:
-        data = read_limited(path, MOST_BYTES)
-    except NotRegular as wrong:
-        raise OutputError(f"cannot open {path}: {wrong}") from None
-    except TooLarge as wrong:
-        raise OutputError(f"cannot open {path}: {wrong} are more than {MOST_BYTES:,}") from None
-    except (OSError, ValueError) as error:
-        raise OutputError(f"cannot open {path}: {getattr(error, 'strerror', None) or error}") from None
+    data = read_bytes(path, "cue file", MOST_BYTES / 1e6, OutputError)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:

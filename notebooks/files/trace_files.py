@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 MOST_MB = 200.0
 MOST_UNPACKED_MB, MOST_ROWS = 1000.0, 10_000_000
 """What a Parquet file, which is packed, may hold."""
+LARGEST = 1e9
+"""Largest size of a number, far more than any sensor gives: sums of squares stay finite."""
 EXTRA = re.compile(r"probe_.+_C")
 
 
@@ -80,21 +82,21 @@ def read_curves(path: str, icon: str | None = None) -> Curves:
 def _read(path: Path) -> pd.DataFrame:
     import pandas as pd
 
-    from thermicon.circuit import InputError
     from thermicon.circuit.inputs import read_bytes, read_text
 
     if path.suffix.lower() == ".parquet":
         return _read_parquet(read_bytes(path, "trace or log", MOST_MB), path)
-    text = read_text(path, "trace or log", MOST_MB, InputError)
-    if ";" in text.partition("\n")[0] and "," not in text.partition("\n")[0]:
+    text = read_text(path, "trace or log", MOST_MB)
+    first = text.partition("\n")[0]
+    if ";" in first and "," not in first:
         raise LogError(f"{path}:1: columns are separated by semicolons; save it with commas and decimal points")
-    header = [name.strip() for name in next(csv.reader([text.partition("\n")[0]]))]
+    try:
+        header = [name.strip() for name in next(csv.reader([first]))]
+        frame = pd.read_csv(io.StringIO(text), skip_blank_lines=False, dtype=object, skipinitialspace=True)
+    except (csv.Error, pd.errors.ParserError, pd.errors.EmptyDataError) as problem:
+        raise LogError(f"{path}: not a table of comma-separated values ({problem})") from None
     if doubled := [name for place, name in enumerate(header) if name in header[:place]]:
         raise LogError(f"{path}:1: the column {doubled[0]} appears twice; remove one of them")
-    try:
-        frame = pd.read_csv(io.StringIO(text), skip_blank_lines=False, dtype=object, skipinitialspace=True)
-    except (pd.errors.ParserError, pd.errors.EmptyDataError) as problem:
-        raise LogError(f"{path}: not a table of comma-separated values ({problem})") from None
     return frame.dropna(how="all")
 
 
@@ -155,12 +157,15 @@ def _check_columns(frame: pd.DataFrame, known: list[str], path: str) -> None:
 def _numbers(column: Any, path: str) -> Array:
     import pandas as pd
 
+    from thermicon.circuit.inputs import quoted
+
     values: Array = pd.to_numeric(column, errors="coerce").to_numpy(dtype=float)
     texts = column.to_numpy(dtype=object)
-    for row in numpy.flatnonzero(~numpy.isfinite(values)):
+    for row in numpy.flatnonzero(~(numpy.abs(values) <= LARGEST)):
         text = "" if pd.isna(texts[row]) else str(texts[row]).strip()
         if text:
-            raise LogError(f"{_place(column, int(row), path)}: {column.name} is {text!r}, not a finite number")
+            said = f"{column.name} is {quoted(text)}, not a finite number of at most {LARGEST:g}"
+            raise LogError(f"{_place(column, int(row), path)}: {said}; correct it, or leave the cell empty")
     return values
 
 

@@ -16,11 +16,13 @@ from pathlib import Path
 from typing import Any
 
 from jupyter_server.auth.identity import IdentityProvider
+from jupyter_server.auth.logout import LogoutHandler
 from jupyter_server.services.kernels.kernelmanager import AsyncMappingKernelManager
 from tornado.httputil import HTTPServerRequest
 from tornado.web import HTTPError, RequestHandler
 from traitlets.config import Config
 from voila.app import Voila  # type: ignore[import-untyped]
+from voila.static_file_handler import TemplateStaticFileHandler  # type: ignore[import-untyped]
 
 from .prompt_socket import PromptSocket
 
@@ -62,6 +64,17 @@ class Refused(RequestHandler):
         self.finish(f"This page answers only on this machine, under {' or '.join(NAMES[:2])} with its port.\n")
 
 
+class TemplateFiles(TemplateStaticFileHandler):  # type: ignore[misc]
+    """Style sheets and scripts of Voila's templates; an address that cannot name one is refused as a wrong one is."""
+
+    async def get(self, path: str, include_body: bool = True) -> None:
+        """Answer with the file. Voila's own handler fails at an address without its three parts or with a zero byte."""
+        try:
+            await super().get(path, include_body)
+        except (ValueError, AssertionError):
+            raise HTTPError(403) from None
+
+
 class PageServer(Voila):  # type: ignore[misc]
     """Voila with a token, a check of the Host header and a limit of kernels."""
 
@@ -85,6 +98,11 @@ class PageServer(Voila):  # type: ignore[misc]
         """Settings of the application; it is not for other machines."""
         found: dict[str, Any] = super().init_settings()
         return {**found, "allow_remote_access": False, "local_hostnames": ["localhost"]}
+
+    def init_handlers(self) -> list[Any]:
+        """Voila's handlers without that of logging out, for which Voila has no page."""
+        found = [rule for rule in super().init_handlers() if rule[1] is not LogoutHandler]
+        return [(rule[0], TemplateFiles) if rule[1] is TemplateStaticFileHandler else rule for rule in found]
 
     @property
     def display_url(self) -> str:

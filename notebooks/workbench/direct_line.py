@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hmac
 import json
+import re
 import secrets
 import struct
 from collections.abc import Callable, Mapping, Sequence
@@ -20,6 +21,9 @@ from tornado.web import Application, HTTPError
 from tornado.websocket import WebSocketHandler
 
 HERE = "127.0.0.1"
+PAGES = re.compile(r"https?://(localhost|127\.0\.0\.1|\[::1\])(:\d{1,5})?")
+"""Origins of pages that a server of this machine gave out, Jupyter's or Voila's, on whatever port."""
+
 MOST_BYTES = 100_000
 """Bytes of a message: a step of a drag has some hundred."""
 
@@ -27,7 +31,7 @@ Frame = tuple[Mapping[str, Any], Sequence[bytes]]
 
 
 class DirectLine:
-    """One port of this machine, open to whoever knows the token; each message is answered by a frame.
+    """One port of this machine, open to its pages that know the token; each message is answered by a frame.
 
     ``answer`` takes the message and returns the frame; it is called in the kernel's own thread.
     """
@@ -69,13 +73,14 @@ class _Socket(WebSocketHandler):
         self.line = line
 
     def prepare(self) -> None:
-        """Refuse whoever does not know the token."""
-        if not hmac.compare_digest(self.path_args[0].encode(), self.line.token.encode()):
+        """Refuse whoever does not know the token, or asks for another machine."""
+        is_known = hmac.compare_digest(self.path_args[0].encode(), self.line.token.encode())
+        if not is_known or self.request.host != f"{HERE}:{self.line.port}":
             raise HTTPError(403)
 
     def check_origin(self, origin: str) -> bool:
-        """Pages come from Jupyter's server, on another port: the token says who they are."""
-        return True
+        """Whether a page, which a browser names here, is one of this machine; Jupyter's server has another port."""
+        return PAGES.fullmatch(origin) is not None
 
     def open(self, *_: str) -> None:
         self.set_nodelay(True)

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.circuit.inputs import read_text
 from thermicon.circuit.records import RecordError
 from thermicon.icons.near_words import did_you_mean
 
@@ -23,6 +24,7 @@ from .memory_constants import MEMORY_NAMES, objection_to
 from .observer import DATA
 from .variants import Model, Variable, check_variant
 
+MOST_MB = 200.0
 FORM = 1
 """Version of the form; a table of another one is refused."""
 FIGURES = 6
@@ -185,17 +187,13 @@ Columns = tuple[tuple[str, ...], Array]
 
 def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
     """Header, draws of the constants and of memory of a file; a RecordError says what is wrong, where, and the cure."""
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "it is not text"
-        raise RecordError(f"{path}: posterior draws cannot be read: {reason}: check the path, or {CURE}") from error
+    lines = read_text(path, "table of posterior draws", MOST_MB, RecordError).splitlines()
     head = [line for line in lines if line.startswith("#")]
     if not head or not head[0].startswith((FIRST_LINE, LABORATORY_LINE)):
         raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}")
     header = _header(path.name, head)
     _check_table(path.name, head, lines[len(head) :])
-    rows = list(csv.reader(lines[len(head) :]))
+    rows = [line.split(",") for line in lines[len(head) :]]
     if len(rows) < 2:
         raise RecordError(f"{path.name}: the table has no draws: {CURE}")
     names = tuple(rows[0])

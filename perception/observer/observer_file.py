@@ -48,12 +48,9 @@ def read_observer_file(path: Path, variant: tuple[str, str]) -> Table:
     """Records of a file for a variant (variable, model); a RecordError names the file, what is wrong, and a cure."""
     if path.suffix.lower() == ".csv":
         return _nominal_draw(path, variant)
-    try:
-        table = load_records(path)
-        check_units(table)
-        return table
-    except UnicodeDecodeError as problem:
-        raise RecordError(f"{path.name}: is not UTF-8 text (byte {problem.start}): {CURE}") from None
+    table = load_records(path)
+    check_units(table)
+    return table
 
 
 def check_units(table: Table) -> None:

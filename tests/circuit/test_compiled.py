@@ -203,6 +203,12 @@ def test_a_private_folder_has_private_folders_above(tmp_path: Path) -> None:
     open_.chmod(0o777)
     with pytest.raises(NotPrivate, match="open can be written by others"):
         private_folder(open_ / "mine")
+    os.chown(open_, -1, os.geteuid() if os.geteuid() == 0 else os.getegid())
+    open_.chmod(0o770)  # also where the group has the user's own number: it may have other members
+    with pytest.raises(NotPrivate, match=r"open can be written by others; .*chmod go-w"):
+        private_folder(open_ / "mine")
+    with pytest.raises(NotPrivate, match="open can be written by others"):
+        private_folder(open_)
     open_.chmod(0o1777)
     assert private_folder(open_ / "mine").is_dir()
     if os.geteuid() == 0:

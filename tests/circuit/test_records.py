@@ -81,13 +81,13 @@ def test_wrong_records_are_refused(tmp_path: Path, change: tuple[str, str], mess
 
 
 def test_wrong_files_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(RecordError, match=r"numbers.toml: is not TOML: "):
+    with pytest.raises(RecordError, match=r"numbers.toml: not a valid TOML file: "):
         table_of(tmp_path, "[[record")
     with pytest.raises(RecordError, match=r"numbers.toml: a table of records has \[\[record\]\] blocks"):
         table_of(tmp_path, "records = 1")
     with pytest.raises(RecordError, match=r"numbers.toml: record 1 is not a block"):
         table_of(tmp_path, "record = [1]")
-    with pytest.raises(RecordError, match=r"missing.toml: cannot be read .*: check the path"):
+    with pytest.raises(RecordError, match=r"missing.toml: no such table of records"):
         load_records(tmp_path / "missing.toml")
     with pytest.raises(RecordError, match=r"unknown key 'tissue'"):
         table_of(tmp_path, GOOD)

@@ -55,7 +55,7 @@ def test_a_table_is_read_whatever_separates_its_cells(text: str, saved: Callable
         ("", "the file is empty; a log was expected"),
         ("# nothing\n# but this\n", "holds comments only; a log has a line with the names of its columns, and rows"),
         ("time_s,current_A\n", "0 rows; a fit needs at least 20"),
-        ("time_s\0", "a binary file, not a table"),
+        ("time_s\0", "this is a binary file, not a log .*; save it as UTF-8 text"),
         ("0,0.1,32\n1,0.1,32\n", "1: this line holds numbers, not the names of columns; put time_s,current_A"),
         (text_of(head=("time_s", "current_A", "current_A")), "the column current_A appears twice; remove one"),
         (text_of(head=("time_ms", "current_A", "display_C")), "missing: time_s .*time_ms should be time_s: divide"),

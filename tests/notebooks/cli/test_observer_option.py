@@ -89,7 +89,7 @@ def test_another_rig_than_that_of_the_answers_is_warned_of(cli: Cli, two: Path, 
 @pytest.mark.parametrize("command", ["rank", "search", "sensitivity"])
 def test_a_file_that_is_no_observer_is_bad_input(cli: Cli, two: Path, tmp_path: Path, command: str) -> None:
     for name, text, words in (
-        ("none.csv", None, "cannot be read"),
+        ("none.csv", None, "none.csv: no such table of posterior draws"),
         ("other.csv", "time_s,current_A\n0,1\n", "this is not a table of posterior draws"),
         ("other.toml", "[[record]]\n", "other.toml"),
     ):

@@ -56,9 +56,9 @@ def test_files_that_cannot_be_are_told(tmp_path: Path) -> None:
     (tmp_path / "folder.cue").mkdir()
     with pytest.raises(OutputError, match=r"bytes\.cue: it is not UTF-8 text"):
         open_document(tmp_path / "bytes.cue")
-    with pytest.raises(OutputError, match=r"folder\.cue: this is a folder"):
+    with pytest.raises(OutputError, match=r"folder\.cue: this is a directory, not a cue file"):
         open_document(tmp_path / "folder.cue")
-    with pytest.raises(OutputError, match=r"none\.cue: No such file"):
+    with pytest.raises(OutputError, match=r"none\.cue: no such cue file"):
         open_document(tmp_path / "none.cue")
     create_document(tmp_path / "a.cue", "cue 1")
     with pytest.raises(OutputError, match=r"a\.cue already exists and was kept"):

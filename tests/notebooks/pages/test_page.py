@@ -80,6 +80,22 @@ def test_the_page_needs_its_token(served: tuple[str, Path]) -> None:
     assert ask(f"{bare}api/kernels/00000000-0000-0000-0000-000000000000")[0] in (302, 403)
 
 
+ODD = [
+    "templates/", "templates/lab", "templates/lab/%2f", "templates/lab/x", "templates/lab/other/x",
+    "templates/lab/static/", "templates/lab/static/%2f", "templates/lab/static/..%2f..%2f..",
+    "templates/lab/static/%00", "templates//lab/static/x", "templates/.%2fstatic%2fx", "static/%00", "static/%2f",
+    "files/%00", "../logout",
+]  # fmt: skip
+
+
+def test_an_odd_address_without_the_token_is_refused_as_any_other(served: tuple[str, Path]) -> None:
+    address, _ = served
+    bare = address.partition("?")[0]
+    answers = {odd: ask(f"{bare}voila/{odd}".replace("voila/../", ""))[0] for odd in ODD}
+    assert set(answers.values()) <= {302, 403}, answers
+    assert ask(f"{bare}voila/templates/lab/static/voila.js")[0] == 200
+
+
 OTHERS = ["attacker.example", "attacker.example:{port}", "localhost", "localhost.attacker.example:{port}"]
 
 

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy
 import pytest
-from tornado.httpclient import HTTPClientError
+from tornado.httpclient import HTTPClientError, HTTPRequest
 from tornado.websocket import WebSocketClientConnection, websocket_connect
 
 from thermicon.circuit import Rig
@@ -19,6 +19,13 @@ from thermicon.notebooks.workbench.direct_line import HERE, MOST_BYTES, DirectLi
 
 DIP = "cue 1; icon dip { cool by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }"
 Result = TypeVar("Result")
+PAGE = "http://localhost:8888"
+
+
+async def page_on(port: int, path: str, **headers: str) -> WebSocketClientConnection:
+    """A connection as a page of Jupyter's server on this machine asks for it, but for some headers."""
+    asked = HTTPRequest(f"ws://{HERE}:{port}/{path}", headers={"Origin": PAGE, **headers})
+    return await websocket_connect(asked)
 
 
 def on_line(line: DirectLine, talk: Callable[[WebSocketClientConnection], Awaitable[Result]]) -> Result:
@@ -26,7 +33,7 @@ def on_line(line: DirectLine, talk: Callable[[WebSocketClientConnection], Awaita
 
     async def go() -> Result:
         port, token = line.open()
-        socket = await websocket_connect(f"ws://{HERE}:{port}/{token}")
+        socket = await page_on(port, token)
         try:
             return await asyncio.wait_for(talk(socket), 20)
         finally:
@@ -151,13 +158,62 @@ def test_without_the_token_nobody_gets_in():
         try:
             for path in ("", "x" * len(token), token[:-1], f"{token}/more"):
                 with pytest.raises(HTTPClientError, match="403"):
-                    await websocket_connect(f"ws://{HERE}:{port}/{path}")
+                    await page_on(port, path)
         finally:
             line.close()
 
     asyncio.run(go())
     assert len(line.token) >= 32
     assert DirectLine(line.answer).token != line.token
+
+
+STRANGERS = [
+    {"Host": "attacker.example"},
+    {"Host": "attacker.example:{port}"},
+    {"Host": "localhost:{port}"},
+    {"Host": "127.0.0.1"},
+    {"Host": "127.0.0.1:{port}.attacker.example"},
+    {"Origin": ""},
+    {"Origin": "http://localhost:8888/"},
+    {"Origin": "null"},
+    {"Origin": "file://"},
+    {"Origin": "https://attacker.example"},
+    {"Origin": "http://localhost.attacker.example:8888"},
+    {"Origin": "http://localhost:8888@attacker.example"},
+    {"Origin": "http://localhost:8888, http://attacker.example"},
+]
+
+
+@pytest.mark.parametrize("headers", STRANGERS, ids=lambda headers: " ".join(*headers.items()))
+def test_with_the_token_only_a_page_of_this_machine_gets_in(headers):
+    line = DirectLine(lambda message: ({}, []))
+
+    async def go() -> None:
+        port, token = line.open()
+        try:
+            with pytest.raises(HTTPClientError, match="403"):
+                await page_on(port, token, **{key: text.format(port=port) for key, text in headers.items()})
+        finally:
+            line.close()
+
+    asyncio.run(go())
+
+
+@pytest.mark.parametrize("origin", ["http://localhost:8866", "https://127.0.0.1", "http://[::1]:8888"])
+def test_pages_of_any_server_of_this_machine_get_in(origin):
+    line = DirectLine(lambda message: ({"seq": 1}, []))
+
+    async def go() -> None:
+        port, token = line.open()
+        try:
+            socket = await page_on(port, token, Origin=origin)
+            await socket.write_message("{}")
+            assert await socket.read_message() is not None
+            socket.close()
+        finally:
+            line.close()
+
+    asyncio.run(go())
 
 
 def test_the_token_stands_in_no_log(caplog):
@@ -167,7 +223,7 @@ def test_the_token_stands_in_no_log(caplog):
         await socket.write_message("{}")
         assert await socket.read_message() is not None
         with pytest.raises(HTTPClientError, match="403"):
-            await websocket_connect(f"ws://{HERE}:{line.port}/{line.token}-no")
+            await page_on(line.port, f"{line.token}-no")
 
     with caplog.at_level(logging.DEBUG):
         on_line(line, talk)

@@ -93,7 +93,9 @@ def test_the_shipped_file_is_complete_and_of_the_present_model() -> None:
 def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "binary.toml"
     path.write_bytes(b"[[record]]\nquantity = '\xff'")
-    with pytest.raises(RecordError, match=r"^binary.toml: is not UTF-8 text \(byte 23\): begin with a copy"):
+    with pytest.raises(
+        RecordError, match=r"binary.toml: not UTF-8 text \(byte 23\); save the table of records as UTF-8"
+    ):
         Observer.load(path)
 
 
