@@ -9,6 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from ..files.input_files import bytes_of
+from ..language.source import utf8_of
 from ..model.errors import whole_file
 from ..model.value_limits import HIGHEST_C, LONGEST_S, LOWEST_C, Control
 from ..model.words import nearest
@@ -100,15 +101,7 @@ def _text(path: Path, file: str) -> str:
     data = bytes_of(path, "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
     if data is None:
         raise whole_file("E001", file, "no file has this name", "check its folder and its spelling")
-    if b"\0" in data:
-        what = f"a zero byte at byte offset {data.index(0)}"
-        raise whole_file("E006", file, what, "save the table as CSV in UTF-8, not as a workbook and not in UTF-16")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as problem:
-        line = data.count(b"\n", 0, problem.start) + 1
-        what = f"byte 0x{data[problem.start]:02X} is not UTF-8"
-        raise whole_file("E007", f"{file}:{line}", what, "save the file as CSV in UTF-8") from None
+    text = utf8_of(data, file, "a recording is a table, saved as CSV in UTF-8").removeprefix("\ufeff")
     if not text.strip():
         raise whole_file("E005", file, "nothing but white space", f"the first line is such as: {TIME},temperature_C")
     return text

@@ -97,6 +97,9 @@ def _read(path: Path) -> pd.DataFrame:
         raise LogError(f"{path}: not a table of comma-separated values ({problem})") from None
     if doubled := [name for place, name in enumerate(header) if name in header[:place]]:
         raise LogError(f"{path}:1: the column {doubled[0]} appears twice; remove one of them")
+    if not isinstance(frame.index, pd.RangeIndex):  # pandas takes cells without a name for the names of the rows
+        cells = f"a row has more cells than the {len(header)} columns that the first line names"
+        raise LogError(f"{path}: {cells}; write decimal points, not commas, or name all columns")
     return frame.dropna(how="all")
 
 

@@ -15,16 +15,17 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import read_text
+from thermicon.circuit.inputs import quoted, read_text
 from thermicon.circuit.records import RecordError
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
-from .memory_constants import MEMORY_NAMES, objection_to
+from .memory_constants import LIMITS, MEMORY_NAMES, objection_to
 from .observer import DATA
 from .variants import Model, Variable, check_variant
 
-MOST_MB = 200.0
+MOST_MB, LARGEST = 200.0, 1e9
+"""Size of a file, and of a number in it: far more than any constant in its unit."""
 FORM = 1
 """Version of the form; a table of another one is refused."""
 FIGURES = 6
@@ -197,21 +198,24 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
     if len(rows) < 2:
         raise RecordError(f"{path.name}: the table has no draws: {CURE}")
     names = tuple(rows[0])
-    _check_names(path.name, header, names)
-    draws = _numbers(path.name, names, rows[1:], len(head) + 2)
+    expected = _inferred(header.variable, header.model)
+    _check_names(path.name, expected, names)
+    judged = [place for place, name in enumerate(names) if expected.get(name, True) or name in LIMITS]
+    draws = _numbers(path.name, names, rows[1:], len(head) + 2, judged)
     remembered = [name in MEMORY_NAMES for name in names]
     constants = tuple(name for name in names if name not in MEMORY_NAMES)
     memory = tuple(name for name in names if name in MEMORY_NAMES)
     return header, (constants, draws[:, np.logical_not(remembered)]), (memory, draws[:, remembered])
 
 
-def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int) -> Array:
+def _numbers(
+    file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int, judged: Sequence[int]
+) -> Array:
     """The rows as numbers (rows, names), all at once; cell by cell only where one of them is wrong."""
-    memory = [place for place, name in enumerate(names) if name in MEMORY_NAMES]
     with suppress(ValueError):
         draws = np.array(rows, dtype=np.float64)
-        objections = (objection_to(names[place], float(value)) for place in memory for value in draws[:, place])
-        if draws.shape == (len(rows), len(names)) and np.isfinite(draws).all() and not any(objections):
+        objections = (objection_to(names[place], float(value)) for place in judged for value in draws[:, place])
+        if draws.shape == (len(rows), len(names)) and (abs(draws) <= LARGEST).all() and not any(objections):
             return draws
     draws = np.empty((len(rows), len(names)))
     for number, row in enumerate(rows):
@@ -220,7 +224,7 @@ def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], fir
             raise RecordError(f"{where}: {len(row)} numbers for {len(names)} constants: {CURE}")
         for place, text in enumerate(row):
             draws[number, place] = _number(text, f"{where}, {names[place]}")
-            if place in memory and (why := objection_to(names[place], float(draws[number, place]))):
+            if place in judged and (why := objection_to(names[place], float(draws[number, place]))):
                 raise RecordError(f"{where}, {names[place]}: {text} {why}: {CURE}")
     return draws
 
@@ -271,15 +275,14 @@ def _number(text: str, where: str) -> float:
         value = float(text)
     except ValueError:
         value = float("nan")
-    if not np.isfinite(value):
-        raise RecordError(f"{where}: {text!r} is not a finite number: {CURE}")
+    if not abs(value) <= LARGEST:
+        raise RecordError(f"{where}: {quoted(text)} is not a finite number of at most {LARGEST:g}: {CURE}")
     return value
 
 
-def _check_names(name: str, header: DrawsHeader, names: Sequence[str]) -> None:
+def _check_names(name: str, expected: Mapping[str, bool], names: Sequence[str]) -> None:
     if len(set(names)) < len(names):
         raise RecordError(f"{name}: two columns have one name: {CURE}")
-    expected = _inferred(header.variable, header.model)
     for each in names:
         if each not in expected and each not in MEMORY_NAMES:
             raise RecordError(
@@ -290,12 +293,13 @@ def _check_names(name: str, header: DrawsHeader, names: Sequence[str]) -> None:
             raise RecordError(f"{name}: there is no column {each!r}: {CURE}")
 
 
-def _inferred(variable: Variable, model: Model) -> set[str]:
-    """Names of all constants that are inferred for a variant."""
+def _inferred(variable: Variable, model: Model) -> dict[str, bool]:
+    """Names of all constants that are inferred for a variant, and whether their priors allow positive numbers only."""
     with CONSTANTS.open(encoding="utf-8", newline="") as file:
         file.readline()
         rows = csv.DictReader(file)
-        return {row["name"] for row in rows if (row["variable"], row["model"]) == (variable, model)}
+        ours = (row for row in rows if (row["variable"], row["model"]) == (variable, model))
+        return {row["name"]: float(row["prior_low"]) > 0.0 for row in ours}
 
 
 def current_inputs(table: Path = CONSTANTS) -> str:

@@ -28,12 +28,14 @@ def noise_name(norm: str) -> str:
 NOISES = tuple(dict.fromkeys(noise_name(noise_norm(norm)) for norm in NORMS))
 MEMORY_NAMES = (*NOISES, SHARE, MISSING, ONSET)
 """Every constant of memory that a table of draws may have a column for."""
-LIMITS: Mapping[str, tuple[float, float]] = {SHARE: (0.0, 1.0), MISSING: (0.0, math.inf)}
+LIMITS: Mapping[str, tuple[float, float]] = {
+    SHARE: (0.0, 1.0), MISSING: (0.0, math.inf), "correlation of cold and warm": (-1.0, 1.0),
+}  # fmt: skip
 """Least and largest value of constants that may be 0; the others must be above 0."""
 
 
 def objection_to(name: str, value: float) -> str | None:
-    """Why a constant of memory cannot have this value; None where it can.
+    """Why a constant of memory, or one that is positive, cannot have this value; None where it can.
 
     >>> objection_to("share of the scatter of ratings", 1.5)
     'must lie in 0 to 1'

@@ -93,7 +93,10 @@ class ObserverModel:
         file = Path(path)
         records = read_observer_file(file, ("temperature", "adapting"))
         draws = PosteriorDraws.load(file) if file.suffix.lower() == ".csv" else None
-        nominal = Observer.from_table(records) if draws is None else draws.nominal()
+        try:
+            nominal = Observer.from_table(records) if draws is None else draws.nominal()
+        except ValueError as wrong:  # a RecordError says in which file
+            raise wrong if isinstance(wrong, RecordError) else RecordError(f"{file.name}: {wrong}") from None
         spreads = _spreads(records) if draws is None else draws.draw(0)
         return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, spreads, records, draws)
 

@@ -129,9 +129,22 @@ ROWS = "0,32\n1,31\n"
         ),
         (" \n\n", "rec.csv", "E005"),
         ("# only\n# remarks\n", "rec.csv", "E013 not a recording\n  no line names the columns"),
-        (b"PK\x03\x04\x00", "rec.csv", "E006 binary file\n  a zero byte at byte offset 4\n  save the table as CSV"),
+        (
+            b"PK\x03\x04\x00",
+            "rec.csv",
+            "E006 binary file\n  this is .*\n  a recording is a table, saved as CSV in UTF-8",
+        ),
+        (
+            b"time_s\0",
+            "rec.csv",
+            "E006 binary file\n  a zero byte at byte offset 6\n  a recording is a table,",
+        ),
         (DIP.encode("utf-16"), "rec.csv", "E006"),
-        (b"time_s,display_C\n0,32 \xb0C\n", "rec.csv:2", "E007 not UTF-8\n  byte 0xB0 is not UTF-8\n  save"),
+        (
+            b"time_s,display_C\n0,32 \xb0C\n",
+            "rec.csv",
+            "E007 not UTF-8\n  byte 0xB0 at byte offset 22, on line 2, is not UTF-8\n  save",
+        ),
         ("time_s,display_C\n", "rec.csv", "E013 not a recording\n  no rows below the names of the columns\n  at least"),
         ("time_s,display_C\n0,32\n", "rec.csv", "  1 row below the names of the columns\n"),
         (

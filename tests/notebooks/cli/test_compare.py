@@ -194,6 +194,9 @@ LOGS = [
     ("time_s,skin_C,skin_C\n0,30,1\n1,30,1\n", ":1: the column skin_C appears twice; remove one of them"),
     ("time_s,display_C\n0,30\n1,30\n", "no column with values in both: bad.csv has display_C; good.csv has skin_C"),
     ("time_s,skin_C\n5,30\n9,30\n", "no two rows at a common time: bad.csv 5–9 s and good.csv 0–2 s; shift time_s"),
+    ("time_s,skin_C\n0,30,5\n1,30,5\n", "a row has more cells than the 2 columns that the first line names; write dec"),
+    ("time_s,skin_C\n0,30\n1,1e308\n", ":3: skin_C is '1e308', not a finite number of at most 1e+09; correct it, or"),
+    ("time_s," + "x" * 200_000 + "\n0,30\n1,30\n", "not a table of comma-separated values (field larger than"),
     ("time_s,skin_C\n0,30,4,5\n1,30\n2,3,4,5,6\n", "not a table of comma-separated values"),
 ]
 
@@ -206,6 +209,22 @@ def test_a_log_that_cannot_be(cli: Cli, tmp_path: Path, text: str, words: str) -
     said = cli("compare", bad, good)
     assert (said.exit_code, said.stdout) == (1, "")
     assert words in said.stderr
+
+
+def test_lines_that_end_as_on_an_old_macintosh(cli: Cli, tmp_path: Path) -> None:
+    old, good = tmp_path / "old.csv", tmp_path / "good.csv"
+    old.write_bytes(GOOD.replace("\n", "\r").encode())
+    good.write_text(GOOD, encoding="utf-8")
+    assert cli("compare", old, good).stdout.replace("old.csv", "good.csv") == cli("compare", good, good).stdout
+
+
+def test_a_column_without_a_number_cannot_be_aligned(cli: Cli, tmp_path: Path) -> None:
+    empty, good = tmp_path / "empty.csv", tmp_path / "good.csv"
+    empty.write_text("time_s,skin_C\n0,\n1,\n2,\n", encoding="utf-8")
+    good.write_text(GOOD, encoding="utf-8")
+    said = cli("compare", good, empty, "--align")
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert "no shift makes its skin_C like that of good.csv; leave out --align" in said.stderr
 
 
 def test_a_file_that_is_missing_or_no_parquet(cli: Cli, tmp_path: Path) -> None:

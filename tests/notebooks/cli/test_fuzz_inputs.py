@@ -1,4 +1,4 @@
-"""Tens of thousands of damaged cue, rig, device and drive files and settings: each is read or refused in words, soon.
+"""Tens of thousands of damaged files of every kind, and settings: each is read or refused in words, soon.
 
 ``pytest -m slow tests/notebooks/cli/test_fuzz_inputs.py`` examines 50,000 of them in some minutes on two cores;
 THERMICON_FUZZ=2000 fewer. Mutations are seeded, so that a failure comes again.
@@ -57,6 +57,23 @@ DRIVES = [
     "time_s,current_A,code\r\n0,0.1,5\r\n0.01,0.2,6\r\n",
     '"time_s" , "current_A"\n\n0,0\n1e-3,1\n',
 ]
+LOG = "time_s,current_A,voltage_V,display_C,skin_C\n" + "".join(
+    f"{k / 10},{0.1 * (k % 7)},{1 + 0.2 * (k % 7)},{32 - 0.1 * k},{32 - 0.05 * k}\n" for k in range(25)
+)
+LOGS = [LOG, LOG.replace(",", ";"), LOG.replace("\n", "\r")]
+TRIALS = [
+    "participant,trial,presented,responded,time_s\n" + "".join(
+        f"P{k % 3},{k},{'dip' if k % 2 else 'glow'},dip,{1 + 0.1 * k}\n" for k in range(12)
+    ),
+]  # fmt: skip
+VALUES = [
+    "participant,kind,method,channel,value,unit\nP1,threshold,limits,cold,1.1,K\nP2,threshold,limits,warm,0.9,K\n"
+]
+ORDERS = ["# 4 plays\ncooling-step\nwarming-step, double-dip\ncooling-step\n"]
+OBSERVERS = [(files("thermicon.perception") / "data" / "observer.toml").read_text(encoding="utf-8")]
+POSTERIOR = (files("thermicon.perception") / "data" / "posterior.csv").read_text(encoding="utf-8").splitlines(True)
+DRAWS = ["".join(line for line in POSTERIOR[:24] if "sha256" not in line)]
+STUDIES = [(files("thermicon.notebooks") / "data" / "example-study.toml").read_text(encoding="utf-8")]
 SHORT = "cue 1\nset s { control display\n baseline 32 °C }\nicon tap { cool by 1 °C at 20 °C/s\n return at 20 °C/s }\n"
 """Every sample of a sound card costs the gate computing, and a cue of 8 s a minute."""
 SETTINGS = [
@@ -128,12 +145,86 @@ def read_setting(data: bytes, path: Path) -> None:
     Rig.load("thenar").with_set([data.decode("utf-8", "replace")])
 
 
+def read_log_file(data: bytes, path: Path) -> None:
+    from thermicon.circuit.fitting.log_files import read_log
+
+    path.write_bytes(data)
+    read_log(path)
+
+
+def read_curves_aligned(data: bytes, path: Path) -> None:
+    from thermicon.notebooks.cli.compare import Comparison, _shifted, show_comparison
+    from thermicon.notebooks.figures.differences import align
+    from thermicon.notebooks.files.trace_files import read_curves
+
+    path.write_bytes(data)
+    other = path.with_name("sound.csv")
+    other.write_text(LOG)
+    first, second = read_curves(str(other)), read_curves(str(path))
+    show_comparison(Comparison("", align(first, _shifted(first, second)[0])))
+
+
+def read_recording(data: bytes, path: Path) -> None:
+    from thermicon.icons.recordings.readings import read_readings
+
+    path.write_bytes(data)
+    read_readings(path, "skin_C")
+
+
+def read_answers(data: bytes, path: Path) -> None:
+    from thermicon.perception.pilot.trials_file import read_trials
+
+    path.write_bytes(data)
+    read_trials(path, ["dip", "glow"])
+
+
+def read_values(data: bytes, path: Path) -> None:
+    from thermicon.circuit import Rig
+    from thermicon.perception.pilot.measurements_file import read_measurements
+
+    path.write_bytes(data)
+    read_measurements(path, Rig.load("thenar"))
+
+
+def read_plan(data: bytes, path: Path) -> None:
+    from thermicon.circuit.safety.sessionplan import read_order
+    from thermicon.icons import load_library
+
+    path.write_bytes(data)
+    read_order(path, load_library("six-icons"))
+
+
+def read_observer(data: bytes, path: Path) -> None:
+    from thermicon.perception.observer.observer_model import ObserverModel
+
+    path = path.with_suffix(".csv" if b"written by thermicon" in data else ".toml")
+    path.write_bytes(data)
+    ObserverModel.load(path)
+
+
+def read_study_file(data: bytes, path: Path) -> None:
+    from thermicon.notebooks.study.study_file import parse_study, study_text
+
+    path = path.with_suffix(".toml")
+    path.write_bytes(data)
+    parse_study(study_text(path), "study.toml")
+
+
 KINDS: list[tuple[list[str], Callable[[bytes, Path], None], int]] = [
     (CUES, read_cue, 3),
     (RIGS, read_rig, 3),
     (DEVICES, read_device, 3),
     (DRIVES, read_drive, 2),
     (SETTINGS, read_setting, 2),
+    (LOGS, read_log_file, 2),
+    (LOGS, read_curves_aligned, 2),
+    (LOGS, read_recording, 1),
+    (TRIALS, read_answers, 1),
+    (VALUES, read_values, 1),
+    (ORDERS, read_plan, 1),
+    (OBSERVERS, read_observer, 1),
+    (DRAWS, read_observer, 1),
+    (STUDIES, read_study_file, 1),
 ]
 
 

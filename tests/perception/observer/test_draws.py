@@ -92,6 +92,32 @@ def test_what_is_no_table_of_draws_is_refused(tmp_path: Path) -> None:
         PosteriorDraws.load(tmp_path / "absent.csv")
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("thenar cold", "1e308", "thenar cold: '1e308' is not a finite number of at most 1e\\+09"),
+        ("slow adaptation time", "0", "slow adaptation time: 0 must be above 0"),
+        ("noise correlation time", "-1", "noise correlation time: -1 must be above 0"),
+        ("correlation of cold and warm", "1.2", "correlation of cold and warm: 1.2 must lie in -1 to 1"),
+    ],
+)
+def test_a_number_that_no_person_has_is_refused_in_every_draw(
+    tmp_path: Path, text: str, name: str, value: str, words: str
+) -> None:
+    lines = [line for line in text.splitlines() if "sha256" not in line]
+    names = lines[-4].split(",")
+    cells = lines[-1].split(",")
+    cells[names.index(name)] = value
+    refused(tmp_path, "\n".join([*lines[:-1], ",".join(cells)]), words)
+
+
+def test_draws_are_read_from_files_alone(tmp_path: Path) -> None:
+    with pytest.raises(RecordError, match="this is a device, not a file"):
+        PosteriorDraws.load("/dev/null")
+    with pytest.raises(RecordError, match="this is a device, not a file"):
+        Observer.load("/dev/zero")
+
+
 def test_another_version_is_refused(tmp_path: Path, text: str) -> None:
     refused(tmp_path, text.replace("# form: 1", "# form: 9"), r"line 2: form 9 .*reads.* 1")
     refused(tmp_path, text.replace(current_inputs(), "0123456789abcdef", 1), r"made from evidence and priors 0123")
