@@ -315,10 +315,17 @@ def test_damaged_inputs_through_the_command(process: Callable[..., Any], tmp_pat
             "read_rig": ("check", "six-icons", "--rig", "a.toml"),
             "read_device": ("export", "short.cue", "--to", "csv", "--device", "a.toml", "-o", "out", "--force"),
             "read_drive": ("simulate", "--current", "a.csv"),
-        }.get(reader.__name__, ("check", "six-icons", "--set", data.decode("utf-8", "replace").replace("\0", "")))
+            "read_log_file": ("simulate", "six-icons", "--icon", "warming-step", "--measured", "a.csv"),
+            "read_curves_aligned": ("compare", "a.csv", "a.csv", "--align"),
+            "read_recording": ("convert", "a.csv", "--column", "skin_C", "-o", "b.cue"),
+            "read_plan": ("session", "six-icons", "--order", "a.csv"),
+            "read_setting": ("check", "six-icons", "--set", data.decode("utf-8", "replace").replace("\0", "")),
+        }.get(reader.__name__, ())  # what else reads tables takes minutes
         for name in words:
             if name in ("a.cue", "a.toml", "a.csv"):
                 (tmp_path / name).write_bytes(data)
+        if not words:
+            continue
         said = process(*words, cwd=tmp_path)
         assert said.exit_code in (0, 1, 2, 3), (words, data, said)
         assert "Traceback" not in said.stderr, (words, data, said.stderr)
