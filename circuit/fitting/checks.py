@@ -49,7 +49,7 @@ def aligned(problem: Problem) -> Problem:
     found = problem.predictions(problem.first)
     if found is None:
         return problem
-    first = problem.first.copy()
+    first, low, high = problem.first.copy(), problem.low.copy(), problem.high.copy()
     for place, item in enumerate(problem.nuisances, len(problem.keys)):
         if item.kind != "shift":
             continue
@@ -61,6 +61,7 @@ def aligned(problem: Problem) -> Problem:
             shift, alike = best_shift_s(run.time_s, reference, channel.time_s - run.begin_s, channel.values)
             best = max(best, (shift, alike), key=lambda pair: pair[1])
         first[place] = best[0]
+        low[place], high[place] = best[0] - SHIFT_ROOM_S, best[0] + SHIFT_ROOM_S
         name = run.clocks[item.place - 1]
         time = channels[0].time_s - run.begin_s + best[0] if channels else np.zeros(0)
         inside = (time >= 0) & (time <= run.time_s[-1])
@@ -69,15 +70,6 @@ def aligned(problem: Problem) -> Problem:
                 f"{name}: does not fit in time to {run.name}, which lasts {run.time_s[-1]:g} s: no shift makes the two "
                 f"alike; check that both are from the same run"
             )
-    return replace_first(problem, first)
-
-
-def replace_first(problem: Problem, first: Array) -> Problem:
-    """The problem with another point to begin from, and the clocks bounded about it."""
-    low, high = problem.low.copy(), problem.high.copy()
-    for place, item in enumerate(problem.nuisances, len(problem.keys)):
-        if item.kind == "shift":
-            low[place], high[place] = first[place] - SHIFT_ROOM_S, first[place] + SHIFT_ROOM_S
     return replace(problem, first=first, low=low, high=high)
 
 
@@ -148,10 +140,7 @@ def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[st
     With a `misfit`, an offset is a consequence of what is wrong elsewhere rather than a fault of the sensor.
     """
     sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
-    for r, c, channel in problem.channels():
-        offset = problem.nuisance(theta, "offset", r, c)
-        if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0:
-            sentences.append(_offset(channel, offset, problem.offset_sd_K, misfit))
+    sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
     for r, run in enumerate(problem.runs):
         if problem.start_count == STEADY_BEFORE and (change := problem.nuisance(theta, "start", r, 0)):
             sentences.append(
@@ -166,6 +155,12 @@ def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[st
                 f"{drift * 1e6:.0f} parts per million".replace("-", "−")
             )
     return tuple(sentences)
+
+
+def far_off(problem: Problem, theta: Array) -> list[tuple[Channel, float]]:
+    """Sensors that are off by more than they are assumed to be, with the offset in K."""
+    offsets = [(channel, problem.nuisance(theta, "offset", r, c)) for r, c, channel in problem.channels()]
+    return [(channel, offset) for channel, offset in offsets if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0]
 
 
 def _offset(channel: Channel, offset_K: float, usual_K: float, misfit: bool) -> str:

@@ -11,12 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from ..arrays import Array
+from ..cores import quiet_blas
 from ..rig.keyunits import unit_of
 from ..rig.modules import PARAMETERS
 from ..rig.rig import Rig
-from .checks import aligned, check_clocks, check_sensors, remarks, unsteady
+from .checks import aligned, check_clocks, check_sensors, far_off, remarks, unsteady
 from .identify import T95, Parameter, cures, is_identified
-from .keys import FitError, FitKey, free_keys, value_of
+from .keys import CONTACT, FitError, FitKey, free_keys, value_of
 from .left_out import beyond_noise, left_out
 from .log import Log, LogError
 from .log_files import read_log
@@ -24,22 +25,24 @@ from .problem import FREE_START, OFFSET_SD_K, STEADY, STEADY_BEFORE, Problem
 from .rig_file import LARGEST, reason_of, uncertainties
 from .rig_fit import ChannelFit, RigFit
 from .runs import runs_of
+from .skin_layers import CONDUCTIVITY, THICKNESS, changed_layers
 from .solve import Solution, fits_better, solve
 
 BOUND = 1e-3
 """A parameter within this share of its room from a bound is at the bound."""
 
-ALIKE = 3.0
-"""From so many alike neighbours on, a note says that the rig leaves something out."""
+LAYER_DIGITS = 5
+"""Significant digits of the layers in the fitted rig."""
 
 NOT_NARROWED = (
-    "the rig does not match the logs within their noise, so that the uncertainty which the safety gate relies on is "
-    "not narrowed by this fit"
+    "the rig does not match the logs within their noise and what sensors are assumed to be off, so that the "
+    "uncertainty which the safety gate relies on is not narrowed by this fit"
 )
 MOST_OFFSET_K = 10.0
 """A sensor that is off by more is broken."""
 
 
+@quiet_blas()
 def fit(
     logs: Log | str | Path | Sequence[Log | str | Path],
     rig: Rig,
@@ -48,6 +51,7 @@ def fit(
     held: bool | None = None,
     fit_start: bool = False,
     offset_K: float = OFFSET_SD_K,
+    fixed_skin: bool = False,
 ) -> RigFit:
     """Fit named parameters of a rig to one or several measured logs.
 
@@ -68,6 +72,8 @@ def fit(
         or the one before it.
     offset_K
         Standard deviation in K of what every temperature sensor may read off; 0 for calibrated sensors.
+    fixed_skin
+        Take the layers of the skin as the rig has them, instead of fitting them along within the spread between people.
 
     Returns
     -------
@@ -83,7 +89,8 @@ def fit(
     -----
     Robust least squares (Huber, beyond three standard deviations) with bounds, by `scipy.optimize.least_squares`. The
     noise of each channel comes from its residuals; where neighbouring residuals are alike, because the model leaves
-    something out, intervals are widened accordingly. Intervals hold if what is not free is right.
+    something out, intervals are widened accordingly, as by the error of the skin's mesh. Intervals allow for skin that
+    differs as it does between people, and hold if what else is not free is right.
 
     Examples
     --------
@@ -99,14 +106,17 @@ def fit(
     keys = free_keys(free, rig)
     read = _logs(logs)
     begin = _explicit(rig, keys)
-    runs, started = runs_of(read, begin, held is not False), FREE_START if fit_start else STEADY
-    problem = aligned(Problem.of(begin, keys, runs, start_count=started, offset_sd_K=offset_K))
+    runs = runs_of(read, begin, held is not False)
+
+    def begun(start_count: int) -> Problem:
+        return aligned(Problem.of(begin, keys, runs, start_count, offset_K, fixed_skin))
+
+    problem = begun(FREE_START if fit_start else STEADY)
     check_sensors(problem)
     problem, solution = _solved(problem, held)
     if not fit_start and unsteady(problem, solution.theta):
         # As in a trace, whose first row has the drive from then on: steady it was under the drive before.
-        before = aligned(Problem.of(begin, keys, runs, start_count=STEADY_BEFORE, offset_sd_K=offset_K))
-        other, found = _solved(before, held)
+        other, found = _solved(begun(STEADY_BEFORE), held)
         if not unsteady(other, found.theta):
             problem, solution = other, found
     check_clocks(problem, solution.theta)
@@ -164,17 +174,21 @@ def _result(
         for k, key in enumerate(keys)
     )
     noise = left_out(problem, solution)
-    alike = _alike(problem, solution)
     stopped = () if solution.converged else ("the fit did not come to rest; free fewer keys",)
     unknown = tuple(item for item in parameters if not item.identified)
     kept = _without(problem, solution, unknown) if unknown and not noise else ()
-    misfit = bool(noise or alike or kept or stopped)
-    fitted = problem.rig.with_(**{item.key: item.value for item in parameters if item.identified})
+    remarked = remarks(problem, solution.theta, misfit=bool(noise or kept or stopped))
+    misfit = bool(noise or kept or stopped or far_off(problem, solution.theta))
+    layers = changed_layers(problem.rig, problem.factors(solution.theta))
+    fitted = problem.rig.with_(
+        **{key: float(f"{value:.{LAYER_DIGITS}g}") for key, value in layers.items()},
+        **{item.key: item.value for item in parameters if item.identified},
+    )
     measured = any(channel.column.endswith("_C") for _, _, channel in problem.channels())
     skin = start.bench_load is None
     if not measured:  # a voltage alone cannot show what the rig leaves out
         notes = [*notes, "no temperature was logged: the uncertainty of the rig stays what it was"]
-    elif stated := uncertainties(keys, parameters, skin=skin, misfit_of=start.uncertainty if misfit else None):
+    elif stated := uncertainties(keys, parameters, before=start.uncertainty, skin=skin, misfit=misfit):
         changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
         reason = {} if misfit else {"uncertainty.reason": reason_of(start, sources)}
         fitted = fitted.with_(**changes, **reason)
@@ -183,21 +197,32 @@ def _result(
         *((NOT_NARROWED,) if misfit and measured else ()),
         *_too_narrow(fitted, start),
     )
-    remarked = remarks(problem, solution.theta, misfit=misfit)
     return RigFit(
         fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
-        (*notes, *noise, *alike, *kept, *stopped, *remarked, *closing), solution.converged, misfit,
+        (*notes, *noise, *kept, *stopped, *remarked, *closing), solution.converged, misfit,
+        tuple(layer.name for layer in start.skin.layers) if layers else (), _in_series(problem, solution),
     )  # fmt: skip
 
 
-def _alike(problem: Problem, solution: Solution) -> tuple[str, ...]:
-    """Sentences on channels whose residuals have a structure, although they may be as small as the noise."""
-    return tuple(
-        f"{channel.file}: {channel.column}: neighbouring residuals are alike, so that the rig leaves something out; "
-        f"intervals are {math.sqrt(factor):.1f} times as wide as its noise alone would make them"
-        for (_, _, channel), factor in zip(problem.channels(), solution.inflation, strict=True)
-        if factor > ALIKE
-    )
+def _in_series(problem: Problem, solution: Solution) -> Parameter | None:
+    """Contact and outermost layer in series; None where one of them is not fitted."""
+    names: list[object] = [key.key for key in problem.keys]
+    names += [(item.kind, item.place) for item in problem.nuisances]
+    wanted = (CONTACT, (THICKNESS, 0), (CONDUCTIVITY, 0))
+    if any(each not in names for each in wanted):
+        return None
+    places = [names.index(each) for each in wanted]
+    layer, rig = problem.rig.skin.layers[0], problem.rig
+    contact, thicker, better = np.exp(solution.theta[places])
+    before = layer.thickness_m / layer.conductivity_W_per_mK
+    above = before * thicker / better
+    total, slope = contact + above, np.array([contact, above, -above])
+    half = math.exp(T95 * math.sqrt(slope @ solution.covariance[np.ix_(places, places)] @ slope) / total)
+    start = rig.contact.resistance_m2K_per_W + before
+    return Parameter(
+        f"contact + {layer.name}", f"contact and {layer.name} in series", unit_of(CONTACT), start, float(total),
+        float(total / half), float(total * half), True, True,
+    )  # fmt: skip
 
 
 def _without(problem: Problem, solution: Solution, unknown: Sequence[Parameter]) -> tuple[str, ...]:
@@ -260,8 +285,6 @@ def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
         measured = channel.values[inside]
         fitted = problem.modelled(theta, r, c, found[r])[inside]
         time, offset = problem.run_time_s(theta, r, channel)[inside], problem.nuisance(theta, "offset", r, c)
-        unit = "K" if channel.temperature else "V"
-        fits.append(
-            ChannelFit(problem.runs[r].name, channel.file, channel.column, unit, time, measured, fitted, offset)
-        )
+        unit, run = "K" if channel.temperature else "V", problem.runs[r].name
+        fits.append(ChannelFit(channel.column, time, measured, fitted, run, channel.file, unit, offset))
     return tuple(fits)

@@ -97,13 +97,7 @@ def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: 
         runs.append(
             replace(run, channels=extra if only else (*run.channels, *extra), clocks=() if only else run.clocks)
         )
-    return Problem.of(
-        problem.rig,
-        problem.keys,
-        tuple[Run, ...](runs),
-        start_count=problem.start_count,
-        offset_sd_K=problem.offset_sd_K,
-    )
+    return problem.again(problem.rig, problem.keys, tuple[Run, ...](runs))
 
 
 def expected_sd(problem: Problem, theta: Array, noise_K: float = NOISE_K, noise_V: float = NOISE_V) -> Array:

@@ -63,15 +63,18 @@ class FitKey:
 
 
 _SHIPPED = uncertainty_of({})
+CONTACT = "contact.resistance_m2K_per_W"
+USUAL_CONTACT = 2.0 / 3.0
+"""People and touches differ by a lognormal SD of 30 %: 95 % are within two thirds."""
+
 _LAG = "a step of temperature on the sensor alone, such as dipping it into warm water"
 
 # Where no shipped uncertainty is named, `room` and `usual` are assumed, wide enough for any bench.
 _KEYS = {
     item.key: item
     for item in (
-        FitKey("contact.resistance_m2K_per_W", "contact resistance", True, 30.0,
-               _SHIPPED.contact_resistance_relative, "contact_resistance_relative", "a thin thermistor on the skin "
-               "under the display, logged as skin_C"),
+        FitKey(CONTACT, "contact resistance", True, 30.0, USUAL_CONTACT, "contact_resistance_relative",
+               "a thin thermistor on the skin under the display, logged as skin_C"),
         FitKey("contact.area_cm2", "contact area", True, 5.0, 0.1, "", "the face of the display with a ruler"),
         FitKey("module.seebeck_V_per_K", "Seebeck coefficient", True, 3.0, _SHIPPED.seebeck_relative,
                "seebeck_relative", "the module's voltage, logged as voltage_V"),
@@ -110,10 +113,10 @@ GIVEN = ("heat_sink.capacity_J_per_K", *(key for key in _KEYS if key.startswith(
 """Keys that can be fitted only where the rig has them."""
 
 WITHOUT_SKIN = ("skin.rest_C",)
-WITHOUT_CONTACT = (*WITHOUT_SKIN, "contact.resistance_m2K_per_W")
+WITHOUT_CONTACT = (*WITHOUT_SKIN, CONTACT)
 """Keys that act on nothing under a block of metal, and under air."""
 
-COMMON = ("contact.resistance_m2K_per_W", "module.seebeck_V_per_K", "module.resistance_ohm")
+COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
 """What a log of display and voltage identifies on every rig with a module."""
 
 

@@ -6,13 +6,15 @@ their intervals are too narrow, however small the noise is.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..arrays import Array
 from .keys import fittable, free_keys, value_of
-from .problem import Problem
+from .problem import Nuisance, Problem
 from .runs import MAD_TO_SD, Channel
-from .solve import Solution
+from .solve import Solution, huber, solve
 
 BEYOND = 2.0
 """Residuals that scatter by so many times the noise are more than noise."""
@@ -20,6 +22,12 @@ WORTH = 0.3
 """Share of the sum of squares that a freed key must take away to be named."""
 MOST_NAMED = 2
 """Keys that are named at most: freeing several at once identifies none."""
+ALIKE = 3.0
+"""From so many alike neighbours on, a note says that the rig leaves something out."""
+LATE_EVALUATIONS = 10
+LATE_SD_S, MOST_LATE_S, LEAST_LATE_S, LATE_SDS = 1.0, 5.0, 0.01, 5.0
+"""How late a column may be against others of its file (standard deviation), at most, and to be named: at least, and in
+standard deviations of the delay itself."""
 
 
 def beyond_noise(problem: Problem, theta: Array) -> tuple[str, ...]:
@@ -42,13 +50,46 @@ def beyond_noise(problem: Problem, theta: Array) -> tuple[str, ...]:
 
 
 def left_out(problem: Problem, solution: Solution) -> tuple[str, ...]:
-    """Sentences on channels whose residuals exceed the noise of the log, and on keys to free."""
-    beyond = beyond_noise(problem, solution.theta)
-    if not beyond:
+    """Sentences on channels whose residuals are more than the noise of the log, and on what would explain them."""
+    beyond, alike = beyond_noise(problem, solution.theta), _alike(problem, solution)
+    if not beyond and not alike:
         return ()
-    keys = explaining(problem, solution)
-    cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
-    return (*beyond, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}")
+    cure = late_column(problem, solution)
+    if not cure and beyond:
+        keys = explaining(problem, solution)
+        cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
+    closing = f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"
+    return (*beyond, *alike, *((closing,) if cure else ()))
+
+
+def _alike(problem: Problem, solution: Solution) -> tuple[str, ...]:
+    """Sentences on channels whose residuals have a structure, although they may be as small as the noise."""
+    return tuple(
+        f"{channel.file}: {channel.column}: neighbouring residuals are alike, so that the rig leaves something out; "
+        f"intervals are {math.sqrt(factor):.1f} times as wide as its noise alone would make them"
+        for (_, _, channel), factor in zip(problem.channels(), solution.inflation, strict=True)
+        if factor > ALIKE
+    )
+
+
+def late_column(problem: Problem, solution: Solution) -> str:
+    """A sentence on the column whose delay against the others of its file explains the residuals best; or nothing."""
+    best, sentence = np.inf, ""
+    for r, c, channel in problem.channels():
+        if channel.clock or len(problem.runs[r].channels) == 1:
+            continue
+        wide = problem.with_nuisance(Nuisance("late", r, c, LATE_SD_S), MOST_LATE_S)
+        found = solve(wide, np.append(solution.theta, 0.0), LATE_EVALUATIONS)
+        late, sd = float(found.theta[-1]), float(np.sqrt(found.covariance[-1, -1]))
+        left = huber(wide.residuals(found.theta, solution.sigma))
+        explained = not beyond_noise(wide, found.theta) and not _alike(wide, found)
+        if explained and abs(late) > max(LEAST_LATE_S, LATE_SDS * sd) and left < best:
+            best, word = left, "late" if late > 0 else "early"
+            sentence = (
+                f"{channel.column} of {channel.file} is {abs(late):.2g} s {word} against the other columns; save it "
+                f"with time_s as a file of its own, whose clock is then fitted"
+            )
+    return sentence
 
 
 def noise_of(channel: Channel) -> float:
@@ -67,11 +108,11 @@ def noise_of(channel: Channel) -> float:
 
 def explaining(problem: Problem, solution: Solution) -> tuple[str, ...]:
     """Keys that are held fixed, and would take away most of the residuals if they were free, the best first."""
-    rig = problem.rig_at(solution.theta)
+    rig = problem.rig.with_(**problem.values(solution.theta))
     own = [key.key for key in problem.keys]
     others = [key for key in fittable(rig) if key not in own and _can_move(value_of(rig, key))]
     keys = free_keys([*own, *others], rig)
-    wide = Problem.of(rig, keys, problem.runs, start_count=problem.start_count, offset_sd_K=problem.offset_sd_K)
+    wide = problem.again(rig, keys, problem.runs)
     theta = wide.first.copy()
     theta[len(keys) :] = solution.theta[len(own) :]
     residuals = wide.residuals(theta, solution.sigma)

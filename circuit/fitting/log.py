@@ -26,6 +26,8 @@ TEMPERATURES = ("display_C", "skin_C", "hot_plate_C")
 MEASURED = (*TEMPERATURES, "voltage_V")
 
 FEWEST_ROWS, MOST_ROWS = 20, 1_000_000
+MOST_SIZE = 1e12
+"""Times by the clock of a computer have ten digits; what reads a wire that is off has fewer."""
 UNEQUAL = 0.02
 """Share of the rows that may be empty at the end of a column: more is a column that ended earlier."""
 
@@ -99,6 +101,7 @@ class Log:
         if "time_s" not in values:
             raise LogError(f"{name}: the column time_s (time in s) is missing; found {', '.join(values) or 'nothing'}")
         _check_lengths(name, values)
+        _check_size(name, {key: column for key, column in values.items() if key == "time_s" or is_known(key)}, rows)
         time = values.pop("time_s")
         _check_times(name, time, rows)
         for key in (*DRIVES, *TEMPERATURES):
@@ -180,19 +183,32 @@ def _check_lengths(name: str, values: Mapping[str, Array]) -> None:
             )
 
 
-def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
-    def place(row: int) -> str:
-        return rows[row] if rows else f"{name}, row {row + 1}"
+def _check_size(name: str, values: Mapping[str, Array], rows: Sequence[str] | None) -> None:
+    """A number that no instrument gives would be infinite in the sum of squares."""
+    for key, column in values.items():
+        wild = np.flatnonzero(np.abs(column) > MOST_SIZE)
+        if wild.size:
+            row = int(wild[0])
+            raise LogError(
+                f"{_place(name, row, rows)}: {key} is {column[row]:g}, beyond the {MOST_SIZE:g} that any instrument "
+                f"gives; {'remove the row' if key == 'time_s' else 'leave the cell empty'}"
+            )
 
+
+def _place(name: str, row: int, rows: Sequence[str] | None) -> str:
+    return rows[row] if rows else f"{name}, row {row + 1}"
+
+
+def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
     if not np.isfinite(time).all():
         row = int(np.argmin(np.isfinite(time)))
-        raise LogError(f"{place(row)}: time_s is empty; remove the row")
+        raise LogError(f"{_place(name, row, rows)}: time_s is empty; remove the row")
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
         row = int(back[0]) + 1
         raise LogError(
-            f"{place(row)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must increase: sort "
-            f"the rows, or give each recording its own file"
+            f"{_place(name, row, rows)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
+            f"increase: sort the rows, or give each recording its own file"
         )
     if fault := unit_fault("time_s", time):
         raise LogError(f"{name}: {fault}")

@@ -156,15 +156,8 @@ def _check_columns(name: str, columns: Mapping[str, Array], header: Sequence[str
     wrong += [f"{cell}: did you mean {name}? Rename it" for cell, name in misspelt if name and name not in columns]
     if not missing and not wrong:
         return
-    near = [(cell, nearest_words(cell, known)) for cell in header if cell not in columns and cell not in OTHER_UNIT]
-    named = dict(misspelt)
-    hints = [
-        f"{cell}: did you mean {close[0]}?"
-        for cell, close in near
-        if close and close[0] not in columns and not named[cell]
-    ]
     parts = [f"missing: {', and '.join(missing)}"] if missing else []
-    parts += [*wrong, *hints, f"found {', '.join(header[:12])}"]
+    parts += [*wrong, f"found {', '.join(header[:12])}"]
     raise LogError(f"{name}: {'; '.join(parts)}")
 
 

@@ -21,7 +21,7 @@ SHIFTED_BY = ("display_C", "skin_C", "voltage_V", "current_A", "hot_plate_C")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beside:
-    """One column beside the trace: `time_s` on the trace's clock, `measured` and `simulated` (rows,)."""
+    """One column beside a simulation: `time_s` on its clock, `measured` and `simulated` (rows,)."""
 
     column: str
     time_s: Array

@@ -54,6 +54,7 @@ def plan(
     noise_K: float = NOISE_K,
     noise_V: float = NOISE_V,
     offset_K: float = OFFSET_SD_K,
+    fixed_skin: bool = False,
 ) -> tuple[Expected, ...]:
     """Return how well each choice of sensors will identify parameters of a rig.
 
@@ -71,6 +72,8 @@ def plan(
         Standard deviation of a reading.
     offset_K
         Standard deviation of a temperature sensor's offset.
+    fixed_skin
+        Take the layers of the skin as known, instead of spread as between people.
 
     Returns
     -------
@@ -98,7 +101,7 @@ def plan(
         rig, seed=0, icon=icon or calibration_icon(), columns=["display_C"], noise_K=0.0, offset_sd_K=0.0,
         rate_Hz=rate_Hz,
     )  # fmt: skip
-    problem = Problem.of(rig, keys, runs_of([log], rig, False), offset_sd_K=offset_K)
+    problem = Problem.of(rig, keys, runs_of([log], rig, False), offset_sd_K=offset_K, fixed_skin=fixed_skin)
     choices = CHOICES if rig.thermode is None else THERMODE_CHOICES
     return tuple(_expected(problem, columns, noise_K, noise_V) for columns in choices)
 

@@ -1,15 +1,15 @@
 """The fit as numbers: free keys and what is fitted along with them, residuals of all channels, and their derivatives.
 
 Along with the keys go the zero of every temperature sensor, how far the sensors are from the drive within a row, shift
-and drift of every further clock, and, on request, the state at the first row. Scales are fitted as logarithms, so that
-they stay positive and intervals are relative.
+and drift of every further clock, unless left out the layers of the skin, and, on request, the state at the first row.
+Scales are fitted as logarithms, so that they stay positive and intervals are relative.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ..rig.rigfile import RigError
 from .forward import Prediction, Start, predict
 from .keys import FitError, FitKey, value_of
 from .runs import Channel, Run
+from .skin_layers import LAYER_KINDS, Factors, changed_layers, finely_divided, layer_priors
 
 OFFSET_SD_K = 0.1
 """Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
@@ -45,7 +46,11 @@ IMPOSSIBLE = 1e3
 
 @dataclass(frozen=True, slots=True)
 class Nuisance:
-    """Something fitted along with the keys: its `kind` (offset, row, shift, drift, start), run, place and prior SD."""
+    """Something fitted along with the keys: its `kind`, run, place and prior SD.
+
+    A kind is offset, row, shift, drift, start, one of LAYER_KINDS, whose place is the layer, or, where a column is
+    tried to be late, late.
+    """
 
     kind: str
     run: int
@@ -62,6 +67,7 @@ class Problem:
     runs: tuple[Run, ...]
     start_count: int
     offset_sd_K: float
+    fixed_skin: bool
     first: Array
     low: Array
     high: Array
@@ -73,9 +79,9 @@ class Problem:
         rig: Rig,
         keys: tuple[FitKey, ...],
         runs: tuple[Run, ...],
-        *,
         start_count: int = STEADY,
         offset_sd_K: float = OFFSET_SD_K,
+        fixed_skin: bool = False,
     ) -> Problem:
         """Return the problem of fitting keys of a rig to runs, beginning at the rig's own values."""
         values = np.array([_begin(rig, key) for key in keys])
@@ -83,12 +89,18 @@ class Problem:
         room = np.array([math.log(key.room) if key.log else key.room for key in keys])
         low = values - room
         low[~log & np.array([key.key.endswith("_s") for key in keys])] = 0.0
-        extra = tuple(_nuisances(runs, start_count, offset_sd_K))
-        limit = np.array([1e3 if item.kind != "drift" else 0.2 for item in extra])
+        layers = {} if fixed_skin else layer_priors(rig)
+        skin = [Nuisance(kind, 0, k, sd) for (kind, k), sd in layers.items()]
+        extra = (*_nuisances(runs, start_count, offset_sd_K), *skin)
+        limit = np.array([0.2 if item.kind == "drift" else 1.0 if item.kind in LAYER_KINDS else 1e3 for item in extra])
         return Problem(
-            rig, keys, runs, start_count, offset_sd_K, np.concatenate([values, np.zeros(len(extra))]),
+            rig, keys, runs, start_count, offset_sd_K, fixed_skin, np.concatenate([values, np.zeros(len(extra))]),
             np.concatenate([low, -limit]), np.concatenate([values + room, limit]), extra,
         )  # fmt: skip
+
+    def again(self, rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...]) -> Problem:
+        """Another rig, keys or runs, with the same fitted along."""
+        return Problem.of(rig, keys, runs, self.start_count, self.offset_sd_K, self.fixed_skin)
 
     def values(self, theta: Array) -> dict[str, float]:
         """Values of the free keys in the units of the rig file."""
@@ -99,15 +111,20 @@ class Problem:
 
     def rig_at(self, theta: Array) -> Rig:
         """The rig at a point; raises RigError where no rig file may have these values."""
-        return self.rig.with_(**self.values(theta))
+        return self.rig.with_(**self.values(theta), **changed_layers(self.rig, self.factors(theta)))
+
+    def factors(self, theta: Array) -> Factors:
+        """Logarithms of what the layers of the skin are multiplied by; empty where they are not fitted along."""
+        extra = zip(self.nuisances, theta[len(self.keys) :], strict=True)
+        return {(item.kind, item.place): float(value) for item, value in extra if item.kind in LAYER_KINDS}
 
     def predictions(self, theta: Array) -> tuple[Prediction, ...] | None:
-        """All runs at a point; None where the rig cannot exist. Depends on keys and starts alone."""
+        """All runs at a point; None where the rig cannot exist. Depends on keys, skin and starts alone."""
         count = len(self.keys)
-        starts = [place for place, item in enumerate(self.nuisances, count) if item.kind == "start"]
-        token = np.concatenate([theta[:count], theta[starts]]).tobytes()
+        moving = [k for k, item in enumerate(self.nuisances, count) if item.kind in ("start", *LAYER_KINDS)]
+        token = np.concatenate([theta[:count], theta[moving]]).tobytes()
         if token not in self._kept:
-            if len(self._kept) > 4 * (count + len(starts) + 1):
+            if len(self._kept) > 4 * (count + len(moving) + 1):
                 self._kept.clear()
             self._kept[token] = self._simulate(theta)
         return self._kept[token]
@@ -144,8 +161,9 @@ class Problem:
     def modelled(self, theta: Array, run: int, place: int, rows: Prediction) -> Array:
         """What a channel should read at its rows: the simulation on its clock, with its sensor's offset."""
         channel = self.runs[run].channels[place]
-        late = 0.0 if channel.clock else self.nuisance(theta, "row", run, 0)
-        values = rows.at(channel.column, self.run_time_s(theta, run, channel), late)
+        row = 0.0 if channel.clock else self.nuisance(theta, "row", run, 0)
+        late = self.nuisance(theta, "late", run, place)
+        values = rows.at(channel.column, self.run_time_s(theta, run, channel) - late, row)
         return values + self.nuisance(theta, "offset", run, place)
 
     def inside(self, theta: Array, run: int, channel: Channel) -> Array:
@@ -186,11 +204,26 @@ class Problem:
             out[:, k] = (self.residuals(moved, sigma) - base) / step
         return out
 
+    def with_nuisance(self, item: Nuisance, room: float) -> Problem:
+        """The problem with something more fitted along, within ±`room` of 0."""
+        ends = (np.append(values, value) for values, value in ((self.first, 0.0), (self.low, -room), (self.high, room)))
+        first, low, high = ends
+        return replace(self, nuisances=(*self.nuisances, item), first=first, low=low, high=high, _kept={})
+
+    def mesh_error(self, theta: Array, sigma: Sequence[float]) -> Array:
+        """What a fine mesh of the skin would change in `residuals`."""
+        fine = finely_divided(self.rig)
+        if fine is None:
+            return np.zeros(sum(len(channel.values) for _, _, channel in self.channels()) + len(self.nuisances))
+        return replace(self, rig=fine, _kept={}).residuals(theta, sigma) - self.residuals(theta, sigma)
+
     def step(self, place: int) -> float:
         """Step of the derivative by a parameter."""
         if place < len(self.keys):
             return STEP_LOG if self.keys[place].log else STEP_LINEAR
-        return {"drift": 1e-6, "row": 1e-3}.get(self.nuisances[place - len(self.keys)].kind, STEP_LINEAR)
+        return {"drift": 1e-6, "row": 1e-3, **dict.fromkeys(LAYER_KINDS, STEP_LOG)}.get(
+            self.nuisances[place - len(self.keys)].kind, STEP_LINEAR
+        )
 
 
 def _begin(rig: Rig, key: FitKey) -> float:

@@ -24,8 +24,8 @@ MISFIT = (
     "as wide as before the fit, or wider."
 )
 LEAST_SHARE = 0.5
-"""Share of the shipped uncertainty that is written at least: what a fit holds fixed, skin and heat sink above all, may
-bias it by more than its interval says, and the safety gate relies on it."""
+"""Share of the shipped uncertainty that is written at least: what a fit holds fixed, the heat sink above all, may bias
+it by more than its interval says, and the safety gate relies on it."""
 
 _SHIPPED = uncertainty_of({})
 LARGEST = {
@@ -40,26 +40,27 @@ def uncertainties(
     keys: Sequence[FitKey],
     parameters: Sequence[Parameter],
     *,
+    before: Uncertainty,
     skin: bool = True,
-    misfit_of: Uncertainty | None = None,
+    misfit: bool = False,
 ) -> dict[str, float]:
     """Return the keys of [uncertainty] with half widths of intervals, for what was identified.
 
     Both plates share one key: it is the wider of both, and nothing where only one was fitted. Contact with a load
-    (`skin` is False) says nothing of contact with skin. `misfit_of` is the uncertainty of the rig before a fit whose
-    residuals exceed the noise: only what must be wider is returned then, so that what the rig held before still is.
+    (`skin` is False) says nothing of contact with skin. After a `misfit`, and for what was not identified, only what
+    must be wider is returned, so that what the rig held `before` still is.
     """
     stated: dict[str, float] = {}
     identified = {item.key for item in parameters if item.identified}
     for key, item in zip(keys, parameters, strict=True):
-        if not key.uncertainty or not item.identified:
+        if not key.uncertainty:
             continue
         if not skin and key.uncertainty == "contact_resistance_relative":
             continue
-        if misfit_of is not None:
-            before = getattr(misfit_of, key.uncertainty)
-            width = min(_rounded_up(_covering(item, before)), LARGEST[key.uncertainty])
-            if width > before:
+        held = getattr(before, key.uncertainty)
+        if misfit or not item.identified:
+            width = min(_rounded_up(_covering(item, held)), LARGEST[key.uncertainty])
+            if width > held:
                 stated[key.uncertainty] = max(width, stated.get(key.uncertainty, 0.0))
             continue
         if key.key in PLATES and not set(PLATES) <= identified:
@@ -71,7 +72,12 @@ def uncertainties(
 
 
 def _covering(item: Parameter, before: float) -> float:
-    """Half width about a fitted value that holds the interval and all that the rig before held, ±`before`."""
+    """Half width about a rig's value that holds the fitted interval and all that the rig before held, ±`before`.
+
+    A rig keeps its value where the interval says nothing: of the fit, only the value need be held then.
+    """
+    if not item.identified:
+        return abs(item.value - item.start) / (item.start if item.log else 1.0)
     ends = before * item.start if item.log else before
     low, high = min(item.low, item.start - ends), max(item.high, item.start + ends)
     most = max(high - item.value, item.value - low)
@@ -101,11 +107,13 @@ def fitted_text(
     sources: Sequence[tuple[str, str]],
     name: str | None = None,
     *,
+    layers: Sequence[str] = (),
     misfit: bool = False,
 ) -> str:
     """Return the TOML of a fitted rig, by a `name` of its own; every fitted value has interval and logs in [source].
 
-    A parameter that was not identified has the value that it had before. `misfit`: residuals exceed the noise.
+    A parameter that was not identified has the value that it had before. `layers` were fitted along; `misfit`:
+    residuals exceed the noise.
     """
     document: dict[str, Any] = _without_nothing(json.loads(rig.document))
     if name:
@@ -123,6 +131,12 @@ def fitted_text(
             f"fitted by thermicon {own_version()}: {item.value:.6g} {item.unit}, 95 % {item.low:.6g} to "
             f"{item.high:.6g}, before {item.start:.6g}; log {named(sources)}"
         )
+    for layer in layers:
+        place = f"skin.layer.{layer}"
+        origin[place] = (
+            f"{origin.get(place, '')}; fitted along at this thickness, within the spread between people, by thermicon "
+            f"{own_version()}; log {named(sources)}"
+        ).lstrip("; ")
     free = ", ".join(item.key for item in parameters if item.identified) or "nothing"
     notes = [note for note in document.get("notes", []) if not note.startswith("fitted:")]
     close = MISFIT if misfit else "The intervals hold for the person, the contact and the room of these logs."

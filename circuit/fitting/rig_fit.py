@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..arrays import Array
 from ..inputs import LONGEST_NAME
 from ..rig.rig import Rig
 from .identify import Parameter
+from .overlay import Beside
 from .rig_file import fitted_text
 
 if TYPE_CHECKING:
@@ -21,49 +20,27 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ChannelFit:
+class ChannelFit(Beside):
     """A measured column beside the fitted rig, on the clock of its run's drive.
 
-    Attributes
-    ----------
-    run, file, column, unit
-        Log with the drive, file of the column, its name, and the unit of a difference: K or V.
-    time_s, measured, fitted
-        Rows (rows,) within the run.
-    rms, largest, largest_s
-        Root mean square and largest of measured minus fitted, and where that is, in s.
-    offset_K
-        Offset of the sensor that was fitted along, contained in `fitted`.
+    `run` and `file` are the log with the drive and that of the column, `unit` that of a difference: K or V. `offset_K`
+    of the sensor was fitted along, and is contained in `fitted`.
     """
 
     run: str
     file: str
-    column: str
     unit: str
-    time_s: Array
-    measured: Array
-    fitted: Array
     offset_K: float
+
+    @property
+    def fitted(self) -> Array:
+        """What the fitted rig gives (rows,)."""
+        return self.simulated
 
     @property
     def residual(self) -> Array:
         """Measured minus fitted (rows,)."""
-        return self.measured - self.fitted
-
-    @property
-    def rms(self) -> float:
-        """Root mean square of the residuals."""
-        return float(np.sqrt(np.mean(self.residual**2)))
-
-    @property
-    def largest(self) -> float:
-        """The residual of largest size, with its sign."""
-        return float(self.residual[int(np.argmax(np.abs(self.residual)))])
-
-    @property
-    def largest_s(self) -> float:
-        """Time in s of the largest residual."""
-        return float(self.time_s[int(np.argmax(np.abs(self.residual)))])
+        return self.difference
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,7 +50,8 @@ class RigFit:
     Attributes
     ----------
     rig
-        The fitted rig, with the intervals in its uncertainty. What was not identified stays as it was before.
+        The fitted rig, with the intervals in its uncertainty, and the layers of the skin that was logged, at the
+        thickness that they had. What was not identified stays as it was before.
     parameters
         The free keys in the order in which they were named.
     correlation
@@ -87,7 +65,12 @@ class RigFit:
     converged
         Whether the fit came to rest.
     misfit
-        Whether residuals exceed the noise of the logs; the uncertainty of `rig` is then never narrower than before.
+        Whether residuals exceed the noise of the logs, or a sensor is off by more than 3 standard deviations; the
+        uncertainty of `rig` is then never narrower than before.
+    fitted_layers
+        Names of the layers of the skin that were fitted along.
+    series
+        Contact and outermost layer in series, which a log of the display knows about; None where either is not fitted.
 
     Examples
     --------
@@ -95,7 +78,7 @@ class RigFit:
     >>> from thermicon.circuit.fitting.laboratory import synthetic_log
     >>> log = synthetic_log(Rig.load("thenar").with_(**{"contact.resistance_m2K_per_W": 7e-4}), seed=1)
     >>> fit(log, Rig.load("thenar"), free=["contact.resistance_m2K_per_W"])
-    RigFit(thenar: contact.resistance_m2K_per_W = 0.0007... m²·K/W ±... %)
+    RigFit(thenar: contact.resistance_m2K_per_W = 0.000... m²·K/W ±... %)
     """
 
     rig: Rig
@@ -106,6 +89,8 @@ class RigFit:
     notes: tuple[str, ...]
     converged: bool
     misfit: bool = False
+    fitted_layers: tuple[str, ...] = ()
+    series: Parameter | None = None
 
     def __repr__(self) -> str:
         parts = [f"{item.key} = {item.value:.4g} {item.unit} {item.interval}" for item in self.parameters]
@@ -150,7 +135,7 @@ class RigFit:
 
     def rig_text(self, name: str | None = None) -> str:
         """Return the rig file of the fitted rig, with where its numbers come from; None keeps the name of the rig."""
-        return fitted_text(self.rig, self.parameters, self.sources, name, misfit=self.misfit)
+        return fitted_text(self.rig, self.parameters, self.sources, name, layers=self.fitted_layers, misfit=self.misfit)
 
     def save(self, path: str | Path, name: str | None = None) -> None:
         """Write the fitted rig as a rig file with its provenance.

@@ -25,7 +25,7 @@ OUTLIER = 3.0
 LEAST_SD = {True: 1e-4, False: 1e-5}
 """Least standard deviation of a temperature in K and of a voltage in V, below any instrument."""
 
-MOST_EVALUATIONS = 60
+MOST_EVALUATIONS = 30
 FEWEST_INDEPENDENT = 8.0
 """However alike neighbouring residuals are, a channel counts as at least so many independent rows."""
 
@@ -45,8 +45,8 @@ class Solution:
     converged: bool
 
 
-def solve(problem: Problem, begin: Array | None = None) -> Solution:
-    """Fit, from the problem's own first point or another.
+def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_EVALUATIONS) -> Solution:
+    """Fit, from the problem's own first point or another, with so many evaluations a round at most.
 
     Raises FitError where a run cannot be simulated on the rig to begin with.
     """
@@ -67,14 +67,15 @@ def solve(problem: Problem, begin: Array | None = None) -> Solution:
 
         answer = least_squares(
             residuals, theta, jac=jacobian, bounds=(problem.low, problem.high), x_scale=scale, loss=loss,
-            f_scale=OUTLIER, xtol=1e-5, ftol=close, gtol=None, max_nfev=MOST_EVALUATIONS,
+            f_scale=OUTLIER, xtol=1e-5, ftol=close, gtol=None, max_nfev=evaluations,
         )  # fmt: skip
         theta, converged = np.asarray(answer.x, dtype=np.float64), bool(answer.success)
         before, sigma = sigma, spreads(problem, theta)
         if loss == "huber" and np.allclose(before, sigma, rtol=SAME_NOISE):
             break
     inflation = tuple(alike(part) for part in parts_of(problem, problem.residuals(theta, sigma)))
-    covariance = covariance_of(problem, problem.jacobian(theta, sigma), inflation)
+    mesh = problem.mesh_error(theta, sigma)
+    covariance = covariance_of(problem, problem.jacobian(theta, sigma), inflation, mesh)
     return Solution(theta, covariance, sigma, inflation, converged)
 
 
@@ -85,10 +86,10 @@ def fits_better(other: Problem, problem: Problem, solution: Solution) -> bool:
     jacobian = other.jacobian(solution.theta, solution.sigma)
     step = np.linalg.lstsq(weight[:, np.newaxis] * jacobian, -weight * residuals)[0]
     there = residuals + jacobian @ step
-    return _huber(there) < _huber(problem.residuals(solution.theta, solution.sigma))
+    return huber(there) < huber(problem.residuals(solution.theta, solution.sigma))
 
 
-def _huber(residuals: Array) -> float:
+def huber(residuals: Array) -> float:
     """Huber's sum: squares, and beyond OUTLIER linear."""
     size = np.abs(residuals)
     return float(np.sum(np.where(size <= OUTLIER, size**2, 2 * OUTLIER * size - OUTLIER**2)))
@@ -144,10 +145,11 @@ def alike(residuals: Array) -> float:
     return float(min((1 + neighbour) / max(1 - neighbour, 1e-9), max(1.0, count / FEWEST_INDEPENDENT)))
 
 
-def covariance_of(problem: Problem, jacobian: Array, inflation: Sequence[float]) -> Array:
+def covariance_of(problem: Problem, jacobian: Array, inflation: Sequence[float], mesh: Array | None = None) -> Array:
     """Covariance of all parameters; what no row and no prior fixes gets the width of its room.
 
-    The sandwich form H⁻¹·B·H⁻¹, where B counts alike neighbouring rows once.
+    The sandwich form H⁻¹·B·H⁻¹, where B counts alike neighbouring rows once, and the error of the mesh in `residuals`
+    as noise that all rows share.
     """
     counts = [len(channel.values) for _, _, channel in problem.channels()]
     rows = np.split(jacobian, np.cumsum(counts))
@@ -157,6 +159,9 @@ def covariance_of(problem: Problem, jacobian: Array, inflation: Sequence[float])
         product = part.T @ part
         information += product
         middle += factor * product
+    if mesh is not None:
+        shared = jacobian.T @ mesh
+        middle += np.outer(shared, shared)
     count = len(problem.keys)
     room = np.diag(
         np.concatenate([(0.5 * (problem.high - problem.low)[:count]) ** -2.0, np.zeros(len(jacobian.T) - count)])

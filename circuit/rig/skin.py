@@ -5,10 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
 
 import numpy as np
 
 from ..arrays import Array
+from ..records import Table, load_records
 
 STRATUM_CORNEUM = "stratum corneum"
 """Name of the layer from whose base receptor depths may be counted; it must be a skin's first."""
@@ -20,6 +23,12 @@ CELL_GROWTH = 0.10
 Chosen with `meshstudy` over two cues, six drives and four skins, not fitted to one: within 5 mK of a converged mesh at
 receptor depth on a 6 °C, 3 °C/s cue, and within 20 mK on 20 s drives that swing the display by 30 to 50 °C.
 """
+
+
+@cache
+def layer_spreads() -> Table:
+    """How the layers of people's skin differ from those of a rig file, each with its source."""
+    return load_records(resources.files("thermicon.circuit") / "data" / "skin-spread.toml")
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,7 @@ class Request:
     hold: bool | None = None
     fit_start: bool = False
     offset_K: float = OFFSET_K
+    fixed_skin: bool = False
     output: Path | None = None
     figure: Path | None = None
     name: str | None = None
@@ -99,6 +100,13 @@ def fit_command(
         float,
         typer.Option("--offset", metavar="K", help="What a temperature sensor may read off (standard deviation)."),
     ] = OFFSET_K,
+    fixed_skin: Annotated[
+        bool,
+        typer.Option(
+            "--fixed-skin",
+            help="Take the skin's layers as the rig has them.  [default: fitted along, within the spread of people]",
+        ),
+    ] = False,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -124,7 +132,7 @@ def fit_command(
     if not 0 <= offset <= MOST_OFFSET_K:
         raise usage(f"{offset:g} K is outside 0 to {MOST_OFFSET_K:g} K", "--offset")
     look = figure_look(figure, width, style, no_title, figure_data)
-    request = Request(keys, hold, fit_start, offset, output, figure, name, look)
+    request = Request(keys, hold, fit_start, offset, fixed_skin, output, figure, name, look)
     if plan:
         show_plan(load_rig(rig, changes or []), request)
     else:
@@ -141,8 +149,9 @@ def fit_logs(logs: Sequence[str], rig: Rig, request: Request) -> None:
         check_output(request.figure, FIGURE_SUFFIXES, "a figure")
     check_separate(logs, [request.output, request.figure])
     fitted = fit(
-        list(logs), rig, free=request.free, held=request.hold, fit_start=request.fit_start, offset_K=request.offset_K
-    )
+        list(logs), rig, free=request.free, held=request.hold, fit_start=request.fit_start, offset_K=request.offset_K,
+        fixed_skin=request.fixed_skin,
+    )  # fmt: skip
     if request.output is not None:
         with complete_or_absent(request.output) as draft:
             draft.write_text(fitted.rig_text(request.name or request.output.stem[:LONGEST_NAME]), encoding="utf-8")
@@ -179,5 +188,5 @@ def show_plan(rig: Rig, request: Request) -> None:
     from ..text.fit_text import PLAN_HEAD, plan_table
     from ..text.tables import show
 
-    expected = plan(rig, request.free, offset_K=request.offset_K)
+    expected = plan(rig, request.free, offset_K=request.offset_K, fixed_skin=request.fixed_skin)
     show(PLAN_HEAD, "", plan_table(expected))

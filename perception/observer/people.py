@@ -14,6 +14,7 @@ import numpy as np
 
 from thermicon.circuit.records import Record
 from thermicon.circuit.rig.load import refuse_load
+from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
@@ -233,7 +234,7 @@ def people_records() -> Mapping[str, Record]:
         "criterion_warm": criterion,
         "memory": table.one("spread of memory noise between people"),
         "contact_resistance": table.one("contact resistance spread"),
-        "outer_layer": table.one("stratum corneum thickness spread"),
+        "outer_layer": layer_spreads().one("outermost layer thickness spread"),
         "path": table.one("path length to the cord", site="hand"),
         "decision_s": inferred.one("decision time between people"),
         "lapse": table.one("lapse rate"),

@@ -21,12 +21,13 @@ from thermicon.circuit import (
     simulate_current,
 )
 from thermicon.circuit.delivery.formats import format_names, load_format
-from thermicon.circuit.fitting.drive_design import CANDIDATES, candidate, mean_deviation
 from thermicon.circuit.fitting.keys import COMMON
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log
 from thermicon.circuit.fitting.log_files import read_log
 from thermicon.circuit.fitting.plan import plan, plan_frame
+
+from .drive_design import CANDIDATES, candidate, mean_deviation
 
 FREE = [*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
         "heat_sink.temperature_C", "heat_sink.resistance_K_per_W"]  # fmt: skip
@@ -36,7 +37,7 @@ ONE_RAMP = "tcs2-protocol-ini"
 
 
 def test_display_and_voltage_identify_what_the_display_alone_does_not() -> None:
-    expected = {each.sensors: each for each in plan(Rig.load("thenar"), FREE)}
+    expected = {each.sensors: each for each in plan(Rig.load("thenar"), FREE, fixed_skin=True)}
     alone, both = expected["display"], expected["display + voltage"]
     assert 0.01 < both.half_widths[0] < 0.04 and max(both.half_widths[1:3]) < 0.01
     assert alone.half_widths[0] > 3 * both.half_widths[0]
@@ -102,6 +103,6 @@ def test_an_exported_drive_and_a_thermometer_of_its_own_clock_make_a_log(tmp_pat
     trace = simulate_current(Drive(drive.time_s - drive.time_s[0], current, held=True), bench, rate_Hz=20)
     noise = np.random.default_rng(0).normal(0.0, 0.02, len(trace.time_s))
     meter = Log.of("meter.csv", {"time_s": trace.time_s + 100.0, "display_C": trace.display_C + noise})
-    found = fit([drive, meter], rig, free=["contact.resistance_m2K_per_W"])
+    found = fit([drive, meter], rig, free=["contact.resistance_m2K_per_W"], fixed_skin=True)
     assert found["contact.resistance_m2K_per_W"].value == pytest.approx(7e-4, rel=0.01)
     assert found.notes[-1].startswith("meter.csv: its clock was shifted by −100.0")

@@ -21,7 +21,7 @@ from .conftest import TRUTH
 def fitted(log: Log, thenar: Rig, tmp_path_factory: pytest.TempPathFactory) -> RigFit:
     path = tmp_path_factory.mktemp("logs") / "rig.csv"
     write_log(log, path)
-    return fit(str(path), thenar, free=[*TRUTH, "ambient.temperature_C", "skin.rest_C"])
+    return fit(str(path), thenar, free=[*TRUTH, "ambient.temperature_C", "skin.rest_C"], fixed_skin=True)
 
 
 @pytest.mark.slow
@@ -55,7 +55,7 @@ def test_intervals_become_what_the_gate_varies(fitted: RigFit, thenar: Rig) -> N
 
 def test_a_fit_that_misses_the_log_never_narrows_what_the_gate_varies(log: Log, thenar: Rig, tmp_path: Path) -> None:
     key = "contact.resistance_m2K_per_W"
-    found = fit(log, thenar, free=[key])
+    found = fit(log, thenar, free=[key], fixed_skin=True)
     before, after = thenar.uncertainty.contact_resistance_relative, found.rig.uncertainty.contact_resistance_relative
     value, start = found[key].value, thenar.contact.resistance_m2K_per_W
     assert found.misfit and value < 0.8 * TRUTH[key]  # contact makes up for the wrong Seebeck coefficient
@@ -73,7 +73,8 @@ def test_a_fit_that_misses_the_log_never_narrows_what_the_gate_varies(log: Log, 
 
 def test_a_log_of_another_site_leaves_what_it_cannot_say(log: Log, thenar: Rig) -> None:
     fingertip = Rig.load("fingertip").with_(**{"driver.update_Hz": 20})
-    found = fit(log, fingertip, free=["contact.resistance_m2K_per_W", "module.seebeck_V_per_K"])
+    found = fit(log, fingertip, free=["contact.resistance_m2K_per_W", "module.seebeck_V_per_K"],
+                fixed_skin=True)  # fmt: skip
     assert "contact.resistance_m2K_per_W" in {item.key for item in found.unidentified}
     assert found.rig.contact == fingertip.contact
     assert found.misfit
@@ -102,14 +103,19 @@ def test_a_voltage_alone_leaves_the_uncertainty_as_it_was(log: Log, thenar: Rig,
     drive = {"current_A": log.column("current_A"), "voltage_V": log.column("voltage_V")}
     frame = pd.DataFrame({"time_s": log.time_s, **drive})
     frame.to_csv(tmp_path / "volts.csv", index=False)
-    found = fit(str(tmp_path / "volts.csv"), thenar, free=["contact.resistance_m2K_per_W", "module.resistance_ohm"])
+    found = fit(
+        str(tmp_path / "volts.csv"),
+        thenar,
+        free=["contact.resistance_m2K_per_W", "module.resistance_ohm"],
+        fixed_skin=True,
+    )
     assert found.rig.uncertainty == thenar.uncertainty
     assert any("no temperature was logged" in note for note in found.notes)
 
 
 def test_both_plates_must_be_fitted_to_claim_less(log: Log, thenar: Rig, true_rig: Rig) -> None:
-    one = fit(log, true_rig, free=["module.cold_plate_J_per_K"])
-    both = fit(log, true_rig, free=["module.cold_plate_J_per_K", "module.hot_plate_J_per_K"])
+    one = fit(log, true_rig, free=["module.cold_plate_J_per_K"], fixed_skin=True)
+    both = fit(log, true_rig, free=["module.cold_plate_J_per_K", "module.hot_plate_J_per_K"], fixed_skin=True)
     assert one.rig.uncertainty.plates_relative == thenar.uncertainty.plates_relative
     assert both.rig.uncertainty.plates_relative < thenar.uncertainty.plates_relative
 

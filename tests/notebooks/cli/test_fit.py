@@ -49,7 +49,11 @@ def test_what_is_not_identified_is_named_with_the_cure(cli: Cli, log: Path) -> N
 
 def test_a_plan_says_before_measuring_what_helps(cli: Cli) -> None:
     said = cli(
-        "fit", "--plan", "--free", f"{CONTACT},{SEEBECK},module.thermal_resistance_K_per_W,heat_sink.temperature_C"
+        "fit",
+        "--plan",
+        "--free",
+        f"{CONTACT},{SEEBECK},module.thermal_resistance_K_per_W,heat_sink.temperature_C",
+        "--fixed-skin",
     )
     assert said.exit_code == 0, said.stderr
     assert "95 % intervals to expect" in " ".join(said.stdout.split())
@@ -99,7 +103,7 @@ def test_a_key_that_is_held_wrong_is_named_and_the_rig_gets_its_name(cli: Cli, t
     path, rig = tmp_path / "sink.csv", tmp_path / "tuesday.toml"
     truth = Rig.load("thenar").with_(**{CONTACT: 7e-4, "heat_sink.resistance_K_per_W": 0.5})
     write_log(synthetic_log(truth, seed=1, rate_Hz=20.0), path)
-    said = cli("fit", path, "--free", CONTACT, "-o", rig, *RATE)
+    said = cli("fit", path, "--free", CONTACT, "-o", rig, "--fixed-skin", *RATE)
     text = " ".join(said.stderr.split())
     assert "display_C: residuals of 51.3 mK rms exceed the log's own noise of 2" in text
     assert "what is held fixed is taken as right: free heat_sink.resistance_K_per_W" in text
@@ -144,7 +148,16 @@ def test_a_current_by_another_name_and_one_log_twice_are_named(cli: Cli, log: Pa
 
 
 def test_an_interval_that_says_nothing_is_said_to(cli: Cli, log: Path) -> None:
-    said = cli("fit", log, "--rig", "fingertip", "--free", f"{CONTACT},heat_sink.temperature_C,{SEEBECK}", *RATE)
+    said = cli(
+        "fit",
+        log,
+        "--rig",
+        "fingertip",
+        "--free",
+        f"{CONTACT},heat_sink.temperature_C,{SEEBECK}",
+        "--fixed-skin",
+        *RATE,
+    )
     row = next(line for line in said.stdout.splitlines() if line.startswith(CONTACT))
     assert row.split()[2:] == ["not", "known", "unknown"]
     assert "K   " in next(line for line in said.stdout.splitlines() if line.startswith("display ("))

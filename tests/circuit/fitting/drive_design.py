@@ -11,15 +11,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from thermicon.circuit import Rig
+from thermicon.circuit.fitting.identify import NOISE_K, NOISE_V, with_channels
+from thermicon.circuit.fitting.keys import free_keys
+from thermicon.circuit.fitting.laboratory import COLUMNS, synthetic_log
+from thermicon.circuit.fitting.problem import Problem
+from thermicon.circuit.fitting.runs import runs_of
+from thermicon.circuit.fitting.solve import covariance_of
 from thermicon.icons import Icon, parse
-
-from ..rig.rig import Rig
-from .identify import NOISE_K, NOISE_V, with_channels
-from .keys import free_keys
-from .laboratory import COLUMNS, synthetic_log
-from .problem import Problem
-from .runs import runs_of
-from .solve import covariance_of
 
 IDENTIFIED = (
     "contact.resistance_m2K_per_W",
@@ -80,7 +79,7 @@ def mean_deviation(icon: Icon, rigs: Sequence[str | Rig] = RIGS, keys: Sequence[
         log = synthetic_log(
             rig, seed=0, icon=icon, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=RATE_HZ
         )
-        problem = Problem.of(rig, free, runs_of([log], rig, False))
+        problem = Problem.of(rig, free, runs_of([log], rig, False), fixed_skin=True)
         problem = with_channels(problem, problem.first, COLUMNS, only=True)
         sigma = [NOISE_K if channel.temperature else NOISE_V for _, _, channel in problem.channels()]
         covariance = covariance_of(problem, problem.jacobian(problem.first, sigma), [1.0] * len(sigma))

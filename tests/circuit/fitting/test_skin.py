@@ -1,0 +1,142 @@
+"""Skin that is not the rig's: what a log then knows about contact, and what is written as uncertainty."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Drive, Rig, RigFit, fit, simulate_current
+from thermicon.circuit.cores import quiet_blas
+from thermicon.circuit.fitting.keys import CONTACT, free_keys, value_of
+from thermicon.circuit.fitting.laboratory import synthetic_log
+from thermicon.circuit.fitting.log import Log, LogError
+from thermicon.circuit.fitting.problem import Problem
+from thermicon.circuit.fitting.runs import runs_of
+from thermicon.circuit.fitting.skin_layers import LAYER_KINDS, layer_priors
+from thermicon.circuit.fitting.solve import spreads
+
+from .conftest import TRUTH
+from .test_plan import FREE
+
+THICK = {"skin.layer.0.thickness_mm": 0.20}
+"""One standard deviation of people more than the rig has."""
+
+
+@pytest.fixture(scope="module")
+def foreign(true_rig: Rig, thenar: Rig) -> RigFit:
+    return fit(synthetic_log(true_rig.with_(**THICK), seed=3, rate_Hz=20.0), thenar, free=list(TRUTH))
+
+
+def test_thicker_skin_does_not_pass_for_contact(foreign: RigFit, true_rig: Rig, thenar: Rig) -> None:
+    contact, both = foreign[CONTACT], foreign.series
+    assert contact.low < TRUTH[CONTACT] < contact.high and contact.half_width > 0.1
+    layer = true_rig.with_(**THICK).skin.layers[0]
+    assert both is not None and both.key == "contact + stratum corneum"
+    assert both.low < TRUTH[CONTACT] + layer.thickness_m / layer.conductivity_W_per_mK < both.high
+    held = foreign.rig.uncertainty.contact_resistance_relative
+    assert contact.half_width <= held < thenar.uncertainty.contact_resistance_relative
+    assert not foreign.misfit
+
+
+def test_the_fitted_rig_has_the_skin_that_was_logged(foreign: RigFit, true_rig: Rig, log: Log) -> None:
+    drive = Drive(log.time_s, log.column("current_A"), True)
+    mine, theirs = (simulate_current(drive, rig, rate_Hz=20.0) for rig in (foreign.rig, true_rig.with_(**THICK)))
+    difference = mine.display_C - theirs.display_C
+    assert np.abs(difference - difference.mean()).max() < 0.01
+    assert "fitted along" in foreign.rig_text()
+
+
+def test_fixed_skin_is_what_the_rig_has(true_rig: Rig, thenar: Rig) -> None:
+    log = synthetic_log(true_rig.with_(**THICK), seed=3, rate_Hz=20.0)
+    found = fit(log, thenar, free=list(TRUTH), fixed_skin=True)
+    assert found.series is None and found.rig.skin == thenar.skin
+    assert found[CONTACT].low > TRUTH[CONTACT]  # the layer passes for contact
+
+
+def test_metal_and_air_have_no_layers(thenar: Rig) -> None:
+    assert layer_priors(thenar.with_(load={"capacity_J_per_K": 25.0, "conductance_W_per_K": 0.1})) == {}
+
+
+def test_the_error_of_the_mesh_is_some_millikelvin(thenar: Rig, log: Log) -> None:
+    problem = Problem.of(thenar, free_keys([CONTACT], thenar), runs_of([log], thenar, True))
+    display, voltage, rest = np.split(problem.mesh_error(problem.first, [1.0, 1.0]), [1201, 2402])
+    assert 5e-4 < np.abs(display).max() < 5e-3 and np.abs(voltage).max() < 1e-3 and not rest.any()
+    own = Rig.load("shani2021")
+    stated = Problem.of(own, free_keys([CONTACT], own), runs_of([log], own, True))
+    assert not stated.mesh_error(stated.first, spreads(stated, stated.first)).any()
+
+
+def test_a_sensor_that_is_far_off_narrows_nothing(log: Log, thenar: Rig) -> None:
+    columns = {"time_s": log.time_s, **dict(log.columns), "display_C": log.column("display_C") + 2.3}
+    found = fit(Log.of("rig.csv", columns), thenar, free=list(TRUTH))
+    before, after = thenar.uncertainty, found.rig.uncertainty
+    assert after.contact_resistance_relative >= before.contact_resistance_relative
+    assert after.seebeck_relative >= before.seebeck_relative
+    assert any("is not narrowed by this fit" in note for note in found.notes)
+    assert found.notes[0].endswith("calibrate it")
+
+
+SLOWLY = pytest.mark.slow
+
+
+@pytest.mark.parametrize(
+    ("column", "delay_s"),
+    [("display_C", 0.15), pytest.param("voltage_V", 0.15, marks=SLOWLY), pytest.param("display_C", -0.1, marks=SLOWLY)],
+)
+def test_a_late_column_is_named_with_its_delay(log: Log, true_rig: Rig, column: str, delay_s: float) -> None:
+    moved = np.interp(log.time_s - delay_s, log.time_s, log.column(column))
+    columns = {"time_s": log.time_s, **dict(log.columns), column: moved}
+    found = fit(Log.of("late.csv", columns), true_rig, free=[CONTACT])
+    word = "late" if delay_s > 0 else "early"
+    assert any(f"{column} of late.csv is {abs(delay_s):.2g} s {word} against the other" in note for note in found.notes)
+    assert found.misfit
+
+
+def test_a_number_that_no_instrument_gives_is_refused_with_its_row(log: Log) -> None:
+    columns = {"time_s": np.array(log.time_s), **{name: np.array(values) for name, values in log.columns}}
+    for name in ("display_C", "time_s"):
+        wild = {**columns, name: columns[name].copy()}
+        wild[name][-1] = 1e308
+        with pytest.raises(LogError, match=rf"rig.csv, row 1201: {name} is 1e\+308, beyond the 1e\+12 that any"):
+            Log.of("rig.csv", wild)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("spread", ["ten per cent", "people"])
+def test_intervals_hold_the_truth_on_ten_rigs_of_other_skin(spread: str) -> None:
+    rig, random = Rig.load("thenar").with_(**{"driver.update_Hz": 10.0}), np.random.default_rng(41)
+    held, contact, written = [], 0, 0
+    for seed in range(10):
+        skin = {"skin.elements": [60] * len(rig.skin.layers)}  # another mesh than that of the fit
+        for (kind, k), sd in layer_priors(rig).items():
+            factor = math.exp(sd * random.normal()) if spread == "people" else random.uniform(0.9, 1.1)
+            layer = rig.skin.layers[k]
+            names = ("thickness_mm", "conductivity_W_per_mK", "heat_capacity_J_per_kgK")
+            values = (layer.thickness_m * 1e3, layer.conductivity_W_per_mK, layer.heat_capacity_J_per_kgK)
+            place = LAYER_KINDS.index(kind)
+            skin[f"skin.layer.{k}.{names[place]}"] = factor * values[place]
+        truth = {}
+        for key in free_keys(FREE, rig):
+            value = value_of(rig, key.key)
+            assert value is not None
+            truth[key.key] = value * math.exp(0.1 * random.normal()) if key.log else value + random.normal()
+        log = synthetic_log(rig.with_(**skin, **truth), seed=100 + seed, rate_Hz=10.0)
+        with quiet_blas():
+            found = fit(log, rig, free=FREE)
+        held += [item.low <= truth[item.key] <= item.high for item in found.parameters]
+        contact += found[CONTACT].low <= truth[CONTACT] <= found[CONTACT].high
+        written += holds_all(found.rig, truth)
+    print(f"{spread}: {sum(held)} of {len(held)} keys, contact {contact} of 10, uncertainty {written} of 10")
+    assert np.mean(held) >= 0.9 and contact >= 9 and written >= 9, (sum(held), contact, written)
+
+
+def holds_all(rig: Rig, truth: dict[str, float]) -> bool:
+    """Whether every uncertainty that a fit may write holds the truth about the value of the rig."""
+    return all(
+        abs(truth[key.key] - (value_of(rig, key.key) or 0.0))
+        <= getattr(rig.uncertainty, key.uncertainty) * ((value_of(rig, key.key) or 0.0) if key.log else 1.0)
+        for key in free_keys(list(truth), rig)
+        if key.uncertainty
+    )
