@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -59,6 +60,15 @@ class Single:
         """Whether one play exceeds no hard limit."""
         return all(tally.passes() for tally in self.tallies)
 
+    def shown_C(self, bounds: Sequence[State]) -> tuple[float, float]:
+        """Between which temperatures in °C the display is in plays that begin between bounds."""
+        shown = [
+            values[WATCHED.index("display_C")]
+            for one in bounds
+            for (_, values), _ in self.ensemble.play(self.drive, one)
+        ]
+        return float(min(np.nanmin(one) for one in shown)), float(max(np.nanmax(one) for one in shown))
+
     def faulty(self, corners: list[int], bounds: Sequence[State], instants: tuple[int, ...] | None = None) -> Faulty:
         """Its single faults in some corners, in plays that begin between bounds."""
         which = np.array(corners)
@@ -111,6 +121,7 @@ class Single:
         return Demands(watchdog_s, cut_off, polarity, rest, pause_s, zero, (hangs, begins, swapped, stuck))
 
     def farthest(self, tallies: list[Tally]) -> list[int]:
+        """Corners that are worst by some hard rule, the rig as given first."""
         count = len(self.ensemble.corners)
         rows: dict[int, None] = {0: None}
         for tally in tallies:
@@ -141,36 +152,38 @@ def demanded(
     if shortest_s is None:
         return None, [single.demands(few, few, (), reach_C, None) for single, few in zip(singles, corners, strict=True)]
     bounds_of = cache(lambda pause_s: repeating.bounds(pause_s)[2:])
+    reach_of = cache(lambda pause_s: _joined([reach_C, *(s.shown_C(bounds_of(pause_s)) for s in singles)]))
     every = list(range(len(repeating.ensemble.corners)))
     hardest = [single.faulty(every, bounds_of(shortest_s)).hardest(reach_C, PRACTICAL_S) for single in singles]
 
     def holds(number: int, pause_s: float, within_s: tuple[float, float]) -> bool:
+        if not any(within_s):
+            return True
         faulty = singles[number].faulty(hardest[number], bounds_of(pause_s))
-        moments = faulty.moments()
-        cut = CutOff(*faulty.around_C(_joined([reach_C, moments.display_C])), within_s[1])
-        return bool(faulty.beyond_K(moments, within_s[0], cut).max() <= 0.0)
+        cut = CutOff(*faulty.around_C(reach_of(pause_s)), within_s[1])
+        return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
 
     recovered = [LONGEST_PAUSE_S if single.recovery_s is None else single.recovery_s for single in singles]
     longest_s, numbers, practical = max(shortest_s, *recovered), range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
     needed = [(0.0, 0.0) if holds(k, shortest_s, practical) else practical for k in numbers]
     for number, single in enumerate(singles):
         if not holds(number, longest_s, needed[number]):
-            found = single.demands(hardest[number], hardest[number], bounds_of(longest_s), reach_C, None).within_s
+            found = single.demands(
+                hardest[number], hardest[number], bounds_of(longest_s), reach_of(longest_s), None
+            ).within_s
             needed[number] = min(PRACTICAL_S, found[0]), min(PRACTICAL_S, found[1])
     pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: all(map(holds, numbers, repeat(longer_s), needed)))
-    added_s = PAUSE_STEP_S
+    added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
     while True:
-        bounds = bounds_of(pause_s)
-        shown = (single.faulty(every, bounds, (0,)).moments().display_C for single in singles)
-        reach = _joined([reach_C, *shown])
-        demands = [
-            single.demands(few, hard, bounds, reach, pause_s)
-            for single, few, hard in zip(singles, corners, hardest, strict=True)
-        ]
-        met = (np.greater_equal(one.within_s, least).all() for one, least in zip(demands, needed, strict=True))
-        if pause_s >= longest_s or all(met):
-            return pause_s, demands
-        pause_s, added_s = min(longest_s, round(pause_s + added_s, 1)), 2 * added_s
+        bounds, reach, demands = bounds_of(pause_s), reach_of(pause_s), {}
+        for number in sorted(numbers, key=lambda number: not any(needed[number])):  # what may not suffice first
+            one = singles[number].demands(corners[number], hardest[number], bounds, reach, pause_s)
+            if pause_s < longest_s and np.less(one.within_s, needed[number]).any():
+                break
+            demands[number] = one
+        else:
+            return pause_s, [demands[number] for number in numbers]
+        pause_s, added_s = min(longest_s, math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S), 2.0 * added_s
 
 
 def _joined(spans: Sequence[tuple[float, float]]) -> tuple[float, float]:

@@ -50,8 +50,7 @@ BEYOND_K = 1.0
 class Moments:
     """Instants of a play and its pause: in lanes, those of one instant side by side, with a command in A each.
 
-    `warmer` is 1 in plays from the warm bound, −1 from the cold one, 0 from rest; `display_C` is between which
-    temperatures the display was.
+    `warmer` is 1 in plays from the warm bound, −1 from the cold one, 0 from rest; `stuck_A` the driver's limit.
     """
 
     state: State
@@ -59,11 +58,11 @@ class Moments:
     rigs: Index
     warmer: Index
     instants: tuple[int, ...]
-    display_C: tuple[float, float]
+    stuck_A: float | None = None
 
     def stuck_at(self, current_A: float) -> Moments:
         """The same with the driver stuck at a current."""
-        return replace(self, command_A=np.full_like(self.command_A, current_A))
+        return replace(self, command_A=np.full_like(self.command_A, current_A), stuck_A=current_A)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,11 +86,9 @@ class Faulty:
         starts, count = self.bounds or (self.start,), len(self.ensemble.corners)
         state = State(*(np.concatenate([getattr(one, part) for one in starts]) for part in ("nodes_C", "sink")))
         rigs = np.tile(np.arange(count, dtype=np.int64), len(starts))
-        states, commands, before, low, high = [], [], 0.0, np.inf, -np.inf
+        states, commands, before = [], [], 0.0
         for instant, command in self._stuck_at():
-            for (_, values), then in self.ensemble.play(between(self.drive, before, instant), state, rigs):
-                display, state = np.nan_to_num(values[WATCHED.index("display_C")], nan=999.0), then
-                low, high = min(low, float(display.min())), max(high, float(display.max()))
+            state = self.ensemble.end_of(between(self.drive, before, instant), state, rigs)
             before = instant
             states.append(state)
             commands.append(command)
@@ -106,7 +103,6 @@ class Faulty:
             np.tile(rigs, len(which)),
             np.tile(np.repeat([1, -1] if self.bounds else [0], count), len(which)),
             which,
-            (low, high),
         )
 
     def hardest(self, reach_C: tuple[float, float], within_s: float) -> list[int]:
@@ -146,13 +142,17 @@ class Faulty:
     def _cut_K(self, moments: Moments, cut_s: Array) -> tuple[str, Array]:
         """The worst while currents are stuck until `cut_s` (lanes,) and for 30 s after; lanes with 0 do not count."""
         which = np.flatnonzero(cut_s)
-        times = np.unique(np.concatenate([HANG_ROWS_S[cut_s.max() > HANG_ROWS_S], cut_s[which]]))
-        on = times[:-1, np.newaxis] < cut_s[which] - 1e-9
-        rigs, state = moments.rigs[which], moments.state.take(which)
-        values, then = self.ensemble.step(on * moments.command_A[which], state, times, rigs)
-        after = self.ensemble.watch(0.0, then, AFTER_ROWS_S, rigs)
-        far_K = np.full(len(cut_s), -np.inf)
-        text, far_K[which] = _passed(self.limits, np.concatenate([values, after], axis=2))
+        rigs, state, cut_s = moments.rigs[which], moments.state.take(which), cut_s[which]
+        if moments.stuck_A is not None and self.ensemble.ideal:  # the driver's limit leads one way until it is cut
+            nodes = self.ensemble.modes(moments.stuck_A).after(rigs, state.nodes_C, cut_s)
+            values = self.ensemble.watch(0.0, State(nodes, state.sink), AFTER_ROWS_S, rigs)
+        else:
+            times = np.unique(np.concatenate([HANG_ROWS_S[cut_s.max() > HANG_ROWS_S], cut_s]))
+            on = times[:-1, np.newaxis] < cut_s - 1e-9
+            until, then = self.ensemble.step(on * moments.command_A[which], state, times, rigs)
+            values = np.concatenate([until, self.ensemble.watch(0.0, then, AFTER_ROWS_S, rigs)], axis=2)
+        far_K = np.full(len(moments.rigs), -np.inf)
+        text, far_K[which] = _passed(self.limits, values)
         return text, far_K
 
     def beyond_K(
