@@ -260,11 +260,13 @@ def lengthened_s(shortest_s: float, longest_s: float, safe: Callable[[float], bo
     >>> lengthened_s(2.0, 50.0, lambda pause_s: pause_s >= 7.0), lengthened_s(2.0, 5.0, lambda pause_s: False)
     (7.6, 5.0)
     """
-    ratio = longest_s / max(shortest_s, PAUSE_STEP_S)
-    pauses = np.geomspace(max(shortest_s, PAUSE_STEP_S), longest_s, 2 + math.ceil(math.log(max(ratio, 1.0), 1.15)))
-    tried = [shortest_s, *(math.ceil(pause / PAUSE_STEP_S - 1e-9) * PAUSE_STEP_S for pause in pauses[1:-1])]
+    if shortest_s >= longest_s or safe(shortest_s):
+        return min(shortest_s, longest_s)
+    begin_s = shortest_s + PAUSE_STEP_S
+    pauses = np.geomspace(begin_s, longest_s, 2 + max(0, math.ceil(math.log(longest_s / begin_s, 1.15))))
+    tried = [math.ceil(pause / PAUSE_STEP_S - 1e-9) * PAUSE_STEP_S for pause in pauses[:-1]]
     place = bisect_left(tried, 1, key=lambda pause_s: int(safe(pause_s)))
-    return min(longest_s, round(tried[place], 1) if place else shortest_s) if place < len(tried) else longest_s
+    return min(longest_s, round(tried[place], 1)) if place < len(tried) else longest_s
 
 
 def _later(repeating: Repeating, pause_s: float) -> float | None:
