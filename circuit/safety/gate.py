@@ -15,7 +15,7 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import stated, tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
+from .checks import Check, again, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
 from .demands import Demands
 from .endings import ENDING_S, ENDINGS
 from .ensemble import Ensemble
@@ -262,7 +262,7 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
     )  # no pause makes a play safe that is red by itself
     if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
         shortest = pause
-    judged = [worst_of(tally.checks() for tally in own_tallies) for own_tallies in tallies]
+    judged = [again(worst_of(tally.checks() for tally in own_tallies)) for own_tallies in tallies]
     every = [*(single.checks for single in singles), *judged]
     display = [check.value for checks in every for check in checks if check.quantity == "display"]
     with_faults, demands = demanded(singles, repeating, tallies, (min(display), max(display)), shortest)

@@ -78,8 +78,10 @@ class Repeated:
 
     @property
     def too_soon(self) -> bool:
-        """Whether the pause is too short for what the hardware can prevent in practice."""
-        return self.shortest_pause_s is not None and self.pause_s < self.shortest_pause_s
+        """Whether the pause is safe without faults only, since no hardware is quick enough in practice."""
+        if self.shortest_pause_s is None or self.faultless_pause_s is None:
+            return False
+        return self.faultless_pause_s <= self.pause_s < self.shortest_pause_s
 
     @property
     def reason(self) -> str | None:
@@ -258,7 +260,7 @@ def lengthened_s(shortest_s: float, longest_s: float, safe: Callable[[float], bo
     """The shortest pause in s from one to another that is safe, within 15 % on the safe side, or the longer one.
 
     >>> lengthened_s(2.0, 50.0, lambda pause_s: pause_s >= 7.0), lengthened_s(2.0, 5.0, lambda pause_s: False)
-    (7.6, 5.0)
+    (7.9, 5.0)
     """
     if shortest_s >= longest_s or safe(shortest_s):
         return min(shortest_s, longest_s)

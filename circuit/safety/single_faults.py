@@ -111,7 +111,7 @@ class Faulty:
         moments = replace(self, instants=tuple(few.tolist())).moments()
         far_K = self.beyond_K(moments, within_s, CutOff(*self.around_C(reach_C), within_s))
         lanes = far_K.reshape(len(far_K), len(few), -1).argmax(axis=2)
-        return np.unique(moments.rigs[lanes]).tolist()
+        return [int(corner) for corner in np.unique(moments.rigs[lanes])]
 
     def _stuck_at(self) -> list[tuple[float, float]]:
         """Instants in s with the command that is stuck there: the one before a change."""

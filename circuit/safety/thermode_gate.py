@@ -14,7 +14,7 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from .checks import Check, colour_of, findings_of, worst_of
+from .checks import Check, again, colour_of, findings_of, worst_of
 from .demands import CutOff, Demands, SingleFault
 from .endings import ENDING_S
 from .gate import Gate
@@ -97,7 +97,7 @@ def gate_shown(
     if pause is None:
         times = [LONGEST_PAUSE_S if recovery is None else recovery for _, recovery, _ in once]
         pause = max(times)
-    again = _again(under, drives, limits_held, pause, rates)
+    repeatedly = _again(under, drives, limits_held, pause, rates)
     faultless = shortest = None
     if _safe([checks for checks, _, _ in once]):  # no pause mends a play that is red by itself
         faultless = _shortest_s(under, drives, limits_held, rates)
@@ -110,11 +110,11 @@ def gate_shown(
         )
     verdicts = []
     for ways, (checks, recovery, after), repeated_checks, fault in zip(
-        drives, once, again, faults(shortest), strict=True
+        drives, once, repeatedly, faults(shortest), strict=True
     ):
         plays = _plays(ways[0], pause, limits_held.session_s)
         repeated = Repeated(pause, recovery, shortest, plays, limits_held.session_s, repeated_checks, faultless)
-        every = [check for each in (*(single for single, _, _ in once), *again) for check in each]
+        every = [check for each in (*(single for single, _, _ in once), *repeatedly) for check in each]
         verdicts.append(
             Gate(
                 rig.name,
@@ -151,7 +151,7 @@ def _again(
                 _cycle_checks(under, course, limits, pause_s, states, skin, f" ({word} bound)", (False, rates))
                 for word, states in bounds.items()
             ]
-        all_checks.append(worst_of(checks for group in judged for checks in group))
+        all_checks.append(again(worst_of(checks for group in judged for checks in group)))
     return all_checks
 
 
@@ -166,14 +166,14 @@ def _cycle_checks(
     rates: tuple[bool, bool],
 ) -> list[tuple[Check, ...]]:
     """Every rule for one play among many and for its endings; `rates`: whether they are judged in each of the two."""
-    again = f", {course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
+    words = f", {course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
     values, ended = under.play(course, states)
-    tally = Tally(limits, under.corners, again, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
+    tally = Tally(limits, under.corners, words, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
     tally.add(course.rows_s, values, rates=rates[0])
     rows = np.append(0.0, pause_rows(course.left_s(pause_s)))
     if len(rows) > 1:
         tally.add(course.end_s + rows, under.hold(float(course.display_C[-1]), ended, rows), rates=False)
-    endings = [Tally(limits, under.corners, f"{again}, then {ending}", begun_C=begun_C) for ending in DISPLAY_ENDINGS]
+    endings = [Tally(limits, under.corners, f"{words}, then {ending}", begun_C=begun_C) for ending in DISPLAY_ENDINGS]
     add_endings(under, course, ended, endings, sums=False, rates=rates[1])
     return [tally.checks(), *(ending.checks() for ending in endings)]
 
@@ -182,8 +182,8 @@ def _plays(course: DisplayCourse, pause_s: float, session_s: float) -> int:
     return max(1, math.floor((session_s + pause_s) / (course.end_s + course.left_s(pause_s)) + 1e-9))
 
 
-def _safe(again: Sequence[Sequence[Check]]) -> bool:
-    return all(colour_of(findings_of(checks)) != "red" for checks in again)
+def _safe(judged: Sequence[Sequence[Check]]) -> bool:
+    return all(colour_of(findings_of(checks)) != "red" for checks in judged)
 
 
 def _shortest_s(under: Under, drives: Sequence[Ways], limits: Limits, rates: bool) -> float | None:
