@@ -56,7 +56,7 @@ def by_chance(number: int, kind: str) -> Told:
             try:
                 rig, device = some_rig(rng, name), some_device(rng, name, Path(folder))
                 icons = [some_cue(rng, name, stem) for stem in (("a", "b") if rng.random() < 0.15 else ("a",))]
-                if kind == "bridge" and max(icon.duration_s or 0.0 for icon in icons) > 6.0:
+                if kind == "bridge" and max(icon.corners().duration_s for icon in icons) > 4.0:
                     continue
                 ready = prepare_set(icons, rig, device, load_format(form))
             except (RigError, DeviceError, CueErrors):
