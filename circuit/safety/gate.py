@@ -263,8 +263,7 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
     if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
         shortest = pause
     judged = [again(worst_of(tally.checks() for tally in own_tallies)) for own_tallies in tallies]
-    every = [*(single.checks for single in singles), *judged]
-    display = [check.value for checks in every for check in checks if check.quantity == "display"]
+    display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
     with_faults, demands = demanded(singles, repeating, tallies, (min(display), max(display)), shortest)
     for single, checks, cycle, each in zip(singles, judged, cycles, demands, strict=True):
         plays = plays_in(cycle, limits.session_s)

@@ -144,7 +144,7 @@ def demanded(
 ) -> tuple[float | None, list[Demands]]:
     """The shortest pause after which faults can be prevented in practice, and what prevents them in any play after it.
 
-    `reach_C` are extremes of displays in plays with the judged pause. Shorter pauses need a quicker watchdog and a
+    `reach_C` are extremes of displays in first plays and after them. Shorter pauses need a quicker watchdog and a
     quicker cut-off. Where these would be quicker than PRACTICAL_S, and are not with a pause in which display and skin
     recover, the pause is lengthened instead. A set that no pause makes safe is judged in its first plays.
     """

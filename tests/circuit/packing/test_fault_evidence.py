@@ -99,6 +99,18 @@ def test_an_export_with_faults(kind: str) -> None:
     assert sum(counts.values()) >= 25
 
 
+def test_a_later_play_needs_a_longer_pause_for_its_faults_than_for_itself() -> None:
+    counts, unsafe = shipped(("six-icons", "warming-step", "thenar"))
+    assert unsafe == []
+    assert counts["hangs until the watchdog"] == 25
+    icons, rig, form = [load_library("six-icons")["warming-step"]], Rig.load("thenar"), load_format("csv")
+    (soon,) = prepare_set(icons, rig, Device.load("dac-16"), form, pause_s=5.0)
+    told = soon.verdict.to_dict()
+    assert soon.verdict.colour == "red"
+    assert f"the shortest safe pause is {told['shortest_pause_s']:g} s" in str(soon.verdict.reason)
+    assert told["shortest_pause_s"] == soon.verdict.demanded["pause_at_least_s"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", list(KINDS))
 def test_demands_hold_in_any_play(kind: str) -> None:
