@@ -83,7 +83,7 @@ def _repeated(
             again = {(check.quantity, check.severity, check.upper): check for check in next(sequences)}
             of_module = (again.get((check.quantity, check.severity, check.upper), check) for check in repeated.checks)
             checks = worst_of([repeated.checks, tuple(of_module)])
-            repeats.append(replace(repeated, checks=checks, shortest_pause_s=shortest))
+            repeats.append(replace(repeated, checks=checks, shortest_pause_s=shortest, faultless_pause_s=shortest))
         else:
             repeats.append(replace(repeated, shortest_pause_s=None))
     return repeats

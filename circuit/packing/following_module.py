@@ -13,7 +13,7 @@ from ..delivery.samples import Samples
 from ..delivery.temperatures import follow_samples
 from ..rig.corner import with_gain
 from ..rig.rig import Rig
-from ..safety.checks import AFTER_THE_LAST, Check, worst_of
+from ..safety.checks import Check, worst_of
 from ..safety.corners import corners_of
 from ..safety.ensemble import Ensemble, LaneDrives
 from ..safety.single import checks_of_lanes
@@ -64,7 +64,8 @@ class FollowingModule:
     def once(self, samples: Samples) -> tuple[Check, ...]:
         """Every rule for one play, and for the module on its return after the last set-point."""
         arrived = self.checks(_then(samples, SETTLING_S))
-        return worst_of([self.checks(samples), _during(arrived, AFTER_THE_LAST)])
+        returned = (replace(check, part="return") for check in _during(arrived, "after the last set-point"))
+        return worst_of([self.checks(samples), tuple(returned)])
 
     def again(self, play: Samples, pause_s: float, before: Samples) -> tuple[Check, ...]:
         """The rules of `OF_THE_MODULE` in a play after another one, as far as their pause leaves it away from rest."""

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from typing import Literal
 
 from thermicon.icons.number_text import significant
 
@@ -16,7 +17,8 @@ class Check:
     """One rule checked against runs: the extreme, its time and scenario, and the source of the limit.
 
     `value` is the extreme on the side that the rule limits, first reached at `time_s`; `since_s` is when the limit is
-    first exceeded, None where it never is. `scenario` says in which run.
+    first exceeded, None where it never is. `scenario` says in which run, `part` in which part of a sequence: `play` is
+    the first, `again` a later one, `return` the way back after the last set-point.
     """
 
     quantity: str
@@ -30,6 +32,7 @@ class Check:
     note: str = ""
     upper: bool = True
     scenario: str = ""
+    part: Literal["play", "again", "return"] = "play"
 
     @property
     def passed(self) -> bool:
@@ -89,7 +92,6 @@ CURES = (
     (("skin surface", "display", "cold-receptor depth"), "a smaller or shorter change"),
 )
 """What keeps a quantity within its limit, by the beginning of its name."""
-AFTER_THE_LAST = "after the last set-point"
 END_AT_BASELINE = "an end at which the display is near the baseline, such as a hold there, or a lower current limit"
 NEARER_BASELINE = "a baseline nearer to resting skin, since it is beyond the limit from the start"
 
@@ -101,9 +103,9 @@ def more_and_cure(findings: Sequence[Check]) -> str:
     ''
     """
     hard = [finding for finding in findings if finding.severity == "hard"]
-    if hard and AFTER_THE_LAST in hard[0].scenario:
+    if hard and hard[0].part == "return":
         cures = [END_AT_BASELINE]
-    elif any(check.unit == "°C" and check.since_s == 0.0 and "repeated" not in check.scenario for check in hard):
+    elif any(check.unit == "°C" and check.since_s == 0.0 and check.part == "play" for check in hard):
         cures = [NEARER_BASELINE]
     else:
         cures = [cure for names, cure in CURES if any(check.quantity.startswith(names) for check in hard)]
@@ -122,8 +124,9 @@ def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:
 
 
 def as_dict(check: Check) -> dict[str, object]:
-    """A check in the form of a sidecar."""
-    return {**asdict(check), "passed": check.passed, "text": str(check)}
+    """A check in the form of a sidecar, whose scenario names the part in words."""
+    known = {name: value for name, value in asdict(check).items() if name != "part"}
+    return {**known, "passed": check.passed, "text": str(check)}
 
 
 def beyond(check: Check) -> float:
@@ -134,6 +137,11 @@ def beyond(check: Check) -> float:
 def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
     """From several groups of checks of the same rules, the worst check of each rule; the first of equals."""
     return tuple(_farthest(same) for same in zip(*groups, strict=True))
+
+
+def again(checks: Sequence[Check]) -> tuple[Check, ...]:
+    """Checks of plays after others."""
+    return tuple(replace(check, part="again") for check in checks)
 
 
 def _farthest(same: Sequence[Check]) -> Check:

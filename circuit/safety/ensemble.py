@@ -6,7 +6,7 @@ no farther apart than 10 ms, over which the rate of skin temperature is taken, n
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import overload
 
@@ -151,23 +151,34 @@ class Ensemble:
         start, end = switching(intervals.start_A, self.bridge_A * self.gain)
         return Intervals(intervals.edges_s, intervals.row_of, start, end)
 
-    def hold(self, current_A: float | Array, state: State, times_s: Array) -> tuple[Array, State]:
+    def hold(
+        self, current_A: float | Array, state: State, times_s: Array, rigs: Index | None = None
+    ) -> tuple[Array, State]:
         """Hold a constant current (with a bridge: its mean) and return WATCHED at times from now, and the last states.
 
-        Times begin with 0. An array has the current of each corner.
+        Times begin with 0. An array has the current of each corner; `rigs` (lanes,): a lane's corner.
         """
+        which = self.lanes if rigs is None else rigs
         if self.ideal:
-            modes = self.modes(current_A)
-            values = modes.run(self.lanes, state.nodes_C, times_s, WATCHED)
-            return values, State(modes.after(self.lanes, state.nodes_C, float(times_s[-1])), state.sink)
-        return self._stepped(current_A, state, times_s)
+            after = self.modes(current_A).after(which, state.nodes_C, float(times_s[-1]))
+            return self.watch(current_A, state, times_s, which), State(after, state.sink)
+        currents = np.broadcast_to(current_A, len(self.corners))[which]
+        return self.step(np.broadcast_to(currents, (len(times_s) - 1, len(which))), state, times_s, which)
+
+    def watch(
+        self, current_A: float | Array, state: State, times_s: Array, rigs: Index, columns: Sequence[str] = WATCHED
+    ) -> Array:
+        """What `hold` returns first, or some columns of it, where the last states are not needed."""
+        if self.ideal:
+            return self.modes(current_A).run(rigs, state.nodes_C, times_s, columns)
+        return self.hold(current_A, state, times_s, rigs)[0][[WATCHED.index(name) for name in columns]]
 
     def rest(self, current_A: float, state: State, time_s: float) -> State:
         """States after a constant current has been held for a time in s."""
         if self.ideal:
             return State(self.modes(current_A).after(self.lanes, state.nodes_C, time_s), state.sink)
         times = np.append(np.arange(0.0, time_s - 1e-9, min(1.0, time_s)), time_s)
-        return self._stepped(current_A, state, times)[1]
+        return self.hold(current_A, state, times)[1]
 
     def modes(self, current_A: float | Array) -> ConstantCurrent:
         """Modes of all corners under a constant current, or the mean of a bridge's."""
@@ -180,13 +191,16 @@ class Ensemble:
             self._modes[current_A] = modes
         return modes
 
-    def _stepped(self, current_A: float | Array, state: State, times_s: Array) -> tuple[Array, State]:
-        rows = len(times_s) - 1
-        currents = held_currents(
-            self.gain * current_A, rows, None if self.bridge_A is None else self.bridge_A * self.gain
-        )
-        intervals = Intervals(times_s, np.arange(len(times_s)), currents[0], currents[1])
-        return run_on(self.bank, self.lanes, self.lanes, intervals, state, WATCHED, few_alone=True)
+    def step(self, current_A: Array, state: State, times_s: Array, rigs: Index) -> tuple[Array, State]:
+        """WATCHED at times from now under currents (intervals, lanes), each held until the next time; the last states.
+
+        With a bridge they are means.
+        """
+        mean = self.gain[rigs] * current_A
+        begin, end = (mean, mean) if self.bridge_A is None else switching(mean, self.bridge_A * self.gain[rigs])
+        intervals = Intervals(times_s, np.arange(len(times_s)), np.ascontiguousarray(begin), np.ascontiguousarray(end))
+        lanes = np.arange(len(rigs), dtype=np.int64)
+        return run_on(self.bank, rigs, lanes, intervals, state, WATCHED, few_alone=True)
 
 
 def row_of(drive: Drive | LaneDrives) -> float:
@@ -214,12 +228,6 @@ def between(drive: Drive | LaneDrives, begin_s: float, end_s: float) -> Drive | 
     else:
         currents = np.interp(times, drive.time_s, drive.current_A)
     return Drive(times - begin_s, currents, drive.held)
-
-
-def held_currents(last_A: Array, rows: int, bridge_A: Array | None) -> Array:
-    """Currents (lanes,) at both ends of each of `rows` intervals, (2, rows, lanes); with `bridge_A` they are means."""
-    currents = np.broadcast_to(last_A, (rows, len(last_A)))
-    return np.stack([currents, currents] if bridge_A is None else switching(currents, bridge_A))
 
 
 def switching(mean_A: Array, bridge_A: Array) -> tuple[Array, Array]:

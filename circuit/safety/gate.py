@@ -15,7 +15,7 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import stated, tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
+from .checks import Check, again, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
 from .demands import Demands
 from .endings import ENDING_S, ENDINGS
 from .ensemble import Ensemble
@@ -28,7 +28,7 @@ from .repeated import (
     shortest_pause_s,
 )
 from .repetition import Cycle, mapped
-from .single import Single
+from .single import Single, demanded
 
 WHAT_IT_IS_NOT = (
     "This is a calculation, not a medical or ethical clearance. Hardware that touches people needs a temperature "
@@ -91,7 +91,7 @@ class Gate:
     @property
     def colour(self) -> str:
         """Green, amber (only soft limits are exceeded) or red."""
-        return colour_of(self.findings)
+        return "red" if self.repeated.too_soon else colour_of(self.findings)
 
     @property
     def safe(self) -> bool:
@@ -262,15 +262,13 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
     )  # no pause makes a play safe that is red by itself
     if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
         shortest = pause
-    repeats = []
-    for single, own_tallies, cycle in zip(singles, tallies, cycles, strict=True):
-        checks, plays = worst_of(tally.checks() for tally in own_tallies), plays_in(cycle, limits.session_s)
-        repeats.append(Repeated(pause, single.recovery_s, shortest, plays, limits.session_s, checks))
-    every = [*(single.checks for single in singles), *(repeated.checks for repeated in repeats)]
-    display = [check.value for checks in every for check in checks if check.quantity == "display"]
-    reach = (min(display), max(display))
-    for single, repeated, own_tallies in zip(singles, repeats, tallies, strict=True):
-        yield _gate(single, repeated, single.demands(repeated, own_tallies, reach))
+    judged = [again(worst_of(tally.checks() for tally in own_tallies)) for own_tallies in tallies]
+    display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
+    with_faults, demands = demanded(singles, repeating, tallies, (min(display), max(display)), shortest)
+    for single, checks, cycle, each in zip(singles, judged, cycles, demands, strict=True):
+        plays = plays_in(cycle, limits.session_s)
+        repeated = Repeated(pause, single.recovery_s, with_faults, plays, limits.session_s, checks, shortest)
+        yield _gate(single, repeated, each)
 
 
 def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:

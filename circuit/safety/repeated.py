@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from bisect import bisect_left
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -31,6 +32,9 @@ RECOVERY_ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) 
 PAUSE_STEP_S = 0.1
 """Safe pauses are searched, and reported, in steps of this."""
 
+PRACTICAL_S = 0.1
+"""A watchdog and a cut-off this quick are demanded rather than a longer pause, quicker ones are not: assumed."""
+
 
 class PauseError(InputError):
     """An impossible pause between plays.
@@ -50,9 +54,10 @@ class Repeated:
     """The verdict on a drive that is played repeatedly, with its resting current held in the pauses.
 
     `recovery_s`: from the end of a play until display and skin are back within 0.1 K in every corner; None: later than
-    10 min. `shortest_pause_s` is the shortest that is safe, None where none is. `plays` fit into a session of
-    `session_s`, over which doses add up. `checks` has every rule in the steady cycle, or between bounds on the states
-    that any number of plays, in any order of a set, can reach.
+    10 min. `shortest_pause_s` is the shortest that is safe, also with a single fault that the hardware prevents as
+    demanded, None where none is; `faultless_pause_s` is the shortest that is safe without faults. `plays` fit into a
+    session of `session_s`, over which doses add up. `checks` has every rule in the steady cycle, or between bounds on
+    the states that any number of plays, in any order of a set, can reach.
     """
 
     pause_s: float
@@ -61,6 +66,7 @@ class Repeated:
     plays: int
     session_s: float
     checks: tuple[Check, ...]
+    faultless_pause_s: float | None = None
 
     def __repr__(self) -> str:
         return f"Repeated({self.colour}: {self.plays} plays with {self.pause_s:g} s between them)"
@@ -68,12 +74,24 @@ class Repeated:
     @property
     def colour(self) -> str:
         """Green, amber or red."""
-        return colour_of(findings_of(self.checks))
+        return "red" if self.too_soon else colour_of(findings_of(self.checks))
+
+    @property
+    def too_soon(self) -> bool:
+        """Whether the pause is safe without faults only, since no hardware is quick enough in practice."""
+        if self.shortest_pause_s is None or self.faultless_pause_s is None:
+            return False
+        return self.faultless_pause_s <= self.pause_s < self.shortest_pause_s
 
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence with its cure; None where there is none."""
         reason = hard_reason(findings_of(self.checks))
+        if reason is None and self.too_soon:
+            reason = (
+                f"with {self.pause_s:g} s between plays a host that hangs or a driver stuck at its limit passes a hard "
+                f"limit before a watchdog or a cut-off of {PRACTICAL_S:g} s acts"
+            )
         return None if reason is None else f"{reason}; {self.cure}"
 
     @property
@@ -124,15 +142,18 @@ class Repeating:
     def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
         """Tallies of each drive with a pause between plays: steady, after another one, between the bounds of all."""
         if (pause_s, endings) not in self._known:
-            self._known[pause_s, endings] = self._tallies(pause_s, endings)
+            self._known[pause_s, endings] = list(self._tallies(pause_s, endings))
         return self._known[pause_s, endings]
 
-    def _tallies(self, pause_s: float, endings: bool) -> list[list[Tally]]:
+    def bounds(self, pause_s: float) -> tuple[list[Cycle], list[State], State, State]:
+        """The cycles with a pause between plays, their steady states, and the warm and the cold bound of all plays."""
         cycles = [replace(cycle, pause_s=pause_s) for cycle in self.drives]
         steady = [steady_cycle(cycle, start)[0] for cycle, start in zip(cycles, self.starts, strict=True)]
-        warm = bound(cycles, self.starts, steady, warm=True)
-        cold = bound(cycles, self.starts, steady, warm=False)
-        tallies = []
+        warm, cold = (bound(cycles, self.starts, steady, warm=warm) for warm in (True, False))
+        return cycles, steady, warm, cold
+
+    def _tallies(self, pause_s: float, endings: bool) -> Iterator[list[Tally]]:
+        cycles, steady, warm, cold = self.bounds(pause_s)
         for number, (cycle, start, state) in enumerate(zip(cycles, self.starts, steady, strict=True)):
             begun = skin_C(self.ensemble, start)
             drive_tallies = [self._tally(cycle, state, begun, "", True)[0]]
@@ -140,12 +161,12 @@ class Repeating:
             for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
                 tally, ended = self._tally(cycle, bounding, begun, what, False)
                 drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.what) if endings else ())]
-            tallies.append(drive_tallies)
-        return tallies
+            yield drive_tallies
 
     def safe(self, pause_s: float, endings: bool = True) -> bool:
         """Whether no hard limit is passed with a pause between plays."""
-        return all(tally.passes() for drive_tallies in self.tallies(pause_s, endings) for tally in drive_tallies)
+        known = self._known.get((pause_s, endings)) or self._tallies(pause_s, endings)
+        return all(tally.passes() for drive_tallies in known for tally in drive_tallies)
 
     def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
         """The tally of a play from a state with its pause, and the state at the end of the play."""
@@ -233,6 +254,21 @@ def shortest_pause_s(repeating: Repeating) -> float | None:
         if more <= deciding:
             return _later(repeating, pause_s)
         deciding |= more
+
+
+def lengthened_s(shortest_s: float, longest_s: float, safe: Callable[[float], bool]) -> float:
+    """The shortest pause in s from one to another that is safe, within 15 % on the safe side, or the longer one.
+
+    >>> lengthened_s(2.0, 50.0, lambda pause_s: pause_s >= 7.0), lengthened_s(2.0, 5.0, lambda pause_s: False)
+    (7.9, 5.0)
+    """
+    if shortest_s >= longest_s or safe(shortest_s):
+        return min(shortest_s, longest_s)
+    begin_s = shortest_s + PAUSE_STEP_S
+    pauses = np.geomspace(begin_s, longest_s, 2 + max(0, math.ceil(math.log(longest_s / begin_s, 1.15))))
+    tried = [math.ceil(pause / PAUSE_STEP_S - 1e-9) * PAUSE_STEP_S for pause in pauses[:-1]]
+    place = bisect_left(tried, 1, key=lambda pause_s: int(safe(pause_s)))
+    return min(longest_s, round(tried[place], 1)) if place < len(tried) else longest_s
 
 
 def _later(repeating: Repeating, pause_s: float) -> float | None:

@@ -1,12 +1,14 @@
 """Single faults of a drive played open loop: a host that stops, a start without rest, swapped poles.
 
 They do not make a drive unsafe by themselves, since hardware prevents them. Simulating them in the worst corners gives
-what the hardware must do.
+what the hardware must do. With a given current a play that begins warmer stays warmer at every node, so a hang in any
+play lies between hangs from the warm and from the cold bound of all plays.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from bisect import bisect_left
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,27 +16,28 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array, Index
 from ..rig.rules import Limits, Rule
-from ..solver.batch_inputs import Intervals, State, run_on
+from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import colour_of, findings_of
 from .demands import CutOff, PolarityCheck, SingleFault
-from .ensemble import Ensemble, between, held_currents
+from .ensemble import Ensemble, between
 from .tally import WATCHED, Tally
 
-HANG_S, INSTANTS = 60.0, 16
-"""How long a stuck current is followed, and at how many instants of a drive it may get stuck."""
-SAME_S = 1e-9
-"""Instants closer than this differ by rounding only."""
-HANG_ROWS_S = np.concatenate([np.arange(500) * 0.01, 5.0 + np.arange(551) * 0.1])
-AFTER_ROWS_S = np.concatenate([np.arange(100) * 0.01, 1.0 + np.arange(291) * 0.1])
-"""Rows of a stuck current, and of 30 s without any after it was cut: fine after a jump, coarse later."""
+HANG_S, INSTANTS = 60.0, 8
+"""How long a fault is followed, and of how many stretches of a drive the end and the extreme currents may get stuck."""
+WAITED_S = (0.0, 1.0, 4.0, 15.0)
+"""Times after a play at which the current of the pause may get stuck."""
+HANGS_S = (*(float(f"{10 ** (k / 20):.2g}") for k in range(-26, 36)), HANG_S)
+"""Times of watchdogs that are tried. One below 0.05 s is not demanded, but a cut-off: assumed, a host is no quicker."""
+REACTIONS_S = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
+"""Reaction times of cut-offs that are tried."""
 MARGIN = 0.8
-"""A watchdog acts after this share of the time to a limit."""
-LEAST_WATCHDOG_S = 0.05
-"""A quicker watchdog is not demanded, but a cut-off on the measured temperature: assumed, a host is no quicker."""
+"""A watchdog or a cut-off acts after this share of the time that is safe."""
+STUCK_ROWS_S = np.concatenate([np.arange(250) * 0.01, 2.5 + np.arange(75) * 0.1, 10.0 + np.arange(51) * 1.0])
+HANG_ROWS_S = np.concatenate([np.arange(50) * 0.1, 5.0 + np.arange(56) * 1.0])
+AFTER_ROWS_S = np.concatenate([np.arange(40) * 0.025, 1.0 + np.arange(30)])
+"""Rows of a driver at its limit, of a stuck current, and of 30 s without any after it was cut."""
 LONGEST_REST_S = 600.0
-REACTIONS_S = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)
-"""Reaction times of cut-offs that are tried, the slowest first."""
 LIMITS_TRIED = 6
 """Current limits between the driver's own and the peak of the drive."""
 TEST_A, TEST_S = 0.3, 2.0
@@ -44,56 +47,128 @@ BEYOND_K = 1.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Moments:
+    """Instants of a play and its pause: in lanes, those of one instant side by side, with a command in A each.
+
+    `warmer` is 1 in plays from the warm bound, −1 from the cold one, 0 from rest; `stuck_A` the driver's limit.
+    """
+
+    state: State
+    command_A: Array
+    rigs: Index
+    warmer: Index
+    instants: tuple[int, ...]
+    stuck_A: float | None = None
+
+    def stuck_at(self, current_A: float) -> Moments:
+        """The same with the driver stuck at a current."""
+        return replace(self, command_A=np.full_like(self.command_A, current_A), stuck_A=current_A)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Faulty:
-    """A drive in its worst corners, ready for its single faults; `start` is the state of rest there."""
+    """A drive in its worst corners, ready for its single faults; `start` is the state of rest there.
+
+    `bounds` are the states between which every play begins; without any, only the first play counts. `instants` are
+    those of `moments` that count; None: all.
+    """
 
     ensemble: Ensemble
     drive: Drive
     rest_A: float
     start: State
     limits: Limits
+    bounds: tuple[State, ...] = ()
+    instants: tuple[int, ...] | None = None
 
-    def watchdog_s(self) -> tuple[float, SingleFault]:
-        """How long a stuck current may last before it is cut, and its effect within a minute."""
-        state, amps, rigs = self._hanging()
-        values, _ = _constant(self.ensemble, amps, state, HANG_ROWS_S, rigs)
-        worst, beyond = _passed(self.limits, values)
-        first = HANG_S if not beyond.any() else float(HANG_ROWS_S[int(np.argmax(beyond.any(axis=0)))])
-        after = first if first >= HANG_S else MARGIN * first
-        while after > LEAST_WATCHDOG_S and first < HANG_S and not self._safe_after(state, amps, rigs, after):
-            after *= 0.5
-        after = round(after, 2) if after > LEAST_WATCHDOG_S else 0.0
-        text = f"the current hangs for {HANG_S:g} s: {worst}"
+    def moments(self) -> Moments:
+        """When the current may get stuck: in each stretch of a drive at its end, and at the ends of its extremes."""
+        starts, count = self.bounds or (self.start,), len(self.ensemble.corners)
+        state = State(*(np.concatenate([getattr(one, part) for one in starts]) for part in ("nodes_C", "sink")))
+        rigs = np.tile(np.arange(count, dtype=np.int64), len(starts))
+        states, commands, before = [], [], 0.0
+        for instant, command in self._stuck_at():
+            state = self.ensemble.end_of(between(self.drive, before, instant), state, rigs)
+            before = instant
+            states.append(state)
+            commands.append(command)
+        for waited_s in WAITED_S:
+            states.append(self.ensemble.hold(self.rest_A, state, np.array([0.0, waited_s]), rigs)[1])
+            commands.append(self.rest_A)
+        which = tuple(range(len(states))) if self.instants is None else self.instants
+        chosen = [states[k] for k in which]
+        return Moments(
+            State(*(np.concatenate([getattr(one, part) for one in chosen]) for part in ("nodes_C", "sink"))),
+            np.repeat([commands[k] for k in which], len(rigs)),
+            np.tile(rigs, len(which)),
+            np.tile(np.repeat([1, -1] if self.bounds else [0], count), len(which)),
+            which,
+        )
+
+    def hardest(self, reach_C: tuple[float, float], within_s: float) -> list[int]:
+        """Corners that are worst in some fault at a few instants, if a watchdog and a cut-off act within a time."""
+        few = np.linspace(1, len(self._stuck_at()) - 1, 4).astype(int)
+        moments = replace(self, instants=tuple(few.tolist())).moments()
+        far_K = self.beyond_K(moments, within_s, CutOff(*self.around_C(reach_C), within_s))
+        lanes = far_K.reshape(len(far_K), len(few), -1).argmax(axis=2)
+        return [int(corner) for corner in np.unique(moments.rigs[lanes])]
+
+    def _stuck_at(self) -> list[tuple[float, float]]:
+        """Instants in s with the command that is stuck there: the one before a change."""
+        times = self.drive.time_s[1:]
+        if len(times) < INSTANTS:
+            times = np.union1d(times, np.linspace(0.0, times[-1], INSTANTS + 1)[1:])
+        commands, chosen = self.drive.at(times - 1e-6), set()
+        for part in np.array_split(np.arange(len(times))[::-1], INSTANTS):  # the last of equals comes first
+            chosen |= {int(part[0]), int(part[commands[part].argmin()]), int(part[commands[part].argmax()])}
+        return [(float(times[k]), float(commands[k])) for k in sorted(chosen)]
+
+    def watchdog_s(self, moments: Moments | None = None) -> tuple[float, SingleFault]:
+        """How long a stuck current may last before it is cut, and the effect of a little longer."""
+        moments = moments or self.moments()
+        safe = bisect_left(HANGS_S, 1, key=lambda time_s: int(self._hung_K(moments, time_s)[1].max() > 0.0))
+        after, tried_s = (0.0, *HANGS_S)[safe], HANGS_S[min(safe, len(HANGS_S) - 1)]
+        worst, far_K = self._hung_K(moments, tried_s)
         prevented = f"a watchdog that cuts the current after {after:g} s without a message from the host"
         if after == 0.0:
             prevented = "a cut-off on the measured temperature; no watchdog is quick enough"
-        return after, SingleFault("host hangs in mid-play", _colour(beyond), text, prevented)
+        text = f"the current hangs for {min(HANG_S, tried_s / MARGIN):.2g} s: {worst}"
+        return after, SingleFault("host hangs in mid-play", _colour(far_K), text, prevented)
 
-    def _hanging(self) -> tuple[State, Array, Index]:
-        """States, currents with their gain, and corners, each (lanes,), for instants at which it may get stuck."""
-        end, corners = float(self.drive.time_s[-1]), len(self.ensemble.corners)
-        extremes = [float(self.drive.time_s[k]) for k in (self.drive.current_A.argmin(), self.drive.current_A.argmax())]
-        even = [
-            instant
-            for instant in np.linspace(0.0, end, INSTANTS)[1:-1].tolist()
-            if all(abs(instant - extreme) > SAME_S for extreme in extremes)
-        ]
-        instants = sorted({*even, *extremes} - {0.0, end})
-        state, before, nodes, sinks, amps = self.start, 0.0, [], [], []
-        for instant in instants:
-            state = self.ensemble.end_of(between(self.drive, before, instant), state)
-            before = instant
-            nodes.append(state.nodes_C)
-            sinks.append(state.sink)
-            amps.append(self.ensemble.gain * float(self.drive.at(np.array([instant]))[0]))
-        rigs = np.tile(np.arange(corners, dtype=np.int64), len(instants))
-        return State(np.concatenate(nodes), np.concatenate(sinks)), np.concatenate(amps), rigs
+    def _hung_K(self, moments: Moments, watchdog_s: float) -> tuple[str, Array]:
+        """The worst of currents that hang until a watchdog cuts them, and how far each lane passes a limit."""
+        return self._cut_K(moments, np.full(len(moments.rigs), min(HANG_S, watchdog_s / MARGIN)))
 
-    def _safe_after(self, state: State, amps: Array, rigs: Index, hang_s: float) -> bool:
-        times = np.array([0.0, *np.arange(0.1, hang_s, 0.1), hang_s])
-        _, then = _constant(self.ensemble, amps, state, np.unique(times), rigs)
-        values, _ = _constant(self.ensemble, np.zeros_like(amps), then, AFTER_ROWS_S, rigs)
-        return not bool(_passed(self.limits, values)[1].any())
+    def _cut_K(self, moments: Moments, cut_s: Array) -> tuple[str, Array]:
+        """The worst while currents are stuck until `cut_s` (lanes,) and for 30 s after; lanes with 0 do not count."""
+        which = np.flatnonzero(cut_s)
+        rigs, state, cut_s = moments.rigs[which], moments.state.take(which), cut_s[which]
+        if moments.stuck_A is not None and self.ensemble.ideal:  # the driver's limit leads one way until it is cut
+            nodes = self.ensemble.modes(moments.stuck_A).after(rigs, state.nodes_C, cut_s)
+            values = self.ensemble.watch(0.0, State(nodes, state.sink), AFTER_ROWS_S, rigs)
+        else:
+            times = np.unique(np.concatenate([HANG_ROWS_S[cut_s.max() > HANG_ROWS_S], cut_s]))
+            on = times[:-1, np.newaxis] < cut_s - 1e-9
+            until, then = self.ensemble.step(on * moments.command_A[which], state, times, rigs)
+            values = np.concatenate([until, self.ensemble.watch(0.0, then, AFTER_ROWS_S, rigs)], axis=2)
+        far_K = np.full(len(moments.rigs), -np.inf)
+        text, far_K[which] = _passed(self.limits, values)
+        return text, far_K
+
+    def beyond_K(
+        self, moments: Moments, watchdog_s: float, cut: CutOff, ends_A: tuple[float, float] | None = None
+    ) -> Array:
+        """How far lanes pass a limit if a watchdog and a cut-off act in time, in each fault that they are to prevent.
+
+        `ends_A` are currents at which the driver may be stuck instead of its own limits.
+        """
+        kept = [self._hung_K(moments, watchdog_s)[1]] if watchdog_s else []
+        for full_A in (ends_A or self.ends_A) if cut.react_within_s else ():
+            stuck = moments.stuck_at(full_A)
+            display = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs, ("display_C",))[0]
+            late_s = _late_s(stuck, display, cut.low, cut.high, cut.react_within_s)
+            kept.append(self._cut_K(stuck, late_s)[1])
+        return np.array(kept or [np.full(len(moments.rigs), -np.inf)])
 
     def rest_before(self) -> tuple[float | None, SingleFault]:
         """For how long in s rest must be held on a display that was without power, before the first play."""
@@ -146,95 +221,102 @@ class Faulty:
         )
         return check, SingleFault("poles swapped", colour_of(findings_of(tally.checks())), text, prevented)
 
-    def cut_off(self, display_C: tuple[float, float]) -> tuple[CutOff, SingleFault]:
+    def cut_off(
+        self, display_C: tuple[float, float], moments: Moments | None = None, *, hangs: bool = False
+    ) -> tuple[CutOff, SingleFault]:
         """The cut-off around the display temperatures reached without a fault, and its reaction time with the driver
-        at its limit.
+        at its limit; with `hangs` also with a current that hangs.
         """
-        limit = {rule.upper: rule.limit for rule in self.limits.rules if _is_hard_display(rule)}
-        low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
-        driver = self.ensemble.rig.driver
-        least, most = driver.current_min_A, driver.current_max_A
-        if self.ensemble.bridge_A is not None:
-            least, most = -self.ensemble.bridge_A, self.ensemble.bridge_A
-        slowest, harms = REACTIONS_S[0], []
-        for full in (least, most):
-            reaction, values = self._stuck(full, low, high)
-            slowest = min(slowest, reaction)
-            text, beyond = _passed(self.limits, values)
-            if beyond.any():
-                harms.append(f"{text} at {signed(full, '.3g')} A")
+        low, high = self.around_C(display_C)
+        moments, harms, slowest = moments or self.moments(), [], REACTIONS_S[-1]
+        for full_A in self.ends_A:
+            stuck = moments.stuck_at(full_A)
+            values = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs)
+            slowest = min(slowest, self._reaction_s(stuck, values, low, high))
+            text, far_K = _passed(self.limits, values)
+            if far_K.max() > 0.0:
+                harms.append(f"{text} at {signed(full_A, '.3g')} A")
+        if hangs:
+            commands = np.broadcast_to(moments.command_A, (len(STUCK_ROWS_S) - 1, len(moments.rigs)))
+            values = self.ensemble.step(commands, moments.state, STUCK_ROWS_S, moments.rigs)[0]
+            slowest = min(slowest, self._reaction_s(moments, values, low, high))
         worst, colour = " and ".join(harms) or "no limit is passed", "red" if harms else "green"
-        cut = CutOff(round(low, 1), round(high, 1), slowest)
-        prevented = f"a cut-off at {cut.low:g} and {cut.high:g} °C on the measured display, within {slowest:g} s"
+        cut = CutOff(low, high, slowest)
+        prevented = f"a cut-off at {low:g} and {high:g} °C on the measured display, within {slowest:g} s"
         if slowest == 0.0:
-            prevented = self._limit_instead(low, high)
+            prevented = self._limit_instead(moments, low, high)
         return cut, SingleFault("driver stuck at its limit", colour, worst, prevented)
 
-    def _limit_instead(self, low: float, high: float) -> str:
+    def around_C(self, display_C: tuple[float, float]) -> tuple[float, float]:
+        """Where a cut-off acts that lets the display pass between two temperatures in °C."""
+        limit = {rule.upper: rule.limit for rule in self.limits.rules if _is_hard_display(rule)}
+        low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
+        return round(low, 1), round(high, 1)
+
+    @property
+    def ends_A(self) -> tuple[float, float]:
+        """The least and the greatest current in A of the driver, or of the bridge."""
+        driver, bridge_A = self.ensemble.rig.driver, self.ensemble.bridge_A
+        return (driver.current_min_A, driver.current_max_A) if bridge_A is None else (-bridge_A, bridge_A)
+
+    def _limit_instead(self, moments: Moments, low: float, high: float) -> str:
         """What prevents harm where no cut-off is quick enough: a smaller current limit that still plays the drive."""
         driver, peak = self.ensemble.rig.driver, float(np.abs(self.drive.current_A).max())
         full = max(driver.current_max_A, -driver.current_min_A)
-        for most in np.linspace(full, peak, LIMITS_TRIED)[1:].tolist():
-            shares = (driver.current_min_A / full, driver.current_max_A / full)
-            if all(self._stuck(share * most, low, high)[0] > 0 for share in shares if share):
-                prevented = f"a current limit of {most:.2g} A in the driver's hardware"
-                return f"{prevented}; no cut-off is quick enough at {full:g} A"
+        tried = np.linspace(full, peak, LIMITS_TRIED)[1:].tolist()
+        cut, low_A, high_A = CutOff(low, high, REACTIONS_S[0]), driver.current_min_A / full, driver.current_max_A / full
+        place = bisect_left(
+            tried,
+            1,
+            key=lambda most: int(self.beyond_K(moments, 0.0, cut, (low_A * most, high_A * most)).max() <= 0.0),
+        )
+        if place < len(tried):
+            prevented = f"a current limit of {tried[place]:.2g} A in the driver's hardware"
+            return f"{prevented}; no cut-off is quick enough at {full:g} A"
         return (
             "a smaller or shorter drive: no cut-off is quick enough, and no current limit that still plays this one "
             "is low enough"
         )
 
-    def _stuck(self, current_A: float, low: float, high: float) -> tuple[float, Array]:
-        """The longest safe reaction of a cut-off in s with the driver stuck at a current, and WATCHED until then."""
-        amps = current_A * self.ensemble.gain
-        values, _ = _constant(self.ensemble, amps, self.start, HANG_ROWS_S, self.ensemble.lanes)
-        return self._reaction_s(amps, values[WATCHED.index("display_C")], low, high), values
-
-    def _reaction_s(self, amps: Array, display: Array, low: float, high: float) -> float:
-        """The longest reaction time of a cut-off that is safe for given courses of the display (lanes, rows)."""
-        out = ~((display > low) & (display < high))
-        trips = [float(HANG_ROWS_S[int(row.argmax())]) if row.any() else HANG_S for row in out]
-        for reaction in REACTIONS_S:
-            if all(self._safe_after_lane(lane, amps, trip + reaction) for lane, trip in enumerate(trips)):
-                return reaction
-        return 0.0
-
-    def _safe_after_lane(self, lane: int, amps: Array, time_s: float) -> bool:
-        lanes = np.array([lane], dtype=np.int64)
-        return self._safe_after(self.start.take(lanes), amps[lanes], lanes, time_s)
+    def _reaction_s(self, moments: Moments, values: Array, low: float, high: float) -> float:
+        """The longest reaction time of a cut-off that is safe for currents that would give `values`; 0 for none."""
+        display = values[WATCHED.index("display_C")]
+        late_s = [_late_s(moments, display, low, high, time_s) for time_s in REACTIONS_S]
+        safe = bisect_left(late_s, 1, key=lambda cut_s: int(self._cut_K(moments, cut_s)[1].max() > 0.0))
+        return (0.0, *REACTIONS_S)[safe]
 
 
-def _constant(ensemble: Ensemble, amps: Array, state: State, times_s: Array, rigs: Index) -> tuple[Array, State]:
-    """Hold a current (lanes,) in every lane, gain included; WATCHED at times from now, and the last states."""
-    rows = len(times_s) - 1
-    bridge = None if ensemble.bridge_A is None else ensemble.bridge_A * ensemble.gain[rigs]
-    start, end = held_currents(amps, rows, bridge)
-    intervals = Intervals(times_s, np.arange(rows + 1), start, end)
-    lanes = np.arange(len(rigs), dtype=np.int64)
-    return run_on(ensemble.bank, rigs, lanes, intervals, state, WATCHED)
+def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_s: float) -> Array:
+    """When a cut-off at two temperatures of the display (lanes, STUCK_ROWS_S) has acted in each lane.
+
+    0 in lanes that heat from the cold bound or cool from the warm one: others are there sooner with warmer skin.
+    """
+    out = ~((display > low) & (display < high))
+    first = out.argmax(axis=1)
+    side = np.where(display[np.arange(len(first)), first] <= low, -1, 1) * out.any(axis=1)
+    late_s = np.minimum(HANG_S, np.where(side, STUCK_ROWS_S[first], HANG_S) + reaction_s / MARGIN)
+    return np.where(side * moments.warmer < 0, 0.0, late_s)
 
 
 def _passed(limits: Limits, values: Array) -> tuple[str, Array]:
-    """By how much hard temperature limits are exceeded, in words, and whether each lane exceeds any at each row."""
-    beyond = np.zeros(values.shape[1:], dtype=bool)
-    worst, text = -np.inf, "no limit is passed"
+    """By how much hard temperature limits are exceeded at most, in words, and in each lane in K; negative inside."""
+    farthest, text = np.full(values.shape[1], -np.inf), "no limit is passed"
     columns = {"skin surface": "skin_C", "display": "display_C", "cold-receptor depth": "cold_receptor_C"}
     for rule in limits.rules:
         if rule.severity != "hard" or rule.relative or rule.quantity not in columns or rule.above_C is not None:
             continue
         column = np.nan_to_num(values[WATCHED.index(columns[rule.quantity])], nan=999.0)
-        over = column - rule.limit if rule.upper else rule.limit - column
-        beyond |= over > 0
-        if over.max() > max(worst, 0.0):
-            worst = float(over.max())
+        over = (column - rule.limit if rule.upper else rule.limit - column).max(axis=1)
+        if over.max() > max(float(farthest.max()), 0.0):
             reached = float(column.max() if rule.upper else column.min())
             text = f"{rule.quantity} reaches {signed(reached, '.1f')} °C"
-    return text, beyond
+        farthest = np.maximum(farthest, over)
+    return text, farthest
 
 
 def _is_hard_display(rule: Rule) -> bool:
     return rule.quantity == "display" and rule.severity == "hard" and rule.above_C is None
 
 
-def _colour(beyond: Array) -> str:
-    return "red" if beyond.any() else "green"
+def _colour(far_K: Array) -> str:
+    return "red" if far_K.max() > 0.0 else "green"

@@ -27,6 +27,9 @@ from .tally import WATCHED, Tally
 LAST, LOST = "last set-point held", "control lost"
 DISPLAY_ENDINGS = (LAST, LOST)
 
+INSTANTS = 24
+"""Instants of a play, besides the last of its extreme, at which states are compared."""
+
 _PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
 
 
@@ -139,6 +142,17 @@ class Under:
         bounded = least_bound([self._map(course, pause_s) for course in shows], starts, 1.0 if warm else -1.0)
         return [modes.unlumps @ lumps for modes, lumps in zip(self.modes, bounded, strict=True)]
 
+    def farthest(self, shows: Sequence[DisplayCourse], states: Sequence[Array], warm: bool) -> list[Array]:
+        """States warmer (or colder), lump by lump, than at instants of plays from states, and before them."""
+        side, found = 1.0 if warm else -1.0, self._lumps(states)
+        for course in shows:
+            last, now = len(course.display_C) - 1, list(states)
+            ends = {int((side * course.display_C[::-1]).argmax()), *range(0, last, -(-last // INSTANTS))}
+            for begin, end in itertools.pairwise(sorted({0, last, *(last - k for k in ends)})):
+                _, now = self.play(replace(course, display_C=course.display_C[begin : end + 1]), now)
+                found = side * np.maximum(side * found, side * self._lumps(now))
+        return [modes.unlumps @ lumps for modes, lumps in zip(self.modes, found, strict=True)]
+
     def _lumps(self, states: Sequence[Array]) -> Array:
         """Lumps (corners, n) above the deep node's temperature, for modes."""
         return np.array([modes.lumps @ state for modes, state in zip(self.modes, states, strict=True)])
@@ -193,9 +207,9 @@ def add_endings(
     tallies[1].add(end + LATE_S, under.let_go(ended, LATE_S), rates=False, sums=sums, drift=True)
 
 
-def time_to_limit_s(under: Under, limits: Limits, level_C: float, start: Sequence[Array]) -> tuple[float, Tally]:
+def time_to_limit_s(under: Under, limits: Limits, level_C: float, start: Sequence[Array]) -> float:
     """Time in s for which a display may be held at a level before a hard temperature limit is exceeded, 60 at most."""
     tally = Tally(limits, under.corners)
     tally.add(ENDING_ROWS_S, under.hold(level_C, start, ENDING_ROWS_S), rates=False, sums=False)
     broken = [check.since_s for check in tally.checks() if check.severity == "hard" and check.since_s is not None]
-    return min(broken, default=ENDING_S), tally
+    return min(broken, default=ENDING_S)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,14 +14,16 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from .checks import Check, colour_of, findings_of, worst_of
+from .checks import Check, again, colour_of, findings_of, worst_of
 from .demands import CutOff, Demands, SingleFault
 from .endings import ENDING_S
 from .gate import Gate
 from .repeated import (
     LONGEST_PAUSE_S,
+    PRACTICAL_S,
     Repeated,
     check_pause,
+    lengthened_s,
     pause_rows,
     shortest_of,
 )
@@ -93,15 +97,24 @@ def gate_shown(
     if pause is None:
         times = [LONGEST_PAUSE_S if recovery is None else recovery for _, recovery, _ in once]
         pause = max(times)
-    again = _again(under, drives, limits_held, pause, rates)
-    shortest = None
+    repeatedly = _again(under, drives, limits_held, pause, rates)
+    faultless = shortest = None
     if _safe([checks for checks, _, _ in once]):  # no pause mends a play that is red by itself
-        shortest = _shortest_s(under, drives, limits_held, rates)
+        faultless = _shortest_s(under, drives, limits_held, rates)
+    faults = partial(_faults, under, drives, limits_held, stuck_C)
+    if faultless is not None:
+        longest = max(faultless, *(LONGEST_PAUSE_S if recovery is None else recovery for _, recovery, _ in once))
+        needed = np.minimum(PRACTICAL_S, [each.quickest_s for each in faults(longest)])
+        shortest = lengthened_s(
+            faultless, longest, lambda wait_s: bool(([each.quickest_s for each in faults(wait_s)] >= needed).all())
+        )
     verdicts = []
-    for ways, (checks, recovery, after), repeated_checks in zip(drives, once, again, strict=True):
+    for ways, (checks, recovery, after), repeated_checks, fault in zip(
+        drives, once, repeatedly, faults(shortest), strict=True
+    ):
         plays = _plays(ways[0], pause, limits_held.session_s)
-        repeated = Repeated(pause, recovery, shortest, plays, limits_held.session_s, repeated_checks)
-        every = [check for each in (*(single for single, _, _ in once), *again) for check in each]
+        repeated = Repeated(pause, recovery, shortest, plays, limits_held.session_s, repeated_checks, faultless)
+        every = [check for each in (*(single for single, _, _ in once), *repeatedly) for check in each]
         verdicts.append(
             Gate(
                 rig.name,
@@ -114,7 +127,7 @@ def gate_shown(
                 after,
                 None,
                 repeated,
-                _demands(under, ways, limits_held, repeated, stuck_C, every),
+                _demands(fault, limits_held, repeated, every),
             )
         )
     return tuple(verdicts)
@@ -138,7 +151,7 @@ def _again(
                 _cycle_checks(under, course, limits, pause_s, states, skin, f" ({word} bound)", (False, rates))
                 for word, states in bounds.items()
             ]
-        all_checks.append(worst_of(checks for group in judged for checks in group))
+        all_checks.append(again(worst_of(checks for group in judged for checks in group)))
     return all_checks
 
 
@@ -153,14 +166,14 @@ def _cycle_checks(
     rates: tuple[bool, bool],
 ) -> list[tuple[Check, ...]]:
     """Every rule for one play among many and for its endings; `rates`: whether they are judged in each of the two."""
-    again = f", {course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
+    words = f", {course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
     values, ended = under.play(course, states)
-    tally = Tally(limits, under.corners, again, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
+    tally = Tally(limits, under.corners, words, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
     tally.add(course.rows_s, values, rates=rates[0])
     rows = np.append(0.0, pause_rows(course.left_s(pause_s)))
     if len(rows) > 1:
         tally.add(course.end_s + rows, under.hold(float(course.display_C[-1]), ended, rows), rates=False)
-    endings = [Tally(limits, under.corners, f"{again}, then {ending}", begun_C=begun_C) for ending in DISPLAY_ENDINGS]
+    endings = [Tally(limits, under.corners, f"{words}, then {ending}", begun_C=begun_C) for ending in DISPLAY_ENDINGS]
     add_endings(under, course, ended, endings, sums=False, rates=rates[1])
     return [tally.checks(), *(ending.checks() for ending in endings)]
 
@@ -169,8 +182,8 @@ def _plays(course: DisplayCourse, pause_s: float, session_s: float) -> int:
     return max(1, math.floor((session_s + pause_s) / (course.end_s + course.left_s(pause_s)) + 1e-9))
 
 
-def _safe(again: Sequence[Sequence[Check]]) -> bool:
-    return all(colour_of(findings_of(checks)) != "red" for checks in again)
+def _safe(judged: Sequence[Sequence[Check]]) -> bool:
+    return all(colour_of(findings_of(checks)) != "red" for checks in judged)
 
 
 def _shortest_s(under: Under, drives: Sequence[Ways], limits: Limits, rates: bool) -> float | None:
@@ -180,22 +193,48 @@ def _shortest_s(under: Under, drives: Sequence[Ways], limits: Limits, rates: boo
     return 0.0 if safe(0.0) else shortest_of(safe)
 
 
-def _demands(
-    under: Under,
-    ways: Ways,
-    limits: Limits,
-    repeated: Repeated,
-    stuck_C: tuple[float, float],
-    checks: Sequence[Check],
-) -> Demands:
+@dataclass(frozen=True, slots=True)
+class _Faults:
+    """Set-points that hang, and ends of a range at which a loop is stuck: level in °C, time in s to a limit."""
+
+    hangs: list[tuple[float, float]]
+    stuck: list[tuple[float, float]]
+
+    @property
+    def quickest_s(self) -> tuple[float, float]:
+        """How quickly a watchdog and a cut-off must act, in s."""
+        hang, stuck = (MARGIN * min(time for _, time in each) for each in (self.hangs, self.stuck))
+        return hang, stuck
+
+
+def _faults(
+    under: Under, drives: Sequence[Ways], limits: Limits, stuck_C: tuple[float, float], pause_s: float | None
+) -> list[_Faults]:
+    """Faults of each drive in any play after a pause; without one, in drives that are not safe, from rest."""
+    shows = [course for ways in drives for course in ways]
+    found = []
+    for ways in drives:
+        cold = warm = under.steady(float(ways[0].display_C[0]))
+        if pause_s is not None:
+            cold, warm = (under.farthest(ways, under.bound(shows, pause_s, up), up) for up in (False, True))
+        levels = [float(level) for course in ways for level in (course.display_C.min(), course.display_C.max())]
+        hangs, stuck = (
+            [
+                (level, time_to_limit_s(under, limits, level, begun))
+                for level, begun in zip(ends, (cold, warm), strict=True)
+            ]
+            for ends in ((min(levels), max(levels)), stuck_C)
+        )
+        found.append(_Faults(hangs, stuck))
+    return found
+
+
+def _demands(fault: _Faults, limits: Limits, repeated: Repeated, checks: Sequence[Check]) -> Demands:
     """What the device itself must prevent: a stuck set-point, and a loop that runs to the end of its range."""
-    start = under.steady(float(ways[0].display_C[0]))
-    levels = [float(level) for course in ways for level in (course.display_C.min(), course.display_C.max())]
-    hangs = [(level, *time_to_limit_s(under, limits, level, start)) for level in (min(levels), max(levels))]
-    stuck = [(level, *time_to_limit_s(under, limits, level, start)) for level in stuck_C]
-    watchdog = min(time for _, time, _ in hangs)
+    hangs, stuck = fault.hangs, fault.stuck
+    watchdog = min(time for _, time in hangs)
     watchdog = watchdog if watchdog >= ENDING_S else round(MARGIN * watchdog, 2)
-    react = min(time for _, time, _ in stuck)
+    react = min(time for _, time in stuck)
     display = [check.value for check in checks if check.quantity == "display"]
     hard = {
         rule.upper: rule.limit
@@ -233,5 +272,5 @@ def _prevents_stuck(cut: CutOff) -> str:
     )
 
 
-def _levels(faults: Sequence[tuple[float, float, Tally]]) -> str:
-    return " or ".join(f"{signed(level, '.1f')} °C" for level, _, _ in faults)
+def _levels(faults: Sequence[tuple[float, float]]) -> str:
+    return " or ".join(f"{signed(level, '.1f')} °C" for level, _ in faults)

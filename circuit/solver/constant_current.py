@@ -106,11 +106,11 @@ class ConstantCurrent:
         kernel_modes.relax(rigs, times_s, self.rate_per_s, modes, reading, level, values)
         return values
 
-    def after(self, rigs: Index, nodes_C: Array, time_s: float) -> Array:
-        """Nodes (lanes, m + 1) a time later."""
+    def after(self, rigs: Index, nodes_C: Array, time_s: float | Array) -> Array:
+        """Nodes (lanes, m + 1) a time later, or each lane a time of its own (lanes,)."""
         rest = self.rest_C[rigs]
         modes = np.einsum("lmk,lk->lm", self.to_modes[rigs], nodes_C[:, :-1] - rest)
-        modes = modes * np.exp(np.clip(-self.rate_per_s[rigs] * time_s, None, FARTHEST))
+        modes = modes * np.exp(np.clip(-self.rate_per_s[rigs] * np.asarray(time_s)[..., np.newaxis], None, FARTHEST))
         moved = rest + np.einsum("lkm,lm->lk", self.from_modes[rigs], modes)
         return np.concatenate([moved, nodes_C[:, -1:]], axis=1)
 

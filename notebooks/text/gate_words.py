@@ -63,6 +63,8 @@ def repeated_text(gates: Sequence[Named]) -> str:
     first, counts = gates[0][1].repeated, sorted({gate.repeated.plays for _, gate in gates})
     plays = f"{counts[0]}" if len(counts) == 1 else f"{counts[0]} to {counts[-1]}"
     shortest = "no pause is safe" if first.shortest_pause_s is None else f"{number(first.shortest_pause_s, 1)} s"
+    if first.faultless_pause_s is not None and first.faultless_pause_s != first.shortest_pause_s:
+        shortest += f" ({number(first.faultless_pause_s, 1)} s without faults)"
     ordered = sorted(gates, key=lambda one: _recovery(one[1].repeated))
     back = [_recovery_text(gate.repeated) for _, gate in (ordered[0], ordered[-1])]
     after = back[0]
@@ -119,7 +121,8 @@ def demands_text(gates: Sequence[Named]) -> str:
     limited = [(name, one) for name, one in every if one.zero_current_at_most_s is not None]
     if limited:
         parts.append(f"zero current in contact for {_strictest(limited, _zero_s)} at most")
-    return ", ".join(parts)
+    pause_s = max(one.pause_at_least_s or 0.0 for _, one in every)
+    return f"{', '.join(parts)}; in any play after {number(pause_s, 1)} s of pause or more"
 
 
 def short_scenario(scenario: str) -> str:

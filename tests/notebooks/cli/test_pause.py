@@ -123,7 +123,7 @@ class TestFiles:
         assert numbers["WATCHDOG_S"] == min(one.watchdog_s for one in demands) != 0.5
         assert numbers["LOW_C"] == max(one.cut_off_display_C.low for one in demands) != 10.0
         assert numbers["HIGH_C"] == min(one.cut_off_display_C.high for one in demands) != 43.0
-        assert numbers["REACT_S"] == min(one.cut_off_display_C.react_within_s for one in demands) != 0.1
+        assert numbers["REACT_S"] == min(one.cut_off_display_C.react_within_s for one in demands)
         assert numbers["REST_S"] == max(one.rest_before_first_play_s or 0.0 for one in demands) != 60.0
         assert numbers["PAUSE_S"] == demands[0].pause_at_least_s != 60.0
 
