@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..observer.channels import Norm
 from ..observer.draws import PosteriorDraws
-from ..observer.memory_constants import with_memory
+from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
 from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import latin
+
+OFFSETS = ("laboratory, cold", "laboratory, warm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,16 +54,25 @@ class DrawnLaboratories:
 
     def at(self, place: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, and its people."""
-        k = int(self.chosen[place])
-        observer = with_memory(self.posterior.observer(k), self.memory[place])
-        drawn = draw_people(people, self.seed, age_years=self.age_years, spreads=self.posterior.draw(k))
-        return observer, drawn.less_sensitive(*(-self.offsets[place]))
+        return self.with_values(self.values[place], people)
+
+    def with_values(self, values: Array, people: int) -> tuple[Observer, People]:
+        """The observer and the people of a laboratory with these values of the constants (constants,)."""
+        named, (variable, model) = dict(zip(self.names, values.tolist(), strict=True)), self.posterior.variant
+        observer = observer_with(Observer.load(variable=variable, model=model), named)
+        drawn = draw_people(people, self.seed, age_years=self.age_years, spreads=named)
+        return observer, drawn.less_sensitive(*(-named[offset] for offset in OFFSETS))
+
+    def invited(self, people: int) -> NDArray[np.int64]:
+        """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""
+        chance = np.random.default_rng(np.random.SeedSequence([self.seed, 9]))
+        return chance.integers(people, size=(len(self), people))
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the columns of `values`."""
         memory = tuple(self.memory[0]) if self.memory else ()
-        return (*self.posterior.names, *self.posterior.memory_names, *memory, "laboratory, cold", "laboratory, warm")
+        return (*self.posterior.names, *self.posterior.memory_names, *memory, *OFFSETS)
 
     @property
     def values(self) -> Array:
