@@ -89,22 +89,19 @@ def _beyond_the_command(rig: Rig) -> list[str]:
 
 
 def _faster_than_steps(rig: Rig) -> list[str]:
-    """A sentence for each plate that follows what it touches within two steps of the solver."""
+    """A sentence where the cold plate follows what it touches within two steps of the solver."""
     if rig.pump is None:
         return []
-    module, step = rig.module, min(STEP_S, 1.0 / rig.driver.update_Hz)
-    outside = 1.0 / rig.heat_sink.resistance_K_per_W, rig.contact.area_m2 / rig.contact.resistance_m2K_per_W
-    sentences = []
-    for key, W_per_K in zip(PLATE_KEYS, outside, strict=True):
-        stored, through = getattr(module, key), W_per_K + 1.0 / module.thermal_resistance_K_per_W
-        if stored < STEPS * step * through:
-            sentences.append(
-                f"module.{key} = {stored:g} J/K follows what the plate touches within {1e3 * stored / through:.2g} ms, "
-                f"under the {1e3 * STEPS * step:.3g} ms of two steps of the solver, and may be tenths of a kelvin off: "
-                f"give it {1.05 * STEPS * step * through:.2g} J/K or more, with what is fixed to it, or set "
-                f"driver.update_Hz to {1.05 * STEPS * through / stored:.0f} or more"
-            )
-    return sentences
+    stored, limit = rig.module.cold_plate_J_per_K, STEPS * min(STEP_S, 1.0 / rig.driver.update_Hz)
+    through = rig.contact.area_m2 / rig.contact.resistance_m2K_per_W + 1.0 / rig.module.thermal_resistance_K_per_W
+    if stored >= limit * through:
+        return []
+    return [
+        f"module.cold_plate_J_per_K = {stored:g} J/K follows what it touches within {1e3 * stored / through:.2g} ms, "
+        f"under the {1e3 * limit:.3g} ms of two steps of the solver, and may be tenths of a kelvin off: give it "
+        f"{1.05 * limit * through:.2g} J/K or more, with what is fixed to it, or set driver.update_Hz to "
+        f"{1.05 * STEPS * through / stored:.0f} or more"
+    ]
 
 
 def _left_from_another_site(rig: Rig) -> list[str]:

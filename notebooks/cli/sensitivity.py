@@ -103,6 +103,6 @@ def sentences(found: Sensitivity) -> list[str]:
         "",
         "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that shares "
         "need not add up to 100 %. Beside them the proportion correct expected at both ends of the interval. "
-        f"{found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm); "
+        f"{found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm): "
         "contact and outermost layer of the skin vary too, unlike in the intervals of rank.",
     ]
