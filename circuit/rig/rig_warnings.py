@@ -22,6 +22,9 @@ LIVING_C = (28.0, 38.5)
 USUAL_COMMAND_V = 10.0
 """Analogue outputs of laboratories end here; larger commands need another output or more gain."""
 
+STEP_S, STEPS = 0.01, 2.0
+"""Longest step of the solver, and how many a plate must take to follow: with fewer it is some 0.03 K off, or more."""
+
 HIGH_RESTING_FLUX_W_PER_M2 = 150.0
 """Bare skin in still air loses 40 to 120 W/m²; above this, the rig warns."""
 
@@ -44,7 +47,7 @@ def rig_warnings(rig: Rig) -> tuple[str, ...]:
     sentences += rig.limits.hidden
     if resting := rig.limits.passed_at_rest(rig.skin.rest_C):
         sentences.append(resting)
-    sentences += _beyond_the_command(rig)
+    sentences += _beyond_the_command(rig) + _faster_than_steps(rig)
     origin = () if rig.pump is None else rig.pump.origin.warnings
     left = (*_left_from_another_module(rig), *_plates_of_another_module(rig), *_left_from_another_site(rig))
     return (*sentences, *origin, *left)
@@ -82,6 +85,22 @@ def _beyond_the_command(rig: Rig) -> list[str]:
         f"driver.transconductance_A_per_V = {gain:g}; cards that end at ±{USUAL_COMMAND_V:g} V, such as those of NI, "
         f"reach {USUAL_COMMAND_V * gain:g} A: set driver.transconductance_A_per_V to that of your driver "
         f"({limit / USUAL_COMMAND_V:.3g} or more for {limit:g} A), or the limit to {USUAL_COMMAND_V * gain:g} A"
+    ]
+
+
+def _faster_than_steps(rig: Rig) -> list[str]:
+    """A sentence where the cold plate follows what it touches within two steps of the solver."""
+    if rig.pump is None:
+        return []
+    stored, limit = rig.module.cold_plate_J_per_K, STEPS * min(STEP_S, 1.0 / rig.driver.update_Hz)
+    through = rig.contact.area_m2 / rig.contact.resistance_m2K_per_W + 1.0 / rig.module.thermal_resistance_K_per_W
+    if stored >= limit * through:
+        return []
+    return [
+        f"module.cold_plate_J_per_K = {stored:g} J/K follows what it touches within {1e3 * stored / through:.2g} ms, "
+        f"under the {1e3 * limit:.3g} ms of two steps of the solver, and may be tenths of a kelvin off: give it "
+        f"{1.05 * limit * through:.2g} J/K or more, with what is fixed to it, or set driver.update_Hz to "
+        f"{1.05 * STEPS * through / stored:.0f} or more"
     ]
 
 

@@ -93,15 +93,16 @@ def survey(
     if rest is not None:
         walker.lowest = walker.highest = float(rest)
     _, duration = walker.run(body, rest)
-    if duration > LONGEST_S:
-        what = f"this icon lasts {float(duration):,.6g} s"
+    seconds = float(duration)  # Fractions are compared only where floats leave a doubt
+    if seconds >= LONGEST_S and duration > LONGEST_S:
+        what = f"this icon lasts {seconds:,.6g} s"
         walker.found.append(Problem(None, "E221", "name", what, "an icon lasts at most one hour (3600 s)"))
-    if walker.timed and duration == 0 and body and not walker.found:
+    if walker.timed and seconds == 0 and body and not walker.found:
         help = 'a step takes no time; follow it with a line such as "hold for 2 s"'
         walker.found.append(Problem(None, "E223", "name", "this icon lasts 0 s", help))
     if walker.timed:
         walker.totals(body, duration)
-    return Survey(walker.found, float(duration), walker.lowest, walker.highest, walker.steepest_per_s)
+    return Survey(walker.found, seconds, walker.lowest, walker.highest, walker.steepest_per_s)
 
 
 @dataclass(slots=True)
@@ -227,27 +228,28 @@ class _Walker:
 
     def side(self, part: Leaf, level: Fraction, rest: Fraction) -> None:
         unit = "A" if self.control == "current" else "°C"
-        now = self.say(level)
         if isinstance(part, Ramp | Step) and part.to_C is not None:
             target = exact(part.to_C, "absolute")
             if target == level:
-                self.blame(part, "E201", "target", f"the level is {now} already", 'to stay there, write "hold for 2 s"')
+                what = f"the level is {self.say(level)} already"
+                self.blame(part, "E201", "target", what, 'to stay there, write "hold for 2 s"')
             elif part.direction != "change" and (target > level) != (part.direction == "warm"):
                 other = "cool" if part.direction == "warm" else "warm"
                 side = "below" if target < level else "above"
-                what = f"{part.to_C:.6g} °C is {side} the {now} reached so far"
+                what = f"{part.to_C:.6g} °C is {side} the {self.say(level)} reached so far"
                 help = f'"{part.direction}" leads the other way; for a change of level, write "by"'
                 self.blame(part, "E201", "target", what, help, ("direction", other))
         elif isinstance(part, Current | Step) and absolute([part]) and advance_blind(part) == level:
-            self.blame(part, "E201", "target", f"the current is {now} already", 'to stay there, write "hold for 2 s"')
+            what = f"the current is {self.say(level)} already"
+            self.blame(part, "E201", "target", what, 'to stay there, write "hold for 2 s"')
         elif isinstance(part, Rest) and level != rest:
-            what = f"the level is {now} here, baseline is {float(rest):.6g} {unit}"
+            what = f"the level is {self.say(level)} here, baseline is {float(rest):.6g} {unit}"
             help = 'rest is at baseline: return first, or write "hold" to stay at this level'
             self.blame(part, "E205", "whole", what, help, ("word", "hold"))
         elif isinstance(part, Return) and level == rest:
             help = 'to stay there, write "rest for 2 s"'
             cures = (("whole", f"rest for {part.duration_s:g} s"),) if part.duration_s else ()
-            self.blame(part, "E206", "whole", f"the level is at baseline already, {now}", help, *cures)
+            self.blame(part, "E206", "whole", f"the level is at baseline already, {self.say(level)}", help, *cures)
 
     def say(self, level: Fraction) -> str:
         return f"{float(level):.6g} {'A' if self.control == 'current' else '°C'}"

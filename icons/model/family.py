@@ -3,13 +3,14 @@
 import random
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from math import prod
 from typing import TYPE_CHECKING
 
 from .context import Context, Metadata, name_fault
 from .expand import HOLE, Expander
 from .family_check import Summary, check_family
-from .icon import Icon
+from .icon import Icon, rest_level
 from .parameter import Parameter
 from .slots import Slot, in_order, slot_fault
 from .statements import Statement
@@ -69,6 +70,7 @@ class Family:
     context: Context = field(default_factory=Context)
     metadata: Metadata = field(default_factory=Metadata)
     _expander: Expander = field(init=False, compare=False, repr=False)
+    _checked: tuple[Fraction, Summary] = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         for name in ("parameters", "template"):
@@ -81,7 +83,7 @@ class Family:
             raise ValueError(f"family {self.name}: {wrong}")
         members = Expander(self.name, self.parameters, self.template, self.slots, self.metadata)
         object.__setattr__(self, "_expander", members)
-        check_family(members, self.context)
+        object.__setattr__(self, "_checked", (rest_level(self.context), check_family(members, self.context)))
 
     def _fault(self) -> str | None:
         names = [parameter.name for parameter in self.parameters]
@@ -162,7 +164,8 @@ class Family:
 
     def summary(self, start: float | None = None) -> Summary:
         """Return durations, extremes and steepest rate over all members; ``start``, errors: see ``Icon.corners``."""
-        return check_family(self._expander, self.context, start)
+        rest, found = self._checked
+        return found if rest_level(self.context, start) == rest else check_family(self._expander, self.context, start)
 
     def plot(self, ax: "Axes | None" = None) -> "Axes":
         """Draw up to 24 members, evenly chosen, over one another; returns the Axes."""

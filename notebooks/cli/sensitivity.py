@@ -96,7 +96,6 @@ def sentences(found: Sensitivity) -> list[str]:
     """Return what to measure first, what the numbers are, and what they were computed from."""
     what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
     crowd = "1 virtual person" if found.people == 1 else f"{found.people} virtual people"
-    low, high = found.proportion_correct_interval
     lead = "Measure first, by the share of the variance of the proportion correct that would go:"
     return [
         lead if found.first else "No measurement would narrow the prediction noticeably.",
@@ -105,5 +104,5 @@ def sentences(found: Sensitivity) -> list[str]:
         "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that shares "
         "need not add up to 100 %. Beside them the proportion correct expected at both ends of the interval. "
         f"{found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm): "
-        f"{percent(low)}–{percent(high)} correct, median {percent(found.proportion_correct)}.",
+        "contact and outermost layer of the skin vary too, unlike in the intervals of rank.",
     ]

@@ -35,7 +35,7 @@ def validate_command(
         typer.Option(
             "--draws", metavar="N", help="Number of observers drawn for intervals and trade-offs; 0 for none."
         ),
-    ] = 64,
+    ] = 128,
     seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
     json_out: Annotated[
         Path | None,

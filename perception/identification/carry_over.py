@@ -1,7 +1,8 @@
 """Carry-over from an icon to the next: temperature left in the skin, and adaptation of the receptors.
 
-The nominal person feels every icon after every other one. Between the display and the receptors the skin is linear, so
-that what is left of the icon before adds to what the next one brings; adaptation, which is not, is then run over both.
+People who differ in their thresholds feel every icon after every other one: for a single person, what is left falls out
+of memory at one gap. Between the display and the receptors the skin is linear, so that what is left of the icon before
+adds to what the next one brings; adaptation, which is not, is then run over both.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
+from ..kernels.parallel import in_order
 from ..observer.channels import NORMS, TRACE_NORMS, USUAL_NORM, Norm
 from ..observer.observer import Observer
+from ..observer.people import draw_people
 from ..sensation.percept import perceive_many, uniform_clock
 from .distance import identification_noise, percept_distances
 from .episodes import Episodes, episode_distances
@@ -25,14 +28,15 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 RATE_HZ = 25.0
+PEOPLE = 32
 
 
 @dataclass(frozen=True, slots=True)
 class CarryOver:
     """How far every icon (column) feels from itself alone after every other (row): `apart` (norms, icons, icons).
 
-    In sensation units, or in d′ from memory where episodes are remembered, for the nominal person, `gap_s` after the
-    end of the icon before.
+    In sensation units, or in d′ from memory where episodes are remembered, as the mean of people, `gap_s` after the end
+    of the icon before.
     """
 
     names: tuple[str, ...]
@@ -66,7 +70,7 @@ def carry_over(
     *,
     tracking: str | None = None,
 ) -> CarryOver:
-    """Let the nominal person feel every icon of a set after every other, each followed for `end_s`.
+    """Let people feel every icon of a set after every other, each followed for `end_s`.
 
     What an icon leaves behind depends on who holds the gap: the driver brings the skin or the display back to its
     baseline, or, with `tracking` `replay`, the resting current flows and nothing corrects what it leaves.
@@ -98,21 +102,31 @@ def carry_over(
     cold, warm = (_at_receptors(traces, channel) for channel in ("cold", "warm"))
     sources = [(_at_receptors(leaving, channel), alone) for channel, alone in (("cold", cold), ("warm", warm))]
 
-    def felt(at_cold: Array, at_warm: Array) -> Array:
-        return np.stack(perceive_many(at_cold, at_warm, dt, person, area_m2=rig.contact.area_m2, site=rig.site))
+    def for_one(thresholds: tuple[float, float]) -> Array:
+        def felt(at_cold: Array, at_warm: Array) -> Array:
+            psi = perceive_many(
+                at_cold, at_warm, dt, person, area_m2=rig.contact.area_m2, site=rig.site,
+                threshold_cold=thresholds[0], threshold_warm=thresholds[1],
+            )  # fmt: skip
+            return np.stack(psi)
 
-    alone = felt(cold[:, :rows], warm[:, :rows])
-    apart = np.empty((len(NORMS), len(icons), len(icons)))
-    for before, wait in enumerate(waits):
-        after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
-        pairs = np.stack([alone, after], axis=2)
-        differences = percept_distances(pairs[0], pairs[1], dt, person)
-        episodes = Episodes.of(pairs[0], pairs[1], dt, person)
-        for k, norm in enumerate(NORMS):
-            if norm in TRACE_NORMS:
-                apart[k, before] = differences[norm][:, 0, 1]
-            else:
-                apart[k, before] = episode_distances(episodes, episodes, person, norm)[:, 0, 1]
+        alone = felt(cold[:, :rows], warm[:, :rows])
+        apart = np.empty((len(NORMS), len(icons), len(icons)))
+        for before, wait in enumerate(waits):
+            after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
+            pairs = np.stack([alone, after], axis=2)
+            differences = percept_distances(pairs[0], pairs[1], dt, person)
+            episodes = Episodes.of(pairs[0], pairs[1], dt, person)
+            for k, norm in enumerate(NORMS):
+                if norm in TRACE_NORMS:
+                    apart[k, before] = differences[norm][:, 0, 1]
+                else:
+                    apart[k, before] = episode_distances(episodes, episodes, person, norm)[:, 0, 1]
+        return apart
+
+    people = draw_people(PEOPLE)
+    thresholds = list(zip(people.threshold_cold.tolist(), people.threshold_warm.tolist(), strict=True))
+    apart = np.mean(list(in_order(for_one, thresholds)), axis=0)
     duration = dt * (rows - 1)
     noise = np.array(
         [float(identification_noise(person, norm, duration)) if norm in TRACE_NORMS else 1.0 for norm in NORMS]

@@ -36,17 +36,21 @@ class Doubt:
 
 
 def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
-    """Constants that carry at least 2 % of the variance of the proportion correct, the largest share first.
+    """Constants that act on the set and carry at least 2 % of the variance of the proportion correct, largest first.
 
     >>> import numpy as np
     >>> x = np.random.default_rng(0).standard_normal((200, 2))
     >>> none = np.zeros((200, 1))
-    >>> drawn = LaboratoryDraws(("a", "b"), x, 0.8 + 0.05 * x[:, 0], *[none] * 7)
+    >>> drawn = LaboratoryDraws(("a", "b"), x, x[0] < 9, 0.8 + 0.05 * x[:, 0], *[none] * 7)
     >>> [(doubt.name, round(doubt.share, 2)) for doubt in doubts(drawn)]
     [('a', 0.99)]
     """
     shares = explained(each.values, each.proportion_correct)
-    found = [Doubt(name, float(share)) for name, share in zip(each.names, shares, strict=True) if share >= LEAST_SHARE]
+    found = [
+        Doubt(name, float(share))
+        for name, share, acts in zip(each.names, shares, each.acts, strict=True)
+        if acts and share >= LEAST_SHARE
+    ]
     return tuple(sorted(found, key=lambda doubt: (-doubt.share, doubt.name)))
 
 

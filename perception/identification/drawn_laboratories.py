@@ -9,27 +9,28 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..observer.channels import Norm
-from ..observer.draws import PosteriorDraws
-from ..observer.memory_constants import with_memory
+from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
+from ..observer.variants import Model, Variable
 from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import latin
+
+OFFSETS = ("laboratory, cold", "laboratory, warm")
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnLaboratories:
-    """One laboratory for each of some evenly spaced draws.
+    """One laboratory for each of some evenly spaced draws of a variant.
 
-    `chosen` (n,) are the draws of `posterior`, `offsets` (n, 2) how much more sensitive (ln; cold, warm) the people of
-    each laboratory are, `memory` constants of memory by name, where the draws have none of their own.
+    `values` (n, constants) belong to `names`: the constants of the draw, memory, and how much more sensitive (ln) its
+    people are.
     """
 
-    posterior: PosteriorDraws
-    chosen: NDArray[np.int64]
-    offsets: Array
-    memory: tuple[dict[str, float], ...]
+    variant: tuple[Variable, Model]
+    names: tuple[str, ...]
+    values: Array
     seed: int
     age_years: float | None
 
@@ -43,28 +44,28 @@ class DrawnLaboratories:
             )
         chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
         free = [p for p in memory_parameters(norm, records=model.records) if p.name not in held.memory_names]
-        shares = latin(len(free), draws, seed)
-        memory = tuple({p.name: p.at(float(share)) for p, share in zip(free, row, strict=True)} for row in shares)
-        return cls(held, chosen, held.new_laboratory(seed)[chosen], memory, seed, model.age_years)
+        shares = latin(len(free), draws, seed).tolist()
+        memory = [[p.at(share) for p, share in zip(free, row, strict=True)] for row in shares]
+        offsets, free_memory = held.new_laboratory(seed)[chosen], np.reshape(memory, (draws, len(free)))
+        values = np.hstack([held.draws[chosen], held.memory[chosen], free_memory, offsets])
+        names = (*held.names, *held.memory_names, *(p.name for p in free), *OFFSETS)
+        return cls(held.variant, names, values, seed, model.age_years)
 
     def __len__(self) -> int:
-        return len(self.chosen)
+        return len(self.values)
 
     def at(self, place: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, and its people."""
-        k = int(self.chosen[place])
-        observer = with_memory(self.posterior.observer(k), self.memory[place])
-        drawn = draw_people(people, self.seed, age_years=self.age_years, spreads=self.posterior.draw(k))
-        return observer, drawn.less_sensitive(*(-self.offsets[place]))
+        return self.with_values(self.values[place], people)
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the columns of `values`."""
-        memory = tuple(self.memory[0]) if self.memory else ()
-        return (*self.posterior.names, *self.posterior.memory_names, *memory, "laboratory, cold", "laboratory, warm")
+    def with_values(self, values: Array, people: int) -> tuple[Observer, People]:
+        """The observer and the people of a laboratory with these values of the constants (constants,)."""
+        named, (variable, model) = dict(zip(self.names, values.tolist(), strict=True)), self.variant
+        observer = observer_with(Observer.load(variable=variable, model=model), named)
+        drawn = draw_people(people, self.seed, age_years=self.age_years, spreads=named)
+        return observer, drawn.less_sensitive(*(-named[offset] for offset in OFFSETS))
 
-    @property
-    def values(self) -> Array:
-        """Every constant of every laboratory (n, constants)."""
-        memory = np.array([list(each.values()) for each in self.memory]).reshape(len(self), -1)
-        return np.hstack([self.posterior.draws[self.chosen], self.posterior.memory[self.chosen], memory, self.offsets])
+    def invited(self, people: int) -> NDArray[np.int64]:
+        """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""
+        chance = np.random.default_rng(np.random.SeedSequence([self.seed, 9]))
+        return chance.integers(people, size=(len(self), people))

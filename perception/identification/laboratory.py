@@ -131,10 +131,8 @@ def new_laboratory(
     icons = predicted.detected.size
     few = thin.thinned(people_for_intervals(icons), 1 if icons <= MANY else 2)
     persons = crowd.part(0, len(few.cold_C))
-    chance = np.random.default_rng(np.random.SeedSequence([seed, 9]))
-    invited = chance.integers(len(persons), size=(draws, len(persons)))
     each = laboratory_draws(
-        lambda _: few, persons, norm, own, draws=draws, seed=seed, task=task, invited=invited, step=step
+        lambda _: few, persons, norm, own, draws=draws, seed=seed, task=task, resampled=True, step=step
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))

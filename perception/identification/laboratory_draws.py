@@ -31,6 +31,8 @@ EVERY = 8
 """Draws are judged at 12.5 Hz: this changes the scores of shipped icons by less than 0.001, and the change cancels."""
 MANY = 32
 """Larger sets are judged at half of these instants: this changes the ends of an interval by less than 0.002."""
+FEW = 4
+"""Number of people whom a constant changes, or not."""
 SAMPLES, LEAST, NAMED = 512, 128, 8192
 """Presentations of an icon to a person: fewer, but at least 128, where more icons make up for it."""
 
@@ -39,7 +41,8 @@ SAMPLES, LEAST, NAMED = 512, 128, 8192
 class LaboratoryDraws:
     """Predictions of a set by every draw: what `sensitivity` reads and intervals are made of.
 
-    `values` (draws, constants) belong to `names`; `proportion_correct` and `information_bits` (draws,) are means over
+    `values` (draws, constants) belong to `names`, and `acts` (constants,) says which of them take part in how the set
+    is named on its rig; `proportion_correct` and `information_bits` (draws,) are means over
     the people of a draw, `detected` and `onset_s` (draws, icons; NaN where an icon is not felt), `d_prime` (draws,
     icons, icons) their medians. `persons_correct`, `persons_bits` (draws, people) and `persons_detected` (draws,
     people), of the icon that a person detects least, are those of the people of a draw one by one.
@@ -47,6 +50,7 @@ class LaboratoryDraws:
 
     names: tuple[str, ...]
     values: Array
+    acts: NDArray[np.bool_]
     proportion_correct: Array
     information_bits: Array
     detected: Array
@@ -69,7 +73,7 @@ def laboratory_draws(
     draws: int,
     seed: int = 0,
     task: Task = USUAL,
-    invited: NDArray[np.int64] | None = None,
+    resampled: bool = False,
     step: Callable[[], None] | None = None,
 ) -> LaboratoryDraws:
     """Predictions by `draws` draws, evenly spaced; the same arguments give the same numbers.
@@ -86,8 +90,8 @@ def laboratory_draws(
         The observer, which needs draws.
     draws
         How many.
-    invited
-        Places (draws, n) of the persons whom each draw invites; None: all of them, once.
+    resampled
+        Whether each draw invites a random sample of the persons, and not all of them once.
     step
         Called after each draw.
 
@@ -98,13 +102,11 @@ def laboratory_draws(
 
     """
     laboratories, count = DrawnLaboratories.of(model, norm, draws, seed), len(persons)
-    everyone = np.arange(count)
+    invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
 
     def one(place: int) -> tuple[Array, ...]:
         observer, people = laboratories.at(place, count)
-        return scored(
-            played(place), people, observer, norm, seed, task, everyone if invited is None else invited[place]
-        )
+        return scored(played(place), people, observer, norm, seed, task, invited[place])
 
     found = []
     for scores in in_order(one, list(range(draws))):
@@ -112,7 +114,32 @@ def laboratory_draws(
         if step is not None:
             step()
     each = (np.stack([scores[k] for scores in found]) for k in range(8))
-    return LaboratoryDraws(laboratories.names, laboratories.values, *each)
+    acts = _acting(laboratories, played(0), min(count, FEW), norm, seed, task)
+    return LaboratoryDraws(laboratories.names, laboratories.values, acts, *each)
+
+
+def _acting(
+    laboratories: DrawnLaboratories, played: ReceptorTemperatures, count: int, norm: Norm, seed: int, task: Task
+) -> NDArray[np.bool_]:
+    """Whether each constant (constants,) changes what a few people remember or say if it alone is another draw's.
+
+    Of the first draw, each constant in turn takes the value that lies farthest from its own.
+    """
+    few, values = played.thinned(count, 1), laboratories.values
+
+    def named(constants: Array) -> Array:
+        observer, people = laboratories.with_values(constants, count)
+        felt = respond(few, people, observer, [norm], detection=False)
+        d_prime, confusion = identify(felt, norm, people, observer, seed, LEAST, task=task)
+        return np.stack([d_prime, confusion.probability])
+
+    def acts(k: int) -> bool:
+        moved, column = values[0].copy(), values[:, k]
+        moved[k] = column[np.abs(column - moved[k]).argmax()]
+        return not np.array_equal(named(moved), usual)
+
+    usual = named(values[0])
+    return np.array(list(in_order(acts, range(values.shape[1]))))
 
 
 def scored(

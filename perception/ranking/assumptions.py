@@ -17,7 +17,6 @@ import numpy as np
 from ..arrays import Array
 from ..identification.doubt import scores_of
 from ..identification.laboratory_draws import LaboratoryDraws
-from ..inference.posterior import LABORATORIES
 from ..observer.channels import CHANNELS
 from ..observer.observer import Observer, on_forearm
 from ..observer.people import People, people_records
@@ -39,12 +38,6 @@ COLUMNS = (
     *("contact_resistance", "outer_layer", "path", "decision_s"),
 )
 """Multipliers of people that the regression accounts for, as logarithms."""
-ELSEWHERE = (
-    *("cold receptor depth", "warm receptor depth", "contact resistance of a thermode", "effusivity of living skin"),
-    *("choice time", "criterion of yes and no", "caution after a pre-pulse"),
-    *("cold sensitivity lost per decade", "warm sensitivity lost per decade"),
-)
-"""Constants of the posterior that act in other experiments only; what correlates with them here is named itself."""
 NOT_VARIED = (
     "module, driver and heat sink",
     "room and resting temperature of the skin",
@@ -128,7 +121,7 @@ def assumptions_of(
     Assumptions
         At most three, the largest first; none where all effects are within chance.
     """
-    found = [] if draws is None else _of_draws(draws, rig.site)
+    found = [] if draws is None else _of_draws(draws)
     fitted = PeopleFit.of(correct, crowd)
     if fitted is not None:
         found += _of_people(fitted, rig, observer)
@@ -215,16 +208,15 @@ def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumpti
     return found
 
 
-def _of_draws(draws: LaboratoryDraws, site: str) -> list[Assumption]:
+def _of_draws(draws: LaboratoryDraws) -> list[Assumption]:
     """What constants do between the ends of their 95 %, as parabolas in their normal scores."""
     count = len(draws)
     predicted = draws.proportion_correct
     if count < FEWEST_DRAWS or np.ptp(predicted) == 0.0:
         return []
     found = []
-    for place, name in enumerate(draws.names):
-        values = draws.values[:, place]
-        if not _acts(name, site) or np.ptp(values) == 0.0:
+    for name, values, acts in zip(draws.names, draws.values.T, draws.acts, strict=True):
+        if not acts:
             continue
         scores = scores_of(values)
         design = np.stack([np.ones(count), scores, scores**2], axis=1)
@@ -238,17 +230,6 @@ def _of_draws(draws: LaboratoryDraws, site: str) -> list[Assumption]:
         at_low, at_high = np.clip(ends @ weights, 0.0, 1.0).tolist()
         found.append(Assumption(name, "", "", None, float(low), float(high), at_low, at_high, error, "draws"))
     return found
-
-
-def _acts(name: str, site: str) -> bool:
-    """Whether a constant acts in a ranking at a site: not those of other experiments and sites.
-
-    >>> [_acts(name, "fingertip") for name in ("gain noise", "cold threshold on the forearm", "wrist cold")]
-    [True, False, False]
-    """
-    if name.endswith("on the forearm"):
-        return on_forearm(site)
-    return name not in ELSEWHERE and name.split(" ")[0] not in LABORATORIES
 
 
 def _site(site: str, fitted: PeopleFit | None) -> Mapping[str, Any] | None:

@@ -87,9 +87,9 @@ def _quiet() -> Iterator[None]:
 
 def _run(job: Job, number: int) -> tuple[str, BatchResult]:
     """Runs on a worker: the hash of its code, and the batch."""
-    from thermicon.circuit.cores import at_most
+    from thermicon.circuit.cores import at_most, quiet_blas
 
-    with at_most(1):
+    with at_most(1), quiet_blas():
         return code_digest(), run(job, number)
 
 

@@ -154,7 +154,7 @@ class _Search:
         self.now = dprimes(self.kept, self.kept, norm, self.observer)
         self.target = wanted
         self.largest = LARGEST
-        self.closest = 0.0
+        self.closest = self.confirmed = 0.0
         self.opposed = False
         self.refused: set[tuple[int, str]] = set()
         self.rows: dict[tuple[int, str], Array] = {}
@@ -213,6 +213,7 @@ class _Search:
             refused |= worse
             self.refused.add((one.place, one.new))
             if parted < self.wanted:
+                self.confirmed = max(self.confirmed, parted)
                 self.target *= 1.002 * min(self.wanted / max(parted, 1e-6), 1.5)
         reason = "each one that separates them makes another pair worse" if refused or self.opposed else self._why_not()
         return NoEdit(f"no single edit separates them to d′ {self.wanted:.3g}: {reason}")
@@ -350,8 +351,10 @@ class _Search:
         return answers
 
     def _why_not(self) -> str:
+        # A nominal person short of the target is people short of what is wanted: rounding up would say otherwise.
+        reached = max(self.confirmed, self.closest * self.wanted / self.target)
         most = f"with numbers up to {self.largest:g} times larger or smaller"
-        return f"the largest d′ of a safe and reachable one for a nominal person, {most}, is {self.closest:.1f}"
+        return f"the largest d′ of a safe and reachable one, {most}, is about {math.floor(10.0 * reached) / 10.0:.1f}"
 
     def _played(self, place: int) -> bool:
         """Whether another icon of the set plays this one, and would change with it."""

@@ -1,8 +1,9 @@
 """Which constants carry the doubt about a set on a rig, and which measurement would reduce it most.
 
 The set is predicted with draws of the posterior as a new laboratory would see it, contact and outermost skin layer
-included. Constants of one draw belong together, so that shares of constants that trade off overlap and need not add up
-to 1; the share of a measurement is what its constants explain together.
+included. Constants that take no part in the set on its rig are left out. Constants of one draw belong together, so that
+shares of constants that trade off overlap and need not add up to 1; the share of a measurement is what its constants
+explain together.
 """
 
 from __future__ import annotations
@@ -258,8 +259,9 @@ def sensitivity(
         [parameter.at(float(share)) for share in column]
         for parameter, column in zip(uncertain.parameters, shares.T, strict=True)
     ]
-    names = (*each.names, *(parameter.name for parameter in uncertain.parameters))
-    values = np.hstack([each.values, np.array(columns).T])
+    acting = np.flatnonzero(each.acts)
+    names = (*(each.names[k] for k in acting), *(parameter.name for parameter in uncertain.parameters))
+    values = np.hstack([each.values[:, acting], np.array(columns).T])
     low, middle, high = np.percentile(each.proportion_correct, [2.5, 50.0, 97.5]).tolist()
     return Sensitivity(
         rig=rig.name,
@@ -280,11 +282,8 @@ def sensitivity(
 def _effects(names: tuple[str, ...], values: Array, each: LaboratoryDraws, model: ObserverModel) -> tuple[Effect, ...]:
     units = {base_name(record.quantity): record.unit for record in model.records}
     correct, bits = explained(values, each.proportion_correct), explained(values, each.information_bits)
-    offsets = model.posterior.header.offsets if model.posterior is not None else ()
     found = []
     for place, name in enumerate(names):
-        if name in offsets or np.ptp(values[:, place]) == 0.0:
-            continue
         low, high = np.percentile(values[:, place], [2.5, 97.5]).tolist()
         scores = scores_of(values[:, place])
         design = np.stack([np.ones_like(scores), scores, scores**2], axis=1)

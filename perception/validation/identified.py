@@ -1,7 +1,7 @@
 """Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
 
 The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow or count
-impulses, and the plausible observers that stand behind the other experiments too.
+impulses, and the laboratories of a new one's interval, whose observers stand behind the other experiments too.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
-from ..identification.laboratory_draws import EVERY, PEOPLE
+from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import ReceptorTemperatures, identify, respond
@@ -27,7 +27,7 @@ from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..observer.variants import VARIABLES, Model, Variable, receptor_column
 from ..ranking.batches import EXPERIMENTS
-from .plausible import plausible_observers
+from .plausible import plausible_laboratories
 from .predicted import Predicted
 from .waves import GROUPS, PAIRS, SHAPES, Likeness, wave_name
 
@@ -41,7 +41,7 @@ Score = Callable[[Array], float]
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """Confusions of one variant: of every person, and of fewer people for the nominal and each plausible observer."""
+    """Confusions of one variant: of every person, and of fewer people for the nominal observer and each laboratory."""
 
     variable: Variable
     model: Model
@@ -58,7 +58,7 @@ class Identified:
     def predicted(
         self, experiment: str, quantity: str, unit: str, score: Score, *, conditions: str, top: float = math.inf
     ) -> Predicted:
-        """A score with its interval: what each plausible observer changes is added, and stays within 0 and `top`."""
+        """A score with its interval: what each laboratory changes is added, and stays within 0 and `top`."""
         value, nominal = score(self.probability), score(self.few)
         each = tuple(float(np.clip(value + score(one) - nominal, 0.0, top)) for one in self.drawn)
         low, high = np.percentile(each, [2.5, 97.5]).tolist() if each else (None, None)
@@ -79,20 +79,22 @@ class Shown:
     def identify(self, variable: Variable, model: Model, draws: int, norm: Norm = USUAL_NORM) -> Identified:
         """Confusions of one variant from memory, by a norm."""
         played = self.played[VARIABLES.index(variable)]
-        few = self.crowd.part(0, PEOPLE)
+        few = self.crowd.part(0, people_for_intervals(len(self.labels)))
         thin = played.thinned(len(few), EVERY)
         nominal = Observer.load(variable=variable, model=model)
 
-        def thinly(observer: Observer) -> Array:
-            felt = respond(thin, few, observer, [norm], detection=False)
-            return identify(felt, norm, few, observer, self.seed, FEW_SAMPLES)[1].probability
+        def thinly(observer: Observer, people: People) -> Array:
+            felt = respond(thin, people, observer, [norm], detection=False)
+            return identify(felt, norm, people, observer, self.seed, FEW_SAMPLES)[1].probability
 
         felt = respond(played, self.crowd, nominal, [norm], detection=False)
         whole = identify(felt, norm, self.crowd, nominal, self.seed, SAMPLES)[1]
-        others = plausible_observers(draws, self.seed, variable=variable, model=model) if draws else ()
-        drawn = tuple(in_order(thinly, others))
-        kept = np.stack(drawn) if drawn else np.zeros((0, *whole.probability.shape))
-        return Identified(variable, model, self.labels, whole.probability, thinly(nominal), kept)
+        kept = np.zeros((0, *whole.probability.shape))
+        if draws:
+            others = plausible_laboratories(draws, self.seed, norm, variable, model)
+            invited = others.invited(len(few))
+            kept = np.stack(list(in_order(lambda k: thinly(*others.at(k, len(few)))[invited[k]], range(draws))))
+        return Identified(variable, model, self.labels, whole.probability, thinly(nominal, few), kept)
 
 
 def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:

@@ -21,6 +21,7 @@ from thermicon.circuit import Rig
 from ..arrays import Array
 from ..identification.episodes import Episodes, distance_shares
 from ..identification.from_memory import dprimes_from_memory
+from ..identification.laboratory import DRAWS
 from ..inference.evidence import load_evidence
 from ..inference.experiments import E6_K_PER_S, E6_SIZES
 from ..inference.skin_modes import skin_modes
@@ -36,7 +37,7 @@ from .targets import Row, load_targets
 from .waves import LIBRARY, likeness, skin_waves, with_others
 
 TABLE = "memory_forms.csv"
-PEOPLE, DRAWS, TRIALS = 200, 64, 48
+PEOPLE, TRIALS = 200, 48
 NUMBERS = ("proportion correct", "plug-in information")
 """Published numbers of the six icons; the intervals of targets.toml are taken as 95 %."""
 MAIN_CONFUSIONS = (
@@ -116,7 +117,7 @@ def _received(rig: str, channel: Channel, sizes: Sequence[float]) -> Array:
 def _rated(norm: Norm, channel: Channel, draws: int, seed: int) -> FormScore:
     """E6: d′ of ratings for each unit of ln K; only the exponent of these ratings was conditioned on."""
     statistic = load_evidence().find("E6", "dprime_per_ln_change", channel)
-    each = [rating_dprime(channel, observer, norm) for observer in plausible_observers(draws, seed)]
+    each = [rating_dprime(channel, observer, norm) for observer in plausible_observers(draws, seed, norm)]
     value = rating_dprime(channel, Observer.load(), norm)
     said = f"{statistic.value:.3g} ± {statistic.se:.2g}"
     return _scored(norm, f"d′ of ratings per ln K, {channel}", said, value, each, (statistic.value, statistic.se))

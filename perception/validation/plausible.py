@@ -1,43 +1,42 @@
-"""Observers that the evidence leaves possible, to carry its intervals to predictions.
+"""Laboratories that the evidence leaves possible, to carry its intervals to predictions: as `rank` draws them.
 
-Constants are those of draws of the posterior; memory, which no posterior knows of, is drawn from its intervals.
+Experiments that no population was simulated for ask their observers alone.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
-import numpy as np
-
-from ..observer.channels import NORMS
+from ..identification.drawn_laboratories import DrawnLaboratories
+from ..observer.channels import USUAL_NORM, Norm
 from ..observer.draws import PosteriorDraws
-from ..observer.memory_constants import with_memory
 from ..observer.observer import Observer, variant_records
+from ..observer.observer_model import ObserverModel
 from ..observer.variants import Model, Variable
-from ..sensation.memory_parameters import memory_parameters
-from ..sensation.parameters import latin
+
+
+def plausible_laboratories(n: int, seed: int, norm: Norm, variable: Variable, model: Model) -> DrawnLaboratories:
+    """Laboratories of n draws of the posterior of a variant; a ValueError for fewer than two."""
+    if n < 2:
+        raise ValueError(f"at least two observers are needed to show an interval, not {n}")
+    posterior, records = PosteriorDraws.load(variable=variable, model=model), variant_records(variable, model)
+    return DrawnLaboratories.of(replace(ObserverModel.load(), records=records, posterior=posterior), norm, n, seed)
 
 
 @lru_cache(maxsize=8)
 def plausible_observers(
-    n: int = 32, seed: int = 0, *, variable: Variable = "temperature", model: Model = "adapting"
+    n: int = 32,
+    seed: int = 0,
+    norm: Norm = USUAL_NORM,
+    *,
+    variable: Variable = "temperature",
+    model: Model = "adapting",
 ) -> tuple[Observer, ...]:
-    """Observers of n draws of the posterior of a variant; the same for the same seed.
+    """The observers of these laboratories; the same for the same seed.
 
     >>> len(plausible_observers(2)), plausible_observers(2) == plausible_observers(2)
     (2, True)
     """
-    if n < 2:
-        raise ValueError(f"at least two observers are needed to show an interval, not {n}")
-    draws, records = PosteriorDraws.load(variable=variable, model=model), variant_records(variable, model)
-    # Evenly spaced draws, begun at another place for another seed: draws stand in the order of the chains.
-    first = np.random.default_rng(np.random.SeedSequence([seed, 12])).random() * len(draws) / n
-    chosen = (first + np.arange(n) * len(draws) / n).astype(int) % len(draws)
-    made = [draws.observer(int(k)) for k in chosen]
-    for place, norm in enumerate(NORMS):
-        parameters = memory_parameters(norm, records=records)
-        shares = latin(len(parameters), n, seed + place)
-        for k, row in enumerate(shares.tolist()):
-            values = {p.name: p.at(share) for p, share in zip(parameters, row, strict=True)}
-            made[k] = with_memory(made[k], values)
-    return tuple(made)
+    laboratories = plausible_laboratories(n, seed, norm, variable, model)
+    return tuple(laboratories.at(place, 1)[0] for place in range(n))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from thermicon.circuit.records import Table
 
+from ..identification.laboratory import DRAWS
 from ..observer.observer import load_thresholds
 from ..observer.variants import VARIANTS, Model, Variable
 from .conditioning import Conditioning, load_conditioning
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from ..progress import Progress
     from .evidence import Evidence
 
-PEOPLE, DRAWS, TRIALS = 200, 64, 48
+PEOPLE, TRIALS = 200, 48
 
 
 @dataclass(frozen=True, slots=True)

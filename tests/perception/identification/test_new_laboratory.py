@@ -119,3 +119,24 @@ def test_the_onset_of_an_icon_that_is_hardly_ever_felt_has_no_interval(rig: Rig)
     found = rank(parse(text), rig, people=8, parameters=16).new_laboratory
     assert found is not None
     assert found.onset_s == (None,)
+
+
+def test_only_constants_that_take_part_are_doubted(ranking: Ranking) -> None:
+    """The thenar at the reference area: nothing of other sites, of age, of reaction times and of other experiments."""
+    idle = {
+        "caution after a pre-pulse",
+        "choice time",
+        "cold receptor depth",
+        "warm sensitivity lost per decade",
+        "E1 cold",
+    }
+    of_a_site = {"cold threshold on the forearm", "warm threshold on the forearm", "cold area exponent"}
+    smaller = Rig.load("forearm").with_(**{"contact.area_cm2": 4.0})
+    away = rank(load_library("six-icons"), smaller, people=4, parameters=4)
+    for found, some, others in ((ranking, idle | of_a_site, set()), (away, idle, of_a_site)):
+        assert found.new_laboratory is not None
+        each = found.new_laboratory.each
+        acting = {name for name, acts in zip(each.names, each.acts, strict=True) if acts}
+        assert acting.isdisjoint(some)
+        assert acting >= {"memory noise (episodes)", "laboratory, cold", "gain noise", *others}
+        assert acting >= {doubt.name for doubt in doubts(each)}

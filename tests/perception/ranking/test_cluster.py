@@ -112,3 +112,29 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
     assert killed
     assert killed[0] < len(list(kept.glob("*/*.npz")))
     assert far == local
+
+
+@pytest.mark.slow
+def test_threads_of_linear_algebra_change_no_byte(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Workers without a nanny, which would set one thread, give the ranking and the kept parts of this machine."""
+    jobs = [(ICONS, Rig.load("tcs2")), (load_library("pulse-sequences"), RIG)]
+    near, far = tmp_path / "near", tmp_path / "far"
+    local = [rank(icons, rig, people=40, parameters=8, keep=near).to_json() for icons, rig in jobs]
+    monkeypatch.setattr(cluster, "PATIENCE_S", 60.0)
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        monkeypatch.setenv(name, "4")
+    with scheduler(tmp_path) as address:
+        workers = [worker(address, tmp_path) for _ in range(2)]
+        try:
+            there = [
+                rank(icons, rig, people=40, parameters=8, cluster=address, keep=far).to_json() for icons, rig in jobs
+            ]
+        finally:
+            for one in workers:
+                one.kill()
+                one.wait(60)
+    assert there == local
+    parts = sorted(path.relative_to(near) for path in near.glob("*/*.npz"))
+    assert parts == sorted(path.relative_to(far) for path in far.glob("*/*.npz")) != []
+    for part in parts:
+        assert (near / part).read_bytes() == (far / part).read_bytes()

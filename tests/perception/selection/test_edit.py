@@ -81,6 +81,20 @@ def test_what_no_edit_can_do_is_told(six: list[Icon], rig: Rig) -> None:
     edit = cheapest_edit(six, rig, "warming-step", "linear-warming", wanted=30.0, people=8)
     assert isinstance(edit, NoEdit)
     assert edit.reason.startswith("no single edit separates them to d′ 30: the largest d′ of a safe and reachable one")
+    assert 0.0 < float(edit.reason.rsplit(" ", 1)[1]) < 30.0
+
+
+def test_what_is_short_of_the_criterion_is_said_to_be_less(rig: Rig) -> None:
+    """Warmth on a small contact, where a nominal person reaches a d′ that half of the people do not."""
+    text = (
+        'cue 1\nset alerts "Alerts" { site fingertip; control display; baseline 32 °C }\n'
+        "icon warm { warm by 5 °C at 3 °C/s; hold for 1 s; return at 2 °C/s }\n"
+        "icon late { warm by 5 °C at 1 °C/s; hold for 1 s; return at 2 °C/s }\n"
+    )
+    small = Rig.load("fingertip")
+    edit = cheapest_edit(list(parse(text)), small, "warm", "late", people=PEOPLE)
+    assert isinstance(edit, NoEdit)
+    assert 0.0 < float(edit.reason.rsplit(" ", 1)[1]) < DISTINGUISHABLE_DPRIME
 
 
 def test_a_repeat_is_an_edit(rig: Rig) -> None:

@@ -99,9 +99,9 @@ def test_summation_lowers_the_flux_that_is_felt() -> None:
 
 def test_the_same_draws_stand_behind_every_experiment() -> None:
     """An observer with slower warm conduction is late in both: trade-offs can be read off pairs of draws."""
-    lag = by(peak_lead(draws=8), "felt peak minus the skin's", "warm")
-    time = by(reaction_times(areas_cm2=(5.0, 10.0), draws=8), "reaction time at 10 cm²", "warm")
-    assert len(lag.draws) == len(time.draws) == 8
+    lag = by(peak_lead(draws=64), "felt peak minus the skin's", "warm")
+    time = by(reaction_times(areas_cm2=(5.0, 10.0), draws=64), "reaction time at 10 cm²", "warm")
+    assert len(lag.draws) == len(time.draws) == 64
     assert np.corrcoef(lag.draws, time.draws)[0, 1] > 0.5
     assert lag.low is not None
     assert min(lag.draws) <= lag.low <= float(np.median(lag.draws))

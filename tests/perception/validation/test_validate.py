@@ -41,12 +41,17 @@ def test_every_target_and_row_is_there_for_every_variant(report: ValidationRepor
 
 
 def test_six_icons_are_those_of_rank(report: ValidationReport) -> None:
-    ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=12, parameters=0)
-    found = {line.row.quantity: line.judged[0].predicted.value for line in report.sections[5].lines}
+    ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=12, parameters=8)
+    whole = {line.row.quantity: line.judged[0].predicted for line in report.sections[5].lines}
+    found = {quantity: one.value for quantity, one in whole.items()}
     near = {"abs": 1e-3}  # the report asks for heat flow too, and so steps through what rank superposes
     assert found["proportion correct"] == pytest.approx(ranking.proportion_correct, **near)
     assert found["plug-in information"] == pytest.approx(ranking.information_bits_plugin, **near)
     assert found["information"] == pytest.approx(ranking.information_bits, **near)
+    intervals, laboratory = {name: (one.low, one.high) for name, one in whole.items()}, ranking.new_laboratory
+    assert laboratory is not None
+    assert intervals["proportion correct"] == pytest.approx(laboratory.proportion_correct, **near)
+    assert intervals["information"] == pytest.approx(laboratory.information_bits, **near)
 
 
 def test_what_is_made_of_both_channels(report: ValidationReport) -> None:
