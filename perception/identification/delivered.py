@@ -159,7 +159,8 @@ def judge_delivered(
 
 def _d_primes(percepts: Sequence[Percept], person: Observer, norm: Norm) -> Array:
     felt = np.array([p.psi_cold for p in percepts]), np.array([p.psi_warm for p in percepts])
-    return dprimes_from_memory(felt, felt, percepts[0].dt_s, person, norm)
+    names = [percept.icon or "" for percept in percepts]
+    return dprimes_from_memory(felt, felt, percepts[0].dt_s, person, norm, (names, names))
 
 
 def _pair(change: DeliveredChange) -> dict[str, float]:

@@ -59,7 +59,7 @@ def detected_as_delivered(
         [icon], crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, tracking=tracking,
         probes=[f"{channel}_receptor_C" for channel in CHANNELS],
     )  # fmt: skip
-    as_designed = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
+    as_designed = ReceptorTemperatures.of_batch(batch, [icon], rig)
     cold, warm = (
         met + _change(met - met[..., :1], channel, designed, delivered, batch.time_s + delivery.lead_s)
         for channel, met in zip(CHANNELS, (batch.cold_C, batch.warm_C), strict=True)

@@ -23,6 +23,16 @@ PARTS = ("direction", "intensity", "rate", "duration", "pause")
 """Parts of a distance in the order of the kernel: episodes of one icon alone, and the features of shared ones."""
 
 
+class EpisodesError(ValueError):
+    """An icon that is felt as more episodes than are compared from memory."""
+
+    def __init__(self, icon: str, felt: int, most: int) -> None:
+        super().__init__(
+            f"{icon}: felt as {felt} separate episodes of cold and warmth; memory is computed for at most {most} of an "
+            "icon: give it fewer pulses, or make several icons of it"
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Episode:
     """One episode of an icon as it is remembered, on the receptor clock.
@@ -65,27 +75,33 @@ class Episodes:
         psi_warm: ArrayLike,
         dt_s: float,
         observer: Observer,
-        criterion_cold: ArrayLike = 1.0,
-        criterion_warm: ArrayLike = 1.0,
+        names: ArrayLike = "",
     ) -> Episodes:
-        """Episodes of sensations (people, icons, n_time); criteria (people,) are multiples of the observer's."""
+        """Episodes of sensations (people, icons, n_time), of icons whose names broadcast to (people, icons).
+
+        Raises `EpisodesError` for an icon that is felt as more episodes than are compared.
+        """
         from ..kernels import episodes as kernel
 
         cold, warm = (np.ascontiguousarray(psi, dtype=np.float64) for psi in (psi_cold, psi_warm))
         if cold.ndim != 3 or cold.shape != warm.shape:
             raise ValueError(f"sensations must have shape (people, icons, n_time), not {cold.shape} and {warm.shape}")
         people, icons, _ = cold.shape
-        each = np.broadcast_arrays(criterion_cold, criterion_warm, np.empty(people))[:2]
-        criteria = observer.criterion * np.stack(each, axis=-1)
-        features = np.zeros((people, icons, kernel.MOST, kernel.FEATURES))
+        features = np.zeros((people, icons, kernel.USUAL, kernel.FEATURES))
         counts = np.zeros((people, icons), dtype=np.int64)
 
         def work(part: slice) -> None:
             kernel.all_episodes(
-                cold[part], warm[part], dt_s, criteria[part], observer.a, observer.p, features[part], counts[part]
+                cold[part], warm[part], dt_s, observer.memory.bar, observer.a, observer.p, features[part], counts[part]
             )
 
         over_rows(work, people, cold.size)
+        if (most := int(counts.max(initial=0))) > kernel.USUAL:
+            if most > kernel.MOST:
+                worst = np.unravel_index(counts.argmax(), counts.shape)
+                raise EpisodesError(str(np.broadcast_to(names, counts.shape)[worst]) or "an icon", most, kernel.MOST)
+            features = np.zeros((people, icons, most, kernel.FEATURES))
+            over_rows(work, people, cold.size)
         return cls(features, counts)
 
     def __len__(self) -> int:
@@ -207,4 +223,4 @@ def remembered(percepts: Sequence[Percept], observer: Observer | None = None) ->
 
     person = Observer.load() if observer is None else observer
     cold, warm, dt = on_one_clock(percepts)
-    return Episodes.of(cold[None], warm[None], dt, person)
+    return Episodes.of(cold[None], warm[None], dt, person, [percept.icon or "" for percept in percepts])

@@ -1,9 +1,9 @@
 """Compiled loops that compare sequences of episodes: alignment, distances, shares of a distance, naming of trials.
 
     D[i, j] = min(D[i−1, j] + g_i², D[i, j−1] + g_j², D[i−1, j−1] + m_ij² where the qualities agree),  d′ = √D[n, m]
-    m² = ΔI²/(σ_I² + s²) + (ΔR² + ΔW² + ΔP²)/σ_T²,   g² = max(I − I_on, 0)²/(σ_I² + s²)
+    m² = ΔI²/(σ_I² + s²) + (ΔR² + ΔW² + ΔP²)/σ_T²,   g² = min(max(I − I_on, 0)²/(σ_I² + s²), r²)
 
-with intensity I, rate R, length W, pause P of an episode and the noise s of its sensation.
+with intensity I, rate R, length W, pause P of an episode, the noise s of its sensation, and its rise r in d′.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-from .episodes import CUT, INTENSITY, LENGTH, NOISE, ONSET, PAUSE, QUALITY, RATE
+from .episodes import CUT, INTENSITY, LENGTH, NOISE, ONSET, PAUSE, QUALITY, RATE, RISE
 
 SHARES = 5
 MISSING, BY_INTENSITY, BY_RATE, BY_LENGTH, BY_PAUSE = range(SHARES)
@@ -25,7 +25,7 @@ MISSING, BY_INTENSITY, BY_RATE, BY_LENGTH, BY_PAUSE = range(SHARES)
 def _unmatched(x: Any, intensity: Any) -> float:
     above = max(x[INTENSITY] - x[ONSET], 0.0)
     sd = intensity[int(x[QUALITY])]
-    return float(above * above / (sd * sd + x[NOISE] * x[NOISE]))
+    return float(min(above * above / (sd * sd + x[NOISE] * x[NOISE]), x[RISE] * x[RISE]))
 
 
 def _matched(x: Any, y: Any, intensity: Any, timing: float, parts: Any) -> float:
@@ -94,7 +94,7 @@ def _of_pair(x: Any, y: Any, intensity: Any, timing: float) -> float:
 def _least_cost(
     one: Any, ones: int, alone: Any, two: Any, twos: int, missing: Any, sd: Any, timing: float, cost: Any
 ) -> float:
-    """d′² between two sequences, given what their episodes cost without a partner; `cost` (MOST + 1,) is room."""
+    """d′² between two sequences, given what their episodes cost without a partner; `cost` (twos + 1,) is room."""
     cost[0] = 0.0
     for j in range(twos):
         cost[j + 1] = cost[j] + missing[j]
@@ -143,7 +143,7 @@ def _name(
 ) -> None:
     """Count the names that one person gives: noise on what is felt, the template that costs least.
 
-    `felt` (icons, MOST, FEATURES), `louder` (icons,) multiplies the noise of an icon, `noise` (icons, samples, MOST, 4)
+    `felt` (icons, room, FEATURES), `louder` (icons,) multiplies the noise of an icon, `noise` (most, icons, samples, 4)
     are standard normal, `favour` (icons,) log likelihoods; `answers` (icons, icons) is added to. What is felt without a
     partner costs `c` more than the square of its size, since noise is part of it.
     """
@@ -154,9 +154,9 @@ def _name(
         for k in range(counts[j]):
             missing[j, k] = unmatched(felt[j, k], intensity)
     for i in range(icons):
-        for s in range(noise.shape[1]):
+        for s in range(noise.shape[2]):
             for k in range(counts[i]):
-                x, z = felt[i, k], noise[i, s, k]
+                x, z = felt[i, k], noise[k, i, s]
                 sd = intensity[int(x[QUALITY])]
                 total = math.sqrt(sd * sd + x[NOISE] * x[NOISE]) * louder[i]
                 put(now[k], x)
@@ -164,7 +164,7 @@ def _name(
                 now[k, RATE] = x[RATE] + timing * louder[i] * z[1]
                 now[k, LENGTH] = x[LENGTH] + timing * louder[i] * z[2]
                 now[k, PAUSE] = x[PAUSE] + timing * louder[i] * z[3]
-                lone = max((x[INTENSITY] - x[ONSET]) / total + z[0], 0.0)
+                lone = max(min((x[INTENSITY] - x[ONSET]) / total, x[RISE] / louder[i]) + z[0], 0.0)
                 alone[k] = lone * lone + c
             best, name = math.inf, 0
             for j in range(icons):

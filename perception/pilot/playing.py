@@ -124,9 +124,8 @@ def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tr
     batch = simulate_many(
         members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ / EVERY, tracking=tracking, probes=PROBES
     )
-    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
-    names = tuple(icon.name for icon in members)
-    return Stage(names, played, prior, (crowd.contact_resistance, crowd.outer_layer))
+    played = ReceptorTemperatures.of_batch(batch, members, rig)
+    return Stage(played.names, played, prior, (crowd.contact_resistance, crowd.outer_layer))
 
 
 def laboratories_for(icons: int, wanted: int) -> int:

@@ -171,5 +171,5 @@ def population_response(
     end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
-    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
+    played = ReceptorTemperatures.of_batch(batch, icons, rig)
     return respond(played, crowd, nominal, [norm], detection=False), durations

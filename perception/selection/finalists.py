@@ -95,9 +95,7 @@ class FinalJudge:
             icons, few.rigs(self.rig), nominal=self.rig, end_s=end, rate_Hz=RATE_HZ, tracking=self.tracking,
             probes=PROBES,
         )  # fmt: skip
-        played = ReceptorTemperatures(
-            batch.cold_C, batch.warm_C, batch.time_s, self.rig.site, self.rig.contact.area_m2
-        ).thinned(len(few), EVERY)
+        played = ReceptorTemperatures.of_batch(batch, icons, self.rig).thinned(len(few), EVERY)
         n = len(icons)
         # Single people are laid about correct and bits alone; the rest of the prediction is not used.
         predicted = Nominal(

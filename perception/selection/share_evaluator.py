@@ -71,7 +71,7 @@ class ShareEvaluator(PopulationEvaluator):
         for persons, observer, people in self.groups:
             played = ReceptorTemperatures(
                 batch.cold_C[persons, :, ::EVERY], batch.warm_C[persons, :, ::EVERY], batch.time_s[::EVERY],
-                self.rig.site, self.rig.contact.area_m2,
+                self.rig.site, self.rig.contact.area_m2, tuple(icon.name for icon in icons),
             )  # fmt: skip
             felt = respond(played, people, observer, [self.norm], detection=False)
             found.append(memory_dprime(felt, self.norm, people.memory, observer, USUAL))

@@ -99,16 +99,16 @@ def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
     """Play a set to virtual people, each on their own skin and contact, as `rank` does."""
     from thermicon.circuit import duration_s, simulate_many
 
-    members, crowd = list(icons), draw_people(people, seed)
+    members, crowd, names = list(icons), draw_people(people, seed), tuple(icon.name for icon in icons)
     end = run_end_s(duration_s(icon, rig) for icon in members)
     columns = [[receptor_column(variable, channel) for channel in ("cold", "warm")] for variable in VARIABLES]
     probes = [probe for pair in columns for probe in pair]
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
     played = tuple(
-        ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2)
+        ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2, names)
         for cold, warm in columns
     )
-    return Shown(tuple(icon.name for icon in members), crowd, played, seed)
+    return Shown(names, crowd, played, seed)
 
 
 def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...]:
