@@ -7,7 +7,7 @@ impulses, and the plausible observers that stand behind the other experiments to
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -33,7 +33,7 @@ from .waves import GROUPS, PAIRS, SHAPES, Likeness, wave_name
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
+    from thermicon.icons import Icon
 
 Score = Callable[[Array], float]
 """One number from the confusions (people, icons, icons) of a crowd."""
@@ -95,11 +95,12 @@ class Shown:
         return Identified(variable, model, self.labels, whole.probability, thinly(nominal), kept)
 
 
-def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
-    """Play a set to virtual people, each on their own skin and contact, as `rank` does."""
+def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
+    """Play icons to virtual people, each on their own skin and contact, as `rank` does."""
     from thermicon.circuit import duration_s, simulate_many
 
-    members, crowd, names = list(icons), draw_people(people, seed), tuple(icon.name for icon in icons)
+    members, crowd = list(icons), draw_people(people, seed)
+    names = tuple(icon.name for icon in members)
     end = run_end_s(duration_s(icon, rig) for icon in members)
     columns = [[receptor_column(variable, channel) for channel in ("cold", "warm")] for variable in VARIABLES]
     probes = [probe for pair in columns for probe in pair]
