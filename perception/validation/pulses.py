@@ -1,7 +1,7 @@
 """Sequences of short pulses: how often the best 22 and 16 of 52 would be named correctly.
 
-Published are the shares of 22 and of 16 cues; their levels, lengths, site and display are unknown, so that the sequences
-are this project's own, and the result is shown and not judged.
+Published are the shares of 22 and of 16 cues; their levels, lengths, site and display are unknown, so that the
+sequences are this project's own, and the result is shown and not judged.
 """
 
 from __future__ import annotations
