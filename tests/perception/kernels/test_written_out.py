@@ -120,15 +120,15 @@ def sequence(chance: np.random.Generator) -> Array:
     found[:, episodes.QUALITY] = chance.integers(0, 2, LONGEST)
     found[:, episodes.CUT] = chance.integers(0, 2, LONGEST)
     found[:, episodes.NOISE] = chance.uniform(0.0, 0.5, LONGEST)
+    found[:, episodes.RISE] = chance.uniform(0.0, 3.0, LONGEST)
     return found
 
 
 def least_cost(one: Array, two: Array, sd: Array, timing: float) -> float:
     def alone(x: Array) -> float:
         above = max(x[episodes.INTENSITY] - x[episodes.ONSET], 0.0)
-        return float(
-            min(above**2 / (sd[int(x[episodes.QUALITY])] ** 2 + x[episodes.NOISE] ** 2), x[episodes.RISE] ** 2)
-        )
+        noise = math.hypot(sd[int(x[episodes.QUALITY])], x[episodes.NOISE])
+        return float(min(above / noise, x[episodes.RISE]))
 
     def together(x: Array, y: Array) -> float:
         if x[episodes.QUALITY] != y[episodes.QUALITY]:
@@ -137,13 +137,13 @@ def least_cost(one: Array, two: Array, sd: Array, timing: float) -> float:
         timed = [episodes.RATE, episodes.PAUSE]
         timed += [episodes.LENGTH] if x[episodes.CUT] == y[episodes.CUT] == 0.0 else []
         off = (x[episodes.INTENSITY] - y[episodes.INTENSITY]) ** 2 / noise
-        return float(off + ((x[timed] - y[timed]) ** 2).sum() / timing**2)
+        return max(float(off + ((x[timed] - y[timed]) ** 2).sum() / timing**2), (alone(x) - alone(y)) ** 2)
 
     @cache
     def cost(i: int, j: int) -> float:
         ways = [0.0] if i == j == 0 else []
-        ways += [cost(i - 1, j) + alone(one[i - 1])] if i else []
-        ways += [cost(i, j - 1) + alone(two[j - 1])] if j else []
+        ways += [cost(i - 1, j) + alone(one[i - 1]) ** 2] if i else []
+        ways += [cost(i, j - 1) + alone(two[j - 1]) ** 2] if j else []
         ways += [cost(i - 1, j - 1) + together(one[i - 1], two[j - 1])] if i and j else []
         return min(ways)
 

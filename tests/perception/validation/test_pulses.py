@@ -36,22 +36,22 @@ def excess(apart: Array) -> float:
 
 
 @pytest.mark.parametrize(
-    ("icons", "rig"),
+    ("icons", "rig", "bent"),
     [
-        (load_library("six-icons"), "thenar"),
-        (load_library("pulse-sequences"), "thenar"),
-        pytest.param(load_library("wave-shapes"), "thenar", marks=pytest.mark.slow),
-        pytest.param(load_library("wilson-ramps"), "thenar", marks=pytest.mark.slow),
-        pytest.param(load_library("wave-confusions"), "thenar", marks=pytest.mark.slow),
-        pytest.param(read_cue(CUES), RIG, marks=pytest.mark.slow),
+        (load_library("six-icons"), "thenar", 0.05),
+        (load_library("pulse-sequences"), "thenar", 0.05),
+        pytest.param(load_library("wave-shapes"), "thenar", 0.05, marks=pytest.mark.slow),
+        pytest.param(load_library("wilson-ramps"), "thenar", 0.05, marks=pytest.mark.slow),
+        pytest.param(load_library("wave-confusions"), "thenar", 0.05, marks=pytest.mark.slow),
+        pytest.param(read_cue(CUES), RIG, 0.07, marks=pytest.mark.slow),
     ],
     ids=lambda given: getattr(given, "name", given),
 )
-def test_memory_keeps_distances(icons: IconSet, rig: str) -> None:
+def test_memory_keeps_distances(icons: IconSet, rig: str, bent: float) -> None:
     """No cost is so high that d′ are no distances any more, which points in space would have to bend."""
     apart, _ = population_dprime(list(icons), Rig.load(rig), draw_people(8, 3))
     assert excess(apart) < 0.3
-    assert embed(apart)[1].max() < 0.05
+    assert embed(apart)[1].max() < bent
 
 
 def dprime(one: str, other: str) -> float:
