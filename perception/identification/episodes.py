@@ -177,36 +177,20 @@ def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Ob
     alignment leaves episodes without a partner: then d′² is divided as the features at equal places are.
     """
     from ..kernels import alignment
-
-    first, second = one.scaled(norm, observer), other.scaled(norm, observer)
-    shares = np.empty(alignment.SHARES)
-    alignment.aligned(
-        first.features[0, i], first.counts[0, i], second.features[0, j], second.counts[0, j],
-        intensity_noise(norm, observer, np.ones(1))[0], observer.memory.timing, shares,
-    )  # fmt: skip
-    if shares[alignment.MISSING] > 0.0 and _same_qualities(one, i, other, j):
-        shares = float(shares.sum()) * _by_place(first, i, second, j, observer, norm)
-    return dict(zip(PARTS, shares.tolist(), strict=True))
-
-
-def _same_qualities(one: Episodes, i: int, other: Episodes, j: int) -> bool:
     from ..kernels.episodes import QUALITY
 
-    first, second = (held.features[0, k, : held.counts[0, k], QUALITY] for held, k in ((one, i), (other, j)))
-    return np.array_equal(first, second)
-
-
-def _by_place(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> Array:
-    """Shares (parts,) of the features of episodes at equal places; their sum is 1."""
-    from ..kernels import alignment
-
-    intensity = intensity_noise(norm, observer, np.ones(1))[0]
-    total, own = np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
-    for x, y in zip(one.features[0, i, : one.counts[0, i]], other.features[0, j, : other.counts[0, j]], strict=True):
-        alignment.matched(x, y, intensity, observer.memory.timing, own)
-        total += own
-    shares: Array = total / total.sum()
-    return shares
+    intensity, timing = intensity_noise(norm, observer, np.ones(1))[0], observer.memory.timing
+    shares, total, own = np.empty(alignment.SHARES), np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
+    first, second = (
+        held.scaled(norm, observer).features[0, k, : held.counts[0, k]] for held, k in ((one, i), (other, j))
+    )
+    alignment.aligned(first, len(first), second, len(second), intensity, timing, shares)
+    if shares[alignment.MISSING] > 0.0 and np.array_equal(first[:, QUALITY], second[:, QUALITY]):
+        for x, y in zip(first, second, strict=True):
+            alignment.matched(x, y, intensity, timing, own)
+            total += own
+        shares = shares.sum() * total / total.sum()
+    return dict(zip(PARTS, shares.tolist(), strict=True))
 
 
 def remembered(percepts: Sequence[Percept], observer: Observer | None = None) -> Episodes:

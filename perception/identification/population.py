@@ -49,6 +49,16 @@ class ReceptorTemperatures:
         names = tuple(icon.name for icon in icons)
         return cls(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2, names)
 
+    @classmethod
+    def simulated(
+        cls, icons: Sequence[Icon], rigs: Sequence[Rig], rig: Rig, end_s: float, rate_Hz: float, tracking: str | None
+    ) -> ReceptorTemperatures:
+        """Simulate icons on the rigs of people until `end_s`, with currents that are designed on `rig`."""
+        from thermicon.circuit import simulate_many
+
+        batch = simulate_many(icons, rigs, nominal=rig, end_s=end_s, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
+        return cls.of_batch(batch, icons, rig)
+
     def of(self, icons: Sequence[int]) -> ReceptorTemperatures:
         """Some of the icons."""
         names = tuple(self.names[place] for place in icons)

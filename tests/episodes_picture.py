@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..identification.episodes import Episode
-    from ..sensation.percept import Percept
+    from thermicon.perception.identification.episodes import Episode
+    from thermicon.perception.sensation.percept import Percept
 
 HEADROOM = 1.42
 """Room above the highest peak for the words of an episode, in multiples of it."""
