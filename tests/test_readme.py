@@ -213,6 +213,7 @@ def draw_images(folder: Path) -> None:
 
 def draw_mechanisms(folder: Path) -> None:
     """Draw what each mechanism does, and what the inference found."""
+    from episodes_picture import episodes_figure  # beside this file, which draws only as a program
     from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig, simulate
@@ -223,7 +224,6 @@ def draw_mechanisms(folder: Path) -> None:
     from thermicon.perception.inference.onset_stages import onset_stages
     from thermicon.perception.inference.results import load_ablation, load_constants, load_predictions
     from thermicon.perception.plots.draw_effects import plot_effect, plot_onset_stages
-    from thermicon.perception.plots.draw_episodes import episodes_figure
     from thermicon.perception.plots.draw_evidence import (
         plot_ablation,
         plot_left_out,
@@ -243,7 +243,7 @@ def draw_mechanisms(folder: Path) -> None:
     percepts = [perceive(simulate(icons[name], rig, tail_s=6.0)) for name in names]
     episodes = remembered(percepts)
     icons_remembered = [(percept, episodes.listed(0, k)) for k, percept in enumerate(percepts)]
-    episodes_figure(icons_remembered, Observer.load().criterion).savefig(folder / "mechanism-episodes.png", dpi=90)
+    episodes_figure(icons_remembered, Observer.load().memory.bar).savefig(folder / "mechanism-episodes.png", dpi=90)
     for name, axes in drawn.items():
         figure = axes.get_figure(root=True)
         assert isinstance(figure, Figure)

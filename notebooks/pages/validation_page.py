@@ -68,7 +68,8 @@ def target_rows(report: ValidationReport) -> list[tuple[Cell, ...]]:
         cells = [Cell(str(section.target.number)), Cell(section.target.title)]
         for k in range(len(VARIANTS)):
             held = sum(line.judged[k].verdict.holds is True for line in judged)
-            cells.append(Cell(f"{held} of {len(judged)} hold", "holds" if held == len(judged) else "misses"))
+            kind = "shown" if not judged else "holds" if held == len(judged) else "misses"
+            cells.append(Cell(f"{held} of {len(judged)} hold" if judged else "not judged", kind))
         cells.append(Cell(_misses(judged)))
         rows.append(tuple(cells))
     return rows
@@ -144,7 +145,8 @@ def _section(section: Section) -> Iterator[MarkdownBlock]:
     if missed:
         yield Text(f"Variants with misses: {_listed(missed)}. Suspected mechanism: {target.mechanism}")
     else:
-        yield Text(f"No misses. This result depends on: {target.mechanism}")
+        said = "No misses" if any(line.row.judged for line in section.lines) else "Not judged"
+        yield Text(f"{said}. This result depends on: {target.mechanism}")
     yield Bullets(tuple(_conditions(section)))
 
 

@@ -116,7 +116,7 @@ def carry_over(
             after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
             pairs = np.stack([alone, after], axis=2)
             differences = percept_distances(pairs[0], pairs[1], dt, person)
-            episodes = Episodes.of(pairs[0], pairs[1], dt, person)
+            episodes = Episodes.of(pairs[0], pairs[1], dt, person, [[icon.name] for icon in icons])
             for k, norm in enumerate(NORMS):
                 if norm in TRACE_NORMS:
                     apart[k, before] = differences[norm][:, 0, 1]

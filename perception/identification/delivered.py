@@ -142,7 +142,7 @@ def judge_delivered(
     """
     person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
     percepts = [[perceive(trace, person) for trace in traces] for traces in (designed, delivered)]
-    before, after = (_d_primes(each, person, chosen) for each in percepts)
+    before, after = (_d_primes(each, names, person, chosen) for each in percepts)
     return tuple(
         PerceivedChange(
             name,
@@ -157,9 +157,9 @@ def judge_delivered(
     )
 
 
-def _d_primes(percepts: Sequence[Percept], person: Observer, norm: Norm) -> Array:
+def _d_primes(percepts: Sequence[Percept], names: Sequence[str], person: Observer, norm: Norm) -> Array:
     felt = np.array([p.psi_cold for p in percepts]), np.array([p.psi_warm for p in percepts])
-    return dprimes_from_memory(felt, felt, percepts[0].dt_s, person, norm)
+    return dprimes_from_memory(felt, felt, percepts[0].dt_s, person, norm, (names, names))
 
 
 def _pair(change: DeliveredChange) -> dict[str, float]:

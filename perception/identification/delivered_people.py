@@ -50,19 +50,15 @@ def detected_as_delivered(
     >>> detected_as_delivered(made, made.designed_trace, made.trace, people=4).delivered > 0.9
     True
     """
-    from thermicon.circuit import duration_s, simulate_many
+    from thermicon.circuit import duration_s
 
     icon, rig = delivery.icon, delivery.rig
     crowd, observer = draw_people(people, seed), Observer.load()
     end = run_end_s([duration_s(icon, rig)]) if end_s is None else end_s
-    batch = simulate_many(
-        [icon], crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, tracking=tracking,
-        probes=[f"{channel}_receptor_C" for channel in CHANNELS],
-    )  # fmt: skip
-    as_designed = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
+    as_designed = ReceptorTemperatures.simulated([icon], crowd.rigs(rig), rig, end, RATE_HZ, tracking)
     cold, warm = (
-        met + _change(met - met[..., :1], channel, designed, delivered, batch.time_s + delivery.lead_s)
-        for channel, met in zip(CHANNELS, (batch.cold_C, batch.warm_C), strict=True)
+        met + _change(met - met[..., :1], channel, designed, delivered, as_designed.time_s + delivery.lead_s)
+        for channel, met in zip(CHANNELS, (as_designed.cold_C, as_designed.warm_C), strict=True)
     )
     as_delivered = replace(as_designed, cold_C=cold, warm_C=warm)
     before, after = (

@@ -23,6 +23,16 @@ PARTS = ("direction", "intensity", "rate", "duration", "pause")
 """Parts of a distance in the order of the kernel: episodes of one icon alone, and the features of shared ones."""
 
 
+class EpisodesError(ValueError):
+    """An icon that is felt as more episodes than are compared from memory."""
+
+    def __init__(self, icon: str, felt: int, most: int) -> None:
+        super().__init__(
+            f"{icon}: felt as {felt} separate episodes of cold and warmth; memory is computed for at most {most} of an "
+            "icon: give it fewer pulses, or make several icons of it"
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Episode:
     """One episode of an icon as it is remembered, on the receptor clock.
@@ -65,27 +75,33 @@ class Episodes:
         psi_warm: ArrayLike,
         dt_s: float,
         observer: Observer,
-        criterion_cold: ArrayLike = 1.0,
-        criterion_warm: ArrayLike = 1.0,
+        names: ArrayLike = "",
     ) -> Episodes:
-        """Episodes of sensations (people, icons, n_time); criteria (people,) are multiples of the observer's."""
+        """Episodes of sensations (people, icons, n_time), of icons whose names broadcast to (people, icons).
+
+        Raises `EpisodesError` for an icon that is felt as more episodes than are compared.
+        """
         from ..kernels import episodes as kernel
 
         cold, warm = (np.ascontiguousarray(psi, dtype=np.float64) for psi in (psi_cold, psi_warm))
         if cold.ndim != 3 or cold.shape != warm.shape:
             raise ValueError(f"sensations must have shape (people, icons, n_time), not {cold.shape} and {warm.shape}")
         people, icons, _ = cold.shape
-        each = np.broadcast_arrays(criterion_cold, criterion_warm, np.empty(people))[:2]
-        criteria = observer.criterion * np.stack(each, axis=-1)
-        features = np.zeros((people, icons, kernel.MOST, kernel.FEATURES))
+        features = np.zeros((people, icons, kernel.USUAL, kernel.FEATURES))
         counts = np.zeros((people, icons), dtype=np.int64)
 
         def work(part: slice) -> None:
             kernel.all_episodes(
-                cold[part], warm[part], dt_s, criteria[part], observer.a, observer.p, features[part], counts[part]
+                cold[part], warm[part], dt_s, observer.memory.bar, observer.a, observer.p, features[part], counts[part]
             )
 
         over_rows(work, people, cold.size)
+        if (most := int(counts.max(initial=0))) > kernel.USUAL:
+            if most > kernel.MOST:
+                worst = np.unravel_index(counts.argmax(), counts.shape)
+                raise EpisodesError(str(np.broadcast_to(names, counts.shape)[worst]) or "an icon", most, kernel.MOST)
+            features = np.zeros((people, icons, most, kernel.FEATURES))
+            over_rows(work, people, cold.size)
         return cls(features, counts)
 
     def __len__(self) -> int:
@@ -161,36 +177,20 @@ def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Ob
     alignment leaves episodes without a partner: then d′² is divided as the features at equal places are.
     """
     from ..kernels import alignment
-
-    first, second = one.scaled(norm, observer), other.scaled(norm, observer)
-    shares = np.empty(alignment.SHARES)
-    alignment.aligned(
-        first.features[0, i], first.counts[0, i], second.features[0, j], second.counts[0, j],
-        intensity_noise(norm, observer, np.ones(1))[0], observer.memory.timing, shares,
-    )  # fmt: skip
-    if shares[alignment.MISSING] > 0.0 and _same_qualities(one, i, other, j):
-        shares = float(shares.sum()) * _by_place(first, i, second, j, observer, norm)
-    return dict(zip(PARTS, shares.tolist(), strict=True))
-
-
-def _same_qualities(one: Episodes, i: int, other: Episodes, j: int) -> bool:
     from ..kernels.episodes import QUALITY
 
-    first, second = (held.features[0, k, : held.counts[0, k], QUALITY] for held, k in ((one, i), (other, j)))
-    return np.array_equal(first, second)
-
-
-def _by_place(one: Episodes, i: int, other: Episodes, j: int, observer: Observer, norm: Norm) -> Array:
-    """Shares (parts,) of the features of episodes at equal places; their sum is 1."""
-    from ..kernels import alignment
-
-    intensity = intensity_noise(norm, observer, np.ones(1))[0]
-    total, own = np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
-    for x, y in zip(one.features[0, i, : one.counts[0, i]], other.features[0, j, : other.counts[0, j]], strict=True):
-        alignment.matched(x, y, intensity, observer.memory.timing, own)
-        total += own
-    shares: Array = total / total.sum()
-    return shares
+    intensity, timing = intensity_noise(norm, observer, np.ones(1))[0], observer.memory.timing
+    shares, total, own = np.empty(alignment.SHARES), np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
+    first, second = (
+        held.scaled(norm, observer).features[0, k, : held.counts[0, k]] for held, k in ((one, i), (other, j))
+    )
+    alignment.aligned(first, len(first), second, len(second), intensity, timing, shares)
+    if shares[alignment.MISSING] > 0.0 and np.array_equal(first[:, QUALITY], second[:, QUALITY]):
+        for x, y in zip(first, second, strict=True):
+            alignment.matched(x, y, intensity, timing, own)
+            total += own
+        shares = shares.sum() * total / total.sum()
+    return dict(zip(PARTS, shares.tolist(), strict=True))
 
 
 def remembered(percepts: Sequence[Percept], observer: Observer | None = None) -> Episodes:
@@ -207,4 +207,4 @@ def remembered(percepts: Sequence[Percept], observer: Observer | None = None) ->
 
     person = Observer.load() if observer is None else observer
     cold, warm, dt = on_one_clock(percepts)
-    return Episodes.of(cold[None], warm[None], dt, person)
+    return Episodes.of(cold[None], warm[None], dt, person, [percept.icon or "" for percept in percepts])

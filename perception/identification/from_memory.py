@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..arrays import Array
@@ -13,13 +15,19 @@ from .episodes import Episodes, episode_distances
 
 Felt = tuple[Array, Array]
 """Sensations (icons, n_time) of cold and warm."""
+Names = str | Sequence[str]
 
 
-def dprimes_from_memory(one: Felt, other: Felt, dt_s: float, observer: Observer, norm: Norm) -> Array:
+def dprimes_from_memory(
+    one: Felt, other: Felt, dt_s: float, observer: Observer, norm: Norm, names: tuple[Names, Names] = ("", "")
+) -> Array:
     """d′ (n, m) of every icon of one to every icon of the other, on one clock, for the nominal memory."""
     trace = trace_norm(norm)
     if trace is None:
-        first, second = (Episodes.of(cold[None], warm[None], dt_s, observer) for cold, warm in (one, other))
+        first, second = (
+            Episodes.of(cold[None], warm[None], dt_s, observer, called)
+            for (cold, warm), called in zip((one, other), names, strict=True)
+        )
         found: Array = episode_distances(first, second, observer, norm)[0]
         return found
     apart = np.empty((len(one[0]), len(other[0])))
@@ -68,4 +76,5 @@ def dprime_from_memory(a: Percept, b: Percept, observer: Observer | None = None,
     person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
     cold, warm, dt = on_one_clock([a, b])
     one, other = ((cold[[k]], warm[[k]]) for k in (0, 1))
-    return float(dprimes_from_memory(one, other, dt, person, chosen)[0, 0])
+    names = a.icon or "", b.icon or ""
+    return float(dprimes_from_memory(one, other, dt, person, chosen, names)[0, 0])

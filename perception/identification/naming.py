@@ -51,7 +51,7 @@ def name_directly(
         Noise is drawn from the seed and the person's number, which counts from `first`; trials of an icon.
 
     """
-    from ..kernels import alignment, episodes
+    from ..kernels import alignment
 
     people, icons = felt.counts.shape
     own = np.broadcast_to(np.asarray(memory, dtype=np.float64), (people,))
@@ -65,7 +65,8 @@ def name_directly(
     def work(part: slice) -> None:
         for person in range(part.start, part.stop):
             rng = np.random.default_rng(np.random.SeedSequence([seed, 8], spawn_key=(first + person,)))
-            noise = rng.standard_normal((icons, samples, episodes.MOST, NOISES))
+            # The place in an icon comes first, so that noise does not depend on how many episodes others feel.
+            noise = rng.standard_normal((int(rated.counts[person].max(initial=0)), icons, samples, NOISES))
             alignment.name(
                 rated.features[person], rated.counts[person], intensity[person], timing[person], scale[person],
                 observer.memory.missing, favour[person], noise, counts[person],

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from ..arrays import Array
 from ..observer.channels import TRACE_NORMS, Norm, TraceNorm, trace_norm
@@ -19,28 +20,54 @@ from .naming import SAMPLES as NAMED_SAMPLES
 from .naming import name_directly
 from .task import USUAL, Task
 
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.circuit.solver.batch import Batch
+    from thermicon.icons import Icon
+
 PROBES = ("cold_receptor_C", "warm_receptor_C")
 """What people are simulated for: a batch of these alone can be superposed."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReceptorTemperatures:
-    """Temperatures at the receptors of every person: °C, shape (people, icons, n_time); clock in s, area in m²."""
+    """Temperatures at the receptors of every person: °C, shape (people, icons, n_time); clock in s, area in m².
+
+    `names` are those of the icons, for messages.
+    """
 
     cold_C: Array
     warm_C: Array
     time_s: Array
     site: str
     area_m2: float
+    names: tuple[str, ...]
+
+    @classmethod
+    def of_batch(cls, batch: Batch, icons: Sequence[Icon], rig: Rig) -> ReceptorTemperatures:
+        """What a batch of icons on the rigs of people has simulated."""
+        names = tuple(icon.name for icon in icons)
+        return cls(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2, names)
+
+    @classmethod
+    def simulated(
+        cls, icons: Sequence[Icon], rigs: Sequence[Rig], rig: Rig, end_s: float, rate_Hz: float, tracking: str | None
+    ) -> ReceptorTemperatures:
+        """Simulate icons on the rigs of people until `end_s`, with currents that are designed on `rig`."""
+        from thermicon.circuit import simulate_many
+
+        batch = simulate_many(icons, rigs, nominal=rig, end_s=end_s, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
+        return cls.of_batch(batch, icons, rig)
 
     def of(self, icons: Sequence[int]) -> ReceptorTemperatures:
         """Some of the icons."""
-        return ReceptorTemperatures(self.cold_C[:, icons], self.warm_C[:, icons], self.time_s, self.site, self.area_m2)
+        names = tuple(self.names[place] for place in icons)
+        return replace(self, cold_C=self.cold_C[:, icons], warm_C=self.warm_C[:, icons], names=names)
 
     def thinned(self, people: int, every: int) -> ReceptorTemperatures:
         """The first people at every k-th instant, copied."""
         cold, warm = (held[:people, :, ::every].copy() for held in (self.cold_C, self.warm_C))
-        return ReceptorTemperatures(cold, warm, self.time_s[::every], self.site, self.area_m2)
+        return replace(self, cold_C=cold, warm_C=warm, time_s=self.time_s[::every])
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +134,7 @@ def respond(
     cold, warm, dt = _sensations(played, crowd, observer)
     found = _detection(cold, warm, dt, played.site, crowd, observer, times) if detection else None
     peaks = (cold.max(axis=-1), warm.max(axis=-1))
-    episodes = Episodes.of(cold, warm, dt, observer, crowd.criterion_cold, crowd.criterion_warm)
+    episodes = Episodes.of(cold, warm, dt, observer, played.names)
     apart = percept_distances(cold, warm, dt, observer) if any(norm in TRACE_NORMS for norm in norms) else {}
     return PopulationResponse(episodes, apart, found, dt * (cold.shape[-1] - 1), peaks)
 

@@ -1,9 +1,10 @@
 """Compiled loops that compare sequences of episodes: alignment, distances, shares of a distance, naming of trials.
 
     D[i, j] = min(D[i−1, j] + g_i², D[i, j−1] + g_j², D[i−1, j−1] + m_ij² where the qualities agree),  d′ = √D[n, m]
-    m² = ΔI²/(σ_I² + s²) + (ΔR² + ΔW² + ΔP²)/σ_T²,   g² = max(I − I_on, 0)²/(σ_I² + s²)
+    m² = max(ΔI²/(σ_I² + s²) + (ΔR² + ΔW² + ΔP²)/σ_T², Δg²),   g = min(max(I − I_on, 0)/√(σ_I² + s²), r)
 
-with intensity I, rate R, length W, pause P of an episode and the noise s of its sensation.
+with intensity I, rate R, length W, pause P of an episode, the noise s of its sensation, and its rise r in d′. Without
+Δg² a faint episode could be missed and then taken for a strong one, for less than a strong one is missed.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 from thermicon.circuit.compiled import kernel
 
-from .episodes import CUT, INTENSITY, LENGTH, NOISE, ONSET, PAUSE, QUALITY, RATE
+from .episodes import CUT, INTENSITY, LENGTH, NOISE, ONSET, PAUSE, QUALITY, RATE, RISE
 
 SHARES = 5
 MISSING, BY_INTENSITY, BY_RATE, BY_LENGTH, BY_PAUSE = range(SHARES)
@@ -25,11 +26,11 @@ MISSING, BY_INTENSITY, BY_RATE, BY_LENGTH, BY_PAUSE = range(SHARES)
 def _unmatched(x: Any, intensity: Any) -> float:
     above = max(x[INTENSITY] - x[ONSET], 0.0)
     sd = intensity[int(x[QUALITY])]
-    return float(above * above / (sd * sd + x[NOISE] * x[NOISE]))
+    return float(min(above / math.sqrt(sd * sd + x[NOISE] * x[NOISE]), x[RISE]))
 
 
 def _matched(x: Any, y: Any, intensity: Any, timing: float, parts: Any) -> float:
-    """m² of two episodes of one quality, its parts in `parts` (SHARES,)."""
+    """m² of two episodes of one quality, its parts in `parts` (SHARES,); of Δg² the excess counts as intensity."""
     sd = intensity[int(x[QUALITY])]
     noise = sd * sd + 0.5 * (x[NOISE] * x[NOISE] + y[NOISE] * y[NOISE])
     parts[MISSING] = 0.0
@@ -39,7 +40,10 @@ def _matched(x: Any, y: Any, intensity: Any, timing: float, parts: Any) -> float
     parts[BY_LENGTH] = ((x[LENGTH] - y[LENGTH]) / timing) ** 2 if whole else 0.0
     parts[BY_PAUSE] = ((x[PAUSE] - y[PAUSE]) / timing) ** 2
     # Not parts.sum(): that part of numba imports scipy.linalg, for a fifth of a second.
-    return float(parts[BY_INTENSITY] + parts[BY_RATE] + parts[BY_LENGTH] + parts[BY_PAUSE])
+    square = parts[BY_INTENSITY] + parts[BY_RATE] + parts[BY_LENGTH] + parts[BY_PAUSE]
+    excess = max((unmatched(x, intensity) - unmatched(y, intensity)) ** 2 - square, 0.0)
+    parts[BY_INTENSITY] += excess
+    return float(square + excess)
 
 
 def _put(place: Any, values: Any) -> None:
@@ -59,12 +63,12 @@ def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: f
                 continue
             best = math.inf
             if i > 0:
-                lone = unmatched(one[i - 1], intensity)
+                lone = unmatched(one[i - 1], intensity) ** 2
                 best = cost[i - 1, j] + lone
                 put(parts[i, j], parts[i - 1, j])
                 parts[i, j, MISSING] += lone
             if j > 0:
-                lone = unmatched(two[j - 1], intensity)
+                lone = unmatched(two[j - 1], intensity) ** 2
                 if cost[i, j - 1] + lone < best:
                     best = cost[i, j - 1] + lone
                     put(parts[i, j], parts[i, j - 1])
@@ -82,7 +86,7 @@ def _aligned(one: Any, ones: int, two: Any, twos: int, intensity: Any, timing: f
 
 
 def _of_pair(x: Any, y: Any, intensity: Any, timing: float) -> float:
-    """m² of two episodes of one quality."""
+    """m² of two episodes of one quality, without Δg²."""
     sd = intensity[int(x[QUALITY])]
     square = (x[RATE] - y[RATE]) ** 2 + (x[PAUSE] - y[PAUSE]) ** 2
     if x[CUT] == 0.0 and y[CUT] == 0.0:
@@ -92,18 +96,20 @@ def _of_pair(x: Any, y: Any, intensity: Any, timing: float) -> float:
 
 
 def _least_cost(
-    one: Any, ones: int, alone: Any, two: Any, twos: int, missing: Any, sd: Any, timing: float, cost: Any
+    one: Any, ones: int, alone: Any, c: float, two: Any, twos: int, missing: Any, sd: Any, timing: float, cost: Any
 ) -> float:
-    """d′² between two sequences, given what their episodes cost without a partner; `cost` (MOST + 1,) is room."""
+    """d′² between two sequences by g of their episodes; those of `one` cost `c` more; `cost` (twos + 1,) is room."""
     cost[0] = 0.0
     for j in range(twos):
-        cost[j + 1] = cost[j] + missing[j]
+        cost[j + 1] = cost[j] + missing[j] * missing[j]
     for i in range(ones):
-        before, cost[0] = cost[0], cost[0] + alone[i]
+        lone = alone[i] * alone[i] + c
+        before, cost[0] = cost[0], cost[0] + lone
         for j in range(twos):
-            best = min(cost[j + 1] + alone[i], cost[j] + missing[j])
+            best = min(cost[j + 1] + lone, cost[j] + missing[j] * missing[j])
             if one[i, QUALITY] == two[j, QUALITY]:
-                best = min(best, before + of_pair(one[i], two[j], sd, timing))
+                off = alone[i] - missing[j]
+                best = min(best, before + max(of_pair(one[i], two[j], sd, timing), off * off))
             before, cost[j + 1] = cost[j + 1], best
     return float(cost[twos])
 
@@ -128,7 +134,7 @@ def _distances(
         for i in range(apart.shape[1]):
             for j in range(i + 1 if same else 0, apart.shape[2]):
                 square = least_cost(
-                    one[person, i], ones[person, i], alone[i], two[person, j], twos[person, j], missing[j], sd,
+                    one[person, i], ones[person, i], alone[i], 0.0, two[person, j], twos[person, j], missing[j], sd,
                     timing[person], cost,
                 )  # fmt: skip
                 apart[person, i, j] = math.sqrt(square)
@@ -143,7 +149,7 @@ def _name(
 ) -> None:
     """Count the names that one person gives: noise on what is felt, the template that costs least.
 
-    `felt` (icons, MOST, FEATURES), `louder` (icons,) multiplies the noise of an icon, `noise` (icons, samples, MOST, 4)
+    `felt` (icons, room, FEATURES), `louder` (icons,) multiplies the noise of an icon, `noise` (most, icons, samples, 4)
     are standard normal, `favour` (icons,) log likelihoods; `answers` (icons, icons) is added to. What is felt without a
     partner costs `c` more than the square of its size, since noise is part of it.
     """
@@ -154,9 +160,9 @@ def _name(
         for k in range(counts[j]):
             missing[j, k] = unmatched(felt[j, k], intensity)
     for i in range(icons):
-        for s in range(noise.shape[1]):
+        for s in range(noise.shape[2]):
             for k in range(counts[i]):
-                x, z = felt[i, k], noise[i, s, k]
+                x, z = felt[i, k], noise[k, i, s]
                 sd = intensity[int(x[QUALITY])]
                 total = math.sqrt(sd * sd + x[NOISE] * x[NOISE]) * louder[i]
                 put(now[k], x)
@@ -164,11 +170,10 @@ def _name(
                 now[k, RATE] = x[RATE] + timing * louder[i] * z[1]
                 now[k, LENGTH] = x[LENGTH] + timing * louder[i] * z[2]
                 now[k, PAUSE] = x[PAUSE] + timing * louder[i] * z[3]
-                lone = max((x[INTENSITY] - x[ONSET]) / total + z[0], 0.0)
-                alone[k] = lone * lone + c
+                alone[k] = max(min((x[INTENSITY] - x[ONSET]) / total, x[RISE] / louder[i]) + z[0], 0.0)
             best, name = math.inf, 0
             for j in range(icons):
-                square = least_cost(now, counts[i], alone, felt[j], counts[j], missing[j], intensity, timing, cost)
+                square = least_cost(now, counts[i], alone, c, felt[j], counts[j], missing[j], intensity, timing, cost)
                 if square - 2.0 * favour[j] < best:
                     best, name = square - 2.0 * favour[j], j
             answers[i, name] += 1.0

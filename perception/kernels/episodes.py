@@ -1,9 +1,8 @@
 """Compiled loops of remembered episodes: where stretches of one quality begin and end, and their features.
 
-An episode of quality q opens where ψ_q reaches the criterion c_on and is not below the other quality, starts where ψ_q
-last rose through c_off = c_on/2, and closes where ψ_q falls below c_off or below the other quality. Two of one quality
-with a short gap and nothing of the other between them are one; one whose drive falls below half of both its
-peaks is two.
+An episode of quality q opens where ψ_q reaches the bar c and is not below the other quality, starts where ψ_q last rose
+through c/2, and closes where ψ_q falls below c/2 or below the other quality. Two of one quality with a short gap and
+nothing of the other between them are one; one with a valley of ψ that lies c or more below both its peaks is two.
 """
 
 from __future__ import annotations
@@ -16,25 +15,23 @@ import numpy as np
 from thermicon.circuit.compiled import kernel
 from thermicon.circuit.vector_math import LEAST, exp, expm1, log, vectorised
 
-QUALITY, INTENSITY, RATE, LENGTH, PAUSE, NOISE, CUT, ONSET, START = range(9)
+FEATURES = 10
+QUALITY, INTENSITY, RATE, LENGTH, PAUSE, NOISE, CUT, ONSET, START, RISE = range(FEATURES)
 """Columns of an episode: 0 cold or 1 warm; ln u at the peak; ln of the steepest rise of u in 1/s; ln of the time above
 half the peak in s; ln of the pause before it; sensory noise of the intensity; 1 where the end of the trace cuts it;
-ln u at the criterion; start in s."""
-FEATURES = 9
-MOST = 8
-"""Episodes that are kept of an icon."""
+ln u at the bar; start in s; rise of ψ in d′ from the bar, or from the valley at which the episode begins."""
+MOST, USUAL = 64, 8
+"""Episodes that an icon may have, and as many as there is room for at first."""
 MERGED_S, SHORTEST_S, LOOK_BACK_S, PAUSE_FROM_S = 0.3, 0.2, 1.0, 0.5
-SPLIT_SHARE, HALF = 0.5, 0.5
-MOST_SEGMENTS = 32
-"""Stretches of one quality that are looked at, before short and weak ones are dropped."""
+HALF = 0.5
 
 
-def _segments(psi: Any, other: Any, dt: float, c_on: float, c_on_other: float, first: Any, last: Any) -> int:
+def _segments(psi: Any, other: Any, dt: float, bar: float, first: Any, last: Any) -> int:
     """Starts and ends (inclusive samples) of stretches of one quality; how many there are."""
     count, n, t = 0, psi.size, 0
-    c_off = 0.5 * c_on
-    while t < n and count < first.size:
-        if psi[t] < c_on or psi[t] < other[t]:
+    c_off = 0.5 * bar
+    while t < n:
+        if psi[t] < bar or psi[t] < other[t]:
             t += 1
             continue
         earliest = last[count - 1] + 1 if count > 0 else 0
@@ -47,7 +44,7 @@ def _segments(psi: Any, other: Any, dt: float, c_on: float, c_on_other: float, f
         merged = count > 0 and (start - last[count - 1]) * dt < MERGED_S
         if merged:
             for k in range(last[count - 1] + 1, t):
-                if other[k] >= c_on_other:
+                if other[k] >= bar:
                     merged = False
         if merged:
             last[count - 1] = end
@@ -58,40 +55,44 @@ def _segments(psi: Any, other: Any, dt: float, c_on: float, c_on_other: float, f
     return count
 
 
-def _split_at(u: Any, start: int, end: int) -> int:
-    """Sample of the deepest minimum that is below half of both the peak before and the peak after it; −1 for none."""
-    best, place = 1.0, -1
+def _split_at(psi: Any, start: int, end: int, bar: float) -> int:
+    """Sample of the deepest minimum that is the bar or more below the peaks before and after it; −1 for none."""
+    deepest, place = math.inf, -1
     n = end - start + 1
     after = np.empty(n)
-    after[n - 1] = u[end]
+    after[n - 1] = psi[end]
     for k in range(n - 2, -1, -1):
-        after[k] = max(after[k + 1], u[start + k])
-    before = u[start]
+        after[k] = max(after[k + 1], psi[start + k])
+    before = psi[start]
     for k in range(1, n - 1):
-        before = max(before, u[start + k])
-        lower = min(before, after[k])
-        if lower > 0.0 and u[start + k] / lower < min(best, SPLIT_SHARE):
-            best, place = u[start + k] / lower, start + k
+        before = max(before, psi[start + k])
+        if psi[start + k] < deepest and min(before, after[k]) - psi[start + k] >= bar:
+            deepest, place = psi[start + k], start + k
     return place
 
 
-def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: float, found: Any) -> int:
-    """Fill `found` (MOST, FEATURES) with the episodes of one icon in the order of their starts; how many there are.
+def _episodes(psi_cold: Any, psi_warm: Any, dt: float, bar: float, a: float, p: float, found: Any) -> int:
+    """Fill `found` (room, FEATURES) with the first episodes of one icon in the order of their starts.
 
-    `c_on` (2,) are the criteria of cold and warm in d′; u = (b·(e^(ψ/a) − 1))^(1/p) with b = 1/(e^(1/a) − 1).
+    Returns how many there are, also where the room does not suffice; u = (b·(e^(ψ/a) − 1))^(1/p) with
+    b = 1/(e^(1/a) − 1), and the bar is in d′.
     """
     b = 1.0 / math.expm1(1.0 / a)
     n = psi_cold.size
-    first, last = np.empty(MOST_SEGMENTS, np.int64), np.empty(MOST_SEGMENTS, np.int64)
-    most = 2 * MOST_SEGMENTS
-    starts, ends, kinds = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
+    first, last, floor = np.empty(n + 1, np.int64), np.empty(n + 1, np.int64), np.empty(n + 1)
+    starts, ends, kinds, floors = (
+        np.empty(2 * n, np.int64),
+        np.empty(2 * n, np.int64),
+        np.empty(2 * n, np.int64),
+        np.empty(2 * n),
+    )
     total = 0
     drives = np.empty((2, n))
     back = int(LOOK_BACK_S / dt)
     for quality in range(2):
         psi = psi_cold if quality == 0 else psi_warm
         other = psi_warm if quality == 0 else psi_cold
-        count = segments(psi, other, dt, c_on[quality], c_on[1 - quality], first, last)
+        count = segments(psi, other, dt, bar, first, last)
         if count == 0:
             continue
         # u is read where an episode looks back, and not beyond the last; a loop of its own that runs in vectors
@@ -99,13 +100,14 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: f
         given, own = psi[from_:to], drives[quality, from_:to]
         for t in range(given.size):
             own[t] = exp(log(max(b * expm1(given[t] / a), LEAST)) / p)
+        floor[:count] = bar
         k = 0
         while k < count:
-            place = split_at(drives[quality], first[k], last[k]) if count < MOST_SEGMENTS - 1 else -1
+            place = split_at(psi, first[k], last[k], bar)
             if place >= 0:
                 for m in range(count, k + 1, -1):
-                    first[m], last[m] = first[m - 1], last[m - 1]
-                first[k + 1], last[k + 1] = place + 1, last[k]
+                    first[m], last[m], floor[m] = first[m - 1], last[m - 1], floor[m - 1]
+                first[k + 1], last[k + 1], floor[k + 1] = place + 1, last[k], max(bar, psi[place])
                 last[k] = place
                 count += 1
             else:
@@ -114,8 +116,8 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: f
             peak = 0.0
             for t in range(first[k], last[k] + 1):
                 peak = max(peak, psi[t])
-            if (last[k] - first[k]) * dt >= SHORTEST_S and peak >= c_on[quality] and total < most:
-                starts[total], ends[total], kinds[total] = first[k], last[k], quality
+            if (last[k] - first[k]) * dt >= SHORTEST_S and peak >= bar:
+                starts[total], ends[total], kinds[total], floors[total] = first[k], last[k], quality, floor[k]
                 total += 1
     order = np.arange(total)
     for k in range(1, total):  # numba takes two seconds to compile its argsort
@@ -125,8 +127,7 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: f
             m -= 1
         order[m] = e
     before = 0.0
-    kept = min(total, MOST)
-    for k in range(kept):
+    for k in range(min(total, found.shape[0])):
         e = order[k]
         u = drives[kinds[e]]
         top = starts[e]
@@ -148,19 +149,18 @@ def _episodes(psi_cold: Any, psi_warm: Any, dt: float, c_on: Any, a: float, p: f
         found[k, PAUSE] = math.log(max(starts[e] * dt - before, 0.0) + PAUSE_FROM_S)
         found[k, NOISE] = (b + raised) / (a * p * raised)
         found[k, CUT] = 1.0 if ends[e] >= n - 1 else 0.0
-        found[k, ONSET] = math.log((b * math.expm1(c_on[kinds[e]] / a)) ** (1.0 / p))
+        found[k, ONSET] = math.log((b * math.expm1(bar / a)) ** (1.0 / p))
         found[k, START] = starts[e] * dt
+        found[k, RISE] = (psi_cold if kinds[e] == 0 else psi_warm)[top] - floors[e]
         before = ends[e] * dt
-    return kept
+    return total
 
 
-def _all_episodes(cold: Any, warm: Any, dt: float, c_on: Any, a: float, p: float, found: Any, counts: Any) -> None:
-    """Episodes of all icons of every person; `cold` (people, icons, time), `c_on` (people, 2)."""
+def _all_episodes(cold: Any, warm: Any, dt: float, bar: float, a: float, p: float, found: Any, counts: Any) -> None:
+    """Episodes of all icons of every person; `cold` (people, icons, time)."""
     for person in range(cold.shape[0]):
         for icon in range(cold.shape[1]):
-            counts[person, icon] = episodes(
-                cold[person, icon], warm[person, icon], dt, c_on[person], a, p, found[person, icon]
-            )
+            counts[person, icon] = episodes(cold[person, icon], warm[person, icon], dt, bar, a, p, found[person, icon])
 
 
 _compile: Any = kernel(nogil=True)

@@ -42,10 +42,11 @@ class Ratings:
 class EpisodeMemory:
     """Noise of remembered episodes: `timing` σ_T of rate, length and pause, `share` λ of the scatter of ratings.
 
+    `bar` is the sensation in d′ that a stretch must reach, and by which a valley must part two, to be remembered.
     `missing` is the cost of a felt episode that a name lacks, beyond its size, when names are given directly: the
     number of features whose noise it would have cost to match it.
 
-    >>> memory = EpisodeMemory(0.3, 0.5, 3.0, Ratings(6.0, 0.5, 40.0, 12.0), Ratings(2.3, 0.7, 30.0, 12.0))
+    >>> memory = EpisodeMemory(0.3, 0.5, 3.0, 1.0, Ratings(6.0, 0.5, 40.0, 12.0), Ratings(2.3, 0.7, 30.0, 12.0))
     >>> round(memory.intensity("cold"), 3)
     0.424
     """
@@ -53,10 +54,13 @@ class EpisodeMemory:
     timing: float
     share: float
     missing: float
+    bar: float
     cold: Ratings
     warm: Ratings
 
     def __post_init__(self) -> None:
+        if not self.bar > 0.0:
+            raise ValueError(f"the bar of an episode must be above 0 d′, not {self.bar:g}")
         if not self.timing > 0.0:
             raise ValueError(f"memory noise of episodes must be above 0, not {self.timing:g}")
         if not 0.0 <= self.share <= 1.0:

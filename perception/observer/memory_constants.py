@@ -14,6 +14,7 @@ from .channels import NORMS, noise_norm, trace_norm
 from .observer import Observer
 
 SHARE, MISSING, ONSET = "share of the scatter of ratings", "cost of a missing episode", "onset uncertainty"
+BAR = "bar of an episode"
 
 
 def noise_name(norm: str) -> str:
@@ -26,7 +27,7 @@ def noise_name(norm: str) -> str:
 
 
 NOISES = tuple(dict.fromkeys(noise_name(noise_norm(norm)) for norm in NORMS))
-MEMORY_NAMES = (*NOISES, SHARE, MISSING, ONSET)
+MEMORY_NAMES = (*NOISES, SHARE, MISSING, BAR, ONSET)
 """Every constant of memory that a table of draws may have a column for."""
 LIMITS: Mapping[str, tuple[float, float]] = {
     SHARE: (0.0, 1.0), MISSING: (0.0, math.inf), "correlation of cold and warm": (-1.0, 1.0),
@@ -66,5 +67,6 @@ def with_memory(observer: Observer, values: Mapping[str, float]) -> Observer:
         timing=values.get(noise_name("episodes"), own.timing),
         share=values.get(SHARE, own.share),
         missing=values.get(MISSING, own.missing),
+        bar=values.get(BAR, own.bar),
     )
     return replace(observer, **changes)

@@ -264,6 +264,7 @@ class Observer:
                 timing=number("memory noise", method="episodes"),
                 share=number("share of the scatter of ratings"),
                 missing=number("cost of a missing episode"),
+                bar=number("bar of an episode"),
                 cold=ratings("cold"),
                 warm=ratings("warm"),
             ),

@@ -1,4 +1,4 @@
-"""Observer files: whether one has every number that an observer needs, and whether it belongs to the first model."""
+"""Observer files: whether one has every number that an observer needs."""
 
 from __future__ import annotations
 
@@ -13,28 +13,13 @@ NEEDED = (
     "slope of sensation", "transducer exponent", "gain noise", "reference area", "criterion of speeded answers",
     "noise correlation time", "path length to the cord", "decision time", "choice time", "decision time between trials",
     "onset uncertainty", "lapse rate", "memory noise", "mean rating", "rating at threshold", "rating exponent",
-    "scatter of ratings", "share of the scatter of ratings", "cost of a missing episode",
+    "scatter of ratings", "share of the scatter of ratings", "cost of a missing episode", "bar of an episode",
     "window of counted impulses", "start of static discharge",
 )  # fmt: skip
 """Quantities of every variant; a variant's own have its ending."""
 
 NEEDED_OF = {"temperature": ("limit",), "heat flow": ("neutral heat flow",)}
 """Quantities that depend on the sensory variable."""
-
-RENAMED = {
-    "slow adaptation time constant": "slow adaptation time",
-    "integration time constant": "integration time",
-    "drive of a threshold step": "threshold drive",
-    "threshold at the wrist": "threshold on the forearm",
-    "criterion": "criterion of speeded answers",
-}
-"""Quantities of the first model that the present one has under another name, with values of its own."""
-
-RETIRED = (
-    "fast adaptation time constant", "fast adaptation weight", "gain control strength", "gain control scale",
-    "gain control time constant",
-)  # fmt: skip
-"""Quantities of the first model that the present one does not have."""
 
 SHIPPED = Path(__file__).parents[1] / "data" / "observer.toml"
 CURE = (
@@ -91,14 +76,6 @@ def check_complete(table: Table, variable: str, variant: str) -> None:
     missing = [name for name in wanted if name not in known and f"{name}{variant}" not in known]
     if not missing:
         return
-    old = [name for name in (*RETIRED, *RENAMED) if name in known]
-    if old:
-        renamed = [f"{name!r} is now {RENAMED[name]!r}" for name in old if name in RENAMED]
-        now = f"; {', '.join(renamed)}, with other values" if renamed else ""
-        raise RecordError(
-            f"{table.name}: belongs to the first model of the observer (it has {_named(old)}), whose numbers the "
-            f"present one does not use. Missing here: {_named(missing)}{now}. Cure: {CURE}"
-        )
     near = {name: nearest_words(name, sorted(known - set(wanted)), 1, 0.75) for name in missing}
     meant = [f"{close[0]!r} may be meant for {name!r}" for name, close in near.items() if close]
     hint = f" ({'; '.join(meant[:MOST_NAMED])})" if meant else ""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import information_bits
-from ..identification.population import PROBES, ReceptorTemperatures, identify, respond
+from ..identification.population import ReceptorTemperatures, identify, respond
 from ..identification.run_end import RATE_HZ, run_end_s
 from ..kernels.parallel import in_order
 from ..observer.people import draw_people
@@ -111,7 +111,7 @@ def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tr
 
     Raises ValueError for fewer than two icons and for more than 64.
     """
-    from thermicon.circuit import duration_s, simulate_many
+    from thermicon.circuit import duration_s
 
     members = list(icons)
     if not 2 <= len(members) <= MOST_ICONS:
@@ -121,12 +121,8 @@ def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tr
         )
     crowd = draw_people(people_for_intervals(len(members)), seed)
     end = run_end_s(duration_s(icon, rig) for icon in members)
-    batch = simulate_many(
-        members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ / EVERY, tracking=tracking, probes=PROBES
-    )
-    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
-    names = tuple(icon.name for icon in members)
-    return Stage(names, played, prior, (crowd.contact_resistance, crowd.outer_layer))
+    played = ReceptorTemperatures.simulated(members, crowd.rigs(rig), rig, end, RATE_HZ / EVERY, tracking)
+    return Stage(played.names, played, prior, (crowd.contact_resistance, crowd.outer_layer))
 
 
 def laboratories_for(icons: int, wanted: int) -> int:

@@ -154,7 +154,7 @@ def run(job: Job, number: int) -> BatchResult:
 
 def judge_people(job: Job, crowd: People, batch: Batch, model: ObserverModel, start: int) -> BatchResult:
     """Judge the people of a batch, of whom `start` come before, by what their receptors went through."""
-    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, job.rig.site, job.rig.contact.area_m2)
+    played = ReceptorTemperatures.of_batch(batch, job.icons, job.rig)
     observer = model.nominal
     felt = respond(played, crowd, observer, NORMS, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
@@ -317,7 +317,12 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
         standard_error=_sampling_error(job, mean, people),
         person_standard_error=blur,
         thin=ReceptorTemperatures(
-            joined("cold_C"), joined("warm_C"), time_s(job, EVERY), job.rig.site, job.rig.contact.area_m2
+            joined("cold_C"),
+            joined("warm_C"),
+            time_s(job, EVERY),
+            job.rig.site,
+            job.rig.contact.area_m2,
+            tuple(icon.name for icon in job.icons),
         ),
     )
 

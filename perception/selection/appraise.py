@@ -12,7 +12,6 @@ from ..arrays import Array
 from ..identification.confusion import SAMPLES, Confusion
 from ..identification.measures import information_bits, proportion_correct
 from ..identification.population import (
-    PROBES,
     PopulationResponse,
     ReceptorTemperatures,
     identify,
@@ -164,12 +163,11 @@ def population_response(
     observer: Observer | None = None,
 ) -> tuple[PopulationResponse, Array]:
     """What every person feels of every icon, and durations (s) of the icons; arguments as for `population_dprime`."""
-    from thermicon.circuit import duration_s, simulate_many
+    from thermicon.circuit import duration_s
 
     nominal = Observer.load() if observer is None else observer
     durations = np.array([duration_s(icon, rig) for icon in icons])
     end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
-    batch = simulate_many(icons, each, nominal=rig, end_s=end, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
-    played = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2)
+    played = ReceptorTemperatures.simulated(icons, each, rig, end, rate_Hz, tracking)
     return respond(played, crowd, nominal, [norm], detection=False), durations

@@ -15,7 +15,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.laboratory import Nominal, new_laboratory
 from ..identification.laboratory_draws import EVERY, PEOPLE
-from ..identification.population import PROBES, ReceptorTemperatures
+from ..identification.population import ReceptorTemperatures
 from ..identification.run_end import RATE_HZ, run_end_s
 from ..observer.observer import Norm
 from ..observer.observer_model import ObserverModel
@@ -86,18 +86,13 @@ class FinalJudge:
 
     def _persons(self, icons: Sequence[Icon], scores: Appraisal) -> dict[str, Array]:
         """Values of single people of all draws, laid about what all people reach, as in `rank`."""
-        from thermicon.circuit import duration_s, simulate_many
+        from thermicon.circuit import duration_s
 
         durations = [duration_s(icon, self.rig) for icon in icons]
         end = run_end_s(durations)
         few = self.crowd.part(0, min(PEOPLE, len(self.crowd)))
-        batch = simulate_many(
-            icons, few.rigs(self.rig), nominal=self.rig, end_s=end, rate_Hz=RATE_HZ, tracking=self.tracking,
-            probes=PROBES,
-        )  # fmt: skip
-        played = ReceptorTemperatures(
-            batch.cold_C, batch.warm_C, batch.time_s, self.rig.site, self.rig.contact.area_m2
-        ).thinned(len(few), EVERY)
+        met = ReceptorTemperatures.simulated(icons, few.rigs(self.rig), self.rig, end, RATE_HZ, self.tracking)
+        played = met.thinned(len(few), EVERY)
         n = len(icons)
         # Single people are laid about correct and bits alone; the rest of the prediction is not used.
         predicted = Nominal(

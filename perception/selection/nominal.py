@@ -66,7 +66,8 @@ def dprimes(tried: Sensed, kept: Sensed, norm: Norm, observer: Observer | None =
     person = Observer.load() if observer is None else observer
     n = max(tried.cold.shape[1], kept.cold.shape[1])
     one, other = (_held(tried.cold, n), _held(tried.warm, n)), (_held(kept.cold, n), _held(kept.warm, n))
-    return dprimes_from_memory(one, other, tried.dt_s, person, norm)
+    names, kept_names = ([trace.icon or "" for trace in sensed.traces] for sensed in (tried, kept))
+    return dprimes_from_memory(one, other, tried.dt_s, person, norm, (names, kept_names))
 
 
 def end_of(durations_s: Sequence[float]) -> float:

@@ -7,13 +7,14 @@ that are held at the end are judged with all draws.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Array
 from ..identification.drawn_laboratories import DrawnLaboratories
-from ..identification.population import PROBES, ReceptorTemperatures, memory_dprime, respond
+from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import Norm
 from ..observer.observer_model import ObserverModel
@@ -60,19 +61,13 @@ class ShareEvaluator(PopulationEvaluator):
 
     def pairwise_dprime(self, icons: Sequence[Icon]) -> Array:
         """d′ (pairs of a draw and a person, icons, icons) from memory; safety and reach are those of the rig."""
-        from thermicon.circuit import simulate_many
-
         self._sensed(icons)
         end = end_of(self._durations(icons).tolist())
-        batch = simulate_many(
-            icons, self.rigs, nominal=self.rig, end_s=end, rate_Hz=RATE_HZ, tracking=self.tracking, probes=PROBES
-        )
+        met = ReceptorTemperatures.simulated(icons, self.rigs, self.rig, end, RATE_HZ, self.tracking)
         found = []
         for persons, observer, people in self.groups:
-            played = ReceptorTemperatures(
-                batch.cold_C[persons, :, ::EVERY], batch.warm_C[persons, :, ::EVERY], batch.time_s[::EVERY],
-                self.rig.site, self.rig.contact.area_m2,
-            )  # fmt: skip
+            cold, warm = met.cold_C[persons, :, ::EVERY], met.warm_C[persons, :, ::EVERY]
+            played = replace(met, cold_C=cold, warm_C=warm, time_s=met.time_s[::EVERY])
             felt = respond(played, people, observer, [self.norm], detection=False)
             found.append(memory_dprime(felt, self.norm, people.memory, observer, USUAL))
         return np.concatenate(found)

@@ -20,23 +20,6 @@ from ..kernels.parallel import over_rows
 from ..observer.observer import Observer
 
 
-def log_survival(psi: ArrayLike, dt_s: float, criterion: ArrayLike, observer: Observer) -> Array:
-    """Log probability (..., n_time) that a channel has not passed its criterion (one, or one a row) by each sample.
-
-    What counts is the change of sensation from its first sample, in either direction.
-    """
-    from ..kernels.reports import AT_ONCE, changing, survive
-
-    rows, shape = as_rows(psi)
-    survived, room = np.empty_like(rows), np.empty((2, AT_ONCE + 1))
-    for row, own, left in zip(rows, _each(criterion, rows.shape[0]), survived, strict=True):
-        survive(
-            np.expm1(row / observer.a), 1.0, observer.a, *changing(row), dt_s, own, observer.noise_correlation_s, False,
-            room, left,
-        )  # fmt: skip
-    return survived.reshape(shape)
-
-
 @dataclass(frozen=True, slots=True)
 class ResponseTimes:
     """Distributions of response times, one a row: `time_s` (n_time,), `probability` (rows, n_time) of one by then.
@@ -165,7 +148,3 @@ def quarters(sd: float) -> Array:
     if sd == 0.0:
         return np.zeros(1)
     return sd * np.array([NormalDist().inv_cdf(share) for share in (0.125, 0.375, 0.625, 0.875)])
-
-
-def _each(values: ArrayLike, rows: int) -> Array:
-    return np.broadcast_to(np.asarray(values, dtype=np.float64).reshape(-1), (rows,))

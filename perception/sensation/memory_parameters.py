@@ -5,7 +5,7 @@ from __future__ import annotations
 from thermicon.circuit.records import Table
 
 from ..observer.channels import Norm, noise_norm
-from ..observer.memory_constants import MISSING, ONSET, SHARE, noise_name
+from ..observer.memory_constants import BAR, MISSING, ONSET, SHARE, noise_name
 from .parameters import ObserverParameter, observer_parameters
 
 
@@ -13,7 +13,7 @@ def memory_parameters(norm: Norm, site: str = "thenar", records: Table | None = 
     """The uncertain constants of memory that a norm makes use of, by the records of an observer (None: the shipped).
 
     >>> [parameter.name for parameter in memory_parameters("episodes")]
-    ['share of the scatter of ratings', 'memory noise (episodes)']
+    ['share of the scatter of ratings', 'bar of an episode', 'memory noise (episodes)']
     """
-    names = {SHARE, MISSING, ONSET, noise_name(noise_norm(norm))}
+    names = {SHARE, MISSING, BAR, ONSET, noise_name(noise_norm(norm))}
     return tuple(parameter for parameter in observer_parameters(norm, site, records) if parameter.name in names)

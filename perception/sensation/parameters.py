@@ -25,6 +25,7 @@ REMEMBERED: dict[str, tuple[Norm, ...]] = {
     "rating exponent": ("episodes", "naming"),
     "rating at threshold": ("naming",),
     "cost of a missing episode": ("naming",),
+    "bar of an episode": ("episodes", "naming"),
     "onset uncertainty": ("max", "rms", "integral"),
 }
 """Norms that make use of a constant, where not all of them do."""

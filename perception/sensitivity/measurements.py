@@ -20,8 +20,8 @@ MEASUREMENTS = (
     Measurement(
         "let people name a few icons from memory and count",
         (
-            *("memory noise", "share of the scatter of ratings", "cost of a missing episode", "onset uncertainty"),
-            *("wrong labels", "warmth that lingers"),
+            *("memory noise", "share of the scatter of ratings", "cost of a missing episode", "bar of an episode"),
+            *("onset uncertainty", "wrong labels", "warmth that lingers"),
         ),
     ),
     Measurement(

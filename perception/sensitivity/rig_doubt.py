@@ -41,6 +41,7 @@ class UncertainRig:
     time_s: Array
     site: str
     area_m2: float
+    names: tuple[str, ...]
 
     @classmethod
     def simulate(cls, icons: Sequence[Icon], rig: Rig, people: People, end_s: float) -> UncertainRig:
@@ -64,7 +65,9 @@ class UncertainRig:
                 row.append(np.stack([batch.cold_C, batch.warm_C]))
                 time_s = batch.time_s
             grid.append(np.stack(row))
-        return cls(contact, layer, np.stack(grid), time_s, rig.site, rig.contact.area_m2)
+        return cls(
+            contact, layer, np.stack(grid), time_s, rig.site, rig.contact.area_m2, tuple(each.name for each in icons)
+        )
 
     @property
     def parameters(self) -> tuple[ObserverParameter, ObserverParameter]:
@@ -75,7 +78,7 @@ class UncertainRig:
         """Temperatures of the receptors for a contact and an outermost layer, as shares of their intervals."""
         weights = np.outer(_parabola(contact), _parabola(layer)).reshape(-1)
         cold, warm = (weights @ self.grid.reshape(weights.size, -1)).reshape(self.grid.shape[2:])
-        return ReceptorTemperatures(cold, warm, self.time_s, self.site, self.area_m2)
+        return ReceptorTemperatures(cold, warm, self.time_s, self.site, self.area_m2, self.names)
 
 
 def intervals_of(rig: Rig) -> tuple[ObserverParameter, ObserverParameter]:

@@ -119,6 +119,7 @@ def _taken_over(known: Table) -> tuple[Record, ...]:
         known.one("lapse rate"),
         known.one("share of the scatter of ratings"),
         known.one("cost of a missing episode"),
+        known.one("bar of an episode"),
         *(_mean_rating(channel) for channel in CHANNELS),
     )
 

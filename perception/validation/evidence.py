@@ -21,6 +21,7 @@ from .experiments import limits, methods, rate_curve, reaction_times
 from .experiments_timing import PULSE_K, PULSE_S, first_and_return, peak_lead, whole_body_warmth
 from .identified import Identified, Shown, show, six_icons, wave_shapes
 from .predicted import Predicted
+from .pulses import named_pulses, show_pulses
 from .waves import LIBRARY, Likeness, SkinWaves, likeness, skin_waves, with_others
 
 SIX = "six-icons"
@@ -71,10 +72,11 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
     alike = likeness(skin)
     shown = show(six, rig, people, seed)
     waves = show(with_others(load_library(LIBRARY), six), rig, people, seed)
+    sequences = show_pulses(people, seed)
     predicted: list[Predicted] = []
     named: dict[str, list[Identified]] = {SIX: [], "waves": []}
     pulses: list[Pulse] = []
-    total = len(VARIANTS) * (len(_experiments("temperature", "adapting", people, draws, seed)) + 3)
+    total = len(VARIANTS) * (len(_experiments("temperature", "adapting", people, draws, seed)) + 4)
     step = step_counter(progress, total)
     for variable, model in VARIANTS:
         for run in _experiments(variable, model, people, draws, seed):
@@ -84,6 +86,8 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
         predicted += six_icons(found, trials, seed)
         step()
         predicted += wave_shapes(_named(named["waves"], waves, variable, model, draws), alike)
+        step()
+        predicted += named_pulses([each.identify(variable, model, draws) for each in sequences])
         step()
         pulses += [_pulse(variable, model, channel) for channel in CHANNELS]
         step()

@@ -7,7 +7,7 @@ impulses, and the laboratories of a new one's interval, whose observers stand be
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -33,7 +33,7 @@ from .waves import GROUPS, PAIRS, SHAPES, Likeness, wave_name
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
+    from thermicon.icons import Icon
 
 Score = Callable[[Array], float]
 """One number from the confusions (people, icons, icons) of a crowd."""
@@ -97,20 +97,21 @@ class Shown:
         return Identified(variable, model, self.labels, whole.probability, thinly(nominal, few), kept)
 
 
-def show(icons: IconSet, rig: Rig, people: int, seed: int) -> Shown:
-    """Play a set to virtual people, each on their own skin and contact, as `rank` does."""
+def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
+    """Play icons to virtual people, each on their own skin and contact, as `rank` does."""
     from thermicon.circuit import duration_s, simulate_many
 
     members, crowd = list(icons), draw_people(people, seed)
+    names = tuple(icon.name for icon in members)
     end = run_end_s(duration_s(icon, rig) for icon in members)
     columns = [[receptor_column(variable, channel) for channel in ("cold", "warm")] for variable in VARIABLES]
     probes = [probe for pair in columns for probe in pair]
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
     played = tuple(
-        ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2)
+        ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2, names)
         for cold, warm in columns
     )
-    return Shown(tuple(icon.name for icon in members), crowd, played, seed)
+    return Shown(names, crowd, played, seed)
 
 
 def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...]:

@@ -49,7 +49,7 @@ def observer() -> Observer:
         lapse=0.02,
         memory_max=0.30,
         memory_rms=0.28,
-        memory=EpisodeMemory(0.30, 0.5, 3.0, Ratings(6.0, 0.5, 40.0, 13.0), Ratings(2.3, 0.7, 27.0, 13.0)),
+        memory=EpisodeMemory(0.30, 0.5, 3.0, 1.0, Ratings(6.0, 0.5, 40.0, 13.0), Ratings(2.3, 0.7, 27.0, 13.0)),
         memory_integral=0.26,
     )
 

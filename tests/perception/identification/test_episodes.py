@@ -2,17 +2,17 @@
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from thermicon.perception import Observer
 from thermicon.perception.identification.confusion import confuse
-from thermicon.perception.identification.episodes import Episodes, distance_shares, episode_distances
+from thermicon.perception.identification.episodes import Episodes, EpisodesError, distance_shares, episode_distances
 from thermicon.perception.identification.measures import proportion_correct
 from thermicon.perception.identification.naming import name_directly
+from thermicon.perception.kernels.episodes import MOST, RISE, USUAL
 
 Trace = NDArray[np.float64]
 DT = 0.01
@@ -29,9 +29,9 @@ def bump(start_s: float, peak: float, rise_s: float = 1.0, hold_s: float = 1.0) 
 NOTHING = np.zeros_like(CLOCK)
 
 
-def episodes(*icons: tuple[Trace, Trace], observer: Observer, **criteria: Any) -> Episodes:
+def episodes(*icons: tuple[Trace, Trace], observer: Observer, names: ArrayLike = "") -> Episodes:
     cold, warm = (np.stack([icon[k] for icon in icons])[None] for k in (0, 1))
-    return Episodes.of(cold, warm, DT, observer, **criteria)
+    return Episodes.of(cold, warm, DT, observer, names)
 
 
 def qualities(found: Episodes, icon: int = 0) -> str:
@@ -42,10 +42,10 @@ def test_qualities_pauses_and_order(observer: Observer) -> None:
     icon = bump(1.0, 20.0), bump(8.0, 15.0)
     first, second = episodes(icon, observer=observer).listed(0, 0)
     assert (first.channel, second.channel) == ("cold", "warm")
-    # ψ passes half the criterion of 3.34 d′ on its way to 20 in 1 s
-    assert first.start_s == pytest.approx(1.0 + 1.67 / 20.0, abs=0.011)
+    # ψ passes half the bar of 1 d′ on its way to 20 in 1 s
+    assert first.start_s == pytest.approx(1.0 + 0.5 / 20.0, abs=0.011)
     assert first.pause_s == pytest.approx(first.start_s, abs=0.011)
-    assert second.pause_s == pytest.approx(second.start_s - (4.0 - 1.67 / 20.0), abs=0.03)
+    assert second.pause_s == pytest.approx(second.start_s - (4.0 - 0.5 / 20.0), abs=0.03)
     u = math.sqrt(math.expm1(20.0 / 12.0) / math.expm1(1.0 / 12.0))
     assert first.peak == pytest.approx(u, rel=1e-6)
     assert not first.cut
@@ -56,11 +56,12 @@ def test_short_gaps_are_bridged_and_deep_valleys_part(observer: Observer) -> Non
     gap = np.where((CLOCK > 2.5) & (CLOCK < 2.7), 0.0, bump(1.0, 20.0))
     assert qualities(whole) == "cold"
     bridged = episodes((gap, NOTHING), observer=observer)
-    # the gap is bridged, but it is also a valley below half of both peaks
+    # the gap is bridged, but it is also a valley of more than 1 d′
     assert qualities(bridged) == "cold cold"
-    shallow = np.maximum(bump(1.0, 20.0), bump(4.0, 20.0))
-    shallow = np.where((CLOCK > 2.0) & (CLOCK < 6.0), np.maximum(shallow, 17.0), shallow)
-    assert qualities(episodes((shallow, NOTHING), observer=observer)) == "cold"
+    for floor, expected in ((19.1, "cold"), (18.9, "cold cold")):
+        valley = np.maximum(bump(1.0, 20.0), bump(4.0, 20.0))
+        valley = np.where((CLOCK > 2.0) & (CLOCK < 6.0), np.maximum(valley, floor), valley)
+        assert qualities(episodes((valley, NOTHING), observer=observer)) == expected
     assert qualities(episodes((bump(1.0, 20.0) + bump(4.2, 20.0), NOTHING), observer=observer)) == "cold cold"
 
 
@@ -71,10 +72,46 @@ def test_the_stronger_quality_has_the_instant(observer: Observer) -> None:
 
 
 def test_what_is_weak_or_short_is_not_remembered(observer: Observer) -> None:
-    assert qualities(episodes((bump(1.0, 3.3), NOTHING), observer=observer)) == ""
+    assert qualities(episodes((bump(1.0, 0.99), NOTHING), observer=observer)) == ""
     assert qualities(episodes((bump(1.0, 20.0, 0.05, 0.05), NOTHING), observer=observer)) == ""
-    cautious = episodes((bump(1.0, 20.0), NOTHING), observer=observer, criterion_cold=7.0)
-    assert qualities(cautious) == ""
+    higher = replace(observer, memory=replace(observer.memory, bar=2.0))
+    faint = bump(1.0, 1.9), NOTHING
+    assert (qualities(episodes(faint, observer=observer)), qualities(episodes(faint, observer=higher))) == ("cold", "")
+    cautious = replace(observer, criterion=30.0)  # of speeded answers, not of memory
+    assert qualities(episodes(faint, observer=cautious)) == "cold"
+
+
+def test_pulses_on_a_plateau_are_counted_and_rise_from_their_valleys(observer: Observer) -> None:
+    """Three peaks of 6, 5 and 6 d′ with valleys of 3 and 2: each part rises from the bar or from its valley."""
+    course = np.interp(CLOCK, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0], [0.0, 6.0, 3.0, 5.0, 2.0, 6.0, 0.0])
+    found = episodes((course, NOTHING), observer=observer)
+    assert found.counts.tolist() == [[3]]
+    assert found.features[0, 0, :3, RISE] == pytest.approx([5.0, 2.0, 4.0], abs=1e-9)
+
+
+def test_as_many_episodes_as_an_icon_has_and_no_more_than_the_bound(observer: Observer) -> None:
+    def train(pulses: int) -> tuple[Trace, Trace]:
+        sample = np.arange(CLOCK.size)
+        return np.where((sample % 23 < 22) & (sample < 23 * pulses), 5.0, 0.0), NOTHING
+
+    def felt(pulses: int) -> Episodes:
+        return episodes(train(pulses), train(1), observer=observer, names=["many", "one"])
+
+    for pulses in (2, USUAL, USUAL + 1, MOST):
+        found = felt(pulses)
+        assert found.counts.tolist() == [[pulses, 1]]
+        assert found.features.shape[2] == max(pulses, USUAL)  # room for what is needed, not for all that is allowed
+    said = r"many: felt as 65 separate episodes of cold and warmth; memory is computed for at most 64 of an icon: give"
+    with pytest.raises(EpisodesError, match=said):
+        felt(MOST + 1)
+
+
+def test_trains_of_any_number_of_pulses_differ(observer: Observer) -> None:
+    trains = [(sum((bump(1.0 + 0.7 * k, 6.0, 0.2, 0.1) for k in range(n)), NOTHING), NOTHING) for n in range(7, 21)]
+    found = episodes(*trains, observer=observer)
+    assert found.counts.tolist() == [list(range(7, 21))]
+    apart = episode_distances(found, found, observer, "episodes")[0]
+    assert (apart[~np.eye(14, dtype=bool)] > 1.0).all()
 
 
 def test_an_episode_that_the_end_cuts_has_no_length(observer: Observer) -> None:
@@ -100,13 +137,24 @@ def test_distances_follow_their_formulas(observer: Observer) -> None:
     assert shares["intensity"] == pytest.approx(math.log(one.peak / other.peak) ** 2 / variance, rel=1e-6)
     assert shares["rate"] == pytest.approx(math.log(one.rate_per_s / other.rate_per_s) ** 2 / 0.09, rel=1e-6)
     lone = distance_shares(found, 1, found, 2, observer, "episodes")
-    at_criterion = math.sqrt(b * math.expm1(observer.criterion / observer.a))
+    at_bar = math.sqrt(b * math.expm1(observer.memory.bar / observer.a))
     variance = observer.memory.intensity("cold") ** 2 + noises[1] ** 2
-    assert lone["direction"] == pytest.approx(math.log(other.peak / at_criterion) ** 2 / variance, rel=1e-6)
+    assert lone["direction"] == pytest.approx(math.log(other.peak / at_bar) ** 2 / variance, rel=1e-6)
+
+
+def test_a_miss_costs_no_more_than_the_rise(observer: Observer) -> None:
+    """Of a bump on a high plateau it counts by how much it rises, not how intense it is."""
+    plateau, raised = (
+        np.interp(CLOCK, [0.0, 1.0, 9.0, 9.5, 10.0, 11.0], [0, 20, 20, 18.5, top, 0]) for top in (18.5, 20)
+    )
+    found = episodes((plateau, NOTHING), (raised, NOTHING), observer=observer)
+    assert found.counts.tolist() == [[1, 2]]
+    assert distance_shares(found, 0, found, 1, observer, "episodes")["direction"] == pytest.approx(1.5**2)
+    assert episode_distances(found, found, observer, "naming")[0, 0, 1] < 1.6
 
 
 def test_a_distance_grows_from_nothing_where_an_episode_appears(observer: Observer) -> None:
-    faint = [(bump(1.0, peak), NOTHING) for peak in (3.3, 3.35, 3.5, 5.0)]
+    faint = [(bump(1.0, peak), NOTHING) for peak in (0.98, 1.02, 1.2, 5.0)]
     found = episodes(*faint, (NOTHING, NOTHING), observer=observer)
     apart = episode_distances(found, found, observer, "episodes")[0, :, -1]
     assert apart[0] == 0.0
@@ -176,6 +224,8 @@ def test_messages(observer: Observer) -> None:
         replace(observer.memory, timing=0.0)
     with pytest.raises(ValueError, match=r"cost of a missing episode must be 0 or more, not -1"):
         replace(observer.memory, missing=-1.0)
+    with pytest.raises(ValueError, match=r"bar of an episode must be above 0 d′, not 0"):
+        replace(observer.memory, bar=0.0)
     with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\), not \(2, 10\)"):
         Episodes.of(np.zeros((2, 10)), np.zeros((2, 10)), DT, observer)
 

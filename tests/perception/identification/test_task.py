@@ -178,18 +178,20 @@ def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
 
 
 def test_what_is_not_safe_leaves_nothing_behind() -> None:
-    hot = "icon hot { warm by 17 °C at 8 °C/s; hold for 2 s; return at 8 °C/s }\n"
-    with_it = ranked(parse(str(SIX) + "\n" + hot), task=Task(gap_s=3.0))
-    assert {icon["carry_over"]["after"] for icon in with_it.to_dict()["icons"]} <= set(SIX_NAMES)
-    without = {(p.a, p.b): p.d_prime for p in ranked(task=Task(gap_s=3.0)).pairs}
-    for pair in with_it.pairs:
-        if "hot" not in (pair.a, pair.b):
-            assert pair.d_prime == pytest.approx(without[pair.a, pair.b], rel=1e-4)
+    """Two icons as long as each other: a hot one and a cold one would leave different things behind."""
+    found = []
+    for by in ("warm by 17 °C over 8.5 s", "cool by 22 °C over 8.5 s"):
+        unsafe = f"icon unsafe {{ {by}; hold for 2 s; return over 8.5 s }}\n"
+        with_it = ranked(parse(str(SIX) + "\n" + unsafe), task=Task(gap_s=3.0))
+        assert {icon["carry_over"]["after"] for icon in with_it.to_dict()["icons"]} <= set(SIX_NAMES)
+        found.append({(p.a, p.b): p.d_prime for p in with_it.pairs if "unsafe" not in (p.a, p.b)})
+    assert len(found[0]) == 15
+    assert found[0] == pytest.approx(found[1], rel=1e-6)
 
 
 def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
     plain, biased = (
-        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Selection(3, "correct")).chosen
+        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Selection(5, "correct")).chosen
         for bias in (0.0, 3.0)
     )
     assert plain is not None and biased is not None

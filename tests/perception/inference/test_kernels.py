@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.perception.survival import log_survival
 from thermicon.perception import Observer
 from thermicon.perception.inference.crowd import SHARES
 from thermicon.perception.inference.laboratory import samples_of
@@ -15,7 +16,6 @@ from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.adapted_drive import adapted_drive
 from thermicon.perception.kernels.psychometric import psychometric
 from thermicon.perception.observer.transducer import Transducer
-from thermicon.perception.sensation.first_passage import log_survival
 
 DT = 0.025
 TRANSDUCER = Transducer(11.0, 1.2)

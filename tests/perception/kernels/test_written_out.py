@@ -112,18 +112,23 @@ def test_reports(samples: int, every: int, corrected: bool) -> None:
                 assert share[row] == pytest.approx(expected[2], abs=1e-4)
 
 
+LONGEST = 12
+
+
 def sequence(chance: np.random.Generator) -> Array:
-    found = chance.normal(0.0, 1.0, (episodes.MOST, episodes.FEATURES))
-    found[:, episodes.QUALITY] = chance.integers(0, 2, episodes.MOST)
-    found[:, episodes.CUT] = chance.integers(0, 2, episodes.MOST)
-    found[:, episodes.NOISE] = chance.uniform(0.0, 0.5, episodes.MOST)
+    found = chance.normal(0.0, 1.0, (LONGEST, episodes.FEATURES))
+    found[:, episodes.QUALITY] = chance.integers(0, 2, LONGEST)
+    found[:, episodes.CUT] = chance.integers(0, 2, LONGEST)
+    found[:, episodes.NOISE] = chance.uniform(0.0, 0.5, LONGEST)
+    found[:, episodes.RISE] = chance.uniform(0.0, 3.0, LONGEST)
     return found
 
 
 def least_cost(one: Array, two: Array, sd: Array, timing: float) -> float:
     def alone(x: Array) -> float:
         above = max(x[episodes.INTENSITY] - x[episodes.ONSET], 0.0)
-        return float(above**2 / (sd[int(x[episodes.QUALITY])] ** 2 + x[episodes.NOISE] ** 2))
+        noise = math.hypot(sd[int(x[episodes.QUALITY])], x[episodes.NOISE])
+        return float(min(above / noise, x[episodes.RISE]))
 
     def together(x: Array, y: Array) -> float:
         if x[episodes.QUALITY] != y[episodes.QUALITY]:
@@ -132,13 +137,13 @@ def least_cost(one: Array, two: Array, sd: Array, timing: float) -> float:
         timed = [episodes.RATE, episodes.PAUSE]
         timed += [episodes.LENGTH] if x[episodes.CUT] == y[episodes.CUT] == 0.0 else []
         off = (x[episodes.INTENSITY] - y[episodes.INTENSITY]) ** 2 / noise
-        return float(off + ((x[timed] - y[timed]) ** 2).sum() / timing**2)
+        return max(float(off + ((x[timed] - y[timed]) ** 2).sum() / timing**2), (alone(x) - alone(y)) ** 2)
 
     @cache
     def cost(i: int, j: int) -> float:
         ways = [0.0] if i == j == 0 else []
-        ways += [cost(i - 1, j) + alone(one[i - 1])] if i else []
-        ways += [cost(i, j - 1) + alone(two[j - 1])] if j else []
+        ways += [cost(i - 1, j) + alone(one[i - 1]) ** 2] if i else []
+        ways += [cost(i, j - 1) + alone(two[j - 1]) ** 2] if j else []
         ways += [cost(i - 1, j - 1) + together(one[i - 1], two[j - 1])] if i and j else []
         return min(ways)
 
@@ -148,7 +153,7 @@ def least_cost(one: Array, two: Array, sd: Array, timing: float) -> float:
 def test_distances_of_sequences_of_any_length() -> None:
     chance = np.random.default_rng(2)
     one, two = (np.array([[sequence(chance) for _ in range(5)] for _ in range(3)]) for _ in range(2))
-    ones, twos = (chance.integers(0, episodes.MOST + 1, (3, 5)) for _ in range(2))
+    ones, twos = (chance.integers(0, LONGEST + 1, (3, 5)) for _ in range(2))
     ones[0, 0] = twos[0, 0] = 0
     sd, timing = chance.uniform(0.3, 1.0, (3, 2)), chance.uniform(0.3, 1.0, 3)
     for same, other, others in ((False, two, twos), (True, one, ones)):

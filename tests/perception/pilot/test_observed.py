@@ -33,7 +33,7 @@ def rig() -> Rig:
 
 @pytest.fixture(scope="module")
 def answers(icons: IconSet, rig: Rig) -> Trials:
-    return synthetic_trials(icons, rig, participants=3, trials=18, seed=5)
+    return synthetic_trials(icons, rig, participants=3, trials=18, seed=16)
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_made_up_answers_are_read_back_and_depend_on_the_seed(
     path.write_text(trials_text(answers, seed=2), encoding="utf-8")
     assert (read_trials(path, answers.icons).counts == answers.counts).all()
     assert (answers.presented == 3).all()
-    again = synthetic_trials(icons, rig, participants=3, trials=18, seed=5)
+    again = synthetic_trials(icons, rig, participants=3, trials=18, seed=16)
     other = synthetic_trials(icons, rig, participants=3, trials=18, seed=6)
     assert (again.counts == answers.counts).all()
     assert (other.counts != answers.counts).any()
@@ -121,28 +121,33 @@ def test_files_are_read_by_observer_and_draws(found: Observed, tmp_path: Path) -
 def test_memory_stands_beside_the_constants_of_each_draw(found: Observed, tmp_path: Path) -> None:
     (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
     draws = PosteriorDraws.load(tmp_path / "lab.csv")
-    assert draws.memory_names == ("share of the scatter of ratings", "memory noise (episodes)")
+    assert draws.memory_names == ("share of the scatter of ratings", "bar of an episode", "memory noise (episodes)")
     assert np.array_equal(draws.draws, found.draws().draws) and np.array_equal(draws.memory, found.draws().memory)
     values = found.prior.values(found.conditioned.after)
     for k, name in enumerate(draws.memory_names):
         column = values[:, found.prior.names.index(name)]
         assert np.allclose(np.sort(draws.memory[:, k]), np.sort(column), rtol=1e-5)
     person = draws.observer(3)
-    assert (person.memory.share, person.memory.timing) == tuple(draws.memory[3])
-    assert draws.table(3).one("memory noise", method="episodes").central == draws.memory[3, 1]
+    assert (person.memory.share, person.memory.bar, person.memory.timing) == tuple(draws.memory[3])
+    assert draws.table(3).one("memory noise", method="episodes").central == draws.memory[3, 2]
+    assert draws.table(3).one("bar of an episode").central == draws.memory[3, 1]
 
 
 def test_memory_that_cannot_be_is_refused(found: Observed, tmp_path: Path) -> None:
     path, lines = tmp_path / "lab.csv", found.files()[1].splitlines()
     lines = [line for line in lines if not line.startswith("# sha256")]
     first = next(k for k, line in enumerate(lines) if not line.startswith("#")) + 1
-    lines[first] = ",".join([*lines[first].split(",")[:-2], "1.5", "0.3"])
+    lines[first] = ",".join([*lines[first].split(",")[:-3], "1.5", "1", "0.3"])
     path.write_text("\n".join(lines), encoding="utf-8")
     with pytest.raises(RecordError, match=r"share of the scatter of ratings: 1\.5 must lie in 0 to 1"):
         PosteriorDraws.load(path)
-    lines[first] = ",".join([*lines[first].split(",")[:-2], "0.5", "-0.3"])
+    lines[first] = ",".join([*lines[first].split(",")[:-3], "0.5", "1", "-0.3"])
     path.write_text("\n".join(lines), encoding="utf-8")
     with pytest.raises(RecordError, match=r"memory noise \(episodes\): -0\.3 must be above 0"):
+        PosteriorDraws.load(path)
+    lines[first] = ",".join([*lines[first].split(",")[:-3], "0.5", "0", "0.3"])
+    path.write_text("\n".join(lines), encoding="utf-8")
+    with pytest.raises(RecordError, match=r"bar of an episode: 0 must be above 0"):
         PosteriorDraws.load(path)
 
 
@@ -158,7 +163,7 @@ def test_the_prior_of_a_kept_laboratory_has_its_memory(found: Observed, tmp_path
     others = naming.values(naming.first(len(draws), 3))
     assert np.ptp(others[:, naming.names.index("cost of a missing episode")]) > 4.0
     column = others[:, naming.names.index("memory noise (episodes)")]
-    assert np.allclose(column, draws.memory[:, 1], rtol=1e-4)
+    assert np.allclose(column, draws.memory[:, draws.memory_names.index("memory noise (episodes)")], rtol=1e-4)
 
 
 def test_a_kept_laboratory_is_the_prior_of_the_next_prediction(found: Observed, tmp_path: Path) -> None:

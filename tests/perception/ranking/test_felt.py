@@ -45,7 +45,7 @@ def test_one_nominal_person_is_the_percept(monkeypatch: pytest.MonkeyPatch) -> N
 def test_of_many_it_is_the_mean_over_them(ranking: Ranking) -> None:
     crowd = draw_people(PEOPLE, 0)
     batch = simulate_many(list(ICONS), crowd.rigs(RIG), nominal=RIG, end_s=END_S, probes=PROBES)
-    met = ReceptorTemperatures(batch.cold_C, batch.warm_C, batch.time_s, RIG.site, RIG.contact.area_m2)
+    met = ReceptorTemperatures.of_batch(batch, ICONS, RIG)
     each = population_detection(met, crowd, Observer.load()).probability
     assert each.shape == (PEOPLE, 2)
     assert [icon.detected_probability for icon in ranking.icons] == pytest.approx(each.mean(axis=0), rel=1e-9)

@@ -17,12 +17,13 @@ def rows() -> list[Row]:
     return [row for target in TARGETS for row in target.rows]
 
 
-def test_eight_targets_with_rows_and_a_mechanism_each() -> None:
-    assert [target.number for target in TARGETS] == list(range(1, 9))
+def test_nine_targets_with_rows_and_a_mechanism_each() -> None:
+    assert [target.number for target in TARGETS] == list(range(1, 10))
     for target in TARGETS:
         assert target.asks
         assert target.mechanism
-        assert any(row.judged for row in target.rows)
+        # Of published pulses nothing is known but how many were named.
+        assert any(row.judged for row in target.rows) == (target.title != "Sequences of short pulses")
 
 
 def test_labels_tell_rows_apart() -> None:

@@ -11,27 +11,27 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..identification.episodes import Episode
-    from ..sensation.percept import Percept
+    from thermicon.perception.identification.episodes import Episode
+    from thermicon.perception.sensation.percept import Percept
 
 HEADROOM = 1.42
 """Room above the highest peak for the words of an episode, in multiples of it."""
 
 
-def plot_episodes(percept: Percept, episodes: Sequence[Episode], criterion: float, ax: Axes | None = None) -> Axes:
-    """Draw both sensations, the criterion (d′), and what is remembered of them as bands; return the axes.
+def plot_episodes(percept: Percept, episodes: Sequence[Episode], bar: float, ax: Axes | None = None) -> Axes:
+    """Draw both sensations, the bar of an episode (d′), and what is remembered of them as bands; return the axes.
 
     The length of an episode that the end of the trace cuts is not remembered, and not written.
     """
     axes = new_axes(ax, (6.0, 3.0))
     axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
     axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")
-    axes.axhline(criterion, color="0.35", lw=0.9, ls=":", label="criterion")
-    highest = max(float(percept.psi_cold.max()), float(percept.psi_warm.max()), 1.5 * criterion)
+    axes.axhline(bar, color="0.35", lw=0.9, ls=":", label="bar")
+    highest = max(float(percept.psi_cold.max()), float(percept.psi_warm.max()), 1.5 * bar)
     for k, episode in enumerate(episodes):
         psi = percept.psi_cold if episode.channel == "cold" else percept.psi_warm
         colour = COOL if episode.channel == "cold" else WARM
-        felt = (percept.time_s >= episode.start_s) & (psi >= 0.5 * criterion)
+        felt = (percept.time_s >= episode.start_s) & (psi >= 0.5 * bar)
         after = percept.time_s[(percept.time_s >= episode.start_s) & ~felt]
         end_s = float(after[0]) if after.size else float(percept.time_s[-1])
         if k + 1 < len(episodes):
@@ -49,14 +49,14 @@ def plot_episodes(percept: Percept, episodes: Sequence[Episode], criterion: floa
     return axes
 
 
-def episodes_figure(icons: Sequence[tuple[Percept, Sequence[Episode]]], criterion: float) -> Figure:
+def episodes_figure(icons: Sequence[tuple[Percept, Sequence[Episode]]], bar: float) -> Figure:
     """Draw several icons with their episodes, one below the other."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(6.4, 2.5 * len(icons) + 0.4), layout="constrained")
     panels = figure.subplots(len(icons), sharex=True, squeeze=False)[:, 0]
     for (percept, episodes), axes in zip(icons, panels, strict=True):
-        plot_episodes(percept, episodes, criterion, axes)
+        plot_episodes(percept, episodes, bar, axes)
         axes.label_outer()
     panels[0].legend(fontsize="small", loc="upper right", ncols=3, frameon=False, bbox_to_anchor=(1.0, 1.16))
     return figure
