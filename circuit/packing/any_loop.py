@@ -36,8 +36,8 @@ STEP_A, TRIES = 0.01, 12
 """Current limits are sought in such steps, and so often."""
 ANY_V = 1e4
 """A supply that holds no current back."""
-BEYONDS_K = (1.0, 0.5, 0.25)
-"""How far beyond what the display reaches a cut-off may be: the first from which a reaction is quick enough."""
+BEYONDS_K = ((1.0, 1.0), (1.0, 0.5), (0.5, 0.5))
+"""How far below and above what the display reaches a cut-off may be: more than its sensor may be wrong."""
 REACTIONS_S = (0.2, 0.1, 0.05, 0.02)
 """Reactions of cut-offs that are tried, the slowest first, with the sensor's own lag."""
 
@@ -92,8 +92,9 @@ class AnyLoop:
         flows, _, _ = run_follow(
             self.within(limits_A), lanes, np.zeros_like(lanes), period, goals, False, start.nodes_C
         )
-        commanded: Array = np.hstack([flows, flows[:, -1:]]) / ensemble.gain[:, np.newaxis]
-        drives = LaneDrives(np.arange(commanded.shape[1]) * period, commanded)
+        currents: Array = np.append(flows, flows[:, -1:], axis=1)
+        times: Array = np.arange(currents.shape[1], dtype=np.float64) * period
+        drives = LaneDrives(times, currents / ensemble.gain[:, np.newaxis])
         what = f", under any loop of {limits_A[0]:g} … {limits_A[1]:g} A"
         tally = Tally(ensemble.rig.limits, ensemble.corners, what.replace("-", "−"))
         for (rows, values), _ in ensemble.play(drives, start):
@@ -113,7 +114,9 @@ class AnyLoop:
         ends = {rule.upper: rule.limit for rule in hard if rule.quantity == "display" and rule.above_C is None}
         half = [0.5 * (limit + used) for limit, used in zip(limits_A, used_A, strict=True)]
         narrow_A = -_whole_A(-max(limits_A[0], half[0])), _whole_A(min(limits_A[1], half[1]))
-        edges = [(max(ends[False], reach_C[0] - far), min(ends[True], reach_C[1] + far)) for far in BEYONDS_K]
+        edges = [
+            (max(ends[False], reach_C[0] - below), min(ends[True], reach_C[1] + above)) for below, above in BEYONDS_K
+        ]
         begun = {edge: [self._held_at(level) for level in (edge[0] - SENSOR_K, edge[1] + SENSOR_K)] for edge in edges}
         for reaction, edge, within_A in itertools.product(REACTIONS_S, edges, (limits_A, narrow_A)):
             checks = self._stuck(begun[edge], within_A, reaction)

@@ -45,10 +45,10 @@ def judged_loop(
     slew = max(float(np.abs(np.diff(play.command)).max()) * play.rate_Hz for play in plays)
     for loop in _candidates(loops.module.ensemble.rig.controller, float(speed.max()), float(f"{slew:.3g}")):
         swings = (_swing(loops, bank, rigs, loop, play, cut) for play in plays)
-        failed = next((check for check in swings if not check.passed), None)
-        if failed is None:
-            return loop, ()
-    return loop, (failed,)
+        failed = tuple(itertools.islice((check for check in swings if not check.passed), 1))
+        if not failed:
+            break
+    return loop, failed
 
 
 def _candidates(own: Controller | None, speed: float, slew: float) -> Iterator[Loop]:
@@ -84,7 +84,7 @@ def _swing(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, play: Sa
         beyond = max(beyond, float(display.max()) - held.max(), held.min() - float(display.min()))
         late = display[:, -max(2, round(1.0 / period)) :]
         swing = max(swing, float(np.ptp(late, axis=1).max()))
-    room = min(cut.high - held.max(), held.min() - cut.low)
+    room = min(cut.high - held.max(), held.min() - cut.low) - SENSOR_K
     value, limit = (beyond, room) if beyond > room or swing <= SWING_K else (swing, SWING_K)
     since = float(play.time_s[-1]) if value > limit else None
     gains = f"{loop.kp_A_per_K[1]:g} A/K, {loop.ki_A_per_Ks[1]:g} A/(K·s)"

@@ -30,6 +30,11 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
         "TEST_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "TEST_S": c_float(must.test_s),
         "TEST_FALL_K": c_float(must.test_fall_K),
+        "KP": c_float(must.kp),
+        "KI": c_float(must.ki),
+        "KD": c_float(must.kd),
+        "LOWEST_A": c_float(must.lowest_A),
+        "HIGHEST_A": c_float(must.highest_A),
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
     }
