@@ -16,7 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..delivery.temperatures import past_most_cooling, rest_of_a_loop
+from ..delivery.delivery_deviation import loss_limit
+from ..delivery.samples import Samples
+from ..delivery.temperatures import past_most_cooling, rest_of_a_loop, updates_of
 from ..safety.checks import Check, worst_of
 from ..safety.demands import CutOff
 from ..safety.ensemble import LaneDrives
@@ -62,24 +64,36 @@ class AnyLoop:
         plates[:, LOWEST_A], plates[:, HIGHEST_A], plates[:, COMPLIANCE_V] = *np.outer(limits_A, gain), ANY_V
         return replace(self.bank, plates=plates)
 
-    def limits_A(self, cut: CutOff, needed_A: Limits_A) -> tuple[Limits_A, tuple[Check, ...]]:
+    def limits_A(self, cut: CutOff, plays: Sequence[Samples]) -> tuple[Limits_A, tuple[Check, ...]]:
         """The widest current limits within the driver's at which no loop moves skin or heats the hot plate too much.
 
-        They are never narrower than what the set-points need; then the checks, which are returned too, fail.
+        Where the set-points need more than these, the checks, which are returned too, are those of the driver's limits.
         """
         driver = self.module.ensemble.rig.driver
-        least, most = driver.current_min_A, driver.current_max_A
+        given = limits = driver.current_min_A, driver.current_max_A
+        checks = wide = self._swings(cut, given)
         for _ in range(TRIES):
-            checks = self._swings(cut, (least, most))
             share = {(check.quantity, check.upper): check.value / check.limit / ROOM for check in checks}
             warming, cooling = share["rate of skin temperature", True], share["rate of skin temperature", False]
             hot = 1.1 if share["hot plate", True] * ROOM > 1.0 else 0.0
-            lower = -_whole_A(-least / max(1.0, warming), -needed_A[0])
-            upper = _whole_A(most / max(1.0, cooling, hot), needed_A[1])
-            if (lower, upper) == (least, most) or max(warming, cooling, hot) <= 1.0:
+            if max(warming, cooling, hot) <= 1.0:
                 break
-            least, most = lower, upper
-        return (least, most), checks
+            limits = -_whole_A(-limits[0] / max(1.0, warming)), _whole_A(limits[1] / max(1.0, cooling, hot))
+            checks = self._swings(cut, limits)
+        slower_K = max(
+            float(np.sqrt(np.mean((self._shown(one, limits) - self._shown(one, given)) ** 2))) for one in plays
+        )
+        if slower_K <= loss_limit("receptor difference"):
+            return limits, checks
+        cure = f", as its set-points need; a driver.current_limit_A of {min(-limits[0], limits[1]):g} A slows them"
+        return given, tuple(replace(check, scenario=f"{check.scenario}{cure}") for check in wide)
+
+    def _shown(self, play: Samples, limits_A: Limits_A) -> Array:
+        """The display of the rig as given that follows set-points within current limits."""
+        period, lane = 1.0 / self.module.ensemble.rig.driver.update_Hz, np.zeros(1, dtype=np.int64)
+        state = self.bank.states([rest_of_a_loop(self.module.rigs[0], float(play.command[0]))[1]])
+        goals = updates_of(play, period)[np.newaxis]
+        return run_follow(self.within(limits_A), lane, lane, period, goals, False, state)[1]
 
     def _swings(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
         """Rates and hot plate where a loop swings between the cut-offs, from a display without power on."""
@@ -142,6 +156,6 @@ class AnyLoop:
         return tuple(check for check in worst_of(judged) if check.severity == "hard" and check.unit == "°C")
 
 
-def _whole_A(limit_A: float, needed_A: float = 0.0) -> float:
-    """A limit rounded down to whole steps, but not below what is needed."""
-    return round(STEP_A * max(math.floor(limit_A / STEP_A + 1e-9), math.ceil(needed_A / STEP_A - 1e-9)), 2)
+def _whole_A(limit_A: float) -> float:
+    """A limit rounded down to whole steps."""
+    return round(STEP_A * math.floor(limit_A / STEP_A + 1e-9), 2)

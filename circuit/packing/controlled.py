@@ -45,10 +45,8 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     reach_C = shown.low + BEYOND_K, shown.high - BEYOND_K
     unpowered_C = module.unpowered_C()
     reach_C = min(reach_C[0], unpowered_C[0]), max(reach_C[1], unpowered_C[1])
-    currents = np.concatenate([delivery.delivered.current_A for delivery in deliveries])
-    needed_A = min(0.0, float(currents.min())), max(0.0, float(currents.max()))
     around = CutOff(reach_C[0] - BEYOND_K, reach_C[1] + BEYOND_K, 0.0)
-    limits_A, swings = loops.limits_A(around, needed_A)
+    limits_A, swings = loops.limits_A(around, plays)
     drives = [module.drives(play) for play in plays]
     flows = np.concatenate([drive.current_A for drive in drives], axis=1)
     used_A = min(0.0, float(flows.min())), max(0.0, float(flows.max()))

@@ -98,7 +98,12 @@ class Bench:
         for number, level in enumerate(levels_C):
             if every and number % every == 0:
                 copies.append(self.copy())
-            before = np.array([self.seen[-1 - k][lane] for lane, k in zip(lanes, np.minimum(behind + 1, len(self.seen) - 1), strict=True)])
+            before = np.array(
+                [
+                    self.seen[-1 - k][lane]
+                    for lane, k in zip(lanes, np.minimum(behind + 1, len(self.seen) - 1), strict=True)
+                ]
+            )
             self.felt = keep * self.felt + (1 - keep) * self.display
             self.seen = [*self.seen[1:], self.felt + which.offset_K + wrong_K]
             now = np.array([self.seen[-1 - k][lane] for lane, k in zip(lanes, behind, strict=True)])
