@@ -15,8 +15,8 @@ class MustPrevent:
 
     The defaults are assumed where a gate states nothing: a display within the shipped soft limits; a watchdog
     and a reaction in which a display of 10 K/s moves by 5 K and 1 K; a test current that moves a plate of a few J/K by
-    some tenths of a kelvin; a minute of rest and of pause, as is usual in thermal studies; and a loop so slow and weak
-    that it swings on no module.
+    some tenths of a kelvin; a minute of rest and of pause, as is usual in thermal studies; a loop so slow that it swings
+    on no module; and the current of most shipped rigs.
     """
 
     watchdog_s: float = 0.5
@@ -32,8 +32,8 @@ class MustPrevent:
     kp: float = 0.1
     ki: float = 0.02
     kd: float = 0.0
-    lowest_A: float = -0.5
-    highest_A: float = 0.5
+    lowest_A: float = -1.5
+    highest_A: float = 1.5
 
 
 def must_prevent(verdicts: Sequence[Mapping[str, Any]]) -> MustPrevent:

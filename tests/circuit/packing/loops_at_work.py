@@ -80,7 +80,7 @@ class Bench:
         self.seen = [self.felt + self.which.offset_K] * (1 + int(np.ceil(self.which.delay_s.max() / self.period_s)))
         self.off_in_s = np.full(len(self.felt), np.inf)
 
-    def copy(self, lanes: Array | None = None) -> Bench:
+    def copy(self) -> Bench:
         """The same bench, to go on from here in another way."""
         other = object.__new__(Bench)
         other.__dict__.update(self.__dict__)
@@ -90,7 +90,7 @@ class Bench:
     def play(
         self, levels_C: Array, stuck_A: Array | None = None, wrong_K: float = 0.0, every: int = 0
     ) -> tuple[Array, list[Bench]]:
-        """Watched rows (rows, L, 4) while set-points are followed, or a current is stuck; `every`: copies on the way."""
+        """Watched rows (rows, L, 4) under set-points, or a current that is stuck; `every`: copies on the way."""
         which, gain = self.which, self.follower.circuit.gain
         keep = np.where(which.lag_s > 0, np.exp(-self.period_s / np.maximum(which.lag_s, 1e-9)), 0.0)
         behind = np.floor(which.delay_s / self.period_s + 1e-9).astype(int)
