@@ -38,7 +38,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     rig, device = deliveries[0].rig, deliveries[0].device
     verdicts = gate_shown(
         [(_beside(delivery, BESIDE_K), _beside(delivery, -BESIDE_K)) for delivery in deliveries],
-        rig, stuck_C=device.interval("set-point range"), pause_s=pause_s, rates=False, module=True,
+        rig, stuck_C=device.interval("set-point range"), pause_s=pause_s, module=True,
     )  # fmt: skip
     module, under, plays = FollowingModule.of(rig), Under.of(rig), [samples_of(delivery) for delivery in deliveries]
     loops, shown = AnyLoop.of(module), verdicts[0].demands.cut_off_display_C

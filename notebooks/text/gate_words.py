@@ -113,8 +113,8 @@ def demands_text(gates: Sequence[Named]) -> str:
     if loop is not None:
         (kp, most_kp), (ki, most_ki) = loop.kp_A_per_K, loop.ki_A_per_Ks
         parts.append(
-            f"its loop of {kp:.3g} to {most_kp:.3g} A/K and {ki:.3g} to {most_ki:.3g} A/(K·s) with a sensor that lags by "
-            f"{loop.sensor_lag_at_most_s:g} s, is wrong by {loop.sensor_offset_at_most_K:g} K and is acted on "
+            f"its loop of {kp:.3g} to {most_kp:.3g} A/K and {ki:.3g} to {most_ki:.3g} A/(K·s) with a sensor that lags "
+            f"by {loop.sensor_lag_at_most_s:g} s, is wrong by {loop.sensor_offset_at_most_K:g} K and is acted on "
             f"{loop.delay_at_most_s:g} s later at most"
         )
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
