@@ -36,6 +36,13 @@
 #define THERMICON_TEST_S @TEST_S@
 #define THERMICON_TEST_FALL_K @TEST_FALL_K@
 
+/* The loop that was judged: gains in A/K, A/(K s) and A s/K, and current limits, which the output never leaves. */
+#define THERMICON_KP @KP@
+#define THERMICON_KI @KI@
+#define THERMICON_KD @KD@
+#define THERMICON_LOWEST_A @LOWEST_A@
+#define THERMICON_HIGHEST_A @HIGHEST_A@
+
 /* A thermistor that is open or shorted reads far outside these. */
 #ifndef THERMICON_SENSOR_LOW_C
 #define THERMICON_SENSOR_LOW_C (-20.0f)
@@ -85,7 +92,8 @@ typedef struct {
     int (*measure)(void *context, float *display_C);
     void (*put_out)(void *context, float command); /* @OUTPUT_UNIT@; above 0 cools, 0 is off */
     void *context;
-    /* PI(D) loop on the measured temperature, for set-points only: A/K, A/(K s), A s/K, least and most output in A. */
+    /* PI(D) loop on the measured temperature, for set-points only: A/K, A/(K s), A s/K, least and most output in A.
+       Use those that were judged: THERMICON_KP, THERMICON_KI, THERMICON_KD, THERMICON_LOWEST_A, THERMICON_HIGHEST_A. */
     float kp, ki, kd, lowest, highest;
 } thermicon_board;
 
@@ -207,8 +215,10 @@ static inline float thermicon_regulate(thermicon_player *player, float elapsed_s
     float rate = elapsed_s > 0.0f ? (player->measured_C - player->before_C) / elapsed_s : 0.0f;
     float sum = player->integral + board->ki * error * elapsed_s;
     float out = board->kp * error + sum + board->kd * rate;
-    if (out > board->highest) return board->highest;
-    if (out < board->lowest) return board->lowest;
+    float highest = board->highest < THERMICON_HIGHEST_A ? board->highest : THERMICON_HIGHEST_A;
+    float lowest = board->lowest > THERMICON_LOWEST_A ? board->lowest : THERMICON_LOWEST_A;
+    if (out > highest) return highest;
+    if (out < lowest) return lowest;
     player->integral = sum;
     return out;
 }

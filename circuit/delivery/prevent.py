@@ -11,9 +11,12 @@ from typing import Any
 class MustPrevent:
     """The numbers of a player: s, °C, A and K. Cut-offs are on the measured display temperature.
 
+    Of a loop they are its gains, kp A/K, ki A/(K·s) and kd A·s/K, and its current limits.
+
     The defaults are assumed where a gate states nothing: a display within the shipped soft limits; a watchdog
     and a reaction in which a display of 10 K/s moves by 5 K and 1 K; a test current that moves a plate of a few J/K by
-    some tenths of a kelvin; and a minute of rest and of pause, as is usual in thermal studies.
+    some tenths of a kelvin; a minute of rest and of pause, as is usual in thermal studies; a loop so slow that no
+    module makes it swing; and the current of most shipped rigs.
     """
 
     watchdog_s: float = 0.5
@@ -26,6 +29,8 @@ class MustPrevent:
     test_fall_K: float = 0.1
     rest_s: float = 60.0
     pause_s: float = 60.0
+    gains: tuple[float, float, float] = (0.1, 0.02, 0.0)
+    limits_A: tuple[float, float] = (-1.5, 1.5)
 
 
 def must_prevent(verdicts: Sequence[Mapping[str, Any]]) -> MustPrevent:
@@ -40,6 +45,8 @@ def must_prevent(verdicts: Sequence[Mapping[str, Any]]) -> MustPrevent:
     cut_offs = [each["cut_off_display_C"] for each in stated if each.get("cut_off_display_C")]
     checks = [each["polarity_check"] for each in stated if each.get("polarity_check")]
     needed = [check for check in checks if check.get("needed")]
+    limits = [each["current_limit_A"] for each in stated if each.get("current_limit_A")]  # alike in all icons of a set
+    loop = next((each["loop"] for each in stated if each.get("loop")), None)
     plain = MustPrevent()
     return MustPrevent(
         watchdog_s=_least(stated, "watchdog_s", plain.watchdog_s),
@@ -52,6 +59,8 @@ def must_prevent(verdicts: Sequence[Mapping[str, Any]]) -> MustPrevent:
         test_fall_K=_least(needed, "display_change_at_least_K", plain.test_fall_K),
         rest_s=_rest_s(stated, plain.rest_s),
         pause_s=_most(stated, "pause_at_least_s", plain.pause_s),
+        gains=(loop["kp_A_per_K"][1], loop["ki_A_per_Ks"][1], loop["kd_As_per_K"]) if loop else plain.gains,
+        limits_A=limits[0] if limits else plain.limits_A,
     )
 
 

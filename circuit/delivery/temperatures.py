@@ -8,8 +8,8 @@ PID loop where it has one.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
 
 import numpy as np
 
@@ -61,19 +61,12 @@ def follow_samples(rig: Rig, samples: Samples, *, to_the_limit: bool = False) ->
     It ends with the set-points, in a row of the current that holds the rest. `to_the_limit`: where the module cannot
     reach a set-point, even the first, the current goes to the driver's limit, past the most cooling, as in a real loop.
     """
-    levels = samples.command
-    try:
-        rest, state = steady_state(rig, "display", float(levels[0]))
-    except RigError:
-        if not to_the_limit:
-            raise
-        rest, state = _saturated_rest(rig, float(levels[0]))
+    first = float(samples.command[0])
+    rest, state = rest_of_a_loop(rig, first) if to_the_limit else steady_state(rig, "display", first)
     lane, period = np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
-    bank = _past_most_cooling(rig) if to_the_limit else bank_of(rig)
-    count = max(1, math.ceil(float(samples.time_s[-1]) / period - 1e-9))
-    times: Array = np.arange(count + 1, dtype=np.float64) * period
-    place = np.floor(times[:-1] * samples.rate_Hz + 1e-6).astype(np.int64)
-    setpoint = levels[np.minimum(place, len(levels) - 1)][np.newaxis]
+    bank = past_most_cooling([rig]) if to_the_limit else bank_of(rig)
+    setpoint = updates_of(samples, period)[np.newaxis]
+    times: Array = np.arange(setpoint.shape[1] + 1, dtype=np.float64) * period
     if rig.controller is None:
         currents, _, _ = run_follow(bank, lane, lane, period, setpoint, False, bank.states([state]))
     else:
@@ -82,11 +75,20 @@ def follow_samples(rig: Rig, samples: Samples, *, to_the_limit: bool = False) ->
     return Drive(times, [*currents[0], rest], held=True)
 
 
-def _saturated_rest(rig: Rig, level_C: float) -> tuple[float, Array]:
-    """The current in A to which a loop runs that cannot hold a level, and the steady state there.
+def updates_of(samples: Samples, period_s: float) -> Array:
+    """The set-point in force at each update of the driver."""
+    count = max(1, math.ceil(float(samples.time_s[-1]) / period_s - 1e-9))
+    place = np.floor(np.arange(count) * (period_s * samples.rate_Hz) + 1e-6).astype(np.int64)
+    return np.asarray(samples.command[np.minimum(place, len(samples.codes) - 1)])
+
+
+def rest_of_a_loop(rig: Rig, level_C: float) -> tuple[float, Array]:
+    """The current in A by which a loop holds a level, or to which it runs where it cannot, and the steady state there.
 
     Where there is none, since the module would heat without limit, the one of the most cooling.
     """
+    with suppress(RigError):
+        return steady_state(rig, "display", level_C)
     network, driver = network_of(rig), rig.driver
     most_cooling = holding_current_A(network, "display", level_C)
     limit = driver.current_min_A if most_cooling < driver.current_min_A else driver.current_max_A
@@ -96,12 +98,11 @@ def _saturated_rest(rig: Rig, level_C: float) -> tuple[float, Array]:
     raise RigError(f"rig {rig.name}, one corner of it: it heats without limit at rest; begin nearer to rest")
 
 
-def _past_most_cooling(rig: Rig) -> Bank:
-    """The rig for a loop that does not know at which current its module cools most."""
-    network = network_of(rig)
-    plates = network.plates.copy()
-    plates[PAST_MOST_COOLING] = 1.0
-    return Bank.of([replace(network, plates=plates)])
+def past_most_cooling(rigs: Sequence[Rig]) -> Bank:
+    """The rigs for a loop that does not know at which current its module cools most."""
+    bank = Bank.of([network_of(rig) for rig in rigs])
+    bank.plates[:, PAST_MOST_COOLING] = 1.0
+    return bank
 
 
 def designed_until(drive: Drive, end_s: float) -> Drive:

@@ -33,6 +33,10 @@ class Verdict(Protocol):
         """Why it is red, in one sentence."""
 
     @property
+    def mended_by_pause(self) -> bool:
+        """Whether a longer pause is all that is missing."""
+
+    @property
     def findings(self) -> Sequence[Check]:
         """The limits that are exceeded, the hard ones first."""
 

@@ -70,8 +70,8 @@ def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryD
     refusals, narrowed = [], delivery.narrowed
     if verdict.colour == "red":
         reason = verdict.reason or "the gate says red"
-        mended_by_pause = "--pause" in reason
-        refusals.append(Refusal("unsafe", reason if mended_by_pause else reason + more_and_cure(verdict.findings)))
+        more = "" if verdict.mended_by_pause else more_and_cure(verdict.findings)
+        refusals.append(Refusal("unsafe", reason + more))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
         refusals.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))

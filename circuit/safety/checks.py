@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Literal
 
 from thermicon.icons.number_text import significant
 
@@ -17,8 +16,7 @@ class Check:
     """One rule checked against runs: the extreme, its time and scenario, and the source of the limit.
 
     `value` is the extreme on the side that the rule limits, first reached at `time_s`; `since_s` is when the limit is
-    first exceeded, None where it never is. `scenario` says in which run, `part` in which part of a sequence: `play` is
-    the first, `again` a later one, `return` the way back after the last set-point.
+    first exceeded, None where it never is. `scenario` says in which run, `again` whether that is a later play.
     """
 
     quantity: str
@@ -32,7 +30,7 @@ class Check:
     note: str = ""
     upper: bool = True
     scenario: str = ""
-    part: Literal["play", "again", "return"] = "play"
+    again: bool = False
 
     @property
     def passed(self) -> bool:
@@ -92,7 +90,6 @@ CURES = (
     (("skin surface", "display", "cold-receptor depth"), "a smaller or shorter change"),
 )
 """What keeps a quantity within its limit, by the beginning of its name."""
-END_AT_BASELINE = "an end at which the display is near the baseline, such as a hold there, or a lower current limit"
 NEARER_BASELINE = "a baseline nearer to resting skin, since it is beyond the limit from the start"
 
 
@@ -103,9 +100,7 @@ def more_and_cure(findings: Sequence[Check]) -> str:
     ''
     """
     hard = [finding for finding in findings if finding.severity == "hard"]
-    if hard and hard[0].part == "return":
-        cures = [END_AT_BASELINE]
-    elif any(check.unit == "°C" and check.since_s == 0.0 and check.part == "play" for check in hard):
+    if any(check.unit == "°C" and check.since_s == 0.0 and not check.again for check in hard):
         cures = [NEARER_BASELINE]
     else:
         cures = [cure for names, cure in CURES if any(check.quantity.startswith(names) for check in hard)]
@@ -124,8 +119,8 @@ def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:
 
 
 def as_dict(check: Check) -> dict[str, object]:
-    """A check in the form of a sidecar, whose scenario names the part in words."""
-    known = {name: value for name, value in asdict(check).items() if name != "part"}
+    """A check in the form of a sidecar, whose scenario says in words whether it is a later play."""
+    known = {name: value for name, value in asdict(check).items() if name != "again"}
     return {**known, "passed": check.passed, "text": str(check)}
 
 
@@ -141,7 +136,7 @@ def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
 
 def again(checks: Sequence[Check]) -> tuple[Check, ...]:
     """Checks of plays after others."""
-    return tuple(replace(check, part="again") for check in checks)
+    return tuple(replace(check, again=True) for check in checks)
 
 
 def _farthest(same: Sequence[Check]) -> Check:

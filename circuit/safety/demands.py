@@ -33,6 +33,24 @@ class PolarityCheck:
 
 
 @dataclass(frozen=True, slots=True)
+class Loop:
+    """The loops between set-points and current that a verdict holds for: their gains, and what is allowed at most.
+
+    Gains lie between both numbers. A delay counts from measuring to output, lag and offset are those of the loop's own
+    sensor; the offset also bounds that of the second sensor, on which the cut-off acts. The set-points of the files
+    change by `set_points_K_per_s` at most.
+    """
+
+    kp_A_per_K: tuple[float, float]
+    ki_A_per_Ks: tuple[float, float]
+    kd_As_per_K: float
+    delay_at_most_s: float
+    sensor_lag_at_most_s: float
+    sensor_offset_at_most_K: float
+    set_points_K_per_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class SingleFault:
     """A single fault: what fails, the verdict on the drive with this fault, and what prevents harm."""
 
@@ -49,8 +67,9 @@ class Demands:
     `watchdog_s`: a stuck current must be cut after this time; 60 where a minute is safe, 0 where no time is.
     `rest_before_first_play_s`: the rest must be held so long on a display that was without power; None: 10 min do not
     suffice. `zero_current_at_most_s`: after which contact must end, since the dose adds up. `current_limit_A`: between
-    which currents a controller that is given set-points must stay, since with more it follows their jumps too fast;
-    None where the drive itself is the current, or the device a thermode.
+    which currents a controller that is given set-points must stay, at any supply voltage, since no loop then moves the
+    skin too fast; `loop`: which loops it may be, and that its cut-off needs a second sensor. Both are None where the
+    drive itself is the current, or the device a thermode.
     """
 
     watchdog_s: float
@@ -61,6 +80,7 @@ class Demands:
     zero_current_at_most_s: float | None
     faults: tuple[SingleFault, ...]
     current_limit_A: tuple[float, float] | None = None
+    loop: Loop | None = None
 
     def __repr__(self) -> str:
         cut = self.cut_off_display_C

@@ -108,6 +108,11 @@ class Gate:
         return once or self.repeated.reason
 
     @property
+    def mended_by_pause(self) -> bool:
+        """Whether a longer pause between plays is all that is missing."""
+        return hard_reason(findings_of(self.once)) is None and self.repeated.shortest_pause_s is not None
+
+    @property
     def cautions(self) -> tuple[str, ...]:
         """A sentence for each soft limit exceeded."""
         return soft_cautions(self.findings)

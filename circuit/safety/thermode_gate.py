@@ -50,7 +50,6 @@ def gate_shown(
     stuck_C: tuple[float, float],
     limits: Limits | None = None,
     pause_s: float | None = None,
-    rates: bool = True,
     module: bool = False,
 ) -> tuple[Gate, ...]:
     """Check what a device shows, in repeated plays in any order, against every rule of safety.
@@ -67,10 +66,9 @@ def gate_shown(
         Limits in place of the rig's.
     pause_s
         Time between plays, 0 to 600 s; None: the longest recovery time.
-    rates
-        Whether the rate of skin is judged; not where a jump of the display is an idealisation.
     module
-        Keep the rules of a hot plate, taken as warm as the display, so that checks can be joined with others.
+        Keep the rules of a hot plate, taken as warm as the display, so that checks can be joined with a module's.
+        The rate of skin is left to these, since a jump of the display is an idealisation.
 
     Raises
     ------
@@ -80,7 +78,7 @@ def gate_shown(
     """
     check_pause(pause_s)
     under, limits_held = Under.of(rig), rig.limits if limits is None else limits
-    limits_held = limits_held if module else limits_without_module(limits_held)
+    limits_held, rates = limits_held if module else limits_without_module(limits_held), not module
     once: list[tuple[tuple[Check, ...], float | None, dict[str, float]]] = []
     for ways in drives:
         judged, recoveries, after = [], [], {}

@@ -254,7 +254,7 @@ def run_regulate(
     bias_A: Array,
     state: Array,
 ) -> tuple[Array, Array, Index]:
-    """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 4)."""
+    """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 5)."""
     from . import kernel_pid
     from .kernel_legs import leg_room
 

@@ -170,11 +170,11 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
     return tuple(designs.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
 
 
-def gains_of(rig: Rig) -> tuple[float, float, float, float]:
-    """Thermistor lag s and gains A/K, A/(K·s), A·s/K of a rig's own loop."""
+def gains_of(rig: Rig) -> tuple[float, float, float, float, float]:
+    """Thermistor lag s, gains A/K, A/(K·s), A·s/K and delay s of a rig's own loop, which has none in a simulation."""
     pid = rig.controller
     assert pid is not None
-    return pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K
+    return pid.lag_s, pid.kp_A_per_K, pid.ki_A_per_Ks, pid.kd_As_per_K, 0.0
 
 
 def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:

@@ -23,8 +23,8 @@ from .kernel_legs import begin_sink, factor_legs, load_legs
 from .network import COLD, HOT, SKIN
 from .plate import DEEP_C, SINK_NUMBERS, TEMPERATURE
 
-LAG_S, KP, KI, KD = range(4)
-"""Places in a rig's gains: lag of the thermistor s, kp A/K, ki A/(K·s), kd A·s/K."""
+LAG_S, KP, KI, KD, DELAY_S = range(5)
+"""Places in a rig's gains: lag of the thermistor s, kp A/K, ki A/(K·s), kd A·s/K, delay from measuring to output s."""
 
 
 @compiled
@@ -36,7 +36,8 @@ def regulate(
 
     At the start of a period I = I_bias + kp·e + ki·∫e dt + kd·dT_felt/dt, with e = T_felt − set-point and T_felt the
     display as the thermistor feels it: dT_felt/dt = (T_display − T_felt)/lag. `setpoint` (cue, period) is in °C,
-    `gains` (rig, 4) have the places LAG_S to KD, `bias` (lane,) is the current A that holds the start.
+    `gains` (rig, 5) have the places LAG_S to DELAY_S, `bias` (lane,) is the current A that holds the start. A delay
+    counts in whole periods, rounded up.
     `state` and what follows it are those of `kernel.follow`. The integral is not advanced while the current
     is at a limit and the error would push it further (anti-windup).
     """
@@ -59,11 +60,14 @@ def regulate(
         decay = math.exp(-step / lag) if lag > 0.0 else 0.0
         mean = (1.0 - decay) * lag / step  # mean weight over a step in which the display is linear
         felt, before, total, first = x[COLD] + p[DEEP_C], x[COLD] + p[DEEP_C], 0.0, weighed(n, upper, lower, x)
+        past = np.full(math.ceil(gains[r, DELAY_S] / period - 1e-9) + 1, felt)
         for k in range(setpoint.shape[1]):
-            error = felt - setpoint[c, k]
-            demanded = bias[lane] + kp * error + ki * total + kd * (felt - before) / period
+            past[k % len(past)] = felt
+            seen = past[(k + 1) % len(past)]
+            error = seen - setpoint[c, k]
+            demanded = bias[lane] + kp * error + ki * total + kd * (seen - before) / period
             amperes, code = limited(demanded, x[HOT] + p[DEEP_C], x[COLD] + p[DEEP_C], sink[TEMPERATURE], p)
-            before = felt
+            before = seen
             for _ in range(pieces):
                 display = x[COLD] + p[DEEP_C]
                 first = advance(

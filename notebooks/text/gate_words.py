@@ -104,12 +104,21 @@ def demands_text(gates: Sequence[Named]) -> str:
     if hangs:
         whose = _of(_names(hangs), len(hangs) < len(every))
         parts = [f"a current that cannot hang{whose}, for which no watchdog is quick enough"]
-    cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on the measured display"
+    loop = every[0][1].loop  # of set-points: one for all icons
+    cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on "
+    cut_off += "the measured display" if loop is None else "a second sensor of the display"
     parts.append(cut_off if within < QUICKEST_S else f"{cut_off} within {within:g} s")
     limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
     if limits:
         least, most = max(low for low, _ in limits), min(high for _, high in limits)
         parts.append(f"a controller limited to {signed(least, 'g')} … {most:g} A")
+    if loop is not None:
+        (kp, most_kp), (ki, most_ki) = loop.kp_A_per_K, loop.ki_A_per_Ks
+        parts.append(
+            f"its loop of {kp:.3g} to {most_kp:.3g} A/K and {ki:.3g} to {most_ki:.3g} A/(K·s) with a sensor that lags "
+            f"by {loop.sensor_lag_at_most_s:g} s, is wrong by {loop.sensor_offset_at_most_K:g} K and is acted on "
+            f"{loop.delay_at_most_s:g} s later at most"
+        )
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
         parts.append("polarity check before the first play")
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]

@@ -16,7 +16,7 @@ MADE_UP: dict[str, Any] = {
 class GreenVerdict:
     """A gate that is green and says what the hardware must prevent."""
 
-    colour, reason, cautions, scenarios, findings = "green", None, (), 1, ()
+    colour, reason, cautions, scenarios, findings, mended_by_pause = "green", None, (), 1, (), False
 
     def __init__(self, delivery: object) -> None:
         self.delivery = delivery

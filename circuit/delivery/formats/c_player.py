@@ -30,6 +30,8 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
         "TEST_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "TEST_S": c_float(must.test_s),
         "TEST_FALL_K": c_float(must.test_fall_K),
+        **dict(zip(("KP", "KI", "KD"), map(c_float, must.gains), strict=True)),
+        **dict(zip(("LOWEST_A", "HIGHEST_A"), map(c_float, must.limits_A), strict=True)),
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
     }

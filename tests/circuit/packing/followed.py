@@ -27,8 +27,10 @@ LONGEST_PAUSE_S, AFTERWARDS_S = 15.0, 10.0
 class Follower:
     """One rig in all its worlds, whose display follows set-points."""
 
-    def __init__(self, rig: Json, rng: np.random.Generator, extra: int = 4) -> None:
-        self.circuit = Circuit.of(rig, worlds_of(rig, rng, extra))
+    def __init__(
+        self, rig: Json, rng: np.random.Generator, extra: int = 4, worlds: list[dict[str, float]] | None = None
+    ) -> None:
+        self.circuit = Circuit.of(rig, worlds or worlds_of(rig, rng, extra))
         driver, gain = rig["driver"], self.circuit.gain
         self.period_s = 1.0 / driver["update_Hz"]
         self.most_A = driver["current_limit_A"] * gain
@@ -68,8 +70,12 @@ class Follower:
         coldest = -slope / (2 * np.maximum(bend, 1e-12))
         return self.allowed(middle + half * np.where(under_root > 0, exact, coldest), state)
 
-    def rest(self, level_C: float) -> Array:
+    def rest(self, level_C: float | Array) -> Array:
         """States (W, n) at rest with the display at a level, or as near to it as it may come."""
+        return self._steady(self.holding(level_C))
+
+    def holding(self, level_C: float | Array) -> Array:
+        """Currents (W,) that hold the display at a level, or as near to it as it may come."""
         low, high = self.least_A.copy(), self.most_A.copy()
         for _ in range(40):  # towards the current of greatest cooling, the driver's highest in most worlds
             near, far = low + (high - low) / 3, high - (high - low) / 3
@@ -80,7 +86,7 @@ class Follower:
             middle = 0.5 * (low + high)
             warm = self._steady(middle)[:, 1] > level_C
             low, high = np.where(warm, middle, low), np.where(warm, high, middle)
-        return self._steady(0.5 * (low + high))
+        return np.asarray(0.5 * (low + high))
 
     def _steady(self, amperes: Array) -> Array:
         """Steady states (W, n); above 1000 °C where the module would heat without end."""
