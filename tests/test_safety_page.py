@@ -74,8 +74,8 @@ def test_the_constants_without_a_source_are_those_of_the_code() -> None:
         f"{MARGIN:g} of the time",
         f"{BEYOND_K:g} K beyond",
         f"{TEST_A:g} A for {TEST_S:g} s",
-        f"{INSTANTS} instants",
-        f"{', '.join(f'{one:g}' for one in REACTIONS_S[:-1])} or {REACTIONS_S[-1]:g} s",
+        f"{INSTANTS} stretches of the drive",
+        f"{', '.join(f'{one:g}' for one in REACTIONS_S[:0:-1])} or {REACTIONS_S[0]:g} s",
     ):
         assert words in text, words
 

@@ -79,7 +79,7 @@ def carry_over(
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> icons, rig = list(read_cue("six-icons")), Rig.load("thenar")
-    >>> near, far = (carry_over(icons, rig, 18.0, gap_s).apart[0].max() for gap_s in (1.0, 60.0))
+    >>> near, far = (carry_over(icons, rig, 18.0, gap_s).apart[0].max() for gap_s in (1.0, 150.0))
     >>> bool(near > 3 * far)
     True
     """

@@ -140,6 +140,7 @@ def test_the_gate_is_given_and_its_word_is_final() -> None:
         cautions: tuple[str, ...] = ()
         scenarios: int = 99
         findings: tuple[Check, ...] = ()
+        mended_by_pause: bool = False
 
         notes: tuple[str, ...] = ()
 

@@ -159,9 +159,10 @@ def test_everything_that_is_demanded_is_in_the_verdict() -> None:
     demanded = found.demanded
     assert set(demanded) == {
         "watchdog_s", "cut_off_display_C", "polarity_check", "rest_before_first_play_s", "pause_at_least_s",
-        "zero_current_at_most_s", "faults", "current_limit_A",
+        "zero_current_at_most_s", "faults", "current_limit_A", "loop",
     }  # fmt: skip
     assert demanded["current_limit_A"] is None, "the drive itself is the current"
+    assert demanded["loop"] is None, "there is none"
     assert demanded["pause_at_least_s"] == found.repeated.shortest_pause_s
     assert [fault.fault for fault in found.demands.faults] == [
         "host hangs in mid-play", "first play on a display that was without power", "poles swapped",

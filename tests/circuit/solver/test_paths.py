@@ -183,7 +183,8 @@ STEPPED = {
 CONSIDERED = {
     "fitting": {"forward"},
     "delivery": {"deliver", "netlist", "regulated", "spread", "temperatures", "formats/form"},
-    "safety": {"corners", "endings", "ensemble", "sessiondrive", "single_faults", "thermode"},
+    "packing": {"any_loop", "judged_loop"},
+    "safety": {"corners", "endings", "ensemble", "sessiondrive", "thermode"},
     "solver": {
         "batch", "batch_inputs", "constant_current", "displayed", "inverse", "landing", "prescribed", "pwm",
         "simulate", "static", "steady",

@@ -60,7 +60,7 @@ def test_files_and_shipped_sets_are_opened_and_undo_stays_within_one(path: Path)
     assert bar.buttons["Undo"].disabled
     bar.path.value = "nothing.cue"
     bar._safely(bar._open_selected)
-    assert "nothing.cue: No such file" in said(bar)
+    assert "nothing.cue: no such cue file" in said(bar)
     assert bench.text == TEXT
 
 
