@@ -14,7 +14,6 @@ from typing import Annotated
 
 import typer
 
-from ..bench.command import bench_command
 from ..figures.figure_look import (
     FigureData,
     FigureFolder,
@@ -363,7 +362,6 @@ for _name, _command, _panel in (
     ("sensitivity", whatif_commands.sensitivity_command, PREDICT),
     ("calibrate", whatif_commands.calibrate_command, PREDICT),
     ("validate", validation.validate_command, PREDICT),
-    ("bench", bench_command, PREDICT),
     ("session", session.session_command, PLAY),
     ("study", study.study_command, PLAY),
     ("export", hardware_commands.export_command, PLAY),
