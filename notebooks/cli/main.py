@@ -39,7 +39,6 @@ from ..text.options import (
     Keep,
     NormName,
     ObserverFile,
-    Recompute,
     ReportPage,
     RigName,
     Tracking,
@@ -268,7 +267,6 @@ def rank_command(
     workers: Workers = None,
     cluster: Cluster = None,
     keep: Keep = None,
-    recompute: Recompute = False,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -313,7 +311,6 @@ def rank_command(
         workers=workers,
         cluster=cluster,
         keep=keep,
-        recompute=recompute,
     )
     rank_files(files, load_rig(rig, changes or []), request, json, figure, report, look)
 
