@@ -15,7 +15,6 @@ from typing import Annotated
 import typer
 
 from ..figures.figure_look import (
-    FigureData,
     FigureFolder,
     FigureFormat,
     FigureStyle,
@@ -182,7 +181,6 @@ def simulate_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     measured: Annotated[
         Path | None,
         typer.Option(
@@ -216,7 +214,7 @@ def simulate_command(
     if not (math.isfinite(rate) and rate > 0):
         raise usage(f"{rate:g} is not a number of samples per second above 0", "--rate")
     check_tail(tail)
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     from .simulate import simulate_drive, simulate_file
 
     if current is not None:
@@ -261,7 +259,6 @@ def rank_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     figure_format: FigureFormat = None,
     report: ReportPage = None,
     workers: Workers = None,
@@ -289,7 +286,7 @@ def rank_command(
     picked = chosen_as(choose, objective, must, most_time, most_energy)
     if picked is not None and by == "rules":
         raise usage("icons are chosen with the model; leave out --by rules", "--choose")
-    look = figure_look(figure, width, style, no_title, figure_data, figure_format)
+    look = figure_look(figure, width, style, no_title, figure_format)
     from .ranking import Request, rank_files
 
     request = Request(
