@@ -73,7 +73,7 @@ def check_program() -> Iterator[Finding]:
 
 def check_required() -> Iterator[Finding]:
     """Say what ``pip check`` says: a misfit of thermicon is a fault, one between other packages of Python a note."""
-    run = run_program([sys.executable, "-m", "pip", "check"], PIP_ENDS_S)
+    run = run_program([sys.executable, "-P", "-m", "pip", "check"], PIP_ENDS_S)
     misfits = run.stdout.splitlines() if run.returncode else []
     if run.returncode and not misfits:
         text = f"not compared with each other, since pip check says: {' '.join(run.stderr.split()) or 'nothing'}"
