@@ -23,9 +23,6 @@ if TYPE_CHECKING:
 sys.dont_write_bytecode = False
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 
-# What one test computes, another does not read, nor what an earlier run has left in the cache.
-os.environ["THERMICON_RECOMPUTE"] = "1"
-
 # The check of IRIs in jsonschema, which no test needs, builds 38 grammars on import: 5 s for each process.
 sys.modules.setdefault("rfc3987_syntax", cast(ModuleType, None))
 

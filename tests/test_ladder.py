@@ -21,7 +21,7 @@ LADDER = {
         *("comparison", "selection", "ranking", "pilot", "sensitivity", "validation"),
     ),
     "notebooks": (
-        *("doctor", "text", "files", "figures", "pages", "study", "bench", "cli"),
+        *("doctor", "text", "files", "figures", "pages", "study", "cli"),
         *("editing", "timeline", "workbench"),
     ),
 }

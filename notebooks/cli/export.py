@@ -12,7 +12,7 @@ import typer
 from thermicon.icons.number_text import number
 
 from ..files.cues import pick, read_set, warn_of_site
-from ..files.export_folder import check_export_folder, check_names_free
+from ..files.export_folder import check_export_folder
 from ..files.exporting import PreparedExport, others, prepare_icons, write
 from ..text.gate_words import gate_words
 from ..text.messages import REFUSED, note, progress_bar
@@ -41,14 +41,13 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; exit code 3 if that is refused."""
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.pack import check_names, known_names
+    from thermicon.circuit.packing.pack import check_names
 
     form = load_format(to)
-    check_export_folder(folder)
+    check_export_folder(folder, replace=force)
     whole = read_set([file])
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
-    check_names_free(known_names([one.name for one in chosen], form), folder, replace=force)
     warn_of_site(file, whole, rig)
     with progress_bar("simulating") as progress:
         rest = others(whole, chosen)
@@ -66,8 +65,8 @@ def export_file(
     count = len(ready.prepared)
     drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
     note(f"wrote {drives} into {folder}: {', '.join(_shown(written.names))}")
-    if written.gone:
-        note(f"removed from {folder}, because their sidecars now describe other drives: {', '.join(written.gone)}")
+    if written.before is not None:
+        note(f"the folder as it was before is {written.before}")
     note(f"to play: {form.how}")
     note(CAUTION)
 

@@ -13,7 +13,6 @@ from thermicon.circuit.inputs import LONGEST_NAME, line_fault
 
 from ..figures.figure_look import (
     SCREEN,
-    FigureData,
     FigureFile,
     FigureStyle,
     FigureWidth,
@@ -82,7 +81,6 @@ def fit_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     plan: Annotated[
         bool, typer.Option("--plan", help="Without a log: how well each choice of sensors will identify these keys.")
     ] = False,
@@ -131,7 +129,7 @@ def fit_command(
         raise usage(fault, "--name")
     if not 0 <= offset <= MOST_OFFSET_K:
         raise usage(f"{offset:g} K is outside 0 to {MOST_OFFSET_K:g} K", "--offset")
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     request = Request(keys, hold, fit_start, offset, fixed_skin, output, figure, name, look)
     if plan:
         show_plan(load_rig(rig, changes or []), request)

@@ -10,7 +10,7 @@ import typer
 
 from thermicon.icons.number_text import count_of, number, percent
 
-from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
+from ..figures.figure_look import FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..text.choices import OBJECTIVES, GoalText, MostTime, check_totals, goal_lines
 from ..text.messages import (
@@ -66,7 +66,6 @@ def frontier_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -79,7 +78,7 @@ def frontier_command(
     check_changes(changes or [])
     check_tracking(tracking)
     check_totals(most_time, None)
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     check_bounds(("--most", most, 2, 64), ("--people", people, 1, 100_000), ("--seed", seed, 0, 2**32 - 1))
     check_parameters(parameters)
     if objective not in OBJECTIVES:

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from importlib import resources
 from importlib.util import find_spec
@@ -21,7 +21,7 @@ import typer
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from ..files.cue_document import open_document
-from ..files.outputs import check_folder, stopped_cleanly, write_together
+from ..files.outputs import check_folder, complete_or_absent, stopped_cleanly
 from ..files.start_folder import FILE, OBSERVER, RIG, VARIABLE
 from ..text.messages import check_bounds, fail, interrupted, load_observer, load_rig, note, usage
 
@@ -154,7 +154,7 @@ def serve_file(file: Path, shown: Mapping[str, str], no_browser: bool, port: int
     """Serve the workbench on one file; the notebook that it is made of stays out of the file's folder."""
     note(f"{file}: the page opens, saves and exports below {shown[VARIABLE]}")
     with tempfile.TemporaryDirectory(prefix="thermicon-page-", ignore_cleanup_errors=True) as own:
-        write_together({PAGE: _stamped(shipped_notebooks()[PAGE])}, Path(own), replace=True)
+        (Path(own) / PAGE).write_bytes(_stamped(shipped_notebooks()[PAGE]))
         serve(command_of(Path(own), True, no_browser, port), "voila", shown)
 
 
@@ -174,7 +174,17 @@ def copy_notebooks(folder: Path, force: bool = False) -> Copied:
     states = {name: _state(folder / name, notebook) for name, notebook in shipped.items()}
     due = {"new", "older", "changed"} if force else {"new", "older"}
     written = tuple(name for name, state in states.items() if state in due)
-    write_together({name: _stamped(shipped[name]) for name in written}, folder, replace=True)
+    made = not folder.exists()
+    try:
+        folder.mkdir(exist_ok=True)
+        with stopped_cleanly(), ExitStack() as drafts:  # all are written before the first gets its name
+            for name in written:
+                drafts.enter_context(complete_or_absent(folder / name)).write_bytes(_stamped(shipped[name]))
+    except BaseException:
+        if made:
+            with suppress(OSError):
+                folder.rmdir()
+        raise
     return Copied(
         written,
         tuple(name for name, state in states.items() if state == "current"),

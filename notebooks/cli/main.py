@@ -14,9 +14,7 @@ from typing import Annotated
 
 import typer
 
-from ..bench.command import bench_command
 from ..figures.figure_look import (
-    FigureData,
     FigureFolder,
     FigureFormat,
     FigureStyle,
@@ -40,7 +38,6 @@ from ..text.options import (
     Keep,
     NormName,
     ObserverFile,
-    Recompute,
     ReportPage,
     RigName,
     Tracking,
@@ -184,7 +181,6 @@ def simulate_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     measured: Annotated[
         Path | None,
         typer.Option(
@@ -218,7 +214,7 @@ def simulate_command(
     if not (math.isfinite(rate) and rate > 0):
         raise usage(f"{rate:g} is not a number of samples per second above 0", "--rate")
     check_tail(tail)
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     from .simulate import simulate_drive, simulate_file
 
     if current is not None:
@@ -263,13 +259,11 @@ def rank_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     figure_format: FigureFormat = None,
     report: ReportPage = None,
     workers: Workers = None,
     cluster: Cluster = None,
     keep: Keep = None,
-    recompute: Recompute = False,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -292,7 +286,7 @@ def rank_command(
     picked = chosen_as(choose, objective, must, most_time, most_energy)
     if picked is not None and by == "rules":
         raise usage("icons are chosen with the model; leave out --by rules", "--choose")
-    look = figure_look(figure, width, style, no_title, figure_data, figure_format)
+    look = figure_look(figure, width, style, no_title, figure_format)
     from .ranking import Request, rank_files
 
     request = Request(
@@ -314,7 +308,6 @@ def rank_command(
         workers=workers,
         cluster=cluster,
         keep=keep,
-        recompute=recompute,
     )
     rank_files(files, load_rig(rig, changes or []), request, json, figure, report, look)
 
@@ -363,7 +356,6 @@ for _name, _command, _panel in (
     ("sensitivity", whatif_commands.sensitivity_command, PREDICT),
     ("calibrate", whatif_commands.calibrate_command, PREDICT),
     ("validate", validation.validate_command, PREDICT),
-    ("bench", bench_command, PREDICT),
     ("session", session.session_command, PLAY),
     ("study", study.study_command, PLAY),
     ("export", hardware_commands.export_command, PLAY),

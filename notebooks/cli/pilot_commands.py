@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, Look, NoTitle, figure_look
+from ..figures.figure_look import FigureFile, FigureStyle, FigureWidth, Look, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_free, check_output, check_separate, complete_or_absent
 from ..text.messages import check_bounds, check_changes, load_observer, load_rig, note, progress_bar, usage
 from ..text.options import (
@@ -81,7 +81,6 @@ def observed_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -94,7 +93,7 @@ def observed_command(
     check_changes(changes or [])
     check_numbers(draws, seed, norm)
     check_tracking(tracking)
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     if json is not None:
         check_output(json, (), "JSON")
     if figure is not None:

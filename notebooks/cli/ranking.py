@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
 from ..figures.figure_look import SCREEN, Look
-from ..files.cache import kept
 from ..files.cues import MOST_ICONS, read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
 from ..text.messages import check_draws, load_observer, note, progress_bar, usage
@@ -52,7 +51,6 @@ class Request:
     ``rig`` is the rig as it was asked for, a name or a file; ``observer`` a file in place of the shipped observer.
     ``context``, ``gap`` (s) and ``bias`` describe the task, as in ``thermicon.perception.Task``. ``workers`` is the
     number of cores, ``cluster`` the address of a scheduler to use instead, ``keep`` a folder for finished parts.
-    ``recompute`` computes also what was computed before.
     """
 
     people: int = 200
@@ -73,7 +71,6 @@ class Request:
     workers: int | None = None
     cluster: str | None = None
     keep: Path | None = None
-    recompute: bool = False
 
 
 def rank_files(
@@ -91,8 +88,6 @@ def rank_files(
     from thermicon.perception.ranking.rank_file import ranking_file
     from thermicon.perception.selection.goal import Goal
 
-    from ..files.kept_rankings import recall, remember
-
     check_norm_option(request.norm)
     if json_out is not None:
         check_output(json_out, (), "JSON")
@@ -109,45 +104,30 @@ def rank_files(
     wanted = None if request.goal is None else Goal.parse(request.goal)
     model = load_observer(request.observer, rig)
     draws = check_draws(model, request.parameters, "--parameters", DRAWS)
-    asked = "\0".join(
-        [
-            str(icons),
-            rig.document,
-            repr(rig.changes),
-            repr(model),
-            repr(model.age_years),
-            model.digest,
-            repr(draws),
-            *warnings,
-        ]
-    )
-    asked += f"\0{replace(request, workers=None, cluster=None, keep=None, recompute=False)}"
-    anew = request.recompute or request.keep is not None or request.cluster is not None
-    ranking = None if anew else recall(asked)
-    if ranking is None:
-        with progress_bar("ranking") as progress, kept(request.keep, len(icons) * request.people, asked) as keep:
-            ranking = rank(
-                icons,
-                rig,
-                people=request.people,
-                seed=request.seed,
-                trials=request.trials,
-                tracking=request.tracking,
-                norm=request.norm,
-                by=request.by,
-                parameters=draws,
-                choosing=request.choosing,
-                goal=wanted,
-                edits=request.edits if request.by == "model" else "none",
-                task=Task(request.context, request.gap, request.bias),
-                observer=model,
-                warnings=tuple(warnings),
-                workers=request.workers,
-                cluster=request.cluster,
-                keep=keep,
-                progress=progress,
-            )
-        remember(asked, ranking)
+    if request.keep is not None:
+        check_folder(request.keep)
+    with progress_bar("ranking") as progress:
+        ranking = rank(
+            icons,
+            rig,
+            people=request.people,
+            seed=request.seed,
+            trials=request.trials,
+            tracking=request.tracking,
+            norm=request.norm,
+            by=request.by,
+            parameters=draws,
+            choosing=request.choosing,
+            goal=wanted,
+            edits=request.edits if request.by == "model" else "none",
+            task=Task(request.context, request.gap, request.bias),
+            observer=model,
+            warnings=tuple(warnings),
+            workers=request.workers,
+            cluster=request.cluster,
+            keep=request.keep,
+            progress=progress,
+        )
     if json_out is not None and json_out != STDOUT:
         with complete_or_absent(json_out) as draft:
             draft.write_text(ranking.to_json() + "\n", encoding="utf-8")

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..figures.figure_look import (
-    FigureData,
     FigureFolder,
     FigureFormat,
     FigureStyle,
@@ -102,7 +101,6 @@ def search_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     figure_format: FigureFormat = None,
     report: ReportPage = None,
     rig: RigName = None,
@@ -129,7 +127,7 @@ def search_command(
     if output is not None:
         check_output(output, (".cue",), "a set of icons")
     check_report(report)
-    look = figure_look(figure, width, style, no_title, figure_data, figure_format)
+    look = figure_look(figure, width, style, no_title, figure_format)
     check_figures(figure)
     check_separate([file], [output, report])
     from thermicon.perception import Goal, search

@@ -13,7 +13,6 @@ import typer
 
 from ..figures.figure_look import (
     SCREEN,
-    FigureData,
     FigureFile,
     FigureStyle,
     FigureWidth,
@@ -95,7 +94,6 @@ def session_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     order_out: Annotated[
         Path | None,
         typer.Option(
@@ -120,7 +118,7 @@ def session_command(
     if tracking not in TRACKING:
         raise usage(f"{tracking!r} is not one of {', '.join(TRACKING)}", "--tracking")
     count = repeats if repeats is not None else RANDOM_REPEATS if random else ORDER_REPEATS
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     request = Request(order, count, seed, gap, tracking, json, figure, order_out, look)
     session_file(file, load_rig(rig, changes or []), request)
 

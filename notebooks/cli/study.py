@@ -37,7 +37,7 @@ def study_command(
 
     materials = read_materials(file)
     _check_free(folder)
-    check_export_folder(folder)
+    check_export_folder(folder, how=KEPT)
     for warning in materials.rig.warnings:
         note(f"warning: {warning}")
     try:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..figures.figure_look import FigureData, FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
+from ..figures.figure_look import FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.cues import only, read_set, warn_of_site
 from ..files.outputs import (
     NETLIST_SUFFIXES,
@@ -170,7 +170,6 @@ def sweep_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -187,7 +186,7 @@ def sweep_command(
     from ..text.varied import read_measures, read_varied
     from .sweep import sweep_file
 
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     varied = read_varied(vary)
     measures = None if measure is None else read_measures(measure, people, parameters, seed)
     if measures is None and any(vary.key == AGE for vary in varied):
@@ -218,7 +217,6 @@ def compare_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -232,7 +230,7 @@ def compare_command(
     from ..text.compare_inputs import Request
     from .compare import compare
 
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     several = tuple(name.strip() for name in (rigs or "").split(",") if name.strip())
     compare(first, second, Request(file, icon, rig, tuple(changes or ()), align, several), figure, look)
 
@@ -267,7 +265,6 @@ def sensitivity_command(
     width: FigureWidth = None,
     style: FigureStyle = "screen",
     no_title: NoTitle = False,
-    figure_data: FigureData = None,
     rig: RigName = None,
     changes: Changes = None,
 ) -> None:
@@ -283,7 +280,7 @@ def sensitivity_command(
     )
     from .sensitivity import Request, sensitivity_file
 
-    look = figure_look(figure, width, style, no_title, figure_data)
+    look = figure_look(figure, width, style, no_title)
     request = Request(people=people, seed=seed, draws=draws, norm=norm, observer=observer)
     sensitivity_file(file, load_rig(rig, changes or []), request, output, figure, look)
 

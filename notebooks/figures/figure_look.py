@@ -9,10 +9,9 @@ from typing import Annotated
 
 import typer
 
-from ..files.outputs import check_folder
 from ..text.messages import usage
 
-STYLES = ("screen", "paper", "dark")
+STYLES = ("screen", "paper")
 MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
 NARROWEST_MM, WIDEST_MM = 40.0, 500.0
 """Below, labels are wider than panels; above, no printer takes it."""
@@ -45,22 +44,15 @@ FigureStyle = Annotated[
     typer.Option("--style", metavar="|".join(STYLES), help="Style of the figure; paper adds panel letters."),
 ]
 NoTitle = Annotated[bool, typer.Option("--no-title", help="Draw the figure without its title.")]
-FigureData = Annotated[
-    Path | None,
-    typer.Option(
-        "--figure-data", metavar="DIR", readable=False, help="Write what each panel shows as CSV into this folder."
-    ),
-]
 
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """Style, width in mm (None: as drawn, on paper at most 180), title, folder of data, type of files in a folder."""
+    """Style, width in mm (None: as drawn, on paper at most 180), title, type of files in a folder."""
 
     style: str = "screen"
     width_mm: float | None = None
     title: bool = True
-    data: Path | None = None
     kind: str = KINDS[0]
 
     def across(self, panels: int) -> int:
@@ -85,7 +77,6 @@ def figure_look(
     width: str | None,
     style: str,
     no_title: bool,
-    data: Path | None = None,
     kind: str | None = None,
 ) -> Look:
     """Check the options of a figure; without ``--figure`` there is nothing that they could change."""
@@ -93,7 +84,6 @@ def figure_look(
         ("--width", width),
         ("--style", style != STYLES[0]),
         ("--no-title", no_title),
-        ("--figure-data", data),
         ("--figure-format", kind),
     )
     if figure is None:
@@ -104,9 +94,7 @@ def figure_look(
         raise usage(f"{style!r} is not one of {', '.join(STYLES)}", "--style")
     if kind is not None and kind not in KINDS:
         raise usage(f"{kind!r} is not one of {', '.join(KINDS)}", "--figure-format")
-    if data is not None:
-        check_folder(data)
-    return Look(style, None if width is None else read_width_mm(width), not no_title, data, kind or KINDS[0])
+    return Look(style, None if width is None else read_width_mm(width), not no_title, kind or KINDS[0])
 
 
 def read_width_mm(text: str) -> float:

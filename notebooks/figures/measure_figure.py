@@ -63,15 +63,14 @@ def measure_figure(
                 continue  # it is the lower edge of the icons' lines
             at = places[rows.index]
             style: dict[str, Any] = {"lw": 2.2, "zorder": 4} if icon == whole else {"lw": 1.2, "zorder": 3}
-            ax.plot(at, scale * rows[value], color=color, marker=mark or None, ms=4, label=icon, **style)
+            ax.plot(at, scale * rows[value], color=color, marker=mark or None, ms=4, **style)
             lost = missed[rows.index]
-            draw_missed(ax, at[lost], scale * rows[value][lost], color, icon)
+            draw_missed(ax, at[lost], scale * rows[value][lost], color)
             if interval and rows[interval[0]].notna().any():
                 banded = True
                 low, high = (scale * rows[name].astype(float) for name in interval)
                 ax.fill_between(
                     at, low, high, color=color, alpha=BAND if icon == whole else 0.5 * BAND, lw=0.0, zorder=1,
-                    label=f"{icon}, 95 %",
                 )  # fmt: skip
         ax.set_ylabel(LABELS[value], fontsize=9)
         ax.tick_params(labelsize=8)

@@ -11,18 +11,20 @@ import re
 import textwrap
 from collections.abc import Mapping
 from pathlib import Path
+from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any
 
 from ..files.outputs import complete_or_absent
-from ..text.messages import note
-from .figure_data import COLORBAR, letter, panels_of, write_figure_data
 from .figure_look import NARROW_MM, SCREEN, Look
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.legend import Legend
 
 DPI, PAPER_DPI = 130, 300
+COLORBAR = "<colorbar>"
+"""How matplotlib labels the axes of a colour bar."""
 WIDEST_PAPER_MM, MM_PER_INCH = 180.0, 25.4
 TYPE_PT, SMALLEST_PT, LARGEST_PT = 7.5, 5.5, 9.0
 """Size in print of what is drawn at 10 pt, and the limits of all sizes: journals ask for 5 to 9 pt."""
@@ -41,7 +43,7 @@ UNDATED: Mapping[str, dict[str, None]] = {"pdf": {"CreationDate": None}, "svg": 
 
 
 def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
-    """Write a figure in its style, and the data of its panels where asked for.
+    """Write a figure in its style.
 
     Parameters
     ----------
@@ -50,19 +52,16 @@ def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
     path
         File to write: .png, .pdf or .svg.
     look
-        Style, width and title, and the folder for data.
+        Style, width and title.
     """
     import matplotlib
 
-    if look.data is not None:
-        names = write_figure_data(figure, look.data, path.stem)
-        note(f"wrote {names[0]}{f' to {names[-1]}' if len(names) > 1 else ''} into {look.data}")
     embedded: Any = dict(EMBEDDED)
     with matplotlib.rc_context(embedded), complete_or_absent(path) as draft:
         restyle(figure, look)
         kind = path.suffix.lower().removeprefix(".")
         dpi = PAPER_DPI if look.style == "paper" or look.width_mm is not None else DPI
-        figure.savefig(draft, format=kind, dpi=dpi, metadata=UNDATED[kind], facecolor=figure.get_facecolor())
+        figure.savefig(draft, format=kind, dpi=dpi, metadata=UNDATED[kind])
 
 
 def restyle(figure: Figure, look: Look) -> None:
@@ -85,10 +84,17 @@ def restyle(figure: Figure, look: Look) -> None:
         width_mm = min(natural_mm, WIDEST_PAPER_MM)
     if width_mm is not None:
         _resize(figure, width_mm, natural_mm)
-    if look.style == "dark":
-        from .dark_colours import turn_dark
 
-        turn_dark(figure)
+
+def panels_of(figure: Figure) -> list[Axes]:
+    """The panels of a figure in reading order, without its colour bars."""
+    shown = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
+
+    def place(ax: Axes) -> tuple[int, int]:
+        spec = ax.get_subplotspec()
+        return (0, 0) if spec is None else (spec.rowspan.start, spec.colspan.start)
+
+    return sorted(shown, key=place)
 
 
 def _drop_title(figure: Figure) -> None:
@@ -110,13 +116,13 @@ def _letter_panels(figure: Figure) -> None:
     panels = panels_of(figure)
     if len(panels) < 2:
         return
-    for place, panel in enumerate(panels):
+    for letter, panel in zip(ascii_lowercase, panels, strict=False):
         ax: Any = panel
         loc = next((loc for loc in ("left", "center") if ax.get_title(loc=loc)), None)
         if loc is None:
-            ax.set_title(letter(place), loc="left", fontweight="bold")
+            ax.set_title(letter, loc="left", fontweight="bold")
         else:
-            ax.set_title(rf"$\mathbf{{{letter(place)}}}$  {ax.get_title(loc=loc)}", loc=loc)
+            ax.set_title(rf"$\mathbf{{{letter}}}$  {ax.get_title(loc=loc)}", loc=loc)
 
 
 def _resize(figure: Figure, width_mm: float, natural_mm: float) -> None:

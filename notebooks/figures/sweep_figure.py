@@ -83,7 +83,7 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int =
     for ax, (columns, label, short) in zip(axes, panels, strict=True):
         for name, (color, mark) in styles.items():
             rows = frame[frame["icon"] == name]
-            _line(ax, rows, places[rows.index], columns, color, mark, name, 0.5 if above else 1.0)
+            _line(ax, rows, places[rows.index], columns, color, mark, 0.5 if above else 1.0)
         _label(ax, short if above else label, above)
         ax.tick_params(labelsize=8)
         ax.grid(alpha=0.25, linewidth=0.6)
@@ -200,29 +200,23 @@ def _log_axis(ax: Axes, values: list[float], most: int) -> None:
 
 
 def _line(
-    ax: Axes, rows: pd.DataFrame, at: pd.Series, columns: tuple[str, ...], color: str, mark: str, icon: str, size: float
+    ax: Axes, rows: pd.DataFrame, at: pd.Series, columns: tuple[str, ...], color: str, mark: str, size: float
 ) -> None:
     for place, column in enumerate(columns):
         values = rows[column].abs() if column == "largest_miss_K" else rows[column]
-        label = icon if len(columns) == 1 else f"{icon}, {column}"
-        ax.plot(at, values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2, label=label)
+        ax.plot(at, values, color=color, lw=1.3, ls="-" if place == len(columns) - 1 else "--", zorder=2)
         missed = rows["reached"] == False  # noqa: E712
-        ax.scatter(
-            at[~missed], values[~missed], color=color, marker=mark, s=18 * size, linewidths=0.8, zorder=3, label=label
-        )
-        draw_missed(ax, at[missed], values[missed], color, label)
+        ax.scatter(at[~missed], values[~missed], color=color, marker=mark, s=18 * size, linewidths=0.8, zorder=3)
+        draw_missed(ax, at[missed], values[missed], color)
 
 
-def draw_missed(ax: Axes, at: pd.Series, values: pd.Series, color: str, label: str) -> None:
+def draw_missed(ax: Axes, at: pd.Series, values: pd.Series, color: str) -> None:
     """Crosses on a white ground where an icon was not reached, above all else."""
     from matplotlib.patheffects import withStroke
 
     if len(at):
         ground = [withStroke(linewidth=4.0, foreground="white")]
-        ax.scatter(
-            at, values, color=color, marker=MISSED, s=26, linewidths=1.3, zorder=6, path_effects=ground,
-            label=f"{label}, not reached",
-        )  # fmt: skip
+        ax.scatter(at, values, color=color, marker=MISSED, s=26, linewidths=1.3, zorder=6, path_effects=ground)
 
 
 def icon_styles(frame: pd.DataFrame) -> dict[str, tuple[str, str]]:

@@ -19,7 +19,6 @@ from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from .cue_document import MOST_BYTES
 from .kept_draft import KeptVersion, draft_text, read_draft
-from .locking import is_alive
 from .outputs import OutputError, complete_or_absent
 
 SUFFIX = "unsaved"
@@ -148,3 +147,16 @@ def _kept(place: Path) -> Iterator[tuple[Path, int]]:
         for entry in entries:
             if (named := pattern.fullmatch(entry.name)) is not None and entry.is_file(follow_symlinks=False):
                 yield Path(entry.path), int(named[1])
+
+
+def is_alive(process: int) -> bool:
+    """Whether a process of this number runs on this machine; one that cannot be asked counts as running."""
+    if os.name != "posix":
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):
+        return True
+    return True

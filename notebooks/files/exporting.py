@@ -59,11 +59,11 @@ class PreparedExport:
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """Files written by an export, and older files removed because their sidecars describe new drives."""
+    """Files written by an export, and where the folder stands that they replace; None where it was missing or empty."""
 
     folder: Path
     names: tuple[str, ...]
-    gone: tuple[str, ...] = ()
+    before: Path | None = None
 
     @property
     def paths(self) -> tuple[Path, ...]:
@@ -175,7 +175,7 @@ def write(
     """Write drives and sidecars, all or none, and say which.
 
     Raises OutputError where that is refused: what is unsafe always, what is lossy or not reached unless ``insist``,
-    files that are there unless ``overwrite``, which ``how`` tells a person how to ask for.
+    a folder with files unless ``overwrite``, which ``how`` tells a person how to ask for.
     """
     from thermicon.circuit import pack
 

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
+import secrets
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-
-from .drafts import draft_of
 
 STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
 NETLIST_SUFFIXES = (".cir", ".net", ".sp")
 SUBCIRCUIT_SUFFIXES = (".lib", ".sub", *NETLIST_SUFFIXES)
 FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
+MARK = "thermicon-part"
+"""What stands in the hidden name of a file or folder that is not complete."""
+LONGEST_STEM = 40
+"""Characters of a file's name that its draft repeats, so that long names stay within what disks take."""
 
 
 class OutputError(Exception):
@@ -102,54 +104,16 @@ def complete_or_absent(path: Path) -> Iterator[Path]:
     if goal.exists() and not goal.is_file():
         yield goal  # a pipe or a device: nothing to replace
         return
+    draft = goal.with_name(f".{goal.stem[:LONGEST_STEM]}.{secrets.token_hex(4)}.{MARK}{goal.suffix.lower()}")
     try:
-        with draft_of(goal) as draft:
+        draft.touch(exist_ok=False)
+        try:
             yield draft
             draft.replace(goal)
+        finally:
+            draft.unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
-
-
-def write_together(files: Mapping[str, bytes], folder: Path, replace: bool = False) -> None:
-    """Write files into a folder, which is made if missing: all of them are there when this returns, or none.
-
-    Every file is written under a hidden name, flushed to the disk, and renamed when all are. What exists already is an
-    error before anything is written, unless ``replace``. A process that is killed may leave some of them; for a folder
-    that must never be mixed there is ``export_folder.publish``.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_together({"a.json": b"{}", "a.csv": b"1"}, Path(folder))
-    ...     sorted(found.name for found in Path(folder).iterdir())
-    ['a.csv', 'a.json']
-    """
-    made = not folder.exists()
-    placed: list[Path] = []
-    try:
-        with stopped_cleanly(), ExitStack() as held:
-            folder.mkdir(exist_ok=True)
-            there = [name for name in files if (folder / name).exists()]
-            if there and not replace:
-                raise OutputError(f"{kept_text(folder, there)}; --force replaces {'it' if len(there) == 1 else 'them'}")
-            drafts = {name: held.enter_context(draft_of(folder / name)) for name in files}
-            for name, draft in drafts.items():
-                with draft.open("wb") as file:
-                    file.write(files[name])
-                    file.flush()
-                    os.fsync(file.fileno())
-            for name, draft in drafts.items():
-                if name not in there:
-                    placed.append(folder / name)
-                draft.replace(folder / name)
-            placed.clear()
-    except OSError as error:
-        raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
-    finally:
-        for left in placed:
-            left.unlink(missing_ok=True)
-        if made:
-            with contextlib.suppress(OSError):
-                folder.rmdir()  # only where it is empty
 
 
 @contextmanager
@@ -167,36 +131,6 @@ def stopped_cleanly() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-@contextmanager
-def interrupts_wait() -> Iterator[Callable[[], None]]:
-    """Have Ctrl-C and SIGTERM wait, so that tidying up is never cut short.
-
-    They act like Ctrl-C when the function that the block gets is called, and at its end.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield lambda: None
-        return
-    came: list[int] = []
-
-    def wait(number: int, frame: FrameType | None) -> None:
-        came.append(number)
-
-    def check() -> None:
-        if came:
-            raise KeyboardInterrupt
-
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    held = {number: action for number, action in before.items() if action not in (None, signal.SIG_IGN)}
-    for number in held:
-        signal.signal(number, wait)
-    try:
-        yield check
-    finally:
-        for number, action in held.items():
-            signal.signal(number, action)
-    check()
 
 
 def kept_text(folder: Path, there: Sequence[str]) -> str:

@@ -12,7 +12,7 @@ from thermicon.icons.number_text import number, span
 
 from ..text.messages import BAD_INPUT, note
 from ..text.tables import show, table
-from .export_folder import STAGE
+from .export_folder import before_of
 from .outputs import OutputError
 
 if TYPE_CHECKING:
@@ -55,8 +55,8 @@ def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
     if not folder.is_dir():
         if folder.exists():
             raise OutputError(f"cannot verify {folder}: it is a file; give the folder of an export")
-        left = folder.with_name(STAGE.format(folder.name))
-        more = f"; an export was interrupted, and the next one into {folder} repairs it" if left.exists() else ""
+        left = before_of(folder)
+        more = f"; an export was interrupted, and the folder as it was is {left}" if left.exists() else ""
         raise OutputError(f"cannot verify {folder}: there is no such folder{more}")
     files, others = {}, []
     for path in sorted(folder.iterdir()):

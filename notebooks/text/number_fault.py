@@ -7,7 +7,7 @@ from typing import Any
 
 UNITS = {"S": "s", "HZ": "Hz", "J": "J", "K": "K", "POINTS": "percentage points", "PERCENT": "%"}
 """Units by the metavar of an option; others have none."""
-WHOLE, DECIMAL, SWITCH = "int", "float", "bool"
+WHOLE, DECIMAL = "int", "float"
 DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
@@ -45,11 +45,7 @@ def reworded(error: Any) -> None:
     param, faults = getattr(error, "param", None), getattr(error.__cause__, "errors", None)
     if param is None or faults is None:
         return
-    from thermicon.circuit.inputs import quoted
-
     fault = faults()[0]
     kind, text = fault["type"].partition("_")[0], str(fault["input"])
-    if kind == SWITCH and param.envvar:
-        error.message = f"{quoted(text)} in {param.envvar} is neither yes nor no; set it to 1 or 0, or unset it"
-    elif kind in (WHOLE, DECIMAL):
+    if kind in (WHOLE, DECIMAL):
         error.message = number_fault(text, kind, UNITS.get(param.metavar or "", ""))

@@ -67,16 +67,7 @@ Keep = Annotated[
         "--keep",
         metavar="DIR",
         readable=False,
-        help="Folder for finished parts, so that an interrupted run continues.  [default: the user's cache]",
-    ),
-]
-Recompute = Annotated[
-    bool,
-    typer.Option(
-        "--recompute",
-        envvar="THERMICON_RECOMPUTE",
-        show_envvar=False,
-        help="Compute again what was computed before and is kept in the user's cache.",
+        help="Folder for finished parts, so that an interrupted run continues.",
     ),
 ]
 Context = Annotated[

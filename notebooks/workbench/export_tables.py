@@ -96,7 +96,7 @@ def _check(check: Check, source_number: int) -> dict[str, object]:
 
 
 def written_html(ready: PreparedExport, written: Written) -> str:
-    """Which files were written, which older ones were removed, and how to play the drives."""
+    """Which files were written, where the folder as it was before stands, and how to play the drives."""
     drives = "1 drive with its sidecar" if len(ready.prepared) == 1 else f"{len(ready.prepared)} drives with sidecars"
     sentence = f"wrote {drives} into {written.folder.resolve()}"
-    return fragment("written", sentence, written.names, written.gone, f"to play: {ready.form.how}", CAUTION)
+    return fragment("written", sentence, written.names, written.before, f"to play: {ready.form.how}", CAUTION)

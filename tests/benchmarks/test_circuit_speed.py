@@ -1,4 +1,4 @@
-"""Speed of the circuit beside ngspice simulating the same thing, in one run; ratios are what to quote.
+"""Speed of the circuit beside ngspice and scipy simulating the same thing, in one run; ratios are what to quote.
 
 Run with `pytest -m benchmark tests/benchmarks -s`. Each ratio comes with the error of both against a tight reference.
 """
@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
+from tests.benchmarks.peers import CORNERS, ngspice_command, plain, run_ngspice, scipy_run
 from thermicon.circuit import Drive, Rig, netlist, simulate, simulate_current
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current, steady_state
 from thermicon.icons import load_library
-from thermicon.notebooks.bench.peers import CORNERS, ngspice_command, plain, run_ngspice
 
 pytestmark = pytest.mark.benchmark
 Tool = Callable[[str], str]
@@ -83,6 +83,13 @@ def test_one_cue(name: str, tool: Tool, tmp_path: Path, benchmark: BenchmarkFixt
     said += f"ngspice process {process * 1e3:.1f} ms (error {theirs * 1e3:.3f} mK): {process / cue:.0f} times"
     print(f"\n{name}: {len(network_of(rig).capacity_J_per_K) + 3} nodes, 30 s: {said}")
     assert ours <= theirs
+
+
+def test_one_cue_by_scipy(benchmark: BenchmarkFixture) -> None:
+    theirs = benchmark.pedantic(scipy_run, args=(RIGS["thenar"],), rounds=5, warmup_rounds=1)
+    ours = simulate_current(CORNERS, RIGS["thenar"])
+    assert np.abs(theirs[1] - ours.display_C).max() < 0.05
+    assert np.abs(theirs[0] - ours.hot_plate_C).max() < 0.05
 
 
 @pytest.mark.parametrize("name", RIGS)

@@ -6,6 +6,7 @@ since other programs do not change it much.
 
 import resource
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -57,5 +58,10 @@ def test_icons_cost_as_much_as_people() -> None:
     assert shapes[64, 100] < 3.0 * shapes[8, 800]
 
 
-def test_six_icons_and_two_hundred_people(benchmark: BenchmarkFixture) -> None:
-    benchmark(rank, load_library("six-icons"), RIG, people=200)
+@pytest.mark.parametrize(
+    "what",
+    [{}, {"parameters": 0}, {"edits": "worst"}],
+    ids=["people and intervals", "people", "people, intervals and the cheapest edit"],
+)
+def test_six_icons_and_two_hundred_people(benchmark: BenchmarkFixture, what: dict[str, Any]) -> None:
+    benchmark.pedantic(rank, args=(load_library("six-icons"), RIG), kwargs=what, rounds=5, warmup_rounds=1)

@@ -186,11 +186,6 @@ def test_a_command_line_that_makes_no_sense(cli: Cli, arguments: tuple[str, ...]
     assert "Traceback" not in said.stderr
 
 
-def test_a_switch_of_the_environment_that_is_neither_yes_nor_no(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("THERMICON_RECOMPUTE", "perhaps")
-    refused(cli("rank", "six-icons"), "'perhaps' in THERMICON_RECOMPUTE is neither yes nor no; set it to 1 or", code=2)
-
-
 @pytest.mark.parametrize(
     ("words", "output"),
     [

@@ -183,10 +183,11 @@ class TestFiles:
         (out / "cool-step.csv").write_text("mine")
         said = cli("export", two, "--to", "csv", "-o", out, *SURE)
         assert said.exit_code == 1
-        assert f"{out / 'cool-step.json'} and 3 more already exist and were kept; --force replaces" in said.stderr
+        assert f"{out / 'cool-step.csv'} and 3 more already exist and were kept; --force replaces" in said.stderr
         assert (out / "cool-step.csv").read_text() == "mine"
         assert cli("export", two, "--to", "csv", "-o", out, "--force", *SURE).exit_code == 0
         assert (out / "cool-step.csv").read_text() != "mine"
+        assert (tmp_path / "out.before" / "cool-step.csv").read_text() == "mine"
         assert json.loads((out / "cool-step.json").read_text())["forced"] is False
 
     @pytest.mark.parametrize(

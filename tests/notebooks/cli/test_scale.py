@@ -9,8 +9,6 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.files import cache
-
 Cli = Callable[..., Any]
 
 
@@ -51,23 +49,6 @@ def test_a_folder_for_parts_that_is_a_file(cli: Cli, two: Path, tmp_path: Path) 
     said = cli("rank", two, "--people", 2, "--keep", tmp_path / "kept")
     assert said.exit_code == 1
     assert "is a file; give the name of a folder" in said.stderr
-
-
-def test_long_work_is_kept_until_it_is_done(
-    cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path / "cache"))
-    with pytest.raises(KeyboardInterrupt), cache.kept(None, cache.LONG_PAIRS, "work") as folder:
-        assert folder is not None
-        (folder / "part").write_text("")
-        raise KeyboardInterrupt
-    assert folder is not None
-    with cache.kept(None, cache.LONG_PAIRS, "work") as again:
-        assert again == folder
-        assert (folder / "part").exists()
-    assert not folder.exists()
-    with cache.kept(None, cache.LONG_PAIRS - 1, "work") as none:
-        assert none is None
 
 
 @pytest.mark.slow

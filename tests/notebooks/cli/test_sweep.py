@@ -276,7 +276,7 @@ def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: 
 
     said = cli(
         "sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK, "-o", tmp_path / "m.csv",
-        "--figure", tmp_path / "m.png", "--figure-data", tmp_path / "data",
+        "--figure", tmp_path / "m.png",
     )  # fmt: skip
     assert said.exit_code == 0, said.stderr
     frame = pd.read_csv(tmp_path / "m.csv")
@@ -288,20 +288,8 @@ def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: 
     assert whole[9.0] == pytest.approx(goal.parts[0].value, rel=1e-8)
     assert frame[frame["icon"] != "all icons"]["correct_95"].isna().all()
     assert f"{100 * whole[9.0]:.0f} % correct for 95 % of people at {AREA} = 9" in said.stderr
-    drawn = pd.read_csv(tmp_path / "data" / "m.csv")
-    assert set(drawn["series"]) == {"all icons"}
     printed = cli("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK).stdout.splitlines()[2:]
     assert [row.split()[:3] for row in printed] == [["all", "icons", "3"], ["all", "icons", "9"]]
-
-
-def test_curves_of_the_data_of_a_figure_have_names(cli: Cli, two: Path, tmp_path: Path) -> None:
-    figure = ("--figure", tmp_path / "m.png", "--figure-data", tmp_path / "data")
-    assert cli("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct", *QUICK, *figure).exit_code == 0
-    names = {"cool-step", "warm-step", "all icons", "all icons, 95 %"}
-    assert set(pd.read_csv(tmp_path / "data" / "m.csv")["series"]) == names
-    assert cli("sweep", two, "--vary", f"{AREA}=3,9", *figure).exit_code == 0
-    for table in sorted((tmp_path / "data").glob("m-*.csv")):
-        assert {name.partition(",")[0] for name in pd.read_csv(table)["series"]} == {"cool-step", "warm-step"}
 
 
 def _of(name: str) -> dict[str, Any]:

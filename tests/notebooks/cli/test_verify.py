@@ -308,10 +308,9 @@ class TestCommand:
         assert cli("export", two, "--to", "csv", "-o", out, *SURE).exit_code == 0
         done = cli("export", two, "--icon", "cool-step", "--to", "tdms", "-o", out, "--force", *SURE)
         assert done.exit_code == 0, done.stderr
-        assert f"removed from {out}, because their sidecars now describe other drives: cool-step.csv" in done.stderr
-        assert sorted(path.name for path in out.iterdir()) == [
-            "cool-step.json", "cool-step.tdms", "warm-step.csv", "warm-step.json",
-        ]  # fmt: skip
+        assert f"the folder as it was before is {out}.before" in done.stderr
+        assert sorted(path.name for path in out.iterdir()) == ["cool-step.json", "cool-step.tdms"]
+        assert len(list((tmp_path / "drives.before").iterdir())) == 4
         assert cli("export", "--verify", out).exit_code == 0
 
     def test_links_and_folders_are_told(self, cli: Cli, out: Path) -> None:
@@ -350,10 +349,10 @@ class TestCommand:
         assert words in " ".join(done.stderr.replace("│", " ").split())
 
     def test_an_export_that_was_ended_between_two_renames_is_told(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / ".out.thermicon-part" / "old").mkdir(parents=True)
+        (tmp_path / "out.before").mkdir()
         done = cli("export", "--verify", tmp_path / "out")
         assert done.exit_code == 1
-        assert "there is no such folder; an export was interrupted, and the next one into" in done.stderr
+        assert "there is no such folder; an export was interrupted, and the folder as it was is" in done.stderr
 
 
 def test_verifying_is_quick(pair: dict[str, bytes]) -> None:

@@ -16,11 +16,10 @@ from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview, set_figure
 from thermicon.notebooks.figures import sweep_figure as sweepfigure
-from thermicon.notebooks.figures.figure_data import COLORBAR
 from thermicon.notebooks.figures.figure_look import Look
 from thermicon.notebooks.figures.measure_figure import measure_figure
 from thermicon.notebooks.figures.overview import COOL, WARM
-from thermicon.notebooks.figures.print_figure import restyle
+from thermicon.notebooks.figures.print_figure import COLORBAR, restyle
 from thermicon.notebooks.figures.set_figures import write_figures
 from thermicon.notebooks.figures.sweep_map import sweep_map
 from thermicon.notebooks.figures.trace_overview import end_when_settled

@@ -1,7 +1,7 @@
 """Run by a test in a process of its own: exports that end at each of their events in turn.
 
-Arguments: folder, case, way (kill, interrupt, full), first event, step, swap or plain (two renames). Prints a JSON line
-for each event: what the folder held then, and what it held after the next export.
+Arguments: folder, case, way (kill, interrupt, full), first event, step. Prints a JSON line for each event: what the
+folder and the one before held then, what else stood beside them, and what stood there after the next export.
 """
 
 from __future__ import annotations
@@ -20,24 +20,10 @@ from pathlib import Path
 from typing import Any
 
 from thermicon.circuit.packing.claims import claims_of
-from thermicon.notebooks.files import export_folder as exportfolder
-from thermicon.notebooks.files import swapping
+from thermicon.notebooks.files.export_folder import publish
 from thermicon.notebooks.files.outputs import OutputError
 
-EVENTS = (
-    "mkdir",
-    "open",
-    "write",
-    "ftruncate",
-    "fsync",
-    "rename",
-    "replace",
-    "link",
-    "unlink",
-    "rmdir",
-    "chmod",
-    "close",
-)
+EVENTS = ("mkdir", "open", "write", "fsync", "rename", "unlink", "rmdir", "chmod", "close")
 
 
 def drive(name: str, content: bytes) -> dict[str, bytes]:
@@ -46,22 +32,14 @@ def drive(name: str, content: bytes) -> dict[str, bytes]:
     return {f"{name}.json": json.dumps(about).encode(), f"{name}.csv": content}
 
 
-OLD = {**drive("a", b"old"), **drive("b", b"stays"), "notes.txt": b"mine"}
+OLD = {**drive("a", b"old"), **drive("b", b"old too")}
 NEW = {**drive("a", b"new"), **drive("c", b"new too")}
-ADDED = drive("c", b"new too")
-CASES: dict[str, tuple[Mapping[str, bytes] | None, Mapping[str, bytes], bool]] = {
-    "new": (None, NEW, False),
-    "empty": ({}, NEW, False),
-    "added": (OLD, ADDED, False),
-    "forced": (OLD, NEW, True),
-}
+CASES: dict[str, Mapping[str, bytes] | None] = {"new": None, "empty": {}, "forced": OLD}
 
 
 def held(folder: Path) -> dict[str, str] | None:
     """What a folder holds; None where it is missing."""
-    if not folder.is_dir():
-        return None
-    return {path.name: path.read_bytes().decode() for path in folder.iterdir()}
+    return {path.name: path.read_text() for path in folder.iterdir()} if folder.is_dir() else None
 
 
 def patch(at: int, way: str) -> Callable[[], int]:
@@ -85,12 +63,10 @@ def patch(at: int, way: str) -> Callable[[], int]:
     for name in EVENTS:
         setattr(os, name, meets(getattr(os, name)))
     io.open = meets(io.open)
-    exportfolder.exchange = meets(exportfolder.exchange)  # type: ignore[attr-defined]
-    swapping.swap = meets(swapping.swap)
     return lambda: count
 
 
-def end_at(number: int, way: str, goal: Path, files: Mapping[str, bytes], force: bool) -> int:
+def end_at(number: int, way: str, goal: Path) -> int:
     """Export in a child that meets its end at an event; returns 0 where it had fewer events, else how it ended."""
     child = os.fork()
     if child:
@@ -100,7 +76,7 @@ def end_at(number: int, way: str, goal: Path, files: Mapping[str, bytes], force:
     counted = patch(number, way)
     with contextlib.suppress(BaseException):
         try:
-            exportfolder.publish(files, goal, force)
+            publish(NEW, goal, replace=True)
             code = 0 if counted() < number else 7
         except KeyboardInterrupt:
             code = 8
@@ -109,29 +85,35 @@ def end_at(number: int, way: str, goal: Path, files: Mapping[str, bytes], force:
     leave(code)
 
 
-def main(folder: Path, case: str, way: str, first: int, step: int, plain: bool) -> None:
+def put(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Make a folder with files."""
+    folder.mkdir()
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+
+
+def main(folder: Path, case: str, way: str, first: int, step: int) -> None:
     """End one case at every event that is due."""
-    before, files, force = CASES[case]
-    if plain:
-        swapping.swap = lambda one, other: False
     os.chdir(folder)
     claims_of(b"{}")  # loads what an export needs, once for all children
     for number in range(first, 10_000, step):
-        goal = folder / "drives"
-        shutil.rmtree(goal, ignore_errors=True)
-        if before is not None:
-            goal.mkdir()
-            for name, content in before.items():
-                (goal / name).write_bytes(content)
-        code = end_at(number, way, goal, files, force)
+        for left in folder.iterdir():
+            shutil.rmtree(left)
+        goal, before = folder / "drives", folder / "drives.before"
+        if (there := CASES[case]) is not None:
+            put(goal, there)
+        put(before, drive("older", b"older"))
+        code = end_at(number, way, goal)
         if code == 0:
             break
-        told = {"event": number, "code": code, "then": held(goal)}
-        left = [path.name for path in folder.iterdir() if path.name != "drives"]
-        exportfolder.publish(drive("later", b"last"), goal)
-        told |= {"after": held(goal), "left": left, "at_last": sorted(path.name for path in folder.iterdir())}
+        told = {"event": number, "code": code, "then": held(goal), "before": held(before)}
+        told["left"] = [path.name for path in folder.iterdir() if path not in (goal, before)]
+        for name in told["left"]:  # type: ignore[union-attr]
+            shutil.rmtree(folder / name)
+        publish(drive("later", b"last"), goal, replace=True)
+        told |= {"after": held(goal), "at_last": sorted(path.name for path in folder.iterdir())}
         print(json.dumps(told), flush=True)
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), sys.argv[2], sys.argv[3], int(sys.argv[4]), int(sys.argv[5]), sys.argv[6] == "plain")
+    main(Path(sys.argv[1]), sys.argv[2], sys.argv[3], int(sys.argv[4]), int(sys.argv[5]))

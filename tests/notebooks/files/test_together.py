@@ -1,4 +1,4 @@
-"""Files that are written together: all of them, or none, whatever happens in between."""
+"""Real exports that are ended at any moment: all of their files are there, or none."""
 
 from __future__ import annotations
 
@@ -17,9 +17,8 @@ import pandas as pd
 import pytest
 
 from tests.circuit.surerig import SURE
-from thermicon.notebooks.files.outputs import OutputError, stopped_cleanly, write_together
+from thermicon.notebooks.files.outputs import stopped_cleanly
 
-FILES = {"a.json": b"{}", "a.csv": b"1,2\n", "b.json": b"{}", "b.csv": b"3,4\n"}
 KILLS, MANY_KILLS = 20, 200
 posix = pytest.mark.skipif(os.name != "posix", reason="signals work differently there")
 
@@ -28,72 +27,11 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_all_are_there_with_their_bytes(tmp_path: Path) -> None:
-    write_together(FILES, tmp_path / "out")
-    assert {path.name: path.read_bytes() for path in (tmp_path / "out").iterdir()} == FILES
-
-
-def test_what_is_there_is_kept(tmp_path: Path) -> None:
-    (tmp_path / "b.csv").write_text("mine")
-    with pytest.raises(OutputError, match=r"b\.csv already exists and was kept; --force replaces it"):
-        write_together(FILES, tmp_path)
-    assert names(tmp_path) == ["b.csv"]
-    write_together(FILES, tmp_path, replace=True)
-    assert (tmp_path / "b.csv").read_bytes() == b"3,4\n"
-
-
-@pytest.mark.parametrize("call", ["os.fsync", "pathlib.Path.replace"])
-def test_a_failure_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str) -> None:
-    real = os.fsync if call.startswith("os") else Path.replace
-    calls = 0
-
-    def fails_at_the_third(*arguments: Any) -> Any:
-        nonlocal calls
-        calls += 1
-        if calls == 3:
-            raise OSError(28, "No space left on device")
-        return real(*arguments)
-
-    monkeypatch.setattr(call, fails_at_the_third)
-    with pytest.raises(OutputError, match=r"cannot write into .*out: No space left on device"):
-        write_together(FILES, tmp_path / "out")
-    assert names(tmp_path) == []
-
-
-def test_an_interrupt_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    real, calls = Path.replace, 0
-
-    def interrupted(*arguments: Any) -> Any:
-        nonlocal calls
-        calls += 1
-        if calls == 2:
-            raise KeyboardInterrupt
-        return real(*arguments)
-
-    monkeypatch.setattr("pathlib.Path.replace", interrupted)
-    (tmp_path / "other").write_text("")
-    with pytest.raises(KeyboardInterrupt):
-        write_together(FILES, tmp_path)
-    assert names(tmp_path) == ["other"]
-
-
 @posix
 def test_a_request_to_end_is_an_interrupt(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(KeyboardInterrupt), stopped_cleanly():
         os.kill(os.getpid(), signal.SIGTERM)
     assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
-
-
-@posix
-def test_drafts_of_the_dead_are_swept_and_those_of_the_living_are_not(tmp_path: Path) -> None:
-    gone = subprocess.Popen([sys.executable, "-c", ""])
-    gone.wait()
-    mark = "thermicon-part.csv"
-    kept = {f".a.{os.getppid()}-0.{mark}", f".a.x-0.{mark}", f"a.{gone.pid}-0.{mark}", f".a.{gone.pid}.part.csv"}
-    for draft in (*kept, f".a.{gone.pid}-0.{mark}"):
-        (tmp_path / draft).write_text("")
-    write_together(FILES, tmp_path)
-    assert {name for name in names(tmp_path) if "part" in name} == kept
 
 
 @posix

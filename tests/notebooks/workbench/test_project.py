@@ -144,7 +144,7 @@ def test_text_that_cannot_be_kept_anywhere_is_told_and_not_left(path: Path, monk
         raise OSError(28, "No space left on device")
 
     bench, bar = opened(path)
-    monkeypatch.setattr("thermicon.notebooks.files.drafts.os.open", full)
+    monkeypatch.setattr("os.open", full)
     bench.text = TYPED
     assert "unsaved text is not kept" in said(bar)
     bar.buttons["Save"].click()

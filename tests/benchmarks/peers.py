@@ -2,39 +2,23 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit import Drive, netlist
+from thermicon.circuit import Drive, Rig
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.module import ZERO_C_IN_K
 from thermicon.circuit.solver.network import COLD, HOT, SKIN, network_of
 from thermicon.circuit.solver.steady import state_under_current
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
 
 END_S, RATE_HZ = 30.0, 100
 CORNERS = Drive([0, 2, 4, 8, 10, 30], [0.1, 1.1, 0.3, 0.4, -0.5, 0.1])
 """Half a minute of ramps of the current, which every program simulates."""
 RTOL = 1e-4
 """Relative tolerance of solve_ivp, with which its skin is within some millikelvin, as that of ngspice is by default."""
-
-
-def ngspice_version(program: str) -> str:
-    """Version of ngspice as it states it, such as ngspice-42."""
-    stated = subprocess.run([program, "--version"], capture_output=True, text=True, timeout=60).stdout
-    return next((word for word in stated.split() if word.startswith("ngspice-")), "of unknown version")
-
-
-def find_ngspice() -> str | None:
-    """Path of ngspice; None where it is not installed."""
-    return shutil.which("ngspice")
 
 
 def plain(text: str) -> str:
@@ -62,12 +46,6 @@ def run_ngspice(command: Sequence[str], folder: Path) -> None:
     ended = subprocess.run(list(command), cwd=folder, capture_output=True, text=True, timeout=600)
     if ended.returncode:
         raise RuntimeError(f"ngspice ended with {ended.returncode}: {(ended.stdout + ended.stderr).strip()[-300:]}")
-
-
-def scaled_circuits(rigs: Sequence[Rig], scale: Array) -> list[str]:
-    """Netlists of one drive for each rig, its currents multiplied."""
-    drives = [Drive(CORNERS.time_s, CORNERS.current_A * by) for by in scale]
-    return [plain(netlist(rig, drive)) for rig, drive in zip(rigs, drives, strict=True)]
 
 
 def scipy_run(rig: Rig, drive: Drive = CORNERS) -> Array:
