@@ -6,7 +6,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from ..language.parse import parse
-from ..language.source import MOST_BYTES, MOST_JSON_BYTES
+from ..language.source import MOST_BYTES
 from ..model.errors import whole_file
 from ..model.iconset import IconSet
 from ..model.words import nearest
@@ -71,7 +71,7 @@ def read_cue(source: str | Path) -> IconSet:
     Parameters
     ----------
     source
-        Path of a ``.cue`` or ``.json`` file, or the name of a shipped set. A path that exists takes precedence.
+        Path of a cue file, or the name of a shipped set. A path that exists takes precedence.
 
     Returns
     -------
@@ -90,16 +90,7 @@ def read_cue(source: str | Path) -> IconSet:
     """
     name = str(source)
     data = file_bytes(source)
-    if data is not None and is_json(source):
-        from .exchange import from_json
-
-        return from_json(data, name)
     return load_library(name) if data is None else parse(data, name)
-
-
-def is_json(source: str | Path) -> bool:
-    """Tell whether a name is that of a JSON file."""
-    return Path(source).suffix.lower() == ".json"
 
 
 def file_bytes(source: str | Path) -> bytes | None:
@@ -112,11 +103,10 @@ def file_bytes(source: str | Path) -> bytes | None:
     """
     name = str(source)
     path = Path(source)
-    most = MOST_JSON_BYTES if is_json(source) else MOST_BYTES
     try:
         if path.is_dir() and name in library_names():
             return None
-        return read_limited(path, most)
+        return read_limited(path, MOST_BYTES)
     except FileNotFoundError:
         return None
     except NotRegular as found:
@@ -125,7 +115,7 @@ def file_bytes(source: str | Path) -> bytes | None:
             raise whole_file("E002", name, "a set is one file", help) from None
         raise whole_file("E003", name, str(found), "save what it gives as a file, and name that") from None
     except TooLarge as found:
-        help = f"a cue file has at most {most:,} bytes; split the set"
+        help = f"a cue file has at most {MOST_BYTES:,} bytes; split the set"
         raise whole_file("E004", name, str(found), help) from None
     except OSError as error:
         if error.errno in (errno.ENOTDIR, errno.ENAMETOOLONG):
