@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import tempfile
 from dataclasses import replace
 from functools import partial
@@ -12,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.circuit import Rig
-from thermicon.circuit.compiled_ahead import brought
 from thermicon.icons import load_library
 from thermicon.perception import Observer, rank
 from thermicon.perception.sensation.percept import perceive_many
@@ -41,16 +39,11 @@ def command_section(short: bool) -> Section:
     """Commands as they are typed, each in a process of its own, with the most memory that it had."""
     times, entries = 2 if short else 10, []
     if not short:
-        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:  # a helper may still write into it
+        with tempfile.TemporaryDirectory() as name:
             Path(name).chmod(0o700)
             empty = {**os.environ, "THERMICON_CACHE": name}
             first = command_timed(["rank", SET], 1, empty)
-            how = "code is compiled" if brought() is None else "machine code came with the package"
-            entries.append(Entry(f"rank {SET}, first run ever ({how})", first))
-            for other in ("rankings", "grammar"):
-                shutil.rmtree(Path(name) / other, ignore_errors=True)
-            there = command_timed(["rank", SET], 1, empty)
-            entries.append(Entry(f"rank {SET}, first run with machine code at hand, as from a wheel with it", there))
+            entries.append(Entry(f"rank {SET}, first run ever (code is compiled)", first))
     entries.append(Entry(f"check {SET}", command_timed(["check", SET], times)))
     anew = command_timed(["rank", SET, "--recompute"], times)
     entries.append(Entry(f"rank {SET} (200 people, intervals, edit)", anew))
@@ -61,8 +54,7 @@ def command_section(short: bool) -> Section:
         entries.append(Entry("validate", command_timed(["validate"], 1)))
     return Section(
         "Commands",
-        "From the key press to the prompt, with the most memory that the process had. Where code is compiled, a second "
-        "process takes a part of it; its processor time is not in the table.",
+        "From the key press to the prompt, with the most memory that the process had.",
         tuple(entries),
     )
 
