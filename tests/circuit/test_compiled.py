@@ -192,6 +192,14 @@ def test_a_folder_that_cannot_be_written_is_not_used(
     assert "compiled code cannot be stored, so that every run compiles it again: " in caplog.text
 
 
+def test_a_path_that_the_locale_cannot_read_is_told(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(compiled, "__file__", os.fsdecode(b"/Gr\xff/circuit/compiled.py"))
+    assert compiled.kept_in.__wrapped__() is None
+    assert "has letters that this locale cannot read; set PYTHONUTF8=1" in caplog.text
+
+
 def test_other_users_of_numba_keep_their_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(compiled, "kept_in", lambda: tmp_path / "ours")
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "theirs"))
