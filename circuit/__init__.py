@@ -41,9 +41,7 @@ if TYPE_CHECKING:
     from .packing.export import Export, ExportError, export
     from .fitting.fit import fit
     from .fitting.rig_fit import RigFit
-    from .studies.depths import probe_depths, resembles
-    from .studies.meshstudy import mesh_study
-    from .studies.nearest import nearest_reachable
+    from .delivery.nearest import nearest_reachable
 
 __all__ = [
     "InputError",
@@ -94,9 +92,6 @@ __all__ = [
     "ExportError",
     "fit",
     "RigFit",
-    "probe_depths",
-    "resembles",
-    "mesh_study",
     "nearest_reachable",
 ]
 
@@ -136,9 +131,7 @@ if not TYPE_CHECKING:
             "packing.export": "Export ExportError export",
             "fitting.fit": "fit",
             "fitting.rig_fit": "RigFit",
-            "studies.depths": "probe_depths resembles",
-            "studies.meshstudy": "mesh_study",
-            "studies.nearest": "nearest_reachable",
+            "delivery.nearest": "nearest_reachable",
         },
     )
 

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from .files.gallery import library
     from .language.parse import parse
     from .language.layout import format_text
-    from .files.exchange import from_json, to_json
-    from .files.hjif import to_hjif
+    from .files.exchange import to_json
     from .recordings.recorded import from_csv
     from .papers.bibtex import bibtex
     from .papers.methods import methods
@@ -33,9 +32,7 @@ __all__ = [
     "load_library",
     "library",
     "format_text",
-    "from_json",
     "to_json",
-    "to_hjif",
     "from_csv",
     "methods",
     "bibtex",
@@ -76,8 +73,7 @@ if not TYPE_CHECKING:
             "files.gallery": "library",
             "language.parse": "parse",
             "language.layout": "format_text",
-            "files.exchange": "from_json to_json",
-            "files.hjif": "to_hjif",
+            "files.exchange": "to_json",
             "recordings.recorded": "from_csv",
             "papers.bibtex": "bibtex",
             "papers.methods": "methods",

@@ -15,7 +15,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 LADDER = {
     "icons": ("pictures", "model", "language", "files", "recordings", "papers"),
-    "circuit": ("rig", "solver", "safety", "delivery", "delivery.formats", "packing", "fitting", "studies"),
+    "circuit": ("rig", "solver", "safety", "delivery", "delivery.formats", "packing", "fitting"),
     "perception": (
         *("kernels", "observer", "plots", "sensation", "procedures", "inference", "posterior", "identification"),
         *("comparison", "selection", "ranking", "pilot", "sensitivity", "validation"),

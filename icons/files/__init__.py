@@ -1,1 +1,1 @@
-"""Files other than cue text: JSON, HJIF, shipped sets, the catalogue of errors."""
+"""Files other than cue text: JSON, shipped sets, the catalogue of errors."""

@@ -13,17 +13,13 @@ _HEADINGS = {"E0": "The file as a whole", "E1": "Words, numbers and units", "E2"
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """One code: what it means, a wrong text and a right one, or, where no text can show it, what to do.
-
-    ``form`` is "cue", or "json" for what concerns sets in JSON.
-    """
+    """One code: what it means, a wrong text and a right one, or, where no text can show it, what to do."""
 
     code: str
     meaning: str
     wrong: str = ""
     right: str = ""
     cure: str = ""
-    form: str = "cue"
 
     @property
     def title(self) -> str:
@@ -35,10 +31,9 @@ class Entry:
         if not self.wrong:
             return ""
         from ..language.parse import parse
-        from .exchange import from_json
 
         try:
-            (from_json if self.form == "json" else parse)(self.wrong, f"alerts.{self.form}")
+            parse(self.wrong, "alerts.cue")
         except CueErrors as found:
             return str(found)
         raise ValueError(f"{self.code}: nothing is wrong with its example")
@@ -99,10 +94,10 @@ def page() -> str:
         if entry.cure:
             lines += ["", entry.cure]
         if entry.wrong:
-            lines += ["", f"```{entry.form}", entry.wrong.strip("\n"), "```"]
+            lines += ["", "```cue", entry.wrong.strip("\n"), "```"]
             lines += ["", "```text", entry.message(), "```"]
         if entry.right:
-            lines += ["", "Right:", "", f"```{entry.form}", entry.right.strip("\n"), "```"]
+            lines += ["", "Right:", "", "```cue", entry.right.strip("\n"), "```"]
     return "\n".join(lines) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""A cue set as JSON, for other programs, and back without loss; the schema is ``data/cue.schema.json``."""
+"""A cue set as JSON, for other programs; the schema is ``data/cue.schema.json``."""
 
 import json
 from dataclasses import fields
@@ -20,7 +20,7 @@ _SAME_AS_LEFT_OUT = {"direction": "change", "cut": False}
 
 
 def to_json(icons: IconSet) -> str:
-    """Return a set as JSON text, which ``from_json`` reads as an equal set.
+    """Return a set as JSON text, with everything but comments.
 
     Parameters
     ----------
@@ -61,41 +61,6 @@ def to_json(icons: IconSet) -> str:
         "icons": [_icon(entry) for entry in icons.entries],
     }
     return _laid_out(document, "") + "\n"
-
-
-def from_json(text: str | bytes, file: str = "<json>") -> IconSet:
-    """Return the set in a JSON text.
-
-    Parameters
-    ----------
-    text
-        The JSON text; bytes are decoded as UTF-8.
-    file
-        Name that errors show.
-
-    Returns
-    -------
-    IconSet
-        The icons and families of the text.
-
-    Raises
-    ------
-    CueErrors
-        With every error: E011 where the text is not JSON, E012 where it is not a cue set, otherwise the codes of cue
-        files. Positions are paths in the JSON text.
-
-    Examples
-    --------
-    >>> from thermicon.icons import CueErrors
-    >>> try:
-    ...     from_json('{"format": "thermicon cue", "version": 1, "icon": []}', "a.json")
-    ... except CueErrors as problem:
-    ...     print(problem.errors[0].code, problem.errors[0].what)
-    E012 the file: "icons" is missing
-    """
-    from .json_reader import read_json
-
-    return read_json(text, file)
 
 
 def _icon(entry: Icon | Family) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from ..language.parse import parse
-from ..language.source import MOST_BYTES, MOST_JSON_BYTES
+from ..language.source import MOST_BYTES
 from ..model.errors import whole_file
 from ..model.iconset import IconSet
 from ..model.words import nearest
@@ -70,7 +70,7 @@ def read_cue(source: str | Path) -> IconSet:
     Parameters
     ----------
     source
-        Path of a ``.cue`` or ``.json`` file, or the name of a shipped set. A path that exists takes precedence.
+        Path of a cue file, or the name of a shipped set. A path that exists takes precedence.
 
     Returns
     -------
@@ -89,16 +89,7 @@ def read_cue(source: str | Path) -> IconSet:
     """
     name = str(source)
     data = file_bytes(source)
-    if data is not None and is_json(source):
-        from .exchange import from_json
-
-        return from_json(data, name)
     return load_library(name) if data is None else parse(data, name)
-
-
-def is_json(source: str | Path) -> bool:
-    """Tell whether a name is that of a JSON file."""
-    return Path(source).suffix.lower() == ".json"
 
 
 def file_bytes(source: str | Path) -> bytes | None:
@@ -113,8 +104,7 @@ def file_bytes(source: str | Path) -> bytes | None:
     path = Path(source)
     if "\0" in name or (name in library_names() and path.is_dir()):
         return None
-    most = MOST_JSON_BYTES if is_json(source) else MOST_BYTES
-    return bytes_of(path, "set", ".cue", most, f"a cue file has at most {most:,} bytes; split the set")
+    return bytes_of(path, "set", ".cue", MOST_BYTES, f"a cue file has at most {MOST_BYTES:,} bytes; split the set")
 
 
 def _folder() -> Traversable:

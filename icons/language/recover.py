@@ -31,6 +31,7 @@ _FORMATS = {
     "<!doctype": "this is a web page",
     "<html": "this is a web page",
     "<?xml": "this is XML",
+    '{"': "this is JSON, which thermicon writes for other programs",
 }
 _HEADER = re.compile(r"(icon|set)\b[^\n;{}]*\{")
 
@@ -60,7 +61,7 @@ def _other_format(source: Source) -> Finding | None:
     if not rows:
         return None
     place, line = rows[0]
-    head = line[:_WIDE].lstrip().casefold()
+    head = "".join(row[:_WIDE].strip() for _, row in rows).casefold()
     what = next((what for mark, what in _FORMATS.items() if head.startswith(mark)), None)
     help = "a cue file is plain text; save it as such, in UTF-8"
     tables = [[cell.strip(' "') for cell in re.split(r"[,;\t]", row[:_WIDE])] for _, row in rows]

@@ -8,8 +8,6 @@ from ..model.errors import CueError, whole_file
 
 # Some three thousand icons; every text of this size is read or refused within a few seconds.
 MOST_BYTES = 250_000
-# As many icons take more room in JSON.
-MOST_JSON_BYTES = 1_000_000
 _MOST_BEHIND = 50
 
 

@@ -18,8 +18,6 @@ TITLES: dict[str, str] = {
     "E008": "no icons",
     "E009": "missing version line",
     "E010": "unknown version",
-    "E011": "not valid JSON",
-    "E012": "not a cue set in JSON",
     "E013": "not a recording",
     "E014": "not a reading",
     "E015": "times out of order",

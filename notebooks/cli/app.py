@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from copy import copy
+from pickle import UnpicklingError
 from typing import Any
 
 import typer
@@ -76,6 +77,10 @@ class Commands(TyperGroup):
         except OSError as error:
             place = f"{error.filename}: " if error.filename else ""
             fail(f"{place}{error.strerror or error}")
+        except (EOFError, UnpicklingError):  # as numba reads what a crash of the machine left half-written
+            from thermicon.icons.userfolder import cache_folder
+
+            fail(f"machine code in {cache_folder() / 'compiled'} is damaged: delete this folder; it is made again")
         except RecursionError:
             fail("the input is nested too deeply to be read")
         except Exception as error:

@@ -1,4 +1,4 @@
-"""``thermicon convert``: icons as cue text, JSON or HJIF, and recordings as icons."""
+"""``thermicon convert``: icons as cue text or JSON, and recordings as icons."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..text.messages import fail, note
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
 
-SUFFIXES = (".cue", ".json", ".hjif")
+SUFFIXES = (".cue", ".json")
 _GIVEN = ("tolerance_K", "name", "column", "control")
 _TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#')
 
@@ -38,19 +38,15 @@ def convert_file(file: str, output: Path, icon: str | None, recording: Recording
     check_output(output, SUFFIXES, "a set of icons")
     if output.exists() and Path(file).exists() and output.samefile(file):
         raise OutputError(f"cannot write {output}: it is the input file; give another name")
+    from thermicon.icons import to_json
+
     icons = read(file, recording)
     if icon is not None:
         icons = only_icon(icons, icon)
-    suffix = output.suffix.lower()
-    text = written(icons, suffix, icon)
+    text = to_json(icons) if output.suffix.lower() == ".json" else str(icons)
     with complete_or_absent(output) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
-    count = 1 if suffix == ".hjif" and icon is not None else len(icons)
-    note(f"wrote {output}: {count:,} icon{'' if count == 1 else 's'}")
-    if suffix == ".hjif":
-        from thermicon.icons.files.hjif import EXPERIMENTAL
-
-        note(f"{EXPERIMENTAL}; amplitude x gain is written as the change in K from baseline")
+    note(f"wrote {output}: {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
     if has_comments(file):
         note(f"comments in {Path(file).name} were dropped")
 
@@ -80,24 +76,11 @@ def only_icon(icons: IconSet, name: str) -> IconSet:
     return replace(icons, entries=parse(str(found)).entries)
 
 
-def written(icons: IconSet, suffix: str, icon: str | None = None) -> str:
-    """Return a set as the text of a file with this ending; in HJIF, an icon that is named stands alone."""
-    if suffix == ".json":
-        from thermicon.icons.files.exchange import to_json
-
-        return to_json(icons)
-    if suffix == ".hjif":
-        from thermicon.icons.files.hjif import to_hjif
-
-        return to_hjif(icons if icon is None else pick(icons, icon))
-    return str(icons)
-
-
 def has_comments(file: str) -> bool:
     """Whether a cue file has comments, which no set keeps."""
     from thermicon.icons.files.shipped import file_bytes
 
-    if Path(file).suffix.lower() in (".json", ".csv") or (data := file_bytes(file)) is None:
+    if file.lower().endswith(".csv") or (data := file_bytes(file)) is None:
         return False
     text = data.decode("utf-8", errors="replace")
     return any(match.group() == "#" for match in _TEXT_OR_COMMENT.finditer(text))

@@ -59,10 +59,8 @@ def canonical(data: bytes, file: str) -> bytes:
 
 def _read(file: str) -> bytes:
     from thermicon.icons import library_names, load_library
-    from thermicon.icons.files.shipped import file_bytes, is_json
+    from thermicon.icons.files.shipped import file_bytes
 
-    if is_json(file):
-        raise OutputError(f"{file}: fmt formats cue files only; thermicon convert {file} -o FILE.cue makes one from it")
     data = file_bytes(file)
     if data is None and file in library_names():
         raise OutputError(f"{file}: a shipped set cannot be changed; give the name of your own file")

@@ -167,7 +167,7 @@ def copy_notebooks(folder: Path, force: bool = False) -> Copied:
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as made:
     ...     copy_notebooks(Path(made)).text, copy_notebooks(Path(made)).text
-    ('wrote 10 notebooks', 'nothing to write, all notebooks exist')
+    ('wrote 9 notebooks', 'nothing to write, all notebooks exist')
     """
     check_folder(folder)
     shipped = shipped_notebooks()

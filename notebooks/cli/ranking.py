@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -106,6 +107,7 @@ def rank_files(
     draws = check_draws(model, request.parameters, "--parameters", DRAWS)
     if request.keep is not None:
         check_folder(request.keep)
+    _say_if_first()
     with progress_bar("ranking") as progress:
         ranking = rank(
             icons,
@@ -148,6 +150,16 @@ def rank_files(
         typer.echo(ranking.to_json())
     else:
         show_ranking(ranking_file(ranking, mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
+
+
+def _say_if_first() -> None:
+    """Say, where somebody watches, that a first ranking compiles; an empty file beside the code remembers it."""
+    from thermicon.circuit.compiled import kept_in
+
+    folder = kept_in()
+    if folder is not None and sys.stderr.isatty() and not (ranked := folder / "ranked").exists():
+        note("compiling for this computer, once: this ranking takes about half a minute longer")
+        ranked.touch()
 
 
 def check_report(out: Path | None) -> None:

@@ -19,10 +19,10 @@ CONTROLS = ("skin", "display")
 
 
 def convert_command(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A .cue, .json or .csv file, or a shipped set.")],
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A .cue or .csv file, or a shipped set.")],
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="OUT", readable=False, help="The file to write: .cue, .json or .hjif."),
+        typer.Option("-o", "--output", metavar="OUT", readable=False, help="The file to write: .cue or .json."),
     ],
     icon: IconName = None,
     tolerance: Annotated[
@@ -44,7 +44,7 @@ def convert_command(
         ),
     ] = None,
 ) -> None:
-    """Convert icons to another file format, given by the ending: .cue, .json, or .hjif (MPEG haptics, experimental).
+    """Write icons as a cue file or, for other programs, as JSON, as the ending says.
 
     JSON keeps everything except comments. A recording (.csv) becomes an icon of a few straight pieces.
     """

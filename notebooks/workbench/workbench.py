@@ -288,7 +288,7 @@ class Workbench:
 
 
 def text_of(source: str | Path | Icon | IconSet | None) -> str:
-    """Return the cue text of a set, an icon, a JSON file, a shipped set by name, or text itself.
+    """Return the cue text of a set, an icon, a cue file, a shipped set by name, or text itself.
 
     >>> text_of("cue 1; icon dip { hold for 1 s }")
     'cue 1; icon dip { hold for 1 s }'
@@ -333,13 +333,11 @@ def _document_of(source: object) -> CueDocument | None:
 
 
 def file_of(source: object) -> Path | None:
-    """The cue file that a workbench is made of; None for text, icons, JSON and shipped sets."""
-    from thermicon.icons.files.shipped import is_json
-
+    """The cue file that a workbench is made of; None for text, icons and shipped sets."""
     if not isinstance(source, str | Path) or (isinstance(source, str) and ("{" in source or "\n" in source)):
         return None
     path = Path(source)
-    return path if path.is_file() and not is_json(path) else None
+    return path if path.is_file() else None
 
 
 def _name_of(source: object) -> str:

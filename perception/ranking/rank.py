@@ -35,7 +35,6 @@ from ..sensation.percept import perceive
 from .assemble import assemble, playable_pairs, worst_of
 from .assumptions import assumptions_of
 from .batches import Execution, Job, PooledResult, collect_batches
-from .first_run import begin
 from .goal_result import judge_goal
 from .outcome import outcome_of_choice, outcome_of_set
 from .ranking import Ranking
@@ -133,7 +132,7 @@ def rank(
     >>> ranking.worst_pair
     ('warming-step', 'linear-warming')
     """
-    from thermicon.circuit import duration_s, judge_safety, simulate_all
+    from thermicon.circuit import duration_s, simulate_all
 
     members = list(icons)
     if not members:
@@ -154,12 +153,9 @@ def rank(
         raise GoalError(NEEDS_DRAWS)
     execution = Execution(workers, cluster, keep)
     nominal, crowd = model.nominal, model.people(people, seed)
-    compiling = (workers is None or workers > 1) and begin() > 0
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
-    if compiling:
-        judge_safety(traces[0])  # compiled here, while another process compiles what judges people
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())

@@ -141,6 +141,7 @@ NOTATION = [
     Mistake("time_s,skin_C\n0,32\n1,31\n", "E101", 1, 1, "thermicon convert makes an icon"),
     Mistake("Time;Temp\n0;32.5\n1;31\n", "E101", 1, 1, "this is a table, perhaps a recording"),
     Mistake("%PDF-1.7\n1 0 obj\n", "E101", 1, 1, "this is a PDF document"),
+    Mistake('{\n  "version": 1\n}\n', "E101", 1, 1, "this is JSON, which thermicon writes"),
     Mistake("<!DOCTYPE html>\n<p>cue 1\n", "E101", 1, 1, "this is a web page"),
 ]
 

@@ -10,9 +10,6 @@ from .form import Format, FormatError
 MODULES = {
     "csv": "csv_table",
     "setpoint-csv": "setpoint_csv",
-    "spice-pwl": "spice_pwl",
-    "keysight-arb": "keysight_arb",
-    "rigol-raf": "rigol_raf",
     "tdms": "tdms",
     "wav": "wav",
     "c-array": "c_array",

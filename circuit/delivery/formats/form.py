@@ -15,7 +15,6 @@ from ..prevent import MustPrevent
 from ..samples import Samples
 from ..setpoints import Setpoints
 
-PLAYS_CURRENT = ("volts", "amperes")
 PLAYS_SAMPLES = ("volts", "amperes", "duty")
 PLAYS_SETPOINTS = ("set-points",)
 PLAYS_TEMPERATURES = ("temperatures",)

@@ -1,5 +1,6 @@
 """Devices: the shipped profiles, what their numbers mean, and what the door says of a file that is wrong."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -55,11 +56,14 @@ def test_steps_are_as_large_as_arithmetic_says(name: str, milliamperes: float) -
 
 
 def test_levels_follow_the_waveform_where_the_instrument_sets_them() -> None:
-    keysight, rigol = Device.load("keysight-33500b").scale(7.1234), Device.load("rigol-dg1000z").scale(7.1234)
-    assert (keysight.lowest, keysight.highest, rigol.lowest, rigol.highest) == (-32767, 32767, 0, 16383)
-    assert keysight.step * 32767 == pytest.approx(7.124)
-    assert (rigol.offset, rigol.offset + 16383 * rigol.step) == pytest.approx((-7.124, 7.124))
-    assert Device.load("keysight-33500b").scale(70.0).step * 32767 == pytest.approx(10.0)
+    fixed = Device.load("dac-16")
+    even = replace(fixed, codes="symmetric", levels="waveform")
+    from_zero = replace(fixed, codes="from zero", levels="waveform").scale(7.1234)
+    scale = even.scale(7.1234)
+    assert (scale.lowest, scale.highest, from_zero.lowest, from_zero.highest) == (-32767, 32767, 0, 65535)
+    assert scale.step * 32767 == pytest.approx(7.124)
+    assert (from_zero.offset, from_zero.offset + 65535 * from_zero.step) == pytest.approx((-7.124, 7.124))
+    assert even.scale(70.0).step * 32767 == pytest.approx(10.0)
 
 
 def test_a_device_of_ones_own(tmp_path: Path) -> None:

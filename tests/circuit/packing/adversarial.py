@@ -18,8 +18,8 @@ BASES = ("thenar", "shani2021", "fingertip", "forearm", "hand-dorsum")
 WAYS = (
     ("dac-12", "csv"), ("dac-14", "csv"), ("dac-16", "csv"), ("coarse", "csv"), ("coarse", "csv"),
     ("coarse", "c-array"),
-    ("ni-analogue-output", "tdms"), ("ni-analogue-output", "psychopy"), ("dac-16", "spice-pwl"), ("dac-12", "c-array"),
-    ("keysight-33500b", "keysight-arb"), ("rigol-dg1000z", "rigol-raf"),
+    ("ni-analogue-output", "tdms"), ("ni-analogue-output", "psychopy"), ("dac-16", "csv"), ("dac-12", "c-array"),
+    ("dac-16", "tdms"), ("dac-14", "psychopy"),
     ("qst-tcs2", "tcs2-serial"), ("qst-tcs2", "tcs2-serial"),
     ("qst-tcs2", "tcs2-protocol-ini"), ("qst-tcs2", "psychopy"),
     ("closed-loop-controller", "setpoint-csv"), ("closed-loop-controller", "psychopy"),

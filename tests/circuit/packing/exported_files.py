@@ -59,20 +59,8 @@ def samples(told: Mapping[str, Any], data: bytes) -> tuple[Array, Array]:
         return table(data, "command_V", "command_A", "duty")
     if name == "tdms":
         return channel(data, "command_V", "command_A", "duty")
-    if name == "spice-pwl":
-        return flanks(*np.loadtxt(io.BytesIO(data)).T)
     if name == "c-array":
         return array(data.decode("ascii"))
-    if name == "keysight-arb":
-        head, _, body = data.decode("ascii").partition("Data:\r\n")
-        header = dict(line.split(":", 1) for line in head.splitlines())
-        high, low = float(header["High Level"]), float(header["Low Level"])
-        codes = np.array([int(line) for line in body.splitlines()])
-        return np.arange(len(codes)) / float(header["Sample Rate"]), low + (codes + 32767) / 65534 * (high - low)
-    if name == "rigol-raf":
-        codes = np.frombuffer(data, dtype="<u2")
-        low, high = played["low_level_V"], played["high_level_V"]
-        return np.arange(len(codes)) / told["update_rate_Hz"]["realised"], low + codes / 0x3FFF * (high - low)
     assert name == "wav"
     with wave.open(io.BytesIO(data)) as sound:
         rate, pcm = sound.getframerate(), np.frombuffer(sound.readframes(sound.getnframes()), dtype="<i2")
@@ -96,15 +84,6 @@ def channel(data: bytes, *names: str) -> tuple[Array, Array]:
     found = next(one for one in group.channels() if one.name in names)
     values = np.asarray(found[:], dtype=np.float64)
     return np.arange(len(values)) * float(found.properties["wf_increment"]), values
-
-
-def flanks(time_s: Array, volts: Array) -> tuple[Array, Array]:
-    """A piecewise linear source whose jumps are flanks of 1 µs, as held rows: a flank counts from its middle."""
-    wide = np.diff(time_s) > 2e-6
-    assert (volts[:-1][wide] == volts[1:][wide]).all(), "between flanks the source is level"
-    begins = [0.0, *(0.5 * (a + b) for a, b in zip(time_s[:-1][~wide], time_s[1:][~wide], strict=True))]
-    levels = [volts[0], *volts[1:][~wide]]
-    return np.append(begins, time_s[-1]), np.append(levels, levels[-1])
 
 
 def array(text: str) -> tuple[Array, Array]:

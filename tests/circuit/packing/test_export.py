@@ -297,8 +297,9 @@ class TestSidecar:
         assert volts["duration_s"] == 8.01
 
     def test_levels_and_rate_to_set_by_hand_are_there(self) -> None:
-        told = sidecar_of(passed("warming-step", "rigol-dg1000z", "rigol-raf"), "rigol-raf")
-        one = passed("warming-step", "rigol-dg1000z", "rigol-raf").delivery
+        generator = replace(Device.load("dac-14"), codes="from zero", levels="waveform")
+        ready = prepare(SIX["warming-step"], RIG, generator, CSV, gate=GreenVerdict)
+        told, one = sidecar_of(ready), ready.delivery
         assert told["played"]["high_level_V"] == pytest.approx(-told["played"]["low_level_V"])
         assert told["played"]["samples"] == len(one.trace.time_s)
         assert told["played"]["icon_begins_at_s"] == 0.01
@@ -355,7 +356,7 @@ class TestSidecar:
             "cue 1\nset s { control display\n baseline 32 °C }\n"
             "icon hot { warm by 7.5 °C at 3 °C/s\n hold for 3 s\n return at 3 °C/s }\n"
         )
-        one = prepare(icon["hot"], RIG, Device.load("keysight-33500b"), CSV)
+        one = prepare(icon["hot"], RIG, Device.load("dac-16"), CSV)
         assert one.verdict.colour == "amber"
         finding = sidecar_of(one)["safety"]["findings"][0]
         assert finding["text"] == one.verdict.cautions[0]

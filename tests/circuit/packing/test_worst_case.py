@@ -45,7 +45,7 @@ class TestWorstCase:
             "cue 1\nset s { control skin\n baseline 32 °C }\n"
             "icon hot { warm by 9.2 °C at 2 °C/s\n hold for 3 s\n return at 2 °C/s }\n"
         )
-        one = prepare(icon["hot"], RIG, Device.load("keysight-33500b"), CSV)
+        one = prepare(icon["hot"], RIG, Device.load("dac-16"), CSV)
         assert judge_safety(one.delivery.trace).colour == "amber"
         assert one.verdict == worst_case(one.delivery)
         assert one.verdict.colour == "red"

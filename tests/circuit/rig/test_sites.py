@@ -11,12 +11,17 @@ from thermicon.circuit.packing.refusal import needed_A
 from thermicon.circuit.rig.skin import Layer, Skin, column_of
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
-from thermicon.circuit.studies.paper import coldest_display_C
 from thermicon.icons import load_library
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
 SITES = ("thenar", "fingertip", "forearm", "hand-dorsum")
 BLOOD = 1060 * 3770
+
+
+def coldest_display_C(rig: Rig) -> float:
+    """What a display settles at on resting skin with the greatest current held."""
+    network = network_of(rig)
+    return network.read(state_under_current(network, rig.driver.current_max_A), "display_C")
 
 
 def _deep_C(layers: tuple[Layer, ...], surface_C: float, loss_W_per_m2: float) -> float:

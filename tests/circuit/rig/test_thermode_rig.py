@@ -13,7 +13,6 @@ from thermicon.circuit import (
     check_static,
     design,
     netlist,
-    probe_depths,
     simulate,
     simulate_current,
     simulate_many,
@@ -156,12 +155,9 @@ def test_a_batch_does_not_mix_thermodes_and_modules() -> None:
         simulate_many([STEP], [RIG, Rig.load("forearm")], nominal=RIG, end_s=8.0)
 
 
-def test_depths_and_probes_are_read_as_on_a_module() -> None:
+def test_probes_are_read_as_on_a_module() -> None:
     rig = RIG.with_(probe=[{"name": "deep", "place": "skin", "depth_mm": 0.122}])
     assert simulate(STEP, rig).probe("deep") == pytest.approx(simulate(STEP, RIG).cold_receptor_C, abs=1e-9)
-    seen = probe_depths(STEP, RIG, [0.0, 0.122e-3])
-    assert seen.temperature_C[0] == pytest.approx(seen.trace.skin_C, abs=1e-9)
-    assert seen.temperature_C[1] == pytest.approx(seen.trace.cold_receptor_C, abs=1e-9)
 
 
 @pytest.mark.parametrize(

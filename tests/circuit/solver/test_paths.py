@@ -189,7 +189,6 @@ CONSIDERED = {
         "batch", "batch_inputs", "constant_current", "displayed", "inverse", "landing", "prescribed", "pwm",
         "simulate", "static", "steady",
     },
-    "studies": {"meshstudy", "paper", "paper_differences"},
 }  # fmt: skip
 """Modules that call one of them, each looked at for the keys above: they pass the rig on whole, or refuse the key."""
 

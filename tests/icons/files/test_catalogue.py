@@ -7,7 +7,6 @@ import pytest
 
 from thermicon.icons import CueErrors, parse, read_cue
 from thermicon.icons.files.catalogue import Entry, catalogue, explain, page
-from thermicon.icons.files.exchange import from_json
 from thermicon.icons.model.errors import TITLES
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "reference" / "errors.md"
@@ -22,16 +21,15 @@ def test_every_code_is_listed() -> None:
 
 @pytest.mark.parametrize("entry", SHOWN, ids=lambda entry: entry.code)
 def test_the_wrong_example_gives_this_error_alone(entry: Entry) -> None:
-    read = from_json if entry.form == "json" else parse
     with pytest.raises(CueErrors, match=entry.code) as caught:
-        read(entry.wrong, f"alerts.{entry.form}")
+        parse(entry.wrong, "alerts.cue")
     assert [error.code for error in caught.value.errors] == [entry.code]
     assert str(caught.value) == entry.message()
 
 
 @pytest.mark.parametrize("entry", SHOWN, ids=lambda entry: entry.code)
 def test_the_right_example_is_right(entry: Entry) -> None:
-    assert (from_json if entry.form == "json" else parse)(entry.right).entries
+    assert parse(entry.right).entries
 
 
 def test_the_codes_without_an_example_are_those_of_the_door(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Sets as JSON: nothing is lost, the schema is the published one, and what is wrong is told at its place."""
+"""Sets as JSON: what is written has the published schema, whose limits are those of the language."""
 
 import json
 from importlib import resources
@@ -9,7 +9,6 @@ from hypothesis import assume
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from tests.icons.files.test_exchange_errors import error, with_body
 from tests.properties import for_any
 from thermicon.icons import (
     Context,
@@ -21,14 +20,13 @@ from thermicon.icons import (
     library_names,
     load_library,
     parse,
-    read_cue,
 )
-from thermicon.icons.files.exchange import from_json, to_json
-from thermicon.icons.files.json_schema import LIMITS, schema_text
+from thermicon.icons.files.exchange import to_json
 from thermicon.icons.model.parameter import Parameter
 from thermicon.icons.model.shapes import Pulse, Step, Wave
 from thermicon.icons.model.slots import Slot
 from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
+from thermicon.icons.model.units import Kind
 from thermicon.icons.model.value_limits import fault
 
 SCHEMA = json.loads(resources.files("thermicon.icons").joinpath("data/cue.schema.json").read_text(encoding="utf-8"))
@@ -75,23 +73,13 @@ icon b(size in [100, 200] mA, rate in [1, 2] A/s) {
 
 
 @pytest.mark.parametrize("name", library_names())
-def test_shipped_sets_come_back_and_are_valid(name: str) -> None:
-    icons = load_library(name)
-    text = to_json(icons)
-    assert from_json(text) == icons
-    assert not list(VALID.iter_errors(json.loads(text)))
+def test_shipped_sets_are_valid(name: str) -> None:
+    assert not list(VALID.iter_errors(json.loads(to_json(load_library(name)))))
 
 
 @pytest.mark.parametrize("text", [EVERYTHING, AMPS], ids=["temperature", "current"])
-def test_every_kind_of_statement_comes_back(text: str) -> None:
-    icons = parse(text)
-    made = to_json(icons)
-    again = from_json(made.encode())
-    assert again == icons
-    assert str(again) == str(icons)
-    assert again.content_hash == icons.content_hash
-    assert to_json(again) == made
-    assert not list(VALID.iter_errors(json.loads(made)))
+def test_every_kind_of_statement_is_valid(text: str) -> None:
+    assert not list(VALID.iter_errors(json.loads(to_json(parse(text)))))
 
 
 def test_a_statement_reads_like_one() -> None:
@@ -110,25 +98,34 @@ def test_a_statement_reads_like_one() -> None:
     assert '"baseline_C": 32.5' in lines
 
 
-def test_the_published_schema_is_the_one_of_the_models() -> None:
-    path = resources.files("thermicon.icons").joinpath("data/cue.schema.json")
-    assert path.read_text(encoding="utf-8") == schema_text()
+def test_the_schema_is_a_schema() -> None:
     assert SCHEMA["$schema"] == "https://json-schema.org/draft/2020-12/schema"
     Draft202012Validator.check_schema(SCHEMA)
-    assert "null" not in schema_text()
-
-
-def test_the_schema_has_the_limits_of_the_language() -> None:
-    for kind, limits in LIMITS.items():
-        one = Draft202012Validator(limits)
-        for value in (-1e10, -71.0, -70.0, -21.0, -20.0, -11.0, -10.0, -1.0, 0.0, 1e-7, 1e-6, 1.0, 20.0, 21.0, 60.0):
-            assert one.is_valid(value) == (fault(value, kind) is None), (kind, value)
-        for value in (61.0, 70.0, 71.0, 3600.0, 3601.0, 1e9, 2e9):
-            assert one.is_valid(value) == (fault(value, kind) is None), (kind, value)
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("table", "key", "kind"),
+    [
+        ("ChangeTable", "by_K", "change"),
+        ("ChangeTable", "to_C", "absolute"),
+        ("ChangeTable", "rate_K_per_s", "rate"),
+        ("ChangeTable", "duration_s", "time"),
+        ("WaveTable", "by_K", "difference"),
+        ("DriveTable", "to_A", "current"),
+        ("DriveTable", "rate_A_per_s", "current_rate"),
+        ("RepeatTable", "count", "count"),
+    ],
+)
+def test_the_schema_has_the_limits_of_the_language(table: str, key: str, kind: Kind) -> None:
+    one = Draft202012Validator(SCHEMA["$defs"][table]["properties"][key]["oneOf"][0])
+    for value in (-1e10, -71.0, -70.0, -21.0, -20.0, -11.0, -10.0, -1.0, 0.0, 1e-7, 1e-6, 1.0, 20.0, 21.0, 60.0):
+        assert one.is_valid(value) == (fault(value, kind) is None), value
+    for value in (61.0, 70.0, 71.0, 3600.0, 3601.0, 1e9, 2e9):
+        assert one.is_valid(value) == (fault(value, kind) is None), value
+
+
+@pytest.mark.parametrize(
+    "statement",
     [
         '{"do": "cool", "by_K": 6}',
         '{"do": "cool", "by_K": 6, "to_C": 26, "duration_s": 1}',
@@ -139,21 +136,11 @@ def test_the_schema_has_the_limits_of_the_language() -> None:
         '{"do": "pulse", "by_K": 0, "duration_s": 1}',
     ],
 )
-def test_the_schema_refuses_what_the_reader_refuses(change: str) -> None:
-    assert error(with_body(change))
-    assert not VALID.is_valid(json.loads(with_body(change)))
-
-
-def test_read_cue_takes_json_files(tmp_path: Any) -> None:
-    path = tmp_path / "six.JSON"
-    path.write_text(to_json(load_library("six-icons")), encoding="utf-8")
-    assert read_cue(path) == load_library("six-icons")
-    path.write_bytes(b"{")
-    with pytest.raises(CueErrors, match=r"six\.JSON:1:2  E011 not valid JSON"):
-        read_cue(path)
-    path.write_bytes(b" " * 1_000_001)
-    with pytest.raises(CueErrors, match="E004 file too large"):
-        read_cue(path)
+def test_the_schema_refuses_what_no_set_holds(statement: str) -> None:
+    document = json.loads(to_json(parse("cue 1; icon a { hold for 1 s }")))
+    assert VALID.is_valid(document)
+    document["icons"][0]["statements"] = [json.loads(statement)]
+    assert not VALID.is_valid(document)
 
 
 TIMES = st.one_of(st.floats(1e-5, 50), st.integers(1, 999).map(lambda n: n / 1000))
@@ -218,68 +205,17 @@ def sets(draw: Any) -> IconSet:
 
 
 @for_any(sets(), examples=60)
-def test_any_set_comes_back_equal(icons: IconSet) -> None:
-    text = to_json(icons)
-    assert from_json(text) == icons
-    assert not list(VALID.iter_errors(json.loads(text)))
-
-
-VALUES = st.recursive(
-    st.none()
-    | st.booleans()
-    | st.floats()
-    | st.integers()
-    | st.text(st.characters(), max_size=5)
-    | st.sampled_from(["cool", "a"]),
-    lambda inner: (
-        st.lists(inner, max_size=3)
-        | st.dictionaries(
-            st.text(st.characters(), max_size=4)
-            | st.sampled_from(["do", "by_K", "to_C", "duration_s", "parameter", "statements", "count"]),
-            inner,
-            max_size=4,
-        )
-    ),
-    max_leaves=12,
-)
-
-
-@for_any(st.text() | VALUES.map(json.dumps) | st.binary(), examples=150)
-def test_garbage_raises_nothing_else(text: str | bytes) -> None:
-    with pytest.raises(CueErrors, match=r"E\d\d\d "):
-        from_json(text)
-
-
-GOOD = json.loads(to_json(parse(EVERYTHING)))
-
-
-@for_any(st.data(), examples=120)
-def test_a_damaged_set_raises_nothing_else(data: st.DataObject) -> None:
-    document = json.loads(json.dumps(GOOD))
-    for _ in range(data.draw(st.integers(1, 3))):
-        here: Any = document
-        while True:
-            keys = list(here) if isinstance(here, dict) else list(range(len(here)))
-            if not keys:
-                break
-            key = data.draw(st.sampled_from(keys))
-            if not isinstance(here[key], (dict, list)) or data.draw(st.integers(0, 3)) == 0:
-                if data.draw(st.booleans()) and isinstance(here, dict):
-                    here[data.draw(st.sampled_from(["do", "by_K", "x", "statements", "name"]))] = here.pop(key)
-                else:
-                    here[key] = data.draw(VALUES)
-                break
-            here = here[key]
-    try:
-        icons = from_json(json.dumps(document), "a.json")
-    except CueErrors as found:
-        assert str(found).startswith("a.json")
-    else:
-        assert from_json(to_json(icons)) == icons
+def test_any_set_is_valid(icons: IconSet) -> None:
+    assert not list(VALID.iter_errors(json.loads(to_json(icons))))
 
 
 def test_drives_in_python() -> None:
     context = Context("current", None, "arm")
     icon = Icon("a", (Current(0.5, rate_A_per_s=1), Step(by_A=-0.1), Pulse(by_A=0.1, duration_s=1), Return(2)), context)
-    icons = IconSet("", "", context, Metadata(), (icon,))
-    assert from_json(to_json(icons)) == icons
+    (made,) = json.loads(to_json(IconSet("", "", context, Metadata(), (icon,))))["icons"]
+    assert made["statements"] == [
+        {"do": "drive", "to_A": 0.5, "rate_A_per_s": 1},
+        {"do": "step", "by_A": -0.1},
+        {"do": "pulse", "by_A": 0.1, "duration_s": 1},
+        {"do": "return", "rate_A_per_s": 2},
+    ]

@@ -38,7 +38,7 @@ def test_a_suggestion_cures_its_line(mistake: Mistake) -> None:
 
 
 def test_every_code_is_reached() -> None:
-    at_the_door = {f"E00{n}" for n in range(1, 8)} | {"E011", "E012"}
+    at_the_door = {f"E00{n}" for n in range(1, 8)}
     recordings = {"E013", "E014", "E015", "E016"}
     assert {mistake.code for mistake in ALL} | at_the_door | recordings == set(TITLES)
 

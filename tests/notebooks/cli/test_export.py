@@ -41,14 +41,14 @@ def names(folder: Path) -> list[str]:
 def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     weak = ("--set", "driver.transconductance_A_per_V=0.1")
-    said = cli("export", two, "--to", "csv", "--device", "keysight-33500b", "-o", out, *weak, *SURE)
+    said = cli("export", two, "--to", "csv", "--device", "dac-16", "-o", out, *weak, *SURE)
     assert (said.exit_code, said.stdout) == (0, "")
     assert names(out) == ["cool-step.csv", "cool-step.json", "warm-step.csv", "warm-step.json"]
     lines = [line for line in said.stderr.splitlines() if "the worst case of safety is milder" not in line]
     assert lines.pop(0).startswith("warning: driver.current_limit_A = 1.5 A takes 15 V of command")
-    assert lines[0].startswith("cool-step: 8.01 s at 100 Hz on keysight-33500b, receptors within ")
+    assert lines[0].startswith("cool-step: 8.01 s at 100 Hz on dac-16, receptors within ")
     assert lines[0].endswith("mK), safety green in 3 scenarios")
-    assert "warning: cool-step: keysight-33500b plays −1 … 1 A (−10 … 10 V through " in said.stderr
+    assert "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through " in said.stderr
     assert (
         f"wrote 2 drives with their sidecars into {out}: cool-step.json, cool-step.csv, warm-step.json" in said.stderr
     )
@@ -82,8 +82,8 @@ def test_one_icon_is_still_compared_with_the_others(cli: Cli, tmp_path: Path) ->
 @pytest.mark.parametrize(
     "name",
     [
-        *("spice-pwl", "c-array", "tcs2-serial", "psychopy", "setpoint-csv"),
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("keysight-arb", "rigol-raf", "wav")),
+        *("c-array", "tcs2-serial", "psychopy", "setpoint-csv"),
+        pytest.param("wav", marks=pytest.mark.slow),
     ],
 )
 def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Path, name: str) -> None:
@@ -276,7 +276,7 @@ def test_very_many_icons_are_not_compared_with_each_other(
 def test_devices_and_formats_are_listed(cli: Cli) -> None:
     said = cli("devices")
     assert said.exit_code == 0
-    for word in ("dac-12", "pwm-h-bridge-10", "set-points", "−10 to 10 V", "15.6 kHz", "tcs2-protocol-ini", "250 MHz"):
+    for word in ("dac-12", "pwm-h-bridge-10", "set-points", "−10 to 10 V", "15.6 kHz", "tcs2-protocol-ini"):
         assert word in said.stdout
     assert "None of them has been tested on hardware yet." in said.stdout
     assert max(len(line) for line in said.stdout.splitlines()) <= 80

@@ -114,8 +114,8 @@ def test_usage(cli: Cli) -> None:
 
 def test_json_is_no_cue_file(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "a.json"
-    path.write_text("{}", encoding="utf-8")
+    path.write_text('{"a": 1}', encoding="utf-8")
     said = cli("fmt", str(path))
     assert said.exit_code == 1
-    assert "fmt formats cue files only; thermicon convert" in said.stderr
-    assert path.read_text(encoding="utf-8") == "{}"
+    assert "this is JSON" in said.stderr
+    assert path.read_text(encoding="utf-8") == '{"a": 1}'

@@ -75,6 +75,16 @@ def test_an_interrupt_is_told_wherever_it_comes(
     assert capsys.readouterr().err == "interrupted\n"
 
 
+def test_damaged_machine_code_is_told_with_the_cure(monkeypatch: pytest.MonkeyPatch, cli: Cli) -> None:
+    def damaged(*_: object, **__: object) -> None:
+        raise EOFError("Ran out of input")
+
+    monkeypatch.setattr("thermicon.notebooks.cli.shipped.show_library", damaged)
+    said = cli("library")
+    assert said.exit_code == 1
+    assert "is damaged: delete this folder; it is made again" in said.stderr
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="pipes work differently there")
 @pytest.mark.parametrize(
     ("command", "files"),

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from thermicon.icons.number_text import percent_span
+from thermicon.notebooks.cli import ranking
 
 Cli = Callable[..., Any]
 TOP = {
@@ -338,3 +339,15 @@ def test_a_goal_is_reported_and_a_bad_one_stops_before_work(cli: Cli, two: Path,
     said = cli("rank", two, "--people", 4, "--parameters", 0, "--goal", "correct >= 9 % for 95 % of people")
     assert said.exit_code == 1
     assert "needs draws of the posterior" in said.stderr
+
+
+def test_a_first_ranking_says_once_on_a_terminal_that_it_compiles(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    monkeypatch.setattr("thermicon.circuit.compiled.kept_in", lambda: tmp_path)
+    ranking._say_if_first()
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    ranking._say_if_first()
+    ranking._say_if_first()
+    assert capsys.readouterr().err.count("compiling for this computer, once") == 1

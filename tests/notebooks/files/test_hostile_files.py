@@ -14,7 +14,7 @@ import pytest
 
 from thermicon.circuit import Device, Drive, Rig, deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
-from thermicon.circuit.delivery.formats import FormatError, c_array, keysight_arb, load_format
+from thermicon.circuit.delivery.formats import FormatError, c_array, load_format
 from thermicon.circuit.delivery.formats.form import check_name
 from thermicon.circuit.delivery.samples import rate_of
 from thermicon.circuit.fitting.log_files import read_log
@@ -193,12 +193,6 @@ def test_a_period_that_wraps_is_refused(tmp_path: Path) -> None:
         c_array.period_ns(1 / 5.63)
     with pytest.raises(FormatError, match=r"is one of 0\.3333 ns, which it would round"):
         c_array.period_ns(3e9)
-
-
-def test_a_header_of_six_decimals_says_no_other_number() -> None:
-    assert keysight_arb.in_header("high level", 0.001, "V", 1e-8) == "0.001000"
-    with pytest.raises(FormatError, match=r"3\.3e-07 V would .*0\.000000 V"):
-        keysight_arb.in_header("high level", 3.3e-7, "V", 1e-9)
 
 
 @pytest.mark.parametrize(("name", "words"), [("con.csv", "Windows keeps the name con"), ("é" * 101, "has at most 200")])

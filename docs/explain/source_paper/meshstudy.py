@@ -12,18 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.arrays import Array
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.skin import CELL_GROWTH, FIRST_CELL_M, column_of
+from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
+from thermicon.circuit.solver.drive import Drive
+from thermicon.circuit.solver.inverse import baseline_C, design, periods, target_at
+from thermicon.circuit.solver.network import Network, network_on
+from thermicon.circuit.solver.simulate import rows_until
+from thermicon.circuit.solver.steady import holding_current_A, state_under_current
 from thermicon.icons import Icon
-
-from ..arrays import Array
-from ..rig.rig import Rig
-from ..rig.rigfile import RigError
-from ..rig.skin import CELL_GROWTH, FIRST_CELL_M, column_of
-from ..solver.batch_inputs import Bank, cut, run_follow, run_forward
-from ..solver.drive import Drive
-from ..solver.inverse import baseline_C, design, periods, target_at
-from ..solver.network import Network, network_on
-from ..solver.simulate import rows_until
-from ..solver.steady import holding_current_A, state_under_current
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -166,37 +165,9 @@ def mesh_study(
 ) -> MeshStudy:
     """Simulate a cue or a drive on several meshes of a rig's skin, and compare them with a converged one.
 
-    Parameters
-    ----------
-    rig
-        The rig.
-    cue
-        A cue or a drive.
-    way
-        With `current` all meshes get the current designed on the rig as it is; with `temperature` each follows the cue
-        with its own current.
-    meshes
-        The meshes; None: the shipped mesh, coarser and finer ones, and fixed elements.
-    rate_Hz
-        Rows and time steps per second, the same for all meshes. At 1000 Hz they do not affect the comparison.
-    tail_s
-        Time in s that the run continues after the cue's last corner.
-
-    Returns
-    -------
-    MeshStudy
-        Errors in K at the depths of both receptors.
-
-    Raises
-    ------
-    RigError
-        For an unknown way, or a drive without a prescribed temperature.
-
-    Examples
-    --------
-    >>> from thermicon.icons import load_library
-    >>> mesh_study(Rig.load("thenar"), load_library("six-icons")["cooling-step"], meshes=[SHIPPED])
-    MeshStudy(cooling-step (display) on thenar, same current: shipped mesh within 2.7 mK; reference within 0.09 mK)
+    `meshes` are by default the shipped one, coarser and finer ones, and fixed elements. With `way` "current" all get
+    the current designed on the rig as it is; with "temperature" each follows the cue with its own current. Rows and
+    time steps per second are the same for all meshes: at 1000 Hz they do not affect the comparison.
     """
     if way not in WAYS:
         raise RigError(f"way {way!r} is not known; it is one of {', '.join(WAYS)}")

@@ -9,20 +9,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.arrays import Array
+from thermicon.circuit.records import Table, load_records
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.simulate import simulate
+from thermicon.circuit.solver.steady import state_under_current
+from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon, load_library
 
-from ..arrays import Array
-from ..records import Table, load_records
-from ..rig.rig import Rig
-from ..solver.network import network_of
-from ..solver.simulate import simulate
-from ..solver.steady import state_under_current
-from ..solver.trace import Trace
 from .depths import Likeness, probe_depths, resembles
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ THERMISTORS = (("1", "display"), ("2", "interface"), ("3", "insulated skin"))
 @cache
 def printed() -> Table:
     """Numbers from the paper's text, each with its place."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "source-paper.toml")
+    return load_records(Path(__file__).with_name("source-paper.toml"))
 
 
 def cooling_step(control: str) -> Icon:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..rig.rig import Rig
-from ..solver.simulate import simulate
-from ..solver.steady import steady_state
+from thermicon.circuit.rig.rig import Rig
+from thermicon.circuit.solver.simulate import simulate
+from thermicon.circuit.solver.steady import steady_state
+
 from .meshstudy import Mesh, mesh_study
 from .paper import (
     TAIL_S,

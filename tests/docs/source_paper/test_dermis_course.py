@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermicon.circuit.studies.dermis_course import dermis_course
-from thermicon.circuit.studies.paper_differences import paper_differences, paper_table
+from source_paper.dermis_course import dermis_course
+from source_paper.paper_differences import paper_differences, paper_table
 
 
 def test_the_last_depth_changes_as_much_as_the_paper_says() -> None:

@@ -1,14 +1,38 @@
-"""Any depth at any instant, and the depth that a probe on insulated skin resembles."""
+"""Temperature and heat flow at any depth at any instant."""
+
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigError
-from thermicon.circuit.studies.depths import probe_depths, resembles
-from thermicon.icons import load_library
+from thermicon.circuit import Rig, Trace
+from thermicon.circuit.arrays import Array
+from thermicon.circuit.solver.network import flow_weights, places_of, stacked, temperature_weights
+from thermicon.circuit.solver.simulate import watch
+from thermicon.icons import Icon, load_library
 
 STEP = load_library("six-icons")["cooling-step"]
 THENAR, PAPER = Rig.load("thenar"), Rig.load("shani2021")
+
+
+@dataclass
+class Depths:
+    """A run at k depths: temperature in °C and heat flow in W/m² into the skin (k, rows)."""
+
+    temperature_C: Array
+    heat_flow_W_per_m2: Array
+    trace: Trace
+
+
+def probe_depths(cue: Icon, rig: Rig, depths_m: list[float], rate_Hz: float = 100.0) -> Depths:
+    place, contact = places_of(rig), rig.contact.resistance_m2K_per_W
+    at = [contact + rig.skin.resistance_to_m2K_per_W(float(depth)) for depth in depths_m]
+    rows = [temperature_weights(here, place) for here in at]
+    rows += [
+        flow_weights(here if depth > 0 else 0.5 * contact, place) for here, depth in zip(at, depths_m, strict=True)
+    ]
+    trace, values = watch(cue, rig, stacked(rows), rate_Hz=rate_Hz)
+    return Depths(values[: len(at)], values[len(at) :], trace)
 
 
 @pytest.mark.parametrize("rig", [THENAR, PAPER], ids=lambda rig: rig.name)
@@ -25,7 +49,6 @@ def test_a_trace_and_the_same_depths_agree(rig: Rig) -> None:
         assert seen.temperature_C[k] == pytest.approx(expected, abs=1e-9)
     for k, expected in enumerate(flows):
         assert seen.heat_flow_W_per_m2[k] == pytest.approx(expected, abs=1e-6)
-    assert repr(seen) == f"Depths(4 from 0 to {rig.skin.thickness_m * 1e3:g} mm, 801 rows)"
 
 
 def test_heat_flow_at_a_lump_is_the_mean_of_its_faces_and_between_lumps_the_faces() -> None:
@@ -52,28 +75,3 @@ def test_heat_is_kept_between_two_depths() -> None:
     kept = float(np.sum(steps * (net[1:] + net[:-1]) / 2))
     change = seen.temperature_C[2:, -1] - seen.temperature_C[2:, 0]
     assert kept == pytest.approx(float(rig.column.capacity_J_per_m2K[: last + 1] @ change), rel=2e-3)
-
-
-def test_a_depth_outside_the_skin_is_refused() -> None:
-    with pytest.raises(RigError, match=r"a depth of 20 mm is not in the skin; it reaches from 0 to 19\.47 mm"):
-        probe_depths(STEP, THENAR, [0.02])
-
-
-def test_closely_joined_skin_resembles_its_own_depth() -> None:
-    for depth_mm in (0.4, 1.1, 3.0):
-        pad = {"name": "pad", "place": "insulated skin", "lateral_mm": 0.02, "depth_mm": depth_mm}
-        like = resembles(STEP, THENAR.with_(probe=[pad]), tail_s=10)
-        assert like.depth_m == pytest.approx(depth_mm * 1e-3, rel=0.02)
-        assert like.residual_K < 0.02
-
-
-def test_likeness_is_said_with_its_residual() -> None:
-    probes = [{"name": "pad", "place": "insulated skin"}, {"name": "plate", "place": "display"}]
-    rig = THENAR.with_(probe=probes)
-    assert repr(resembles(STEP, rig)).startswith("Likeness(probe 'pad' is most like 2.")
-    assert repr(resembles(STEP, rig)).endswith(" K)")
-    assert resembles(STEP, rig, "plate").depth_m == 0.0
-    with pytest.raises(RigError, match="rig thenar has no probe 'pat'; it has pad, plate"):
-        resembles(STEP, rig, "pat")
-    with pytest.raises(RigError, match="rig thenar has no probe on insulated skin; add a "):
-        resembles(STEP, THENAR)

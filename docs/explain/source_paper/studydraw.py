@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..solver.draw import COOL, DISPLAY, LIMIT, PROBE, SKIN, TARGET, WARM, new_axes, tidy
+from thermicon.circuit.solver.draw import COOL, DISPLAY, LIMIT, PROBE, SKIN, TARGET, WARM, new_axes, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ..solver.trace import Trace
+    from thermicon.circuit.solver.trace import Trace
+
     from .dermis_course import DermisCourse
     from .meshstudy import MeshStudy
     from .paper import DermisChange, MissByLimit, Thermistors

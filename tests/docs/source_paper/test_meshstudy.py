@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from source_paper.meshstudy import SHIPPED, WAYS, Mesh, MeshStudy, mesh_study
+from source_paper.paper import cooling_step
 from thermicon.circuit import Drive, Rig, RigError, steady_state
-from thermicon.circuit.studies.meshstudy import SHIPPED, WAYS, Mesh, MeshStudy, mesh_study
-from thermicon.circuit.studies.paper import cooling_step
 from thermicon.icons import parse
 
 THENAR, PAPER = Rig.load("thenar"), Rig.load("shani2021")

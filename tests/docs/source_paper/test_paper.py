@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, simulate_current
-from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.steady import state_under_current
-from thermicon.circuit.studies.paper import (
+from source_paper.paper import (
     coldest_display_C,
     controlled_cue,
     dermis_change,
@@ -15,8 +12,11 @@ from thermicon.circuit.studies.paper import (
     printed,
     thermistors,
 )
-from thermicon.circuit.studies.paper_differences import paper_differences
-from thermicon.circuit.studies.studydraw import stacked_figure
+from source_paper.paper_differences import paper_differences
+from source_paper.studydraw import stacked_figure
+from thermicon.circuit import Drive, Rig, simulate_current
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import state_under_current
 
 
 def test_whichever_is_controlled_is_the_clean_step() -> None:

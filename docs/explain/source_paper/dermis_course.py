@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
-from ..rig.rig import Rig
+from thermicon.circuit.arrays import Array
+from thermicon.circuit.rig.rig import Rig
+
 from .depths import probe_depths
 from .paper import TAIL_S, cooling_step, dermis_change, emulator_rig, printed, thermistors
 
@@ -45,22 +46,7 @@ class DermisCourse:
 def dermis_course(rig: Rig | None = None, depths_m: Sequence[float] | None = None) -> DermisCourse:
     """Play the cue on the skin and follow both receptor depths, and the depth that changes as much as the paper says.
 
-    Parameters
-    ----------
-    rig
-        The rig; None: that of the paper with its limits lifted.
-    depths_m
-        Other depths from the surface, m.
-
-    Returns
-    -------
-    DermisCourse
-        Changes from rest.
-
-    Examples
-    --------
-    >>> dermis_course()
-    DermisCourse(shani2021; 5.1 K at 0.15 mm, 4.4 K at 0.30 mm, 1.0 K at 1.5... mm)
+    Without a rig it is that of the paper with its limits lifted.
     """
     rig = emulator_rig() if rig is None else rig
     if depths_m is None:

@@ -3,7 +3,7 @@
 import pytest
 
 from thermicon.circuit import Rig, nearest_reachable, simulate
-from thermicon.circuit.studies.nearest import changed
+from thermicon.circuit.delivery.nearest import changed
 from thermicon.icons import load_library, parse
 
 THENAR = Rig.load("thenar")
