@@ -63,7 +63,7 @@ def kept_in() -> Path | None:
     root = Path(__file__).parents[1]
     try:
         if not str(root).isprintable():  # numba hashes the paths of sources
-            raise NotPrivate(f"{root} has letters that this locale cannot read; set PYTHONUTF8=1")
+            raise NotPrivate(f"{str(root)!a} has letters that this locale cannot read; set PYTHONUTF8=1")
         versions = compiled_folder(numba.__version__, llvmlite.__version__)
         folder = private_folder(versions / digest_of(path for one in SOURCES for path in root.glob(one)))
         # Others may not even enter: the modes of numba's own files depend on the umask.
