@@ -14,7 +14,6 @@ from .sensitivity.sensitivity import Sensitivity, sensitivity
 if TYPE_CHECKING:
     from .observer.observer import CHANNELS, NORMS, Observer
     from .sensation.percept import Percept, perceive
-    from .identification.distance import percept_distance
     from .identification.from_memory import dprime_from_memory
     from .identification.confusion import Confusion, confuse
     from .identification.measures import information_bits, proportion_correct
@@ -55,7 +54,6 @@ __all__ = [
     "draw_people",
     "perceive",
     "Percept",
-    "percept_distance",
     "dprime_from_memory",
     "distance_components",
     "DistanceComponent",
@@ -117,7 +115,6 @@ if not TYPE_CHECKING:
         {
             "observer.observer": "CHANNELS NORMS Observer",
             "sensation.percept": "Percept perceive",
-            "identification.distance": "percept_distance",
             "identification.from_memory": "dprime_from_memory",
             "identification.confusion": "Confusion confuse",
             "identification.measures": "information_bits proportion_correct",

@@ -248,9 +248,7 @@ def sensitivity_command(
         ),
     ] = None,
     observer: DrawsFile = None,
-    norm: Annotated[
-        str, typer.Option("--norm", metavar="NAME", help="episodes, naming, max, rms or integral.")
-    ] = "episodes",
+    norm: Annotated[str, typer.Option("--norm", metavar="NAME", help="episodes or naming.")] = "episodes",
     output: Annotated[
         Path | None,
         typer.Option(

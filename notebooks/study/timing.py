@@ -77,8 +77,7 @@ def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> t
 
     end_s = max(duration_s(icon, rig) for icon in icons) + TAIL_S
     left = carry_over(icons, rig, end_s, gap_s, tracking=None if held else "replay")
-    norm = NORMS.index(USUAL_NORM)
-    d_prime = left.apart[norm] / left.noise[norm]
+    d_prime = left.apart[NORMS.index(USUAL_NORM)]
     before, after = divmod(int(d_prime.argmax()), len(icons))
     return float(d_prime.max()), (icons[before].name, icons[after].name)
 

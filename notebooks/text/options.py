@@ -101,7 +101,7 @@ Tracking = Annotated[
 ]
 NormName = Annotated[
     str,
-    typer.Option("--norm", metavar="NAME", help="What is remembered: episodes, naming; traces by max, rms, integral."),
+    typer.Option("--norm", metavar="NAME", help="How icons are remembered: episodes or naming."),
 ]
 Tail = Annotated[float, typer.Option("--tail", metavar="S", help="Seconds simulated after the last corner.")]
 

@@ -13,9 +13,6 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
-NORM_NAMES = {"rms": "RMS"}
-
-
 def playable(icons: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """Return the icons that are safe and reached; the others are ranked separately."""
     return [icon for icon in icons if icon["safe"] and icon["reachable"]]
@@ -64,11 +61,11 @@ def carried_lines(icons: Sequence[dict[str, Any]]) -> Iterator[str]:
 
 
 def norm_lines(result: dict[str, Any]) -> Iterator[str]:
-    """Report whether the order would change with another norm for differences over time; nothing for one icon.
+    """Report whether the order would change with another norm of memory; nothing for one icon.
 
-    >>> whole = {"norm_sensitivity": {"rms": 0.7}, "norm_changes": {"rms": [["a", "b"], ["a", "c"]]}}
+    >>> whole = {"norm_sensitivity": {"naming": 0.7}, "norm_changes": {"naming": [["a", "b"], ["a", "c"]]}}
     >>> list(norm_lines({"pairs": [{}], "set": whole}))
-    ['     with the RMS distance: 70 % correct, b before a (1 more change of order)']
+    ['     with the naming distance: 70 % correct, b before a (1 more change of order)']
     """
     whole = result["set"] if result["pairs"] else {"norm_sensitivity": {}}
     for norm, share in whole["norm_sensitivity"].items():
@@ -78,7 +75,7 @@ def norm_lines(result: dict[str, Any]) -> Iterator[str]:
         else:
             more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
             order = f"{changes[0][1]} before {changes[0][0]}{more}"
-        yield f"     with the {NORM_NAMES.get(norm, norm)} distance: {percent(share)} correct, {order}"
+        yield f"     with the {norm} distance: {percent(share)} correct, {order}"
 
 
 def task_note(task: dict[str, Any]) -> str:

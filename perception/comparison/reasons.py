@@ -1,12 +1,11 @@
 """Why a pair is distinguishable or not: sentences whose every number can be recomputed.
 
 The numbers come from the two nominal traces and percepts through the public functions of
-`features`, `distance` and `rules`.
+`features`, `distance_components` and `rules`.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,9 +14,8 @@ import numpy as np
 from thermicon.icons.number_text import decimals, fixed, verdict
 
 from ..arrays import Array
-from ..identification.distance import difference_trace, identification_dprime, percept_distance
 from ..identification.episodes import Episodes, remembered
-from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, TraceNorm, check_norm, trace_norm
+from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, check_norm
 from ..observer.observer import Observer
 from ..sensation.features import (
     STILL_K,
@@ -35,8 +33,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
 VERBS = {"cold": "cool", "warm": "warm"}
-LEAST_SENSATION = 0.05
-"""Differences below this are not printed as numbers: they would read 0.0 d′."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +59,7 @@ def pair_reasons(
 ) -> tuple[Reason, ...]:
     """What separates the two icons, or fails to: what carries the distance, then direction, peaks, rates, onsets.
 
-    Of two icons that move the receptors alike there is one sentence, which says so. `norm` is the norm of distance
+    Of two icons that move the receptors alike there is one sentence, which says so. `norm` is the norm
     with which the two are distinguished from memory; `episodes` are those of the nominal person, with the two icons at
     `places`, where they are known.
     """
@@ -74,7 +70,10 @@ def pair_reasons(
         return (Reason(text, {}, "K"),)
     shared = tuple(c for c in directions(a) if c in directions(b))
     person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
-    found = [_carrying(a, b, felt_a, felt_b, person, chosen, episodes, places), _direction(a, b)]
+    if episodes is None:
+        episodes, places = remembered((felt_a, felt_b), person), (0, 1)
+    carries = Reason(*carrying_feature((_name(a), _name(b)), episodes, places, person, chosen), "d′")
+    found = [carries, _direction(a, b)]
     for channel in shared:
         found.append(_peaks(a, b, channel))
         found.append(_rates(a, b, channel))
@@ -137,46 +136,6 @@ def _onsets(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept) -> Reason:
         f"of the response window"
     )
     return Reason(text, {"a": felt_a.onset_s, "b": felt_b.onset_s, "difference": gap, "threshold": needed}, "s")
-
-
-def _carrying(
-    a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: Norm, episodes: Episodes | None,
-    places: tuple[int, int],
-) -> Reason:  # fmt: skip
-    """What carries the distance from memory: a feature of episodes, or the largest difference of traces."""
-    trace = trace_norm(norm)
-    if trace is not None:
-        return _largest(a, b, felt_a, felt_b, observer, trace)
-    if episodes is None:
-        episodes, places = remembered((felt_a, felt_b), observer), (0, 1)
-    return Reason(*carrying_feature((_name(a), _name(b)), episodes, places, observer, norm), "d′")
-
-
-def _largest(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept, observer: Observer, norm: TraceNorm) -> Reason:
-    """When they differ most and by how much in each channel, and the d′ that memory noise leaves of it."""
-    over_time = difference_trace(felt_a, felt_b, observer)
-    k = int(np.hypot(over_time[0], over_time[1]).argmax())
-    cold, warm = (abs(float(channel[k])) for channel in over_time)
-    size, duration = math.hypot(cold, warm), felt_a.dt_s * (over_time.shape[1] - 1)
-    apart = size if norm == "max" else percept_distance(felt_a, felt_b, observer, norm)
-    left = float(identification_dprime(apart, observer, norm, duration))
-    values = {"difference": size, "cold": cold, "warm": warm, "time_s": k * felt_a.dt_s, norm: apart, "d_prime": left}
-    names = f"{_name(a)} and {_name(b)}"
-    if size < LEAST_SENSATION:
-        return Reason(
-            f"{names} nowhere differ by {LEAST_SENSATION:g} d′ of sensation, so their names are guessed", values, "d′"
-        )
-    text = (
-        f"{names} differ most at {k * felt_a.dt_s:.2f} s by {size:.1f} d′ of sensation "
-        f"(cold {cold:.1f}, warm {warm:.1f})"
-    )
-    if norm == "max":
-        text += f"; with memory noise, d′ {left:.1f} for a nominal person"
-    else:
-        unit = {"rms": "d′", "integral": "d′·s"}[norm]
-        text += f"; by the {norm} norm it is {apart:.1f} {unit} in all"
-        text += f", which with memory noise is d′ {left:.1f} for a nominal person"
-    return Reason(text, values, "d′")
 
 
 def _alike(a: Trace, b: Trace) -> bool:

@@ -15,11 +15,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import NORMS, TRACE_NORMS, USUAL_NORM, Norm
+from ..observer.channels import NORMS, USUAL_NORM, Norm
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..sensation.percept import perceive_many, uniform_clock
-from .distance import identification_noise, percept_distances
 from .episodes import Episodes, episode_distances
 from .task import Task
 
@@ -35,14 +34,12 @@ PEOPLE = 32
 class CarryOver:
     """How far every icon (column) feels from itself alone after every other (row): `apart` (norms, icons, icons).
 
-    In sensation units, or in d′ from memory where episodes are remembered, as the mean of people, `gap_s` after the end
-    of the icon before.
+    In d′ from memory, as the mean of people, `gap_s` after the end of the icon before.
     """
 
     names: tuple[str, ...]
     gap_s: float
     apart: Array
-    noise: Array
 
     def __repr__(self) -> str:
         icons = "1 icon" if len(self.names) == 1 else f"{len(self.names)} icons"
@@ -58,7 +55,7 @@ class CarryOver:
         """After which icon (of some) one feels least like itself, and by how many d′ from memory, for `rank --json`."""
         k, some = NORMS.index(norm), list(places or range(len(self.names)))
         before = some[int(self.apart[k, some, place].argmax())]
-        return {"after": self.names[before], "d_prime": float(self.apart[k, before, place] / self.noise[k])}
+        return {"after": self.names[before], "d_prime": float(self.apart[k, before, place])}
 
 
 def carry_over(
@@ -115,23 +112,15 @@ def carry_over(
         for before, wait in enumerate(waits):
             after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
             pairs = np.stack([alone, after], axis=2)
-            differences = percept_distances(pairs[0], pairs[1], dt, person)
             episodes = Episodes.of(pairs[0], pairs[1], dt, person, [[icon.name] for icon in icons])
             for k, norm in enumerate(NORMS):
-                if norm in TRACE_NORMS:
-                    apart[k, before] = differences[norm][:, 0, 1]
-                else:
-                    apart[k, before] = episode_distances(episodes, episodes, person, norm)[:, 0, 1]
+                apart[k, before] = episode_distances(episodes, episodes, person, norm)[:, 0, 1]
         return apart
 
     people = draw_people(PEOPLE)
     thresholds = list(zip(people.threshold_cold.tolist(), people.threshold_warm.tolist(), strict=True))
     apart = np.mean(list(in_order(for_one, thresholds)), axis=0)
-    duration = dt * (rows - 1)
-    noise = np.array(
-        [float(identification_noise(person, norm, duration)) if norm in TRACE_NORMS else 1.0 for norm in NORMS]
-    )
-    return CarryOver(tuple(icon.name for icon in icons), gap_s, apart, noise)
+    return CarryOver(tuple(icon.name for icon in icons), gap_s, apart)
 
 
 def prepare_task(

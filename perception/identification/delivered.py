@@ -119,7 +119,7 @@ def judge_delivered(
     observer
         The person (None: the nominal one).
     norm
-        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
+        How episodes are remembered: `episodes` or `naming`.
 
     Returns
     -------

@@ -17,7 +17,7 @@ from ..arrays import Array
 from ..kernels.parallel import over_rows
 from ..observer.channels import CHANNELS, Channel, Norm
 from ..observer.observer import Observer
-from ..sensation.percept import Percept
+from ..sensation.percept import Percept, on_one_clock
 
 PARTS = ("direction", "intensity", "rate", "duration", "pause")
 """Parts of a distance in the order of the kernel: episodes of one icon alone, and the features of shared ones."""
@@ -203,8 +203,6 @@ def remembered(percepts: Sequence[Percept], observer: Observer | None = None) ->
     >>> [episode.channel for episode in remembered([perceive(trace)]).listed(0, 0)]
     ['cold']
     """
-    from .distance import on_one_clock
-
     person = Observer.load() if observer is None else observer
     cold, warm, dt = on_one_clock(percepts)
     return Episodes.of(cold[None], warm[None], dt, person, [percept.icon or "" for percept in percepts])

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from ..arrays import Array
-from ..observer.channels import USUAL_NORM, Norm, check_norm, trace_norm
+from ..observer.channels import USUAL_NORM, Norm, check_norm
 from ..observer.observer import Observer
-from ..sensation.percept import Percept
-from .distance import identification_dprime, on_one_clock, percept_distances
+from ..sensation.percept import Percept, on_one_clock
 from .episodes import Episodes, episode_distances
 
 Felt = tuple[Array, Array]
@@ -22,22 +19,12 @@ def dprimes_from_memory(
     one: Felt, other: Felt, dt_s: float, observer: Observer, norm: Norm, names: tuple[Names, Names] = ("", "")
 ) -> Array:
     """d′ (n, m) of every icon of one to every icon of the other, on one clock, for the nominal memory."""
-    trace = trace_norm(norm)
-    if trace is None:
-        first, second = (
-            Episodes.of(cold[None], warm[None], dt_s, observer, called)
-            for (cold, warm), called in zip((one, other), names, strict=True)
-        )
-        found: Array = episode_distances(first, second, observer, norm)[0]
-        return found
-    apart = np.empty((len(one[0]), len(other[0])))
-    for row in range(len(apart)):
-        cold, warm = (
-            np.stack([np.broadcast_to(mine[row], theirs.shape), theirs], axis=1)
-            for mine, theirs in zip(one, other, strict=True)
-        )
-        apart[row] = percept_distances(cold, warm, dt_s, observer)[trace][:, 0, 1]
-    return identification_dprime(apart, observer, trace, dt_s * (one[0].shape[-1] - 1))
+    first, second = (
+        Episodes.of(cold[None], warm[None], dt_s, observer, called)
+        for (cold, warm), called in zip((one, other), names, strict=True)
+    )
+    found: Array = episode_distances(first, second, observer, norm)[0]
+    return found
 
 
 def dprime_from_memory(a: Percept, b: Percept, observer: Observer | None = None, norm: str = USUAL_NORM) -> float:
@@ -50,7 +37,7 @@ def dprime_from_memory(a: Percept, b: Percept, observer: Observer | None = None,
     observer
         The person (None: the nominal one).
     norm
-        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
+        How episodes are remembered: `episodes` or `naming`.
 
     Returns
     -------

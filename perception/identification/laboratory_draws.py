@@ -129,7 +129,7 @@ def _acting(
 
     def named(constants: Array) -> Array:
         observer, people = laboratories.with_values(constants, count)
-        felt = respond(few, people, observer, [norm], detection=False)
+        felt = respond(few, people, observer, detection=False)
         d_prime, confusion = identify(felt, norm, people, observer, seed, LEAST, task=task)
         return np.stack([d_prime, confusion.probability])
 
@@ -156,7 +156,7 @@ def scored(
     correct, bits and least detection (people,) of each of them.
     """
     samples = min(SAMPLES, max(LEAST, NAMED // few.cold_C.shape[1]))
-    felt = respond(few, people, observer, [norm], times=True)
+    felt = respond(few, people, observer, times=True)
     d_prime, confusion = identify(felt, norm, people, observer, seed, samples, task=task)
     correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)
     found = felt.detected

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from ..arrays import Array
-from ..observer.channels import TRACE_NORMS, Norm, TraceNorm, trace_norm
+from ..observer.channels import Norm
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.detection import Detection, detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .confusion import SAMPLES, Confusion, confuse
-from .distance import identification_noise, percept_distances
 from .episodes import Episodes, episode_distances
 from .measures import information_bits, proportion_correct
 from .naming import SAMPLES as NAMED_SAMPLES
@@ -72,16 +71,13 @@ class ReceptorTemperatures:
 
 @dataclass(frozen=True, slots=True)
 class PopulationResponse:
-    """Episodes of every person and icon, detection probabilities (people, icons), duration s.
+    """Episodes of every person and icon, and detection probabilities (people, icons).
 
-    `apart` (people, icons, icons) are differences of traces for the norms that were asked for; `peaks` (people, icons)
-    are the largest sensations, cold and warm. `detection` is None where it was not asked for.
+    `peaks` (people, icons) are the largest sensations, cold and warm. `detection` is None where it was not asked for.
     """
 
     episodes: Episodes
-    apart: dict[TraceNorm, Array]
     detection: Detection | None
-    duration_s: float
     peaks: tuple[Array, Array]
 
     def of(self, icons: Sequence[int]) -> PopulationResponse:
@@ -90,9 +86,7 @@ class PopulationResponse:
         cold, warm = self.peaks
         return PopulationResponse(
             Episodes(self.episodes.features[:, places], self.episodes.counts[:, places]),
-            {norm: each[:, places][:, :, places] for norm, each in self.apart.items()},
             None,
-            self.duration_s,
             (cold[:, places], warm[:, places]),
         )
 
@@ -122,12 +116,11 @@ def respond(
     played: ReceptorTemperatures,
     crowd: People,
     observer: Observer,
-    norms: Iterable[Norm] = (),
     *,
     detection: bool = True,
     times: bool = False,
 ) -> PopulationResponse:
-    """Episodes of every icon for every person, and what norms of traces need.
+    """Episodes of every icon for every person, and whether it is reported.
 
     Without `detection` it takes a third of the time; `times` adds response times to it.
     """
@@ -135,8 +128,7 @@ def respond(
     found = _detection(cold, warm, dt, played.site, crowd, observer, times) if detection else None
     peaks = (cold.max(axis=-1), warm.max(axis=-1))
     episodes = Episodes.of(cold, warm, dt, observer, played.names)
-    apart = percept_distances(cold, warm, dt, observer) if any(norm in TRACE_NORMS for norm in norms) else {}
-    return PopulationResponse(episodes, apart, found, dt * (cold.shape[-1] - 1), peaks)
+    return PopulationResponse(episodes, found, peaks)
 
 
 def population_detection(played: ReceptorTemperatures, crowd: People, observer: Observer) -> Detection:
@@ -178,11 +170,7 @@ def _detection(
 
 def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
     """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) multiplies the memory noise."""
-    own, trace = task.memory(memory, felt.peaks, observer), trace_norm(norm)
-    if trace is not None:
-        noise = identification_noise(observer, trace, felt.duration_s, own[:, None, None])
-        found: Array = felt.apart[trace] / task.between(noise, norm)
-        return found
+    own = task.memory(memory, felt.peaks, observer)
     apart: Array = episode_distances(felt.episodes, felt.episodes, observer, norm, own)
     if task.carried:
         noise = own[:, None, None]
@@ -226,6 +214,6 @@ def score(
     task: Task = USUAL,
 ) -> Scores:
     """Scores by one observer, without what only a report needs."""
-    felt = respond(played, crowd, observer, [norm])
+    felt = respond(played, crowd, observer)
     confusion = identify(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
     return Scores(proportion_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

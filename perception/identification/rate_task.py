@@ -12,7 +12,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from statistics import NormalDist
-from typing import NamedTuple
 
 import numpy as np
 
@@ -20,48 +19,40 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, MEMORY_NORMS, TRACE_NORMS, Norm, TraceNorm, trace_norm
+from ..observer.channels import CHANNELS
 from ..observer.observer import Observer
 from ..observer.variants import source_of
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.fits import RIG
 from ..sensation.percept import perceive_many
-from .distance import memory_from_task, percept_distances
 from .episodes import Episodes, episode_distances
 
 TAIL_S = 10.0
 LOG_NOISE = (math.log(1e-3), math.log(20.0))
-"""Logs of the least and largest noise that is tried for episodes."""
-MOST_STATED = 1000.0
-"""A larger ratio of conditions is not stated: where sensory noise alone is nearly enough, it only rounding decides."""
+"""Logs of the least and largest noise that is tried."""
 
 
-def memory_noise(known: Table, observer: Observer) -> list[Record]:
-    """Memory noise at which the rate task comes out as published, for each norm of distance."""
+def memory_noise(known: Table, observer: Observer) -> Record:
+    """Memory noise at which the rate task comes out as published."""
     fraction = known.one("rate Weber fraction")
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     criteria = known.one("criterion of the rate task").interval
     cases = rate_task(known, observer)
-    records = []
-    for norm in MEMORY_NORMS:
-        found = [[_noise_of(case, norm, proportion, observer) for case in cases] for proportion in criteria]
-        ends = [_root_mean_square(values) for values in found]
-        every = [v for values in found for v in values]
-        spread = max(max(values) / max(min(values), 1e-9) for values in found)
-        ratio = f"{spread:.3f}" if spread <= MOST_STATED else f"above {MOST_STATED:g}"
-        conditions = (
-            f"skin-surface coolings at {rates[0]:g} and {rates[1]:g} K/s over {spans[0]:g} and {spans[1]:g} K against "
-            f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
-            f"largest over smallest condition {ratio}, all {min(every):.3f} to {max(every):.3f}"
-        )
-        made = memory_record(norm, observer, _root_mean_square(ends), min(ends), max(ends))
-        records.append(replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions))
-    return records
+    found = [[_noise_of(case, proportion, observer) for case in cases] for proportion in criteria]
+    ends = [_root_mean_square(values) for values in found]
+    every = [v for values in found for v in values]
+    spread = max(max(values) / min(values) for values in found)
+    conditions = (
+        f"skin-surface coolings at {rates[0]:g} and {rates[1]:g} K/s over {spans[0]:g} and {spans[1]:g} K against "
+        f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
+        f"largest over smallest condition {spread:.3f}, all {min(every):.3f} to {max(every):.3f}"
+    )
+    made = memory_record(source_of(observer.variable, observer.model), _root_mean_square(ends), min(ends), max(ends))
+    return replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions)
 
 
-def memory_record(norm: Norm, observer: Observer | None, value: float, low: float, high: float) -> Record:
-    """A record of memory noise, not calibrated yet."""
-    variant = "" if observer is None else source_of(observer.variable, observer.model)
+def memory_record(variant: str, value: float, low: float, high: float) -> Record:
+    """A record of the memory noise of a variant, by the ending of its names; not calibrated yet."""
     return Record(
         quantity=f"memory noise{variant}",
         unit="log units",
@@ -70,32 +61,17 @@ def memory_record(norm: Norm, observer: Observer | None, value: float, low: floa
         low=low,
         high=high,
         channel="both",
-        method=norm,
+        method="episodes",
         confidence="low",
         use="calibrate",
     )
 
 
-class RateCase(NamedTuple):
-    """One condition of the rate task: difference of its two coolings by each norm of traces, how long they last, and
-    their episodes.
+def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> float:
+    """Memory noise at which a condition comes out with a proportion correct, Φ(d′/√2) in a two-interval choice.
+
+    Intensity is remembered as well as rate.
     """
-
-    size: dict[TraceNorm, float]
-    duration_s: float
-    episodes: Episodes
-
-
-def _noise_of(case: RateCase, norm: Norm, proportion: float, observer: Observer) -> float:
-    """Memory noise at which a condition comes out with a proportion correct."""
-    trace = trace_norm(norm)
-    if trace is not None:
-        return memory_from_task(case.size[trace], proportion, observer, trace, case.duration_s)
-    return _episode_noise(case.episodes, proportion, observer)
-
-
-def _episode_noise(episodes: Episodes, proportion: float, observer: Observer) -> float:
-    """The same of episodes, with intensity remembered as well as rate: a two-interval choice is right in Φ(d′/√2)."""
     from scipy.optimize import brentq
 
     wanted = math.sqrt(2.0) * NormalDist().inv_cdf(proportion)
@@ -114,14 +90,9 @@ def _episode_noise(episodes: Episodes, proportion: float, observer: Observer) ->
     return math.exp(float(brentq(missed, low, high, xtol=1e-6)))
 
 
-def rate_task(known: Table, observer: Observer) -> list[RateCase]:
-    """The published rate discrimination, simulated: every rate and span, against a rate larger by the fraction."""
-    cases = []
-    for cold, warm, dt in _felt(known, observer):
-        apart = percept_distances(cold[None], warm[None], dt, observer)
-        sizes = {norm: float(apart[norm][0, 0, 1]) for norm in TRACE_NORMS}
-        cases.append(RateCase(sizes, dt * (cold.shape[-1] - 1), Episodes.of(cold[None], warm[None], dt, observer)))
-    return cases
+def rate_task(known: Table, observer: Observer) -> list[Episodes]:
+    """Episodes of the published rate discrimination: every rate and span, against a rate larger by the fraction."""
+    return [Episodes.of(cold[None], warm[None], dt, observer) for cold, warm, dt in _felt(known, observer)]
 
 
 def peaks_of_task(known: Table, observer: Observer) -> Array:
@@ -146,5 +117,5 @@ def _pair(span_K: float, slow: float, fast: float) -> Stimulus:
 
 
 def _root_mean_square(values: Sequence[float]) -> float:
-    """Noise of several conditions as one: variances are averaged, and one without memory noise counts as 0."""
+    """Noise of several conditions as one: variances are averaged."""
     return math.sqrt(sum(v * v for v in values) / len(values))

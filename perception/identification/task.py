@@ -39,7 +39,7 @@ class Task:
     bias
         SD over people and names of the log likelihood that favours a name, 0 to 5.
     carried
-        What the icons before change of each (norms, icons), sensation units, or d′ where episodes are remembered.
+        What the icons before change of each (norms, icons), d′.
     counted
         Places of the icons that will be played, which make up the range; none: all.
     places

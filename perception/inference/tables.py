@@ -9,9 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 from thermicon.circuit.records import Record
 
-from ..observer.channels import MEMORY_NORMS
 from ..observer.mechanisms import ALL_OFF, find_mechanism
-from ..observer.observer import load_thresholds, observer_records
+from ..observer.observer import load_thresholds
 from ..observer.people import people_records
 from .evidence import load_evidence
 from .priors import WITHIN_95
@@ -155,21 +154,6 @@ def predicted_table() -> str:
     return markdown(("quantity", "source", "records"), [(*key, count) for key, count in sorted(records.items())])
 
 
-def memory_table() -> str:
-    """Noise of identification of the default observer, by norm of distance."""
-    records = [observer_records().one("memory noise", method=norm) for norm in MEMORY_NORMS]
-    lines = [(f"`{record.method}`", _log_units(record.central), _ends(record)) for record in records]
-    return markdown(("norm", "memory noise σ (log units)", "interval"), lines)
-
-
-def _ends(record: Record) -> str:
-    return " to ".join(_log_units(end) for end in record.interval)
-
-
-def _log_units(sigma: float) -> str:
-    return number(sigma) if sigma >= 1e-3 else "below 0.001"
-
-
 def people_table() -> str:
     """How virtual people differ: one row a column of `People`."""
     return markdown(
@@ -202,7 +186,6 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "left out": left_out_table,
     "coverage": coverage_sentence,
     "predicted": predicted_table,
-    "memory noise": memory_table,
     "people": people_table,
     "constants of receptors": lambda: constants_table(GROUPS["receptors"]),
     "constants of sensation": lambda: constants_table(GROUPS["sensation"]),

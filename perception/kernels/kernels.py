@@ -42,51 +42,6 @@ def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -
             own[t] = course[t] if given[t] > 0.0 else 0.0
 
 
-def _blur(psi: Any, decay: float, blurred: Any) -> None:
-    """Symmetric exponential smoothing; both ends are held."""
-    gain = 1.0 - decay
-    last = psi.shape[1] - 1
-    for row in range(psi.shape[0]):
-        y = psi[row, 0]
-        for t in range(last + 1):
-            y = decay * y + gain * psi[row, t]
-            blurred[row, t] = y
-        y = psi[row, last] + (y - psi[row, last]) / (1.0 + decay)
-        blurred[row, last] = y
-        for t in range(last - 1, -1, -1):
-            y = decay * y + gain * blurred[row, t]
-            blurred[row, t] = y
-
-
-def _differences(cold: Any, warm: Any, dt: float, out: Any) -> None:
-    """Largest, rms and integrated difference for every pair of icons of every person."""
-    people, icons, n = cold.shape
-    squared, most = np.empty(SIDE_BY_SIDE), np.empty(SIDE_BY_SIDE)
-    for p in range(people):
-        pair = 0
-        for i in range(icons):
-            for j in range(i + 1, icons):
-                largest, squares, total = 0.0, 0.0, 0.0
-                for k in range(SIDE_BY_SIDE):
-                    most[k] = 0.0
-                for start in range(0, n, SIDE_BY_SIDE):
-                    count = min(SIDE_BY_SIDE, n - start)
-                    a, b = cold[p, i, start : start + count], cold[p, j, start : start + count]
-                    c, d = warm[p, i, start : start + count], warm[p, j, start : start + count]
-                    for k in range(count):
-                        squared[k] = (a[k] - b[k]) ** 2 + (c[k] - d[k]) ** 2
-                    for k in range(count):
-                        most[k] = squared[k] if squared[k] > most[k] else most[k]
-                        squares += squared[k]
-                        total += math.sqrt(squared[k])
-                for k in range(SIDE_BY_SIDE):
-                    largest = max(largest, most[k])
-                out[p, pair, 0] = math.sqrt(largest)
-                out[p, pair, 1] = math.sqrt(squares / n)
-                out[p, pair, 2] = total * dt
-                pair += 1
-
-
 def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
     """Counts of the nearest point (presented, answer) for one person; the innermost loops run over draws.
 
@@ -157,7 +112,5 @@ Loop = Callable[..., None]
 _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
 sensation: Loop = vectorised(_sensation)
-blur: Loop = _compile(_blur)
-differences: Loop = _vector(_differences)
 nearest: Loop = _vector(_nearest)
 bend: Loop = _compile(_bend)

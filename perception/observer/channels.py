@@ -1,20 +1,15 @@
-"""The two channels and the norms of distance: names that every stage shares."""
+"""The two channels and the norms of memory: names that every stage shares."""
 
 from __future__ import annotations
 
 from typing import Literal, get_args
 
 Channel = Literal["cold", "warm"]
-TraceNorm = Literal["max", "rms", "integral"]
-Norm = Literal["episodes", "naming", "max", "rms", "integral"]
+Norm = Literal["episodes", "naming"]
 CHANNELS: tuple[Channel, ...] = get_args(Channel)
-TRACE_NORMS: tuple[TraceNorm, ...] = get_args(TraceNorm)
-"""Norms of the difference of two traces of sensation on one clock."""
 NORMS: tuple[Norm, ...] = get_args(Norm)
-"""What is remembered of an icon: its episodes, in logarithms or as ratings that are named directly, or its traces."""
+"""How the episodes of an icon are remembered: in logarithms, or as ratings that are named directly."""
 USUAL_NORM: Norm = "episodes"
-MEMORY_NORMS: tuple[Norm, ...] = ("episodes", *TRACE_NORMS)
-"""Norms with a memory noise of their own; both forms of episodes share one."""
 
 
 def check_norm(norm: str) -> Norm:
@@ -23,23 +18,6 @@ def check_norm(norm: str) -> Norm:
         if norm == known:
             return known
     raise ValueError(f"there is no norm {norm!r}: choose one of {', '.join(NORMS)}")
-
-
-def trace_norm(norm: str) -> TraceNorm | None:
-    """The norm where it is one of the difference of two traces; None where episodes are remembered."""
-    for known in TRACE_NORMS:
-        if norm == known:
-            return known
-    return None
-
-
-def noise_norm(norm: Norm) -> Norm:
-    """The norm whose memory noise a norm uses: both forms of episodes have one.
-
-    >>> noise_norm("naming"), noise_norm("max")
-    ('episodes', 'max')
-    """
-    return "episodes" if norm == "naming" else norm
 
 
 def sign_of(channel: Channel) -> float:

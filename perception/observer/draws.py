@@ -22,7 +22,7 @@ from ..arrays import Array, own_arrays
 from .channels import CHANNELS
 from .draws_file import DrawsHeader, read_draws, shipped_file
 from .from_draw import observer_with
-from .memory_constants import noise_name
+from .memory_constants import NOISE
 from .observer import Observer, variant_records
 from .variants import Model, Variable, check_variant, source_of
 
@@ -131,7 +131,7 @@ class PosteriorDraws:
         values, variant = self.draw(k), source_of(*self.variant)
         records = []
         for record in variant_records(*self.variant):
-            remembered = noise_name(record.method) if record.quantity == "memory noise" else record.quantity
+            remembered = NOISE if record.quantity == "memory noise" else record.quantity
             if remembered in self.memory_names:
                 records.append(replace(record, value=values[remembered], low=None, high=None))
                 continue

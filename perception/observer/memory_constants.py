@@ -8,26 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
-from .channels import NORMS, noise_norm, trace_norm
 from .observer import Observer
 
-SHARE, MISSING, ONSET = "share of the scatter of ratings", "cost of a missing episode", "onset uncertainty"
-BAR = "bar of an episode"
-
-
-def noise_name(norm: str) -> str:
-    """Name of the memory noise of a norm.
-
-    >>> noise_name("episodes")
-    'memory noise (episodes)'
-    """
-    return f"memory noise ({norm})"
-
-
-NOISES = tuple(dict.fromkeys(noise_name(noise_norm(norm)) for norm in NORMS))
-MEMORY_NAMES = (*NOISES, SHARE, MISSING, BAR, ONSET)
+NOISE, SHARE = "memory noise (episodes)", "share of the scatter of ratings"
+MISSING, BAR = "cost of a missing episode", "bar of an episode"
+MEMORY_NAMES = (NOISE, SHARE, MISSING, BAR)
 """Every constant of memory that a table of draws may have a column for."""
 LIMITS: Mapping[str, tuple[float, float]] = {
     SHARE: (0.0, 1.0), MISSING: (0.0, math.inf), "correlation of cold and warm": (-1.0, 1.0),
@@ -55,18 +41,12 @@ def with_memory(observer: Observer, values: Mapping[str, float]) -> Observer:
     >>> with_memory(Observer.load(), {"memory noise (episodes)": 0.25, "cold limit": 30.0}).memory.timing
     0.25
     """
-    changes: dict[str, Any] = {}
-    if ONSET in values:
-        changes["onset_uncertainty_s"] = values[ONSET]
-    for norm in NORMS:
-        if (trace := trace_norm(norm)) is not None and noise_name(trace) in values:
-            changes[f"memory_{trace}"] = values[noise_name(trace)]
     own = observer.memory
-    changes["memory"] = replace(
+    memory = replace(
         own,
-        timing=values.get(noise_name("episodes"), own.timing),
+        timing=values.get(NOISE, own.timing),
         share=values.get(SHARE, own.share),
         missing=values.get(MISSING, own.missing),
         bar=values.get(BAR, own.bar),
     )
-    return replace(observer, **changes)
+    return replace(observer, memory=memory)

@@ -18,7 +18,7 @@ import numpy as np
 from thermicon.circuit.records import RecordError, Table, load_records
 
 from ..arrays import Array
-from .channels import CHANNELS, NORMS, Channel, Norm, TraceNorm, check_norm
+from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
 from .delays import Conduction
 from .mechanisms import check_without, find_mechanism
 from .memory import EpisodeMemory, Ratings
@@ -66,12 +66,8 @@ class Observer:
         Length of the nerve to the cord, m.
     decision_s
         Time from the brain's signal to the answer, s.
-    onset_uncertainty_s
-        Uncertainty of a remembered onset, s.
     lapse
         Share of trials in which any name is given, 0–1.
-    memory_max, memory_rms, memory_integral
-        Noise of remembered traces for each norm, log units of drive.
     memory
         How well episodes are remembered.
     p
@@ -121,11 +117,7 @@ class Observer:
     path_hand_m: float
     path_forearm_m: float
     decision_s: float
-    onset_uncertainty_s: float
     lapse: float
-    memory_max: float
-    memory_rms: float
-    memory_integral: float
     memory: EpisodeMemory
     p: float = 1.0
     gain_noise: float = 0.0
@@ -255,11 +247,7 @@ class Observer:
             decision_s=number("decision time"),
             choice_s=number("choice time"),
             decision_noise=number("decision time between trials"),
-            onset_uncertainty_s=number("onset uncertainty"),
             lapse=number("lapse rate"),
-            memory_max=number("memory noise", method="max"),
-            memory_rms=number("memory noise", method="rms"),
-            memory_integral=number("memory noise", method="integral"),
             memory=EpisodeMemory(
                 timing=number("memory noise", method="episodes"),
                 share=number("share of the scatter of ratings"),
@@ -312,10 +300,6 @@ class Observer:
     def site_factor(self, channel: Channel, site: str | None) -> float:
         """How much larger thresholds are at a site than on the thenar; 1 where nothing is known of the site."""
         return self.receptor(channel).forearm_factor if site is not None and on_forearm(site) else 1.0
-
-    def memory_noise(self, norm: TraceNorm) -> float:
-        """Memory noise of a norm of traces, log units."""
-        return {"max": self.memory_max, "rms": self.memory_rms, "integral": self.memory_integral}[norm]
 
     def __repr__(self) -> str:
         variant = (

@@ -12,7 +12,7 @@ NEEDED = (
     "softness of the limits", "threshold on the forearm", "static gain", "dynamic gain", "integration time",
     "slope of sensation", "transducer exponent", "gain noise", "reference area", "criterion of speeded answers",
     "noise correlation time", "path length to the cord", "decision time", "choice time", "decision time between trials",
-    "onset uncertainty", "lapse rate", "memory noise", "mean rating", "rating at threshold", "rating exponent",
+    "lapse rate", "memory noise", "mean rating", "rating at threshold", "rating exponent",
     "scatter of ratings", "share of the scatter of ratings", "cost of a missing episode", "bar of an episode",
     "window of counted impulses", "start of static discharge",
 )  # fmt: skip

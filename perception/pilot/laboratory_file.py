@@ -19,7 +19,7 @@ from ..arrays import Array
 from ..observer.channels import CHANNELS
 from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from ..observer.draws_file import as_written, to_text
-from ..observer.memory_constants import noise_name
+from ..observer.memory_constants import NOISE
 from .conditioning import Conditioned
 from .measurement_conditioning import Reweighted
 from .nominal import middle_of
@@ -120,7 +120,7 @@ def observer_text(draws: PosteriorDraws, lines: Sequence[str]) -> str:
 def _record(record: Record, each: dict[str, Array], remembered: Sequence[str]) -> Record:
     name = f"{record.channel} {record.quantity}" if record.channel in CHANNELS else record.quantity
     if record.quantity == "memory noise":
-        name = noise_name(record.method)
+        name = NOISE
     moved = name in remembered or record.method.startswith("draw ")
     if name in each and record.value is not None and moved:
         return _narrowed(record, record.value, each[name])

@@ -93,7 +93,7 @@ class Stage:
         def one(k: int) -> Small:
             observer, people = prior.observer_and_people(values[k], int(some.seed[k]), self.people)
             people = replace(people, contact_resistance=self.skins[0], outer_layer=self.skins[1])
-            felt = respond(self.played, people, observer, [prior.norm], detection=False)
+            felt = respond(self.played, people, observer, detection=False)
             named = identify(felt, prior.norm, people, observer, int(some.seed[k]), SAMPLES)[1].probability
             return np.maximum(named, LEAST_PROBABILITY).astype(np.float32)
 

@@ -156,7 +156,7 @@ def judge_people(job: Job, crowd: People, batch: Batch, model: ObserverModel, st
     """Judge the people of a batch, of whom `start` come before, by what their receptors went through."""
     played = ReceptorTemperatures.of_batch(batch, job.icons, job.rig)
     observer = model.nominal
-    felt = respond(played, crowd, observer, NORMS, times=True)
+    felt = respond(played, crowd, observer, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
     others = [
         np.diagonal(

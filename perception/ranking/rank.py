@@ -87,8 +87,8 @@ def rank(
     tracking
         `replay`, `display` or `ideal` (None: what suits the control of each icon).
     norm
-        What is remembered: `episodes` (compared in logarithms), `naming` (episodes as ratings, each trial named
-        directly), or traces, whose difference over time counts by `max`, `rms` or `integral`.
+        How episodes are remembered: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
+        directly).
     by
         `model`, or `rules`: then rules of thumb alone rank the icons, and the model reports only where it disagrees.
     parameters

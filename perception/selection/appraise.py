@@ -170,4 +170,4 @@ def population_response(
     end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     played = ReceptorTemperatures.simulated(icons, each, rig, end, rate_Hz, tracking)
-    return respond(played, crowd, nominal, [norm], detection=False), durations
+    return respond(played, crowd, nominal, detection=False), durations

@@ -186,7 +186,7 @@ def choose(
     tracking
         What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
     norm
-        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
+        How episodes are remembered: `episodes` or `naming`.
     task
         The task that `d_prime` was found in.
     left

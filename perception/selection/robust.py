@@ -118,7 +118,7 @@ def compare_sets(
     tracking
         What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
     norm
-        What is remembered: `episodes`, `naming`, or the traces by `max`, `rms` or `integral`.
+        How episodes are remembered: `episodes` or `naming`.
 
     Returns
     -------

@@ -68,7 +68,7 @@ class ShareEvaluator(PopulationEvaluator):
         for persons, observer, people in self.groups:
             cold, warm = met.cold_C[persons, :, ::EVERY], met.warm_C[persons, :, ::EVERY]
             played = replace(met, cold_C=cold, warm_C=warm, time_s=met.time_s[::EVERY])
-            felt = respond(played, people, observer, [self.norm], detection=False)
+            felt = respond(played, people, observer, detection=False)
             found.append(memory_dprime(felt, self.norm, people.memory, observer, USUAL))
         return np.concatenate(found)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from thermicon.circuit.records import Table
 
-from ..observer.channels import Norm, noise_norm
-from ..observer.memory_constants import BAR, MISSING, ONSET, SHARE, noise_name
+from ..observer.channels import Norm
+from ..observer.memory_constants import MEMORY_NAMES
 from .parameters import ObserverParameter, observer_parameters
 
 
@@ -15,5 +15,4 @@ def memory_parameters(norm: Norm, site: str = "thenar", records: Table | None = 
     >>> [parameter.name for parameter in memory_parameters("episodes")]
     ['share of the scatter of ratings', 'bar of an episode', 'memory noise (episodes)']
     """
-    names = {SHARE, MISSING, BAR, ONSET, noise_name(noise_norm(norm))}
-    return tuple(parameter for parameter in observer_parameters(norm, site, records) if parameter.name in names)
+    return tuple(parameter for parameter in observer_parameters(norm, site, records) if parameter.name in MEMORY_NAMES)

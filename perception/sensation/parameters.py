@@ -14,21 +14,13 @@ import numpy as np
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.channels import USUAL_NORM, noise_norm
+from ..observer.channels import USUAL_NORM
 from ..observer.observer import CHANNELS, NORMS, Norm, Observer, on_forearm, variant_records
 
 PER_PERSON = ("path length to the cord", "decision time", "lapse rate")
 ANCHORED = "threshold drive"
-REMEMBERED: dict[str, tuple[Norm, ...]] = {
-    "share of the scatter of ratings": ("episodes", "naming"),
-    "scatter of ratings": ("episodes", "naming"),
-    "rating exponent": ("episodes", "naming"),
-    "rating at threshold": ("naming",),
-    "cost of a missing episode": ("naming",),
-    "bar of an episode": ("episodes", "naming"),
-    "onset uncertainty": ("max", "rms", "integral"),
-}
-"""Norms that make use of a constant, where not all of them do."""
+NAMED = ("rating at threshold", "cost of a missing episode")
+"""Constants that the norm `naming` alone makes use of."""
 LOG_FROM = 1.5
 """An interval whose ends are in a larger ratio than this is drawn in its logarithm."""
 
@@ -105,8 +97,8 @@ def latin(parameters: int, draws: int, seed: int) -> Array:
 def parameter_name(record: Record) -> str:
     """Name of a parameter: its quantity, with the channel where each has its own, the site or the method.
 
-    >>> parameter_name(Record("memory noise", "log units", "a task", value=0.3, channel="both", method="max"))
-    'memory noise (max)'
+    >>> parameter_name(Record("memory noise", "log units", "a task", value=0.3, channel="both", method="episodes"))
+    'memory noise (episodes)'
     """
     method = record.method if record.method in NORMS else ""
     place = record.site if record.quantity == "path length to the cord" else ""
@@ -120,9 +112,7 @@ def _free(record: Record, norm: Norm, site: str, known: Table, whole: Observer) 
     low, high = record.interval
     if record.value is None or low == high or record.quantity in PER_PERSON or record.quantity.startswith(ANCHORED):
         return False
-    if record.method in NORMS and record.method != noise_norm(norm):
-        return False
-    if record.quantity in REMEMBERED and norm not in REMEMBERED[record.quantity]:
+    if record.quantity in NAMED and norm != "naming":
         return False
     moved = Table(known.name, tuple(replace(r, value=low) if r is record else r for r in known))
     return low != record.value and _at_site(moved, site) != whole

@@ -6,6 +6,8 @@ is later by conduction; the response clock by conduction and decision.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -259,3 +261,19 @@ def uniform_clock(time_s: ArrayLike) -> tuple[float, int]:
     if not np.allclose(np.diff(clock[:rows]), dt, rtol=1e-6, atol=1e-9):
         raise ValueError("a percept needs a uniform clock: simulate at one rate (rate_Hz)")
     return dt, rows
+
+
+def on_one_clock(percepts: Sequence[Percept]) -> tuple[Array, Array, float]:
+    """Sensations (percepts, n_time), cold and warm, and their step in s; shorter ones are held at their end."""
+    dt = percepts[0].dt_s
+    for each in percepts:
+        if not math.isclose(each.dt_s, dt, rel_tol=1e-9):
+            raise ValueError(f"percepts are on clocks of {dt:g} s and {each.dt_s:g} s: simulate all at one rate")
+    n = max(each.psi_cold.size for each in percepts)
+    cold = np.stack([_held(each.psi_cold, n) for each in percepts])
+    warm = np.stack([_held(each.psi_warm, n) for each in percepts])
+    return cold, warm, dt
+
+
+def _held(psi: Array, n: int) -> Array:
+    return np.concatenate([psi, np.full(n - psi.size, psi[-1])])

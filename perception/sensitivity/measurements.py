@@ -21,7 +21,7 @@ MEASUREMENTS = (
         "let people name a few icons from memory and count",
         (
             *("memory noise", "share of the scatter of ratings", "cost of a missing episode", "bar of an episode"),
-            *("onset uncertainty", "wrong labels", "warmth that lingers"),
+            *("wrong labels", "warmth that lingers"),
         ),
     ),
     Measurement(

@@ -16,7 +16,7 @@ from thermicon.circuit.records import Record, Table, dump_records
 from ..identification.rate_task import memory_noise, memory_record
 from ..inference.evidence import load_evidence
 from ..inference.results import UNMOVED_SD, Constant, load_constants
-from ..observer.channels import CHANNELS, MEMORY_NORMS, Channel
+from ..observer.channels import CHANNELS, Channel
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import shipped_file
 from ..observer.observer import DATA, Observer, load_thresholds
@@ -42,7 +42,7 @@ def calibrate(thresholds: Table | None = None) -> Table:
         *(neutral_flux(known, channel) for channel in CHANNELS),
         *(record for variant in VARIANTS for record in _inferred(*variant)),
     )
-    noise = [record for variant in VARIANTS for record in _memory(known, shared, *variant)]
+    noise = [_memory(known, shared, *variant) for variant in VARIANTS]
     return Table("observer.toml", tuple(_rounded(r) for r in (*shared, *noise)))
 
 
@@ -91,13 +91,10 @@ def _record(each: Constant, variant: str, method: str) -> Record:
     )
 
 
-def _memory(known: Table, shared: tuple[Record, ...], variable: Variable, model: Model) -> list[Record]:
+def _memory(known: Table, shared: tuple[Record, ...], variable: Variable, model: Model) -> Record:
     """Memory noise of a variant, by the rate task through its own distance."""
-    variant = source_of(variable, model)
-    unset = [
-        replace(memory_record(norm, None, 1.0, 1.0, 1.0), quantity=f"memory noise{variant}") for norm in MEMORY_NORMS
-    ]
-    draft = Observer.from_table(Table("draft", (*shared, *unset)), variable=variable, model=model)
+    unset = memory_record(source_of(variable, model), 1.0, 1.0, 1.0)
+    draft = Observer.from_table(Table("draft", (*shared, unset)), variable=variable, model=model)
     return memory_noise(known, draft)
 
 
@@ -115,7 +112,6 @@ def _taken_over(known: Table) -> tuple[Record, ...]:
         replace(zone, quantity="neutral zone", low=low, high=high),
         replace(known.one("thermode area of the forced-choice thresholds"), quantity="reference area"),
         *(known.one("path length to the cord", site=site) for site in ("hand", "forearm")),
-        known.one("onset uncertainty"),
         known.one("lapse rate"),
         known.one("share of the scatter of ratings"),
         known.one("cost of a missing episode"),

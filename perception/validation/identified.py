@@ -84,10 +84,10 @@ class Shown:
         nominal = Observer.load(variable=variable, model=model)
 
         def thinly(observer: Observer, people: People) -> Array:
-            felt = respond(thin, people, observer, [norm], detection=False)
+            felt = respond(thin, people, observer, detection=False)
             return identify(felt, norm, people, observer, self.seed, FEW_SAMPLES)[1].probability
 
-        felt = respond(played, self.crowd, nominal, [norm], detection=False)
+        felt = respond(played, self.crowd, nominal, detection=False)
         whole = identify(felt, norm, self.crowd, nominal, self.seed, SAMPLES)[1]
         kept = np.zeros((0, *whole.probability.shape))
         if draws:

@@ -2,7 +2,7 @@
 
 Each form predicts the six icons, the three waveforms and the ratings of E6 with the draws of its constants; its log
 score is the log density of what was published. The shipped table is written by
-``python -m thermicon.perception.validation.memory_forms``.
+``python -m thermicon.perception.validation.memory_forms``, which keeps the rows of forms that are no longer norms.
 """
 
 from __future__ import annotations
@@ -20,13 +20,12 @@ from thermicon.circuit import Rig
 
 from ..arrays import Array
 from ..identification.episodes import Episodes, distance_shares
-from ..identification.from_memory import dprimes_from_memory
 from ..identification.laboratory import DRAWS
 from ..inference.evidence import load_evidence
 from ..inference.experiments import E6_K_PER_S, E6_SIZES
 from ..inference.skin_modes import skin_modes
 from ..inference.table_text import number
-from ..observer.channels import CHANNELS, NORMS, Channel, Norm, check_norm, sign_of, trace_norm
+from ..observer.channels import CHANNELS, NORMS, Channel, Norm, sign_of
 from ..observer.observer import DATA, Observer
 from ..sensation.percept import perceive_many
 from .evidence import SIX
@@ -56,7 +55,7 @@ NUMERIC = ("predicted", "low", "high", "log_score")
 class FormScore:
     """One published row as one form of memory predicts it: value, 95 % of draws, and log score."""
 
-    norm: Norm
+    norm: str
     row: str
     published: str
     predicted: float
@@ -98,11 +97,8 @@ def rating_dprime(channel: Channel, observer: Observer, norm: Norm) -> float:
     sizes = [sign_of(channel) * times * change for times in RATIO]
     at_cold, at_warm = (_received("forearm", each, sizes) for each in CHANNELS)
     cold, warm = perceive_many(at_cold, at_warm, STEP_S, observer, area_m2=area_cm2 * 1e-4, site="forearm")
-    if trace_norm(norm) is None:
-        episodes = Episodes.of(cold[None], warm[None], STEP_S, observer)
-        apart = math.sqrt(distance_shares(episodes, 0, episodes, 1, observer, norm)["intensity"])
-    else:
-        apart = float(dprimes_from_memory((cold, warm), (cold, warm), STEP_S, observer, norm)[0, 1])
+    episodes = Episodes.of(cold[None], warm[None], STEP_S, observer)
+    apart = math.sqrt(distance_shares(episodes, 0, episodes, 1, observer, norm)["intensity"])
     return apart / math.log(RATIO[1] / RATIO[0])
 
 
@@ -150,9 +146,10 @@ def _event(norm: Norm, predicted: Predicted, row: Row) -> FormScore:
     return FormScore(norm, predicted.quantity, f"at least {least:g}", value, low, high, math.log(share))
 
 
-def totals(scores: Sequence[FormScore]) -> dict[Norm, float]:
-    """Log score of each form over all rows, in the order of the norms."""
-    return {norm: sum(one.log_score for one in scores if one.norm == norm) for norm in NORMS}
+def totals(scores: Sequence[FormScore]) -> dict[str, float]:
+    """Log score of each form over all rows, in the order of the table."""
+    forms = dict.fromkeys(one.norm for one in scores)
+    return {form: sum(one.log_score for one in scores if one.norm == form) for form in forms}
 
 
 def to_csv(scores: Sequence[FormScore]) -> str:
@@ -170,7 +167,7 @@ def load_forms() -> tuple[FormScore, ...]:
     with (DATA / TABLE).open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     return tuple(
-        FormScore(check_norm(row["norm"]), row["row"], row["published"], *map(float, (row[name] for name in NUMERIC)))
+        FormScore(row["norm"], row["row"], row["published"], *map(float, (row[name] for name in NUMERIC)))
         for row in rows
     )
 
@@ -188,9 +185,10 @@ def forms_table() -> str:
 
 
 def main() -> None:
-    """Write the shipped table."""
+    """Write the shipped table, with the rows of forms that are kept as numbers."""
+    kept = [one for one in load_forms() if one.norm not in NORMS]
     head = f"# written by python -m thermicon.perception.validation.memory_forms, {PEOPLE} people, {DRAWS} draws\n"
-    (DATA / TABLE).write_text(head + to_csv(compare_forms()), encoding="utf-8")
+    (DATA / TABLE).write_text(head + to_csv((*compare_forms(), *kept)), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -45,12 +45,8 @@ def observer() -> Observer:
         path_hand_m=0.7,
         path_forearm_m=0.55,
         decision_s=0.2,
-        onset_uncertainty_s=0.2,
         lapse=0.02,
-        memory_max=0.30,
-        memory_rms=0.28,
         memory=EpisodeMemory(0.30, 0.5, 3.0, 1.0, Ratings(6.0, 0.5, 40.0, 13.0), Ratings(2.3, 0.7, 27.0, 13.0)),
-        memory_integral=0.26,
     )
 
 

@@ -174,7 +174,7 @@ USAGE = [
     (("rank", "six-icons", "--people", "100001"), "1 to 100000"),
     (("rank", "six-icons", "--trials", "1000000000000"), "--trials"),
     (("rank", "six-icons", "--tracking", "repaly"), "replay, display, ideal"),
-    (("rank", "six-icons", "--norm", "mx"), "max"),
+    (("rank", "six-icons", "--norm", "max"), "'max' is not one of episodes, naming"),
 ]
 
 

@@ -138,13 +138,13 @@ def test_a_sweep_warns_of_another_site(cli: Cli, two: Path) -> None:
 @pytest.mark.slow
 def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "rank.json"
-    options = ("--people", 2, "--norm", "rms", "--set", "driver.current_limit_A=0.3", "--json", out)
+    options = ("--people", 2, "--norm", "naming", "--set", "driver.current_limit_A=0.3", "--json", out)
     said = cli("rank", two, *options)
     assert said.exit_code == 0, said.stderr
     assert json.loads(out.read_text(encoding="utf-8"))["rig_changes"] == ["driver.current_limit_A=0.3"]
     words = " ".join(said.stdout.split())
     assert "Predicted for 2 virtual people on the thenar rig with driver.current_limit_A=0.3 (seed 0, " in words
-    assert "display tracking, rms norm). These are predictions of a model, not measurements." in words
+    assert "display tracking, naming norm). These are predictions of a model, not measurements." in words
     assert "cool-step is not reached: misses its target by " in words
     assert "; it is reached with its " in words
     assert f"wrote {out}" in said.stderr

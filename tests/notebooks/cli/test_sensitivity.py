@@ -55,7 +55,7 @@ def test_a_what_if(cli: Cli, two: Path) -> None:
         (("--people", 0), "'--people': 0 is outside 1 to 10000"),
         (("--draws", 2), "'--draws': 2 is outside 64 to 100000"),
         (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
-        (("--norm", "mean"), "'--norm': 'mean' is not one of episodes, naming, max, rms, integral"),
+        (("--norm", "mean"), "'--norm': 'mean' is not one of episodes, naming"),
     ],
 )
 def test_bad_options_are_usage_errors(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
@@ -82,7 +82,7 @@ def test_nothing_that_moves() -> None:
     from thermicon.notebooks.cli.sensitivity import sentences
     from thermicon.perception import Sensitivity
 
-    still = Sensitivity("thenar", (), 1, 0, "max", 64, "shipped", 1.0, 1.0, (1.0, 1.0), (), ())
+    still = Sensitivity("thenar", (), 1, 0, "naming", 64, "shipped", 1.0, 1.0, (1.0, 1.0), (), ())
     assert sentences(still)[0] == "No measurement would narrow the prediction noticeably."
     assert "1 virtual person on the thenar rig" in sentences(still)[-1]
 

@@ -223,12 +223,17 @@ def test_a_page_that_cannot_be_written_is_said_at_once(
 def test_the_command_can_be_given_again(rig: Rig) -> None:
     assert command_text(["six-icons"], rig, Request()) == "thermicon rank six-icons"
     asked = Request(
-        seed=3, norm="rms", by="rules", tracking="ideal", choosing=Selection(3, "bits", ("a", "b"), 20.0), edits="all"
+        seed=3,
+        norm="naming",
+        by="rules",
+        tracking="ideal",
+        choosing=Selection(3, "bits", ("a", "b"), 20.0),
+        edits="all",
     )
     changed = Rig.load("forearm").with_set(["driver.current_limit_A=1.2"])
     assert command_text(["/home/x/my icons.cue", "b.cue"], changed, asked) == (
         "thermicon rank 'my icons.cue' b.cue --rig forearm --set driver.current_limit_A=1.2 --seed 3 --tracking ideal "
-        "--norm rms --by rules --choose 3 --objective bits --must a --must b --most-time 20 --edits"
+        "--norm naming --by rules --choose 3 --objective bits --must a --must b --most-time 20 --edits"
     )
 
 

@@ -83,9 +83,8 @@ def test_a_gap_lets_the_icon_before_be_felt(usual: Ranking, left_behind: CarryOv
     assert far.proportion_correct == pytest.approx(usual.proportion_correct, abs=1e-6)
     told = near.to_dict()["icons"][0]["carry_over"]
     assert told["after"] in usual.labels and told["d_prime"] > 0.5
-    noise = float(left_behind.noise[0])
     worst = max(float(left_behind.apart[0, j, 0]) for j in range(6))
-    assert told["d_prime"] == pytest.approx(worst / noise, rel=1e-9)
+    assert told["d_prime"] == pytest.approx(worst, rel=1e-9)
 
 
 def test_what_is_left_behind_is_summed_up_in_d_prime_from_memory(left_behind: CarryOver) -> None:
@@ -97,9 +96,7 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(monkeypatch: pytest.Mon
     """The nominal person feels one icon after another, written as one icon: no superposition, no tricks."""
     from thermicon.circuit import simulate
     from thermicon.icons import Icon, rest
-    from thermicon.perception.identification.distance import percept_distances
     from thermicon.perception.identification.episodes import Episodes, episode_distances
-    from thermicon.perception.observer.channels import trace_norm
     from thermicon.perception.sensation.percept import perceive
 
     monkeypatch.setattr("thermicon.perception.identification.carry_over.draw_people", lambda _: People.nominal())
@@ -112,13 +109,11 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(monkeypatch: pytest.Mon
     rows = alone.psi_cold.size
     stacks = [np.stack([getattr(alone, psi), getattr(after, psi)[gap : gap + rows]])[np.newaxis]
               for psi in ("psi_cold", "psi_warm")]  # fmt: skip
-    differences = percept_distances(*stacks, 0.04, Observer.load())
     episodes = Episodes.of(*stacks, 0.04, Observer.load())
     place = {name: k for k, name in enumerate(left_behind.names)}
     for k, norm in enumerate(NORMS):
         told = left_behind.apart[k, place["double-dip"], place["warming-step"]]
-        trace = trace_norm(norm)
-        apart = episode_distances(episodes, episodes, Observer.load(), norm) if trace is None else differences[trace]
+        apart = episode_distances(episodes, episodes, Observer.load(), norm)
         assert apart[0, 0, 1] == pytest.approx(told, rel=0.02)
 
 

@@ -179,18 +179,6 @@ def test_the_nearest_of_any_number_of_draws(icons: int, draws: int, apart: float
     assert np.array_equal(counts, expected)
 
 
-@pytest.mark.parametrize("samples", [1, 63, 64, 65, 129])
-def test_differences_of_traces_of_any_length(samples: int) -> None:
-    cold, warm = np.random.default_rng(samples).standard_normal((2, 2, 3, samples))
-    found = np.empty((2, 3, 3))
-    kernels.differences(cold, warm, 0.02, found)
-    for person in range(2):
-        for pair, (i, j) in enumerate([(0, 1), (0, 2), (1, 2)]):
-            apart = np.hypot(cold[person, i] - cold[person, j], warm[person, i] - warm[person, j])
-            expected = apart.max(), np.sqrt((apart**2).mean()), 0.02 * apart.sum()
-            assert found[person, pair] == pytest.approx(expected, rel=1e-12)
-
-
 def test_sensation_written_over_its_drive(observer: Observer) -> None:
     drive: Any = np.zeros((5, 70))
     drive[1], drive[2, 0], drive[3, -1], drive[4, 20:40] = 2.0, 3.0, 3.0, np.linspace(0.0, 4.0, 20)

@@ -48,7 +48,7 @@ def test_a_draw_is_one_consistent_observer(posterior: PosteriorDraws) -> None:
     assert observer.cold.threshold_drive == values["cold threshold drive"]
     assert observer.warm.velocity_m_per_s == values["warm conduction velocity"]
     assert observer.criterion == values["criterion of speeded answers"]
-    assert observer.memory_max == Observer.load().memory_max
+    assert observer.memory.timing == Observer.load().memory.timing
     table = posterior.table(17)
     assert table.one("sensitivity between people", channel="cold").central == values["cold sensitivity between people"]
     assert {r.quantity for r in table} == {r.quantity for r in variant_records()}

@@ -29,7 +29,7 @@ def few(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def work(people: int = 8, **changes: object) -> Job:
-    made = Job(tuple(ICONS)[:3], RIG, 18.0, people, 0, 48, None, "max")
+    made = Job(tuple(ICONS)[:3], RIG, 18.0, people, 0, 48, None, "episodes")
     return replace(made, **changes)  # type: ignore[arg-type]
 
 
@@ -116,7 +116,7 @@ def test_batchs_of_other_work_have_another_place() -> None:
     others = [
         work(9),
         work(seed=1),
-        work(norm="rms"),
+        work(norm="naming"),
         work(tracking="ideal"),
         work(trials=60),
         work(end_s=19.0),

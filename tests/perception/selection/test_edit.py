@@ -153,12 +153,12 @@ def test_icons_too_weak_to_feel_are_made_strong_enough(rig: Rig) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_promised_is_what_a_ranking_finds_by_any_norm(six: list[Icon], rig: Rig) -> None:
+def test_what_is_promised_is_what_a_ranking_finds(six: list[Icon], rig: Rig) -> None:
     whole = load_library("six-icons")
-    found = cheapest_edit(six, rig, "warming-step", "linear-warming", people=12, norm="integral", wanted=3.5)
+    found = cheapest_edit(six, rig, "warming-step", "linear-warming", people=12, wanted=3.5)
     assert isinstance(found, Edit)
     edited = replace(whole, entries=tuple(found.edited if icon.name == found.icon else icon for icon in whole))
-    pairs = rank(edited, rig, people=12, parameters=0, norm="integral").pairs
+    pairs = rank(edited, rig, people=12, parameters=0).pairs
     (pair,) = (p for p in pairs if {p.a, p.b} == {"warming-step", "linear-warming"})
     assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-6)
 

@@ -11,11 +11,12 @@ from thermicon.perception.sensation.parameters import (
 
 
 def test_what_is_uncertain_is_what_the_file_says() -> None:
-    names = [p.name for p in observer_parameters("max")]
+    names = [p.name for p in observer_parameters("naming")]
     assert len(names) == len(set(names))
-    assert {"slope of sensation", "memory noise (max)", "onset uncertainty", "reference area"} <= set(names)
-    assert "memory noise (rms)" not in names
-    assert "memory noise (rms)" in [p.name for p in observer_parameters("rms")]
+    assert {"slope of sensation", "memory noise (episodes)", "cost of a missing episode", "reference area"} <= set(
+        names
+    )
+    assert "cost of a missing episode" not in [p.name for p in observer_parameters("episodes")]
     # What differs between people is their spread; a neutral zone is a range, not an uncertain number.
     for left in (
         "path length",
@@ -30,7 +31,7 @@ def test_what_is_uncertain_is_what_the_file_says() -> None:
 
 
 def test_other_sites_bring_other_parameters() -> None:
-    here, there = ({p.name for p in observer_parameters("max", site)} for site in ("thenar", "forearm"))
+    here, there = ({p.name for p in observer_parameters("episodes", site)} for site in ("thenar", "forearm"))
     assert here < there
     assert there - here == {"threshold on the forearm (cold)", "threshold on the forearm (warm)"}
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, Percept, perceive
-from thermicon.perception.sensation.percept import uniform_clock
+from thermicon.perception.sensation.percept import on_one_clock, uniform_clock
 
 
 def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:
@@ -120,3 +120,15 @@ def test_clock_and_shape_messages() -> None:
         Percept(np.zeros(3), np.full(3, np.nan), 0.01, None, None, 0.0)
     with pytest.raises(ValueError, match=r"dt_s = 0 s must be above 0"):
         Percept(np.zeros(3), np.zeros(3), 0.0, None, None, 0.0)
+
+
+def test_a_shorter_percept_is_held_at_its_end() -> None:
+    def percept(cold: float, samples: int, dt_s: float = 0.01) -> Percept:
+        psi = np.full(samples, cold)
+        return Percept(psi, np.zeros_like(psi), dt_s, None, None, 0.0)
+
+    cold, warm, dt = on_one_clock([percept(7.0, 2000), percept(6.0, 500)])
+    assert (cold.shape, warm.shape, dt) == ((2, 2000), (2, 2000), 0.01)
+    assert np.array_equal(cold[1], np.full(2000, 6.0))
+    with pytest.raises(ValueError, match=r"on clocks of 0.01 s and 0.02 s: simulate all at one rate"):
+        on_one_clock([percept(7.0, 20), percept(0.0, 9, 0.02)])
