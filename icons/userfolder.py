@@ -37,12 +37,11 @@ class NotPrivate(OSError):
     """A folder cannot be created, or others could write into it; the text says why and what to do."""
 
 
-def private_folder(path: Path, *, writable: bool = True) -> Path:
+def private_folder(path: Path) -> Path:
     """Return a folder, created if missing, into which only this user (and the system's administrator) can write.
 
     Its owner and mode and those of all folders above are checked, as ssh does with its keys. On Windows, where access
-    lists keep the user's own folders private, it is only created. A folder that is only read need not be `writable`.
-    Raises NotPrivate.
+    lists keep the user's own folders private, it is only created. Raises NotPrivate.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -62,7 +61,7 @@ def private_folder(path: Path, *, writable: bool = True) -> Path:
             if fault := _fault(folder, folder == real):
                 cure = "set THERMICON_CACHE to a folder that only you can write to (chmod go-w)"
                 raise NotPrivate(f"{folder} {fault}; {cure}")
-    if writable and not os.access(path, os.W_OK | os.X_OK):
+    if not os.access(path, os.W_OK | os.X_OK):
         raise NotPrivate(f"{path} is not writable")
     return path
 

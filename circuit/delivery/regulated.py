@@ -70,7 +70,7 @@ def traces_of_setpoints(
     def traced(display_C: Array) -> Trace:
         return trace_of_display(
             rig, step, display_C, rows, icon=icon.name, control=icon.context.control, target_C=target, outcome=None
-        )[0]
+        )
 
     return traced(ideal), traced(display), traced(prompt)
 

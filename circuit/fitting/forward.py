@@ -153,7 +153,7 @@ def _on_thermode(rig: Rig, run: Run) -> Prediction:
         limits = thermode.lowest_C, thermode.highest_C
         level = shown(np.clip(level, *limits), step, thermode.lag_s, thermode.slew_K_per_s)
     nothing = np.full(len(rows), np.nan)
-    trace, _ = trace_of_display(
+    trace = trace_of_display(
         rig, step, level, rows, icon=None, control="drive", target_C=nothing, outcome=None,
     )  # fmt: skip
     return Prediction(trace, None, float("nan"), None)

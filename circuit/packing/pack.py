@@ -111,18 +111,6 @@ def pack(
     return {**files, **shared}
 
 
-def known_names(names: Sequence[str], form: Format) -> tuple[str, ...]:
-    """Names of the files of an export that are known before anything is simulated, from the names of its icons.
-
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> known_names(["dip"], load_format("c-array"))
-    ('dip.json', 'dip.h', 'thermicon_player.h')
-    """
-    stems = [form.stem(name) for name in names]
-    drives = [f"{stem}{form.suffix}" for stem in stems] if form.suffix_by is None else []
-    return (*(sidecar_name(name, form) for name in names), *drives, *form.set_files)
-
-
 def _played(cue: Prepared, file: str, form: Format) -> Played:
     """A drive with its verdict, for the player of a set."""
     known = cue.verdict.to_dict()

@@ -15,14 +15,14 @@ import numpy as np
 
 from thermicon.icons import Icon
 
-from ..arrays import Array, Index
+from ..arrays import Array
 from ..rig.parts import Thermode
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .inverse import baseline_C, steps_at, target_at
 from .network import skin_network_of
 from .prescribed import FELT, SkinModes, modes_of, modes_on, shown
-from .probes import joined, readings_of, sensed
+from .probes import readings_of, sensed
 from .trace import Outcome, Trace, judge
 
 FINEST_S = 0.01
@@ -117,35 +117,32 @@ def judge_display(
     return judge(target[1:], reached[1:], step_s, met, steps_at(icon, base))
 
 
-def play_display(
-    icon: Icon, rig: Rig, rows: Array, rate_Hz: float, readings: tuple[Index, Array] | None = None
-) -> tuple[Trace, Array]:
-    """Play a cue on a thermode: its trace at rows, and further readings (k, rows) of the skin."""
+def play_display(icon: Icon, rig: Rig, rows: Array, rate_Hz: float) -> Trace:
+    """Play a cue on a thermode: its trace at rows."""
     plan = design_display(icon, rig, float(rows[-1]), 1.0 / max(rate_Hz, 1.0 / FINEST_S))
     target = target_at(icon, baseline_C(icon, rig), rows)
     return trace_of_display(
         rig, plan.step_s, plan.display_C, rows, icon=icon.name, control=icon.context.control, target_C=target,
-        outcome=plan.outcome, readings=readings,
+        outcome=plan.outcome,
     )  # fmt: skip
 
 
 def trace_of_display(
     rig: Rig, step_s: float, display_C: Array, rows: Array, *, icon: str | None, control: str, target_C: Array,
-    outcome: Outcome | None, readings: tuple[Index, Array] | None = None,
-) -> tuple[Trace, Array]:  # fmt: skip
-    """Return the trace at rows of a display (steps,), held before at its first level, and further readings (k, rows).
+    outcome: Outcome | None,
+) -> Trace:  # fmt: skip
+    """Return the trace at rows of a display (steps,), held before at its first level.
 
     There is no current, so that current, voltage and hot plate are NaN: empty in files, null in JSON.
     """
     own_probes = readings_of(rig)
-    modes = modes_of(rig) if own_probes is None and readings is None else _modes_with(rig, joined(own_probes, readings))
+    modes = modes_of(rig) if own_probes is None else modes_on(skin_network_of(rig), readings=own_probes)
     values, _ = modes.run(display_C, step_s, modes.steady(float(display_C[0])))
     times: Array = np.arange(len(display_C), dtype=np.float64) * step_s
-    listed = len(FELT) + (0 if own_probes is None else len(own_probes[0]))
-    probes = sensed(rig, times, values[len(FELT) : listed], 1)
+    probes = sensed(rig, times, values[len(FELT) :], 1)
     felt = dict(zip(FELT, (_at(rows, times, row) for row in values), strict=False))
     nothing = np.full(len(rows), np.nan)
-    trace = Trace(
+    return Trace(
         icon=icon,
         rig_name=rig.name,
         site=rig.site,
@@ -164,8 +161,6 @@ def trace_of_display(
         limits=rig.limits,
         **felt,
     )
-    others = np.array([_at(rows, times, row) for row in values[listed:]]).reshape(-1, len(rows))
-    return trace, others
 
 
 def displays_on(
@@ -196,10 +191,6 @@ def displays_on(
         else:
             values[felt, r] = [[np.interp(rows, times, row) for row in lane] for lane in read]
     return values
-
-
-def _modes_with(rig: Rig, readings: tuple[Index, Array] | None) -> SkinModes:
-    return modes_on(skin_network_of(rig), readings=readings)
 
 
 def _at(rows: Array, times: Array, values: Array) -> Array:

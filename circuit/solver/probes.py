@@ -15,7 +15,7 @@ from ..rig.parts import Probe
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .insulated import insulated_C
-from .network import COLD, SKIN, Weights, places_of, stacked, temperature_weights
+from .network import COLD, places_of, stacked, temperature_weights
 
 SLOWEST_ROWS_S = 0.01
 """A probe with memory (a lag, or skin of its own) is stepped at least this finely, whatever the rows."""
@@ -58,16 +58,6 @@ def divided(rows_s: Array, parts: int) -> Array:
     return np.append(inside.ravel(), rows_s[-1])
 
 
-def lump_rows(rig: Rig) -> list[Weights]:
-    """Readings of every skin lump, face first."""
-    count = len(rig.column.depth_m)
-    return [
-        (start, (1.0, 0.0, 0.0) if start == SKIN + i else (0.0, 1.0, 0.0))
-        for i in range(count)
-        for start in [min(SKIN + i, count)]
-    ]
-
-
 def readings_of(rig: Rig) -> tuple[Index, Array] | None:
     """Return the readings that a run must record for a rig's probes, one each; None where it has none."""
     if not rig.probes:
@@ -84,17 +74,10 @@ def readings_of(rig: Rig) -> tuple[Index, Array] | None:
     return stacked(rows)
 
 
-def joined(first: tuple[Index, Array] | None, second: tuple[Index, Array] | None) -> tuple[Index, Array] | None:
-    """Return both sets of readings as one, or None."""
-    if first is None or second is None:
-        return first or second
-    return np.concatenate([first[0], second[0]]), np.concatenate([first[1], second[1]])
-
-
 def sensed(rig: Rig, time_s: Array, recorded: Array, parts: int) -> tuple[tuple[str, Array], ...]:
     """Return (name, °C) of every probe at every `parts`-th time, from the readings (k, times) of `readings_of`."""
     readings = []
-    for probe, read in zip(rig.probes, recorded, strict=False):
+    for probe, read in zip(rig.probes, recorded, strict=True):
         value = np.ascontiguousarray(read)
         if probe.place == "insulated skin":
             value = insulated_C(rig, probe, time_s, value)

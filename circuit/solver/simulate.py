@@ -9,7 +9,7 @@ import numpy as np
 from thermicon.icons import Icon
 from thermicon.icons.number_text import significant
 
-from ..arrays import Array, Index
+from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K, Peltier
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
@@ -19,7 +19,7 @@ from .drive import Drive
 from .inverse import baseline_C, design, design_many, target_at
 from .landing import start_under
 from .network import RECORDED
-from .probes import between, divided, joined, readings_of, sensed
+from .probes import between, divided, readings_of, sensed
 from .steady import check_sink, steady_state
 from .trace import Outcome, Trace
 
@@ -79,7 +79,16 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
     Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
 
     """
-    return _play(icon, rig, rate_Hz, tail_s, None)[0]
+    if not (0 <= tail_s < np.inf):
+        raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
+    if tail_s * rate_Hz > MOST_ROWS:
+        raise RigError(f"a tail of {tail_s:g} s at {rate_Hz:g} Hz is over the limit of {MOST_ROWS} rows; shorten it")
+    end = duration_s(icon, rig) + tail_s
+    rows = rows_until(end, rate_Hz)
+    if rig.thermode is not None:
+        return play_display(icon, rig, rows, rate_Hz)
+    plan, target = design(icon, rig, end), _target(icon, rig, rows)
+    return _run(rig, plan.drive, plan.start_C, rows, icon.name, target, icon.context.control, plan.outcome)
 
 
 def duration_s(icon: Icon, rig: Rig) -> float:
@@ -192,37 +201,6 @@ def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C:
     >>> simulate_current(Drive([0, 1, 4], [0.08, 0.5, 0.5]), Rig.load("thenar"))
     Trace('drive' on thenar, 401 rows, 4 s, skin ... °C, 0.08 … 0.50 A)
     """
-    return _replay(drive, rig, rate_Hz, None, start_C)[0]
-
-
-def watch(
-    cue: Icon | Drive, rig: Rig, readings: tuple[Index, Array], *, rate_Hz: float = 100.0, tail_s: float = 0.0
-) -> tuple[Trace, Array]:
-    """Simulate a cue or a drive; returns its trace and further `readings` (starts, weights) of the state (k, rows)."""
-    if isinstance(cue, Icon):
-        return _play(cue, rig, rate_Hz, tail_s, readings)
-    return _replay(cue, rig, rate_Hz, readings)
-
-
-def _play(
-    icon: Icon, rig: Rig, rate_Hz: float, tail_s: float, readings: tuple[Index, Array] | None
-) -> tuple[Trace, Array]:
-    if not (0 <= tail_s < np.inf):
-        raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
-    if tail_s * rate_Hz > MOST_ROWS:
-        raise RigError(f"a tail of {tail_s:g} s at {rate_Hz:g} Hz is over the limit of {MOST_ROWS} rows; shorten it")
-    end = duration_s(icon, rig) + tail_s
-    rows = rows_until(end, rate_Hz)
-    if rig.thermode is not None:
-        return play_display(icon, rig, rows, rate_Hz, readings)
-    plan = design(icon, rig, end)
-    return _run(rig, plan.drive, plan.start_C, rows, icon.name, _target(icon, rig, rows), icon.context.control,
-                plan.outcome, readings)  # fmt: skip
-
-
-def _replay(
-    drive: Drive, rig: Rig, rate_Hz: float, readings: tuple[Index, Array] | None, start_C: Array | None = None
-) -> tuple[Trace, Array]:
     first = float(drive.current_A[0])
     try:
         state = start_under(rig, first) if start_C is None else start_C
@@ -230,23 +208,20 @@ def _replay(
         raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
     check_sink(rig, state)
     rows = rows_until(float(drive.time_s[-1]), rate_Hz)
-    return _run(rig, drive, state, rows, None, np.full(len(rows), np.nan), "drive", None, readings)
+    return _run(rig, drive, state, rows, None, np.full(len(rows), np.nan), "drive", None)
 
 
 def _run(
     rig: Rig, drive: Drive, state: Array, rows: Array, icon: str | None, target: Array, control: str,
-    outcome: Outcome | None, readings: tuple[Index, Array] | None,
-) -> tuple[Trace, Array]:  # fmt: skip
+    outcome: Outcome | None,
+) -> Trace:  # fmt: skip
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     parts = between(rows, rig)
     fine = divided(rows, parts)
     intervals = cut(fine, drive.time_s, drive.current_A[np.newaxis], drive.held)
-    own_probes = readings_of(rig)
-    recorded = run_forward(bank, lane, lane, intervals, bank.states([state]), extra=joined(own_probes, readings))[:, 0]
+    recorded = run_forward(bank, lane, lane, intervals, bank.states([state]), extra=readings_of(rig))[:, 0]
     probes, others = recorded[: len(RECORDED), ::parts], recorded[len(RECORDED) :]
-    listed = 0 if own_probes is None else len(own_probes[0])
-    trace = _trace(rig, drive, rows, icon, target, control, outcome, probes, sensed(rig, fine, others[:listed], parts))
-    return trace, others[listed:, ::parts]
+    return _trace(rig, drive, rows, icon, target, control, outcome, probes, sensed(rig, fine, others, parts))
 
 
 def _trace(

@@ -1,4 +1,4 @@
-"""``thermicon export --verify DIR``: whether drives, sidecars, rig and program belong together."""
+"""``thermicon export --verify DIR``: whether the files of an export are as they were exported."""
 
 from __future__ import annotations
 
@@ -8,16 +8,13 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from thermicon.icons.number_text import number, span
-
 from ..text.messages import BAD_INPUT, note
 from ..text.tables import show, table
 from .export_folder import before_of
 from .outputs import OutputError
 
 if TYPE_CHECKING:
-    from thermicon.circuit.packing.readback import Figures
-    from thermicon.circuit.packing.verify import Pair, Verification
+    from thermicon.circuit.packing.verify import Verification
 
 LARGEST = 2**30
 """Bytes; a larger file is no drive of any format's device, and is not read."""
@@ -29,7 +26,7 @@ def verify_folder(folder: Path) -> None:
 
     files, others = _read(folder)
     found = verify(files)
-    if found.pairs:
+    if found.claims:
         _show(found)
     for name, what in others:
         note(f"note: {_clean(name)} is a {what} and was not checked")
@@ -44,8 +41,8 @@ def verify_folder(folder: Path) -> None:
         raise typer.Exit(BAD_INPUT)
     drives = (
         "1 drive and its sidecar belong"
-        if len(found.pairs) == 1
-        else f"{len(found.pairs)} drives and their sidecars belong"
+        if len(found.claims) == 1
+        else f"{len(found.claims)} drives and their sidecars belong"
     )
     show(f"{folder}: {drives} together")
 
@@ -71,20 +68,10 @@ def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
 
 
 def _show(found: Verification) -> None:
-    rows = table("drive", "sidecar", "holds", "belongs", names=("drive", "sidecar"))
-    for pair in found.pairs:
-        bad = found.wrong(*pair.files)
-        rows.add_row(_clean(pair.drive), _clean(pair.sidecar), _held(pair), "NO" if bad else "yes")
+    rows = table("drive", "sidecar", "belongs", names=("drive", "sidecar"))
+    for sidecar, claims in found.claims.items():
+        rows.add_row(_clean(claims.drive), _clean(sidecar), "yes" if found.belongs(sidecar) else "NO")
     show(rows)
-
-
-def _held(pair: Pair) -> str:
-    held: Figures | None = pair.figures
-    if held is None:
-        return "not read back, digest only"
-    count = f"{held.count} values, " if held.count is not None else ""
-    lasts = f"{number(held.duration_s, 2)} s, " if held.duration_s is not None else ""
-    return f"{count}{lasts}{span(held.least, held.greatest, pair.unit, 3)}"
 
 
 def _clean(text: str) -> str:

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from thermicon.circuit.arrays import Array
+from thermicon.circuit.rig.parts import Probe
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.solver.drive import Drive
-from thermicon.circuit.solver.network import places_of, stacked, temperature_weights
-from thermicon.circuit.solver.probes import lump_rows
-from thermicon.circuit.solver.simulate import watch
+from thermicon.circuit.solver.simulate import simulate, simulate_current
 from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
 
@@ -31,11 +30,14 @@ def probe_depths(
 ) -> Depths:
     """Simulate a cue or a drive and record the temperature at depths in m; linear in resistance between lumps."""
     depths = np.array(depths_m, dtype=np.float64)
-    place, contact = places_of(rig), rig.contact.resistance_m2K_per_W
-    at = [contact + rig.skin.resistance_to_m2K_per_W(float(depth)) for depth in depths]
-    rows = stacked([temperature_weights(here, place) for here in at])
-    trace, values = watch(cue, rig, rows, rate_Hz=rate_Hz, tail_s=tail_s)
-    return Depths(depths, values.copy(), trace)
+    own = tuple(Probe(f"depth-{k}", "skin", float(depth), 0.0, 0.0, 0.0, 0.0) for k, depth in enumerate(depths))
+    count, probed = len(rig.probes), replace(rig, probes=(*rig.probes, *own))
+    if isinstance(cue, Icon):
+        trace = simulate(cue, probed, rate_Hz=rate_Hz, tail_s=tail_s)
+    else:
+        trace = simulate_current(cue, probed, rate_Hz=rate_Hz)
+    values = np.array([value for _, value in trace.probes[count:]])
+    return Depths(depths, values, replace(trace, probes=trace.probes[:count]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +63,10 @@ def resembles(cue: Icon | Drive, rig: Rig, name: str, *, rate_Hz: float = 100.0,
     not depend on depth. A lag of the probe is part of its reading. The insulated skin is that under a round pad, with
     heat flowing sideways; the skin under the display has depth alone.
     """
-    trace, lumps = watch(cue, rig, stacked(lump_rows(rig)), rate_Hz=rate_Hz, tail_s=tail_s)
-    deep = np.full((1, lumps.shape[1]), rig.deep_C)
-    nodes = np.concatenate([trace.skin_C[np.newaxis], lumps, deep])
     depth = np.concatenate([[0.0], rig.column.depth_m, [rig.skin.thickness_m]])
-    read = trace.probe(name)
-    best = _nearest(rig, depth, nodes - nodes[:, :1], read - read[0])
+    run = probe_depths(cue, rig, depth, rate_Hz=rate_Hz, tail_s=tail_s)
+    read = run.trace.probe(name)
+    best = _nearest(rig, depth, run.temperature_C - run.temperature_C[:, :1], read - read[0])
     return Likeness(name, best[0], best[1], float((read - read[0])[np.argmax(np.abs(read - read[0]))]))
 
 

@@ -141,7 +141,7 @@ def test_power_off_by_an_independent_solver() -> None:
 
 def run_to_the_end(rig: Rig, start: np.ndarray) -> np.ndarray:
     """State at the end of CUE, read through all states one by one."""
-    from thermicon.circuit.solver.simulate import watch
+    from tests.circuit.solver.watching import watch
 
     starts = np.minimum(np.arange(len(start)), len(start) - 3)  # three weights a reading: near the end they look back
     weights = np.zeros((len(start), 3))

@@ -9,9 +9,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from tests.circuit.solver.watching import watch
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.solver.network import COLD, HOT, SKIN, network_of
-from thermicon.circuit.solver.simulate import watch
 
 PERFUSED, PRINTED = Rig.load("thenar"), Rig.load("shani2021")
 RIGS = [PERFUSED, PRINTED]

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from tests.circuit.solver.watching import watch
 from thermicon.circuit import Rig, Trace
 from thermicon.circuit.arrays import Array
+from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import flow_weights, places_of, stacked, temperature_weights
-from thermicon.circuit.solver.simulate import watch
 from thermicon.icons import Icon, load_library
 
 STEP = load_library("six-icons")["cooling-step"]
@@ -31,7 +32,8 @@ def probe_depths(cue: Icon, rig: Rig, depths_m: list[float], rate_Hz: float = 10
     rows += [
         flow_weights(here if depth > 0 else 0.5 * contact, place) for here, depth in zip(at, depths_m, strict=True)
     ]
-    trace, values = watch(cue, rig, stacked(rows), rate_Hz=rate_Hz)
+    plan = design(cue, rig, 8.0)
+    trace, values = watch(plan.drive, rig, stacked(rows), rate_Hz=rate_Hz, start_C=plan.start_C)
     return Depths(values[: len(at)], values[len(at) :], trace)
 
 

@@ -81,8 +81,8 @@ def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) 
     (copy / "run_study.py").unlink()
     said = cli("export", "--verify", copy)
     assert said.exit_code == 1
-    assert "sub-A_task-quick_conditions.csv: has changed since the study was made" in said.stderr
-    assert "run_study.py: is missing; study.json names it" in said.stderr
+    assert "sub-A_task-quick_conditions.csv: is not the file that was exported with study.json" in said.stderr
+    assert "run_study.py: is missing; it was exported with study.json" in said.stderr
 
 
 @pytest.mark.slow
