@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from thermicon.perception.validation.validate import ValidationReport
 
 DPI = 110
-HEADS = ("temp.", "flow", "R&dD")
+HEADS = ("temp.", "flow")
 PAGE, TEXT, DATA, FIGURES = "validation.html", "validation.md", "validation.json", "figures"
 
 
@@ -97,7 +97,7 @@ def validate_command(
 
 def show_report(report: ValidationReport) -> None:
     """Print every number, published and predicted, and how many agree."""
-    from thermicon.perception.observer.variants import VARIANTS
+    from thermicon.perception.observer.variants import VARIABLES
 
     from ..pages.conditioning_tables import show_conditioning
     from ..pages.validation_page import NAMES, number_text, unit_text
@@ -112,11 +112,11 @@ def show_report(report: ValidationReport) -> None:
             unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
             made.add_row(f"{line.row.label}{',' if unit else ''}{unit}", line.published.text, *cells)
         show(f"{section.target.number} {section.target.title}", made, "")
-    held = [report.counts(k) for k in range(len(VARIANTS))]
+    held = [report.counts(k) for k in range(len(VARIABLES))]
     counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(NAMES, held, strict=True))
     show(
         f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
-        "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. All are "
+        "temp.: receptors respond to temperature; flow: to heat flow. All are "
         "predictions, not measurements; rows marked fitted are among the experiments above. -o DIR "
         "writes sources, intervals, sizes of the misses, suspected mechanisms and figures.",
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from thermicon.perception.inference.onset_stages import OnsetStages
 from thermicon.perception.inference.results import UNMOVED_SD
 from thermicon.perception.inference.table_text import UNITS, number, signed, span
-from thermicon.perception.observer.variants import VARIANTS
+from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.validation.comparisons import experiment_title
 from thermicon.perception.validation.conditioning import (
     EDGE,
@@ -17,11 +17,10 @@ from thermicon.perception.validation.conditioning import (
     InferredConstant,
 )
 from thermicon.perception.validation.magnitudes import CHANGES_K
-from thermicon.perception.validation.validate import variant_name
 
 from .blocks import Bullets, Cell, Grid, Heading, MarkdownBlock, Text, grid
 
-NAMES = tuple(variant_name(*variant) for variant in VARIANTS)
+NAMES = VARIABLES
 TITLE = "Experiments the constants were inferred from"
 ROW_UNITS = {"1": "", "0-100": "of 100"}
 
@@ -116,8 +115,6 @@ def ablated_name(each: AblatedMechanism) -> str:
     run = each.run
     if run.without:
         return f"without {run.without}"
-    if run.model == "ring-de-dear":
-        return "Ring & de Dear"
     return run.variable if run.difference else f"{run.variable} (the whole observer)"
 
 
@@ -153,7 +150,7 @@ def _row(each: ConditionedRow) -> tuple[Cell, ...]:
     return (
         Cell(f"{row.label.removesuffix(', both')}{f' ({unit})' if unit else ''}"),
         Cell(published),
-        *(Cell(number(value)) for value in (row.fitted, row.heat_flow, row.ring_de_dear)),
+        *(Cell(number(value)) for value in (row.fitted, row.heat_flow)),
         Cell(f"{number(row.left_out)} [{span(row.left_out_low, row.left_out_high)}]", kind),
         Cell(signed(row.score, 1)),
     )

@@ -27,11 +27,11 @@ from .conditioning_page import (
 if TYPE_CHECKING:
     from rich.table import Table
 
-FITTED = " temp.  flow  R&dD"
+FITTED = " temp.  flow"
 HEADS = ("published", FITTED, "left out, 95 %")
 KEY = (
-    "± and 95 %: of what would be measured. temp., flow, R&dD: fitted by receptors that respond to temperature, to "
-    "heat flow, and by impulse counts of Ring & de Dear. ✓ the published number is inside, ✗ it is not."
+    "± and 95 %: of what would be measured. temp., flow: fitted by receptors that respond to temperature and to "
+    "heat flow. ✓ the published number is inside, ✗ it is not."
 )
 MARKS = "= not moved by the evidence, ↕ at an edge of the prior."
 IN_LABEL = ("ln", "log10", "ln per decade")
@@ -65,7 +65,7 @@ def _row(each: ConditionedRow) -> tuple[str, ...]:
     return (
         f"{label}{f', {unit}' if unit else ''}",
         f"{_short(row.published)} ±{_short(error)}",
-        "".join(f"{_short(value):>6}" for value in (row.fitted, row.heat_flow, row.ring_de_dear)),
+        "".join(f"{_short(value):>6}" for value in (row.fitted, row.heat_flow)),
         f"{_short(row.left_out)}, {_both(row.left_out_low, row.left_out_high)} {'✓' if each.covered else '✗'}",
     )
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from thermicon.perception.observer.variants import VARIANTS
+from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.validation.published_figure import CAPTION
 from thermicon.perception.validation.published_figure import NAME as LEAD
 from thermicon.perception.validation.tradeoffs import FEWEST, STRONG, TradeOff
-from thermicon.perception.validation.validate import Judged, Line, Section, ValidationReport, variant_name
+from thermicon.perception.validation.validate import Judged, Line, Section, ValidationReport
 from thermicon.perception.validation.validate_maps import FIGURES, TRADE_OFF
 from thermicon.perception.validation.verdicts import criterion_of_row, plain, value_text
 
@@ -16,7 +16,7 @@ from .blocks import Bullets, Cell, Grid, Heading, MarkdownBlock, Picture, Text
 from .conditioning_page import conditioning_blocks
 
 TITLE = "Validation: predicted and published values"
-NAMES = tuple(variant_name(*variant) for variant in VARIANTS)
+NAMES = VARIABLES
 
 
 def page(report: ValidationReport) -> list[MarkdownBlock]:
@@ -66,7 +66,7 @@ def target_rows(report: ValidationReport) -> list[tuple[Cell, ...]]:
     for section in report.sections:
         judged = [line for line in section.lines if line.row.judged]
         cells = [Cell(str(section.target.number)), Cell(section.target.title)]
-        for k in range(len(VARIANTS)):
+        for k in range(len(VARIABLES)):
             held = sum(line.judged[k].verdict.holds is True for line in judged)
             kind = "shown" if not judged else "holds" if held == len(judged) else "misses"
             cells.append(Cell(f"{held} of {len(judged)} hold" if judged else "not judged", kind))
@@ -85,8 +85,7 @@ def _head(report: ValidationReport) -> Iterator[MarkdownBlock]:
         "passes: each miss is shown with its size and its suspected mechanism."
     )
     yield Text(
-        "Three variants are compared: receptors that respond to temperature and receptors that respond to heat flow, "
-        "both with this project's adaptation, and the impulse counts of Ring & de Dear, computed from temperature. "
+        "Two variants are compared: receptors that respond to temperature and receptors that respond to heat flow. "
         f"Brackets enclose 95 % of {report.draws} observers drawn from the ranges that data and assumptions allow (not "
         "felt: at that end of the interval even the largest change was not felt). Holds and misses refer to the "
         "nominal observer."

@@ -61,7 +61,7 @@ def memory_noise(known: Table, observer: Observer) -> list[Record]:
 
 def memory_record(norm: Norm, observer: Observer | None, value: float, low: float, high: float) -> Record:
     """A record of memory noise, not calibrated yet."""
-    variant = "" if observer is None else source_of(observer.variable, observer.model)
+    variant = "" if observer is None else source_of(observer.variable)
     return Record(
         quantity=f"memory noise{variant}",
         unit="log units",

@@ -57,9 +57,8 @@ MECHANISM_SOURCES = {
 """Sources of numbers that are not inferred, by mechanism."""
 VARIANT_SOURCES = {
     "heat flow": "Shani & Lineykin 2021: that heat flow predicts sensation better",
-    "ring-de-dear": "Ring & de Dear 1991: static and dynamic discharge of receptors",
 }
-"""Sources of the other variants of the receptors."""
+"""Sources of the other variant of the receptors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,8 +189,8 @@ def _shared(each: InferredConstant) -> bool:
 
 def _explained(run: AblatedRow) -> AblatedMechanism:
     if not run.without or run.without == ALL_OFF:
-        variant = () if run.without else (run.model, run.variable)
-        return AblatedMechanism(run, "", tuple(VARIANT_SOURCES[key] for key in variant if key in VARIANT_SOURCES))
+        source = None if run.without else VARIANT_SOURCES.get(run.variable)
+        return AblatedMechanism(run, "", () if source is None else (source,))
     mechanism = find_mechanism(run.without)
     known = {each.name: each.source for each in load_constants()}
     sources = [known[name] for name in mechanism.fixed if name in known]

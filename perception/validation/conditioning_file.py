@@ -44,7 +44,7 @@ def _row(each: ConditionedRow) -> dict[str, Any]:
         "unit": row.unit,
         "log_scale": each.log,
         "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
-        "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow, "Ring & de Dear": row.ring_de_dear},
+        "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
         "left_out": {
             "value": row.left_out,
             "interval": [row.left_out_low, row.left_out_high],
@@ -77,7 +77,6 @@ def _ablated(each: AblatedMechanism) -> dict[str, Any]:
     run = each.run
     return {
         "variable": run.variable,
-        "model": run.model,
         "without": run.without or None,
         "replaced_by": each.replaced_by or None,
         "log_evidence": run.log_evidence,
@@ -106,7 +105,6 @@ def _magnitude(each: Magnitude) -> dict[str, Any]:
     return {
         "channel": each.channel,
         "variable": each.variable,
-        "model": each.model,
         "changes_K": list(CHANGES_K),
         "peak_d_prime": list(each.peaks),
         "just_noticeable_steps": each.jnds,

@@ -15,9 +15,9 @@ import numpy as np
 from thermicon.circuit.solver.draw import COOL, WARM
 
 from ..observer.channels import CHANNELS
-from ..observer.variants import VARIANTS
+from ..observer.variants import VARIABLES
 from .experiments import AREAS_CM2, RATES_K_PER_S
-from .validate import Line, ValidationReport, variant_name
+from .validate import Line, ValidationReport
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,20 +36,20 @@ def rate_figure(report: ValidationReport) -> Figure:
     panels = figure.subplots(1, 2, sharey=True)
     (bound,) = {line.published.high for line in _lines(report, 1, "change over the fast rates")}
     for ax, channel in zip(panels, CHANNELS, strict=True):
-        for k, (variable, model) in enumerate(VARIANTS):
+        for k, variable in enumerate(VARIABLES):
             found = [
-                report.evidence.find(variable, model, "rate curve", f"threshold at {rate:g} K/s", channel)
+                report.evidence.find(variable, "rate curve", f"threshold at {rate:g} K/s", channel)
                 for rate in RATES_K_PER_S
             ]
             values = np.array([np.nan if one.value is None else one.value for one in found])
             ax.plot(
                 RATES_K_PER_S, values, color=COLOUR[channel], ls=DASHES[k], marker=MARKS[k], ms=5,
-                mfc="white" if k else COLOUR[channel], lw=1.6, label=variant_name(variable, model), zorder=3,
+                mfc="white" if k else COLOUR[channel], lw=1.6, label=variable, zorder=3,
             )  # fmt: skip
             if k == 0 and all(one.low is not None and one.high is not None for one in found):
                 low, high = ([getattr(one, end) for one in found] for end in ("low", "high"))
                 ax.fill_between(RATES_K_PER_S, low, high, color=COLOUR[channel], alpha=0.15, lw=0)
-        flat = report.evidence.find(*VARIANTS[0], "rate curve", "threshold at 0.1 K/s", channel).value
+        flat = report.evidence.find(VARIABLES[0], "rate curve", "threshold at 0.1 K/s", channel).value
         if flat is not None and bound is not None:
             ax.plot([0.1, 0.3], [flat, flat], color=PUBLISHED, lw=5, alpha=0.35, solid_capstyle="butt")
             ax.annotate(
@@ -75,10 +75,10 @@ def method_figure(report: ValidationReport) -> Figure:
     panels = figure.subplots(1, 2, sharey=True)
     names = ("forced choice", "levels", "limits")
     for ax, channel in zip(panels, CHANNELS, strict=True):
-        for k, (variable, model) in enumerate(VARIANTS):
-            found = [report.evidence.find(variable, model, "method", f"threshold by {n}", channel) for n in names]
+        for k, variable in enumerate(VARIABLES):
+            found = [report.evidence.find(variable, "method", f"threshold by {n}", channel) for n in names]
             place = np.arange(len(names)) + 0.14 * (k - 1)
-            _points(ax, place, found, channel, k, variant_name(variable, model))
+            _points(ax, place, found, channel, k, variable)
         was = [
             line.published
             for line in _lines(report, 2, "back of the hand")
@@ -107,14 +107,14 @@ def reaction_figure(report: ValidationReport) -> Figure:
     figure = new_figure(8.0, 3.8)
     panels = figure.subplots(1, 2, sharey=True)
     for ax, channel in zip(panels, CHANNELS, strict=True):
-        for k, (variable, model) in enumerate(VARIANTS):
+        for k, variable in enumerate(VARIABLES):
             found = [
-                report.evidence.find(variable, model, "choice reaction time", f"reaction time at {area:g} cm²", channel)
+                report.evidence.find(variable, "choice reaction time", f"reaction time at {area:g} cm²", channel)
                 for area in AREAS_CM2
             ]
             values = [np.nan if one.value is None else one.value for one in found]
             ax.plot(AREAS_CM2, values, color=COLOUR[channel], ls=DASHES[k], lw=1.2)
-            _points(ax, np.array(AREAS_CM2) * (1 + 0.025 * (k - 1)), found, channel, k, variant_name(variable, model))
+            _points(ax, np.array(AREAS_CM2) * (1 + 0.025 * (k - 1)), found, channel, k, variable)
         (line,) = [one for one in _lines(report, 3, "reaction time at") if one.row.channel == channel]
         (slope,) = [one.published for one in _lines(report, 3, "exponent of area") if one.row.channel == channel]
         if line.published.value is not None and line.row.value is not None and slope.value is not None:
@@ -213,7 +213,7 @@ def _forest(ax: Axes, lines: Sequence[Line], name: Callable[[Line], str]) -> Non
             if found.value is not None:
                 face = colour if k == 0 else "white"
                 (mark,) = ax.plot([found.value], [at], MARKS[k], color=colour, mfc=face, ms=5.5, zorder=3)
-                handles.setdefault(variant_name(*VARIANTS[k]), mark)
+                handles.setdefault(VARIABLES[k], mark)
     ax.set_yticks(np.arange(len(lines)), [name(line) for line in lines], fontsize=8.5)
     ax.set_ylim(len(lines) - 0.5, -0.5)
     _tidy(ax)

@@ -11,9 +11,9 @@ from thermicon.circuit.solver.draw import COOL, DISPLAY, SKIN, WARM
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS
-from ..observer.variants import VARIANTS
+from ..observer.variants import VARIABLES
 from .tradeoffs import STRONG
-from .validate import ValidationReport, variant_name
+from .validate import ValidationReport
 from .validate_figures import (
     DASHES,
     event_figure,
@@ -51,14 +51,12 @@ def peak_figure(report: ValidationReport) -> Figure:
             ax.plot(time, scaled, color=shade, lw=1.3, ls=dashes, label=name)
         ax.axvline(time[int(np.abs(own[0].skin_K).argmax())], color=SKIN, lw=0.8)
         for k, pulse in enumerate(own):
-            delay = report.evidence.find(
-                pulse.variable, pulse.model, "felt peak", "felt peak minus the skin's", channel
-            )
+            delay = report.evidence.find(pulse.variable, "felt peak", "felt peak minus the skin's", channel)
             peak = time[int(np.abs(pulse.skin_K).argmax())] + (delay.value or 0.0)
             late = peak - time[int(pulse.felt.argmax())]
             ax.plot(
                 time + late, pulse.felt / max(float(pulse.felt.max()), 1e-9), color=colour[channel], lw=1.8,
-                ls=DASHES[k], label=f"felt, {variant_name(pulse.variable, pulse.model)}",
+                ls=DASHES[k], label=f"felt, {pulse.variable}",
             )  # fmt: skip
             if delay.value is not None:
                 ax.plot(
@@ -85,7 +83,7 @@ def six_figure(report: ValidationReport) -> Figure:
     for k, (ax, found) in enumerate(zip(figure.subplots(1, 3), report.evidence.six, strict=True)):
         _map(ax, found.pooled, found.labels, found.labels if k == 0 else (), 8.0)
         correct = 100.0 * float(np.trace(found.pooled)) / len(found.labels)
-        ax.set_title(f"{variant_name(found.variable, found.model)}: {correct:.0f} % correct", fontsize=9.5)
+        ax.set_title(f"{found.variable}: {correct:.0f} % correct", fontsize=9.5)
         ax.set_xlabel("answered", fontsize=9)
         if k == 0:
             ax.set_ylabel("presented, answers in %", fontsize=9)
@@ -119,7 +117,7 @@ def wave_figure(report: ValidationReport) -> Figure:
         for edge in (3, 6, 9, 12):
             ax.axhline(edge - 0.5, color="w", lw=1.2)
             ax.axvline(edge - 0.5, color="w", lw=1.2)
-        ax.set_title(f"{variant_name(found.variable, found.model)}: answers in %", fontsize=10)
+        ax.set_title(f"{found.variable}: answers in %", fontsize=10)
         ax.set_xlabel("answered", fontsize=9)
         if k == 0:
             ax.set_ylabel("presented", fontsize=9)
@@ -150,7 +148,7 @@ def trade_figure(report: ValidationReport) -> Figure:
         ax.set_yticks(np.arange(len(names)), said if k == 0 else codes, fontsize=7)
         ax.tick_params(length=0)
         ax.spines[:].set_visible(False)
-        ax.set_title(variant_name(*VARIANTS[k]), fontsize=10)
+        ax.set_title(VARIABLES[k], fontsize=10)
         for y, x in zip(*np.nonzero(np.abs(np.nan_to_num(table)) >= STRONG), strict=True):
             ax.plot(x, y, ".", ms=2.5, color="w" if abs(table[y, x]) > 0.75 else "k")
     figure.colorbar(drawn, ax=figure.axes, shrink=0.6, label="Spearman's correlation over plausible observers (1)")
