@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from statistics import NormalDist, median
 
+from ..inference.evidence import load_evidence
 from ..inference.onset_stages import OnsetStages
 from ..inference.posterior import Posterior
 from ..inference.priors import WITHIN_95
@@ -30,6 +31,13 @@ from .magnitudes import Magnitude, magnitudes, stages_of_six
 EDGE = 0.1
 """A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
 OFFSETS = "laboratories"
+TITLES = {
+    "thenar": "Forced choice at the thenar",
+    "wrist": "Forced choice at the wrist",
+    "amplitudes": "Amplitude differences",
+    "steps": "Steps from threshold to pain",
+}
+"""Titles of experiments that are printed in papers and have no table of open data."""
 SAME_NOISE = (
     "noise of gain and sensation is the same for everybody: sensitivity and criterion alone make widths differ less "
     "than they do"
@@ -165,6 +173,15 @@ def load_conditioning() -> Conditioning:
         stages=stages_of_six(),
         magnitudes=magnitudes(),
     )
+
+
+def experiment_title(key: str) -> str:
+    """Title of an experiment of the evidence by its key.
+
+    >>> experiment_title("wrist"), experiment_title("E3")
+    ('Forced choice at the wrist', 'Method of limits on the forearm')
+    """
+    return TITLES[key] if key in TITLES else load_evidence().experiment(key).title
 
 
 def _rows() -> tuple[ConditionedRow, ...]:

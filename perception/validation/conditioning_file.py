@@ -6,8 +6,14 @@ from typing import Any
 
 from ..inference.onset_stages import OnsetStages
 from ..inference.results import UNMOVED_SD
-from .comparisons import experiment_title
-from .conditioning import EDGE, AblatedMechanism, ConditionedRow, Conditioning, InferredConstant
+from .conditioning import (
+    EDGE,
+    AblatedMechanism,
+    ConditionedRow,
+    Conditioning,
+    InferredConstant,
+    experiment_title,
+)
 from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude
 
 

@@ -206,7 +206,7 @@ def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:
             held = tuple(bool(judge_row(row, each, line.published).holds) for each in one.predicted.draws)
             key = (row.experiment, row.quantity, row.channel, row.apply)
             label = f"{section.target.number} {short(row)}"
-            found.setdefault(key, Answers(row.target, label, one.predicted.draws, held, one.verdict.way))
+            found.setdefault(key, Answers(label, one.predicted.draws, held, one.verdict.way))
     return tuple(found.values())
 
 

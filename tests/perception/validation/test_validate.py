@@ -18,7 +18,6 @@ from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.validation.targets import load_targets, published_for
 from thermicon.perception.validation.validate import ValidationReport, answers, assemble, validate
 from thermicon.perception.validation.validate_file import report_file
-from thermicon.perception.validation.validate_maps import FIGURES, TRADE_OFF, _codes
 from thermicon.perception.validation.waves import GROUPS, LIBRARY, SHAPES, wave_name
 
 
@@ -121,28 +120,6 @@ def test_the_waves_of_a_group_differ_in_shape_alone() -> None:
     for group in GROUPS:
         lowered = [waves[wave_name(shape, *group)].corners() for shape in SHAPES]
         assert len({(c.duration_s, c.lowest, c.highest) for c in lowered}) == 1
-
-
-def test_every_figure_is_drawn(report: ValidationReport) -> None:
-    for name, caption, draw in [one for those in FIGURES.values() for one in those] + [TRADE_OFF]:
-        figure = draw(report)
-        figure.canvas.draw()
-        assert caption.endswith(".")
-        assert name == name.lower()
-        labels = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel())]
-        assert any(labels), name
-    assert sorted(FIGURES) == list(range(1, 9))
-    assert _codes(["1 a", "2 b"]) == ["1a", "2a"]
-
-
-@pytest.mark.slow
-def test_figures_without_draws() -> None:
-    bare = validate(people=2, draws=0)
-    assert bare.trade_offs == ((), ())
-    for _, _, draw in [one for those in FIGURES.values() for one in those] + [TRADE_OFF]:
-        draw(bare).canvas.draw()
-    (text,) = TRADE_OFF[2](bare).axes[0].texts
-    assert text.get_text() == "too few draws for correlations"
 
 
 def test_messages(report: ValidationReport) -> None:
