@@ -54,7 +54,7 @@ def leave_out_files(output: Path | None, keep: Path | None, seed: int) -> None:
         rows = left_out_file.leave_each_out(
             folder, posterior, seed, workers, None if bar is None else lambda done, total, _: bar(done, total)
         )
-    note("scoring the variants: temperature, heat flow, impulses")
+    note("scoring the variants: temperature, heat flow")
     variants = variant_scores.score_variants(folder, workers)
     if output is not None:
         output.mkdir(exist_ok=True)

@@ -1,33 +1,42 @@
-"""``thermicon validate``: predicted and published results side by side, as a table or as a report in a folder."""
+"""``thermicon validate``: predicted and published results side by side, as a table or as an executed notebook."""
 
 from __future__ import annotations
 
-import io
 import json
-import shutil
 import tempfile
+from contextlib import suppress
+from importlib import resources
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..files.outputs import STDOUT, OutputError, check_folder, check_output, complete_or_absent
-from ..text.messages import check_bounds, note, usage
+from ..files.outputs import STDOUT, check_folder, check_output, complete_or_absent
+from ..text.messages import check_bounds, fail, note, usage
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from thermicon.perception.validation.validate import Judged, Line, ValidationReport
 
-    from thermicon.perception.validation.validate import ValidationReport
-
-DPI = 110
-HEADS = ("temp.", "flow", "R&dD")
-PAGE, TEXT, DATA, FIGURES = "validation.html", "validation.md", "validation.json", "figures"
+HEADS = ("temp.", "flow")
+NOTEBOOK, DATA = "07_validation.ipynb", "validation.json"
+COMPUTED = "data = report_file("
+"""How the cell of the notebook begins that computes the numbers; a report has them in its file."""
+KEPT = f'import json\nfrom pathlib import Path\n\ndata = json.loads(Path("{DATA}").read_text(encoding="utf-8"))'
+QUIET = "--IPKernelApp.log_level=40"
+NEEDED = ("nbclient", "ipykernel")
 
 
 def validate_command(
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="DIR", readable=False, help="Write the whole report to this folder."),
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            readable=False,
+            help="Write the numbers and a notebook that shows them to this folder.",
+        ),
     ] = None,
     people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people.")] = 200,
     draws: Annotated[
@@ -55,9 +64,10 @@ def validate_command(
 ) -> None:
     """Validate the model: predict published results that it was not calibrated on, and show every miss with its size.
 
-    Without -o, a table is printed. With -o, validation.html, validation.md with its figures, and validation.json are
-    written, with predictions from temperature and from heat flow side by side. With --leave-out, the tables that the
-    report shows of left-out experiments are made again, coverage, log scores and weights of the variants included.
+    Without -o, a table is printed. With -o, validation.json has all numbers, with predictions from temperature and from
+    heat flow side by side, and the executed notebook 07_validation.ipynb shows them in tables and figures. With
+    --leave-out, the tables of left-out experiments are made again, coverage, log scores and weights of the variants
+    included.
     """
     check_bounds(("--people", people, 2, 2000), ("--draws", draws, 0, 1000), ("--seed", seed, 0, 2**32 - 1))
     if leave_out:
@@ -73,6 +83,8 @@ def validate_command(
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
     if output is not None:
         check_folder(output)
+        if missing := [name for name in NEEDED if find_spec(name) is None]:
+            fail(f"-o executes a notebook, which needs {missing[0]}: pip install {missing[0]}, or use --json")
     if json_out is not None:
         check_output(json_out, (), "JSON")
     from thermicon.perception.validation.validate import validate
@@ -91,16 +103,15 @@ def validate_command(
         show_report(report)
     if output is not None:
         write_report(report, output)
-        for name in (PAGE, TEXT, DATA):
+        for name in (NOTEBOOK, DATA):
             note(f"wrote {output / name}")
 
 
 def show_report(report: ValidationReport) -> None:
     """Print every number, published and predicted, and how many agree."""
-    from thermicon.perception.observer.variants import VARIANTS
+    from thermicon.perception.observer.variants import VARIABLES
 
-    from ..pages.conditioning_tables import show_conditioning
-    from ..pages.validation_page import NAMES, number_text, unit_text
+    from ..text.conditioning_text import show_conditioning
     from ..text.tables import show, table
 
     show_conditioning(report.conditioning)
@@ -112,64 +123,71 @@ def show_report(report: ValidationReport) -> None:
             unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
             made.add_row(f"{line.row.label}{',' if unit else ''}{unit}", line.published.text, *cells)
         show(f"{section.target.number} {section.target.title}", made, "")
-    held = [report.counts(k) for k in range(len(VARIANTS))]
-    counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(NAMES, held, strict=True))
+    held = [report.counts(k) for k in range(len(VARIABLES))]
+    counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(VARIABLES, held, strict=True))
     show(
         f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
-        "temp.: receptors respond to temperature; flow: to heat flow; R&dD: impulse counts of Ring & de Dear. All are "
+        "temp.: receptors respond to temperature; flow: to heat flow. All are "
         "predictions, not measurements; rows marked fitted are among the experiments above. -o DIR "
         "writes sources, intervals, sizes of the misses, suspected mechanisms and figures.",
     )
 
 
+def number_text(line: Line, one: Judged) -> str:
+    """Format a prediction."""
+    from thermicon.perception.validation.verdicts import value_text
+
+    if one.predicted.value is None:
+        return "not felt"
+    return value_text(line.row, one.predicted.value, line.published)
+
+
+def unit_text(unit: str) -> str:
+    """Format the unit that follows a number; empty for pure numbers and proportions.
+
+    >>> unit_text("s"), unit_text("proportion")
+    (' s', '')
+    """
+    return "" if unit in ("", "1", "proportion") else f" {unit}"
+
+
 def write_report(report: ValidationReport, folder: Path) -> None:
-    """Write the report completely or not at all; an older report is replaced as a whole.
+    """Write the numbers and the executed notebook, both or none.
 
     Raises `OutputError` where the folder cannot be written.
     """
-    from thermicon.perception.validation.published_figure import NAME, published_figure
-
-    from ..pages.blocks import as_html, as_markdown
-    from ..pages.validation_page import TITLE, page
-
-    blocks, pictures, lead = page(report), draw_pictures(report), _drawn(published_figure(report), "pdf")
-    texts = {
-        PAGE: as_html(blocks, TITLE, pictures),
-        TEXT: as_markdown(blocks, FIGURES),
-        DATA: json_text(report),
-    }
+    numbers = json_text(report)
+    notebook = executed_notebook(numbers)
     made = not folder.exists()
     try:
         folder.mkdir(exist_ok=True)
-        draft = Path(tempfile.mkdtemp(prefix=".validation-", suffix=".part", dir=folder))
-    except OSError as error:
-        raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
-    try:
-        (draft / FIGURES).mkdir()
-        for name, held in pictures.items():
-            (draft / FIGURES / f"{name}.png").write_bytes(held)
-        (draft / FIGURES / f"{NAME}.pdf").write_bytes(lead)
-        for name, text in texts.items():
-            (draft / name).write_text(text, encoding="utf-8")
-        _replace(draft, folder)
-    except OSError as error:
-        raise OutputError(f"cannot write into {folder}: {error.strerror or error}") from error
-    finally:
-        shutil.rmtree(draft, ignore_errors=True)
-        if made and not any(folder.iterdir()):
-            folder.rmdir()
+        with complete_or_absent(folder / DATA) as data, complete_or_absent(folder / NOTEBOOK) as shown:
+            data.write_text(numbers, encoding="utf-8")
+            shown.write_text(notebook, encoding="utf-8")
+    except BaseException:
+        if made:
+            with suppress(OSError):
+                folder.rmdir()
+        raise
 
 
-def draw_pictures(report: ValidationReport) -> dict[str, bytes]:
-    """Every figure of the report as PNG, by name."""
-    from thermicon.perception.validation.published_figure import CAPTION, NAME, published_figure
-    from thermicon.perception.validation.tradeoffs import FEWEST
-    from thermicon.perception.validation.validate_maps import FIGURES as DRAWN
-    from thermicon.perception.validation.validate_maps import TRADE_OFF
+def executed_notebook(numbers: str) -> str:
+    """The shipped notebook with its outputs, for numbers that lie beside it as `DATA`."""
+    import nbformat
+    from nbclient import NotebookClient
 
-    wanted = [(NAME, CAPTION, published_figure), *(one for those in DRAWN.values() for one in those)]
-    wanted += [TRADE_OFF] if report.draws >= FEWEST else []
-    return {name: _drawn(draw(report), "png") for name, _, draw in wanted}
+    text = (resources.files("thermicon.notebooks") / NOTEBOOK).read_text(encoding="utf-8")
+    notebook = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
+    (computing,) = [cell for cell in notebook.cells if cell.source.startswith(COMPUTED)]
+    computing.source = KEPT
+    with tempfile.TemporaryDirectory(prefix="thermicon-validation-") as work:
+        (Path(work) / DATA).write_text(numbers, encoding="utf-8")
+        place = {"metadata": {"path": work}}
+        NotebookClient(
+            notebook, kernel_name="python3", resources=place, record_timing=False, extra_arguments=[QUIET]
+        ).execute()
+    executed: str = nbformat.writes(notebook)  # type: ignore[no-untyped-call]
+    return executed + "\n"
 
 
 def json_text(report: ValidationReport) -> str:
@@ -177,20 +195,3 @@ def json_text(report: ValidationReport) -> str:
     from thermicon.perception.validation.validate_file import report_file
 
     return json.dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
-
-
-def _drawn(figure: Figure, kind: Literal["png", "pdf"]) -> bytes:
-    """A figure as a file, without a date, so that the same report gives the same bytes."""
-    held = io.BytesIO()
-    nothing = {"Software": None} if kind == "png" else {"CreationDate": None, "Producer": None, "Creator": None}
-    figure.savefig(held, format=kind, dpi=DPI, metadata=nothing)
-    return held.getvalue()
-
-
-def _replace(draft: Path, folder: Path) -> None:
-    """Move a finished draft into place; the figures folder is this command's own and is replaced as a whole."""
-    (folder / FIGURES).mkdir(exist_ok=True)
-    for path in sorted((draft / FIGURES).iterdir()):
-        path.replace(folder / FIGURES / path.name)
-    for name in (DATA, TEXT, PAGE):
-        (draft / name).replace(folder / name)

@@ -27,7 +27,7 @@ from ..text.options import Changes, DrawsFile, IconName, OneFile, RigName, Tail,
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
-VARIANT_NAMES = ("temperature", "heat-flow", "ring-de-dear")
+VARIANT_NAMES = ("temperature", "heat-flow")
 """As in `thermicon.perception.observer.draws_file`, repeated here to avoid its imports."""
 
 MOST_STEPS = 100_000
@@ -342,7 +342,7 @@ def calibrate_command(
                 bar(done, total)
 
         sampled = sample(
-            Posterior(*variant_named(variant)),
+            Posterior(variant_named(variant)),
             seed,
             keep=keep,
             workers=min(cores(), CHAINS) if workers is None else workers,

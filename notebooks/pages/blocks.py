@@ -1,4 +1,4 @@
-"""Pages as blocks of text, tables and figures, rendered as Markdown and, by Jinja2, as one self-contained HTML file.
+"""Pages as blocks of text, tables and figures, rendered by Jinja2 as one self-contained HTML file.
 
 Nothing is fetched from anywhere, there are no scripts and no dates, and equal blocks give equal bytes.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -55,7 +55,7 @@ class Bullets:
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell of a table; ``kind`` is ``holds``, ``misses``, ``shown``, ``strong`` or empty."""
+    """A cell of a table; ``kind`` is ``strong`` or empty."""
 
     text: str
     kind: str = ""
@@ -89,13 +89,12 @@ class Cards:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure: the name of its PNG file without folder and ending, or the ``data`` itself.
+    """A figure as ``data``.
 
     ``alt`` is the text for screen readers (default: the caption), ``media`` the image type, ``width`` in CSS pixels.
     """
 
     type: ClassVar[str] = "picture"
-    name: str
     caption: str
     alt: str = ""
     media: str = "png"
@@ -112,8 +111,6 @@ class Row:
 
 
 Block = Heading | Text | Code | Bullets | Grid | Facts | Cards | Picture | Row
-MarkdownBlock = Heading | Text | Bullets | Grid | Picture
-MARK = {"holds": "✓ ", "misses": "✗ "}
 
 
 def grid(columns: Sequence[str], rows: Sequence[Sequence[str | Cell]], numbers: Sequence[str] = ()) -> Grid:
@@ -155,49 +152,17 @@ def environment() -> Environment:
     )
 
 
-def as_html(blocks: Sequence[Block], title: str, pictures: Mapping[str, bytes] | None = None) -> str:
-    """Render the page as one HTML file; ``pictures`` are PNG files by name.
+def as_html(blocks: Sequence[Block], title: str) -> str:
+    """Render the page as one HTML file.
 
     >>> "<p>5 &lt; 6</p>" in as_html([Text("5 < 6")], "A page")
     True
     """
 
     def address(picture: Picture) -> str:
-        data = picture.data or (pictures or {})[picture.name]
-        return f"data:image/{picture.media};base64,{base64.b64encode(data).decode('ascii')}"
+        return f"data:image/{picture.media};base64,{base64.b64encode(picture.data).decode('ascii')}"
 
     return environment().get_template("page.html.j2").render(title=title, blocks=blocks, address=address) + "\n"
-
-
-def as_markdown(blocks: Sequence[MarkdownBlock], folder: str = "figures") -> str:
-    """Render the page as Markdown, with figures as PNG files of a folder next to it.
-
-    >>> print(as_markdown([Heading("A page", 1), Text("5 < 6 * 2")]), end="")
-    # A page
-    <BLANKLINE>
-    5 < 6 \\* 2
-    """
-    return "\n\n".join(_markdown(block, folder) for block in blocks) + "\n"
-
-
-def _markdown(block: MarkdownBlock, folder: str) -> str:
-    if isinstance(block, Heading):
-        return f"{'#' * block.level} {_escaped(block.text)}"
-    if isinstance(block, Text):
-        return _escaped(block.text)
-    if isinstance(block, Bullets):
-        return "\n".join(f"- {_escaped(point)}" for point in block.points)
-    if isinstance(block, Picture):
-        return f"![{_escaped(block.caption)}]({folder}/{block.name}.png)\n\n*{_escaped(block.caption)}*"
-    rows = [[_escaped(column) for column in block.columns], ["---"] * len(block.columns)]
-    rows += [[MARK.get(cell.kind, "") + _escaped(cell.text) for cell in row] for row in block.rows]
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
-
-
-def _escaped(text: str) -> str:
-    for letter in "\\*_|`":
-        text = text.replace(letter, f"\\{letter}")
-    return text
 
 
 def fragment(name: str, *values: object) -> str:

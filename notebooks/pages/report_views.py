@@ -64,8 +64,8 @@ def _drawn(axes: Axes, said: str, caption: str, vector: bool) -> Picture:
     figure: Any = axes.figure
     width = round(96 * figure.get_figwidth())
     if not vector:
-        return Picture("", caption, said, "png", width, png_of(figure, 120))
-    return Picture("", caption, said, "svg+xml", width, svg_of(figure))
+        return Picture(caption, said, "png", width, png_of(figure, 120))
+    return Picture(caption, said, "svg+xml", width, svg_of(figure))
 
 
 def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
@@ -86,7 +86,7 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
         said = [*(facts if result["by"] == "model" else []), "largest change " + ", ".join(peaks)]
         yield Text("; ".join(said) + ".", "lead")
         small = drawn(icon).encode("utf-8")
-        course = Picture("", "", f"prescribed course of {icon.name}", "svg+xml", 320, small)
+        course = Picture("", f"prescribed course of {icon.name}", "svg+xml", 320, small)
         yield Row((Code(cue_text(icon)), course))
         if place < MOST_OVERVIEWS:
             yield _overview(icon, rig, len(members))
@@ -108,7 +108,7 @@ def _overview(icon: Icon, rig: Rig, count: int) -> Picture:
     trace = on_one_clock(simulate(icon, rig, tail_s=FELT_TAIL_S))
     data = png_of(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
     alt = f"temperatures, heat flow, current and sensation of {icon.name}"
-    return Picture("", "", alt, "png", OVERVIEW_PIXELS, data)
+    return Picture("", alt, "png", OVERVIEW_PIXELS, data)
 
 
 def svg_of(figure: Figure) -> bytes:

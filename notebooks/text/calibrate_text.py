@@ -23,7 +23,7 @@ def show_constants(sampled: Sampled) -> None:
         numbers = (f"{each.median:.3g}", f"{each.low:.3g}", f"{each.high:.3g}")
         rows.add_row(each.name, *numbers, each.unit, f"{each.narrowed:.2f}", remark)
     show(
-        f"Posterior of {len(draws.names)} constants, {', '.join(draws.variant)}",
+        f"Posterior of {len(draws.names)} constants, {draws.variable}",
         rows,
         f"{draws.header.status}; {sampled.likelihoods} likelihoods, {100.0 * sampled.acceptance:.0f} % accepted. "
         "SD left is the SD over the prior's: near 1 the evidence did not move the constant. Offsets of laboratories "

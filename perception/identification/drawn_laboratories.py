@@ -13,7 +13,7 @@ from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
-from ..observer.variants import Model, Variable
+from ..observer.variants import Variable
 from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import latin
 
@@ -28,7 +28,7 @@ class DrawnLaboratories:
     people are.
     """
 
-    variant: tuple[Variable, Model]
+    variable: Variable
     names: tuple[str, ...]
     values: Array
     seed: int
@@ -49,7 +49,7 @@ class DrawnLaboratories:
         offsets, free_memory = held.new_laboratory(seed)[chosen], np.reshape(memory, (draws, len(free)))
         values = np.hstack([held.draws[chosen], held.memory[chosen], free_memory, offsets])
         names = (*held.names, *held.memory_names, *(p.name for p in free), *OFFSETS)
-        return cls(held.variant, names, values, seed, model.age_years)
+        return cls(held.variable, names, values, seed, model.age_years)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -60,8 +60,8 @@ class DrawnLaboratories:
 
     def with_values(self, values: Array, people: int) -> tuple[Observer, People]:
         """The observer and the people of a laboratory with these values of the constants (constants,)."""
-        named, (variable, model) = dict(zip(self.names, values.tolist(), strict=True)), self.variant
-        observer = observer_with(Observer.load(variable=variable, model=model), named)
+        named = dict(zip(self.names, values.tolist(), strict=True))
+        observer = observer_with(Observer.load(variable=self.variable), named)
         drawn = draw_people(people, self.seed, age_years=self.age_years, spreads=named)
         return observer, drawn.less_sensitive(*(-named[offset] for offset in OFFSETS))
 

@@ -47,7 +47,7 @@ def memory_noise(known: Table, observer: Observer) -> Record:
         f"{1 + fraction.central:g} times the rate; {criteria[0]:g} and {criteria[1]:g} correct are the ends; "
         f"largest over smallest condition {spread:.3f}, all {min(every):.3f} to {max(every):.3f}"
     )
-    made = memory_record(source_of(observer.variable, observer.model), _root_mean_square(ends), min(ends), max(ends))
+    made = memory_record(source_of(observer.variable), _root_mean_square(ends), min(ends), max(ends))
     return replace(made, source=f"calibrated on: {fraction.source}", conditions=conditions)
 
 

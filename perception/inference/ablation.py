@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..observer.mechanisms import ALL_OFF, MECHANISMS, Without
-from ..observer.variants import VARIANTS, Model, Variable
+from ..observer.variants import VARIABLES, Variable
 from .maximum import Maximum, maximise
 from .posterior import Posterior
 
@@ -27,9 +27,9 @@ class Ablated:
     maximum: Maximum
 
     @property
-    def variant(self) -> tuple[Variable, Model]:
-        """Sensory variable and receptor model."""
-        return self.maximum.posterior.variable, self.maximum.posterior.model
+    def variant(self) -> Variable:
+        """Sensory variable."""
+        return self.maximum.posterior.variable
 
     @property
     def squares(self) -> float:
@@ -38,39 +38,37 @@ class Ablated:
 
     def __repr__(self) -> str:
         return (
-            f"Ablated({', '.join(self.variant)}, without {self.name or 'nothing'}: "
+            f"Ablated({self.variant}, without {self.name or 'nothing'}: "
             f"log evidence {self.maximum.log_evidence:.1f}, Σ(miss/SD)² {self.squares:.1f})"
         )
 
 
-def runs(variants: Sequence[tuple[Variable, Model]] = VARIANTS) -> Iterator[tuple[Variable, Model, str, Without]]:
+def runs(variants: Sequence[Variable] = VARIABLES) -> Iterator[tuple[Variable, str, Without]]:
     """Every run of an ablation: each variant whole; the first also without each mechanism, and without any of them.
 
     >>> len(list(runs()))
-    18
+    17
     """
-    for variable, model in variants:
-        yield variable, model, "", frozenset()
-    variable, model = variants[0]
+    for variable in variants:
+        yield variable, "", frozenset()
+    variable = variants[0]
     for mechanism in MECHANISMS:
-        yield variable, model, mechanism.name, frozenset({mechanism.name})
-    yield variable, model, ALL_OFF, frozenset(mechanism.name for mechanism in MECHANISMS)
+        yield variable, mechanism.name, frozenset({mechanism.name})
+    yield variable, ALL_OFF, frozenset(mechanism.name for mechanism in MECHANISMS)
 
 
-def ablate(
-    variants: Sequence[tuple[Variable, Model]] = VARIANTS, progress: Progress | None = None
-) -> tuple[Ablated, ...]:
+def ablate(variants: Sequence[Variable] = VARIABLES, progress: Progress | None = None) -> tuple[Ablated, ...]:
     """Maximise every run, each from the maximum of its whole variant; minutes. `progress` gets (done, all, name)."""
     planned, results = list(runs(variants)), []
-    whole: dict[tuple[Variable, Model], Maximum] = {}
-    for done, (variable, model, name, without) in enumerate(planned):
+    whole: dict[Variable, Maximum] = {}
+    for done, (variable, name, without) in enumerate(planned):
         if progress is not None:
-            progress(done, len(planned), name or f"{variable}, {model}")
-        posterior = Posterior(variable, model, without)
-        start = None if not without else carried(whole[variable, model], posterior)
+            progress(done, len(planned), name or variable)
+        posterior = Posterior(variable, without)
+        start = None if not without else carried(whole[variable], posterior)
         found = maximise(posterior, start)
         if not without:
-            whole[variable, model] = found
+            whole[variable] = found
         results.append(Ablated(name, found))
     return tuple(results)
 

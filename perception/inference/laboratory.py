@@ -21,7 +21,7 @@ from ..observer.mechanisms import DEPTH_MM, Without
 from ..observer.observer import load_thresholds
 from ..observer.people import YOUNG_YEARS
 from ..observer.transducer import Transducer
-from ..observer.variants import Model, Variable
+from ..observer.variants import Variable
 from ..sensation.receptors import NO_LIMIT_C
 from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
 from .crowd import SHARES, TRIALS, Crowd, draw_crowd
@@ -66,14 +66,13 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """Constants by name, as `priors.toml` names them, for one sensory variable and receptor model.
+    """Constants by name, as `priors.toml` names them, for one sensory variable.
 
     `without` names mechanisms that are turned off.
     """
 
     values: Mapping[str, float]
     variable: Variable = "temperature"
-    model: Model = "adapting"
     without: Without = frozenset()
 
     @property
@@ -155,8 +154,6 @@ class Laboratory:
         ramp, steady = self._response(site_rig, channel, skin, depth, rows)
         baseline = skin.resting(baseline_C, steady, self.variable)
         received = course_of(ramp, baseline, corners, DT_S, rows)
-        if self.model == "ring-de-dear":
-            return _impulses(received, channel)
         neutral = _published().neutral_C
         if self.variable == "heat flow":
             flows = sorted(skin.baseline(level, depth, "heat flow") for level in neutral)
@@ -268,12 +265,3 @@ def _published() -> _Published:
 @lru_cache(maxsize=64)
 def _skin(site_rig: str, contact_m2K_per_W: float, effusivity: float) -> SkinModes:
     return skin_modes(site_rig, contact_m2K_per_W, effusivity)
-
-
-def _impulses(temperature_C: Array, channel: Channel) -> Array:
-    from ..observer.observer import Observer
-    from ..sensation.impulses import counted_impulses
-
-    observer = Observer.load(model="ring-de-dear")
-    counted: Array = counted_impulses(temperature_C[None], DT_S, channel, observer)[0]
-    return counted

@@ -69,7 +69,7 @@ def leave_each_out(whole: Maximum, progress: Progress | None = None) -> tuple[Le
     for done, experiment in enumerate(experiments):
         if progress is not None:
             progress(done, len(experiments), experiment)
-        posterior = Posterior(base.variable, base.model, base.without, frozenset({experiment}))
+        posterior = Posterior(base.variable, base.without, frozenset({experiment}))
         refitted = maximise(posterior, whole.vector)
         rows = [row for row in load_rows() if row.experiment == experiment]
         spread = prediction_sd(refitted, rows)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..observer.channels import CHANNELS
 from ..observer.mechanisms import Without, find_mechanism
-from ..observer.variants import Model, Variable
+from ..observer.variants import Variable
 from .experiments import Predictions, predict
 from .laboratory import Laboratory
 from .prior_file import load_priors
@@ -23,12 +23,11 @@ from .rows import Row, load_rows
 LABORATORIES = ("E1", "E3", "E4", "thenar", "wrist")
 """Laboratories with an offset of their own in each channel; E2 is E1's, E5 is E4's, and ratings have their own unit."""
 
-DRIVE_SCALE: dict[tuple[Variable, Model], float] = {
-    ("temperature", "adapting"): 1.0,
-    ("heat flow", "adapting"): 600.0,
-    ("temperature", "ring-de-dear"): 60.0,
+DRIVE_SCALE: dict[Variable, float] = {
+    "temperature": 1.0,
+    "heat flow": 600.0,
 }
-"""What the prior of a threshold drive is multiplied by: W/m² or impulses for each K, roughly; the prior is wide."""
+"""What the prior of a threshold drive is multiplied by: W/m² for each K, roughly; the prior is wide."""
 BoolArray = NDArray[np.bool_]
 FARTHEST = 30.0
 """A row that is missed by more standard deviations counts as this many, so that a wild step is not fatal."""
@@ -46,7 +45,6 @@ class Posterior:
     """
 
     variable: Variable = "temperature"
-    model: Model = "adapting"
     without: Without = frozenset()
     left_out: frozenset[str] = frozenset()
     observed: tuple[float, ...] = ()
@@ -74,7 +72,7 @@ class Posterior:
     @cached_property
     def priors(self) -> Priors:
         """Priors of what is inferred: the constants and an offset for each laboratory and channel."""
-        scale = math.log(DRIVE_SCALE[self.variable, self.model])
+        scale = math.log(DRIVE_SCALE[self.variable])
         shipped = tuple(_moved(prior, scale) for prior in load_priors().each)
         offsets = tuple(
             Prior.normal(f"{place} {channel}", "SD", 0.0, 1.0, "laboratories", "the spread between laboratories")
@@ -110,7 +108,7 @@ class Posterior:
 
     def predictions(self, vector: Array) -> Predictions:
         """Predictions of every row, left out or not."""
-        return predict(Laboratory(self.values(vector), self.variable, self.model, self.without))
+        return predict(Laboratory(self.values(vector), self.variable, self.without))
 
     def residuals(self, vector: Array) -> Array:
         """Misses of rows and distances from the priors' middles, in SDs: half their squares are −log posterior."""

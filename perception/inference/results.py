@@ -16,7 +16,7 @@ from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..observer.variants import Model, Variable
+from ..observer.variants import Variable
 from .evidence import DATA
 from .prior_file import load_priors
 from .rows import load_rows
@@ -34,7 +34,6 @@ class Constant:
     """
 
     variable: str
-    model: str
     name: str
     unit: str
     value: float
@@ -61,7 +60,6 @@ class PredictedRow:
     published_high: float
     fitted: float
     heat_flow: float
-    ring_de_dear: float
     left_out: float
     left_out_low: float
     left_out_high: float
@@ -74,7 +72,6 @@ class AblatedRow:
     """One run of the ablation: `difference` is its log evidence minus that of its variant with every mechanism."""
 
     variable: str
-    model: str
     without: str
     log_evidence: float
     difference: float
@@ -84,13 +81,13 @@ class AblatedRow:
 
 
 @lru_cache(maxsize=4)
-def load_constants(variable: Variable = "temperature", model: Model = "adapting") -> tuple[Constant, ...]:
+def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
     """Constants of a variant at its maximum.
 
     >>> constant("cold limit").unit
     'degC'
     """
-    return tuple(row for row in read_rows(CONSTANTS, Constant) if (row.variable, row.model) == (variable, model))
+    return tuple(row for row in read_rows(CONSTANTS, Constant) if row.variable == variable)
 
 
 @lru_cache(maxsize=1)

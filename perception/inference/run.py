@@ -10,7 +10,6 @@ from typing import Any
 
 from tqdm import tqdm
 
-from ..observer.variants import VARIANTS
 from .ablation import Ablated, ablate
 from .evidence import DATA
 from .leave_out import LeftOut, leave_each_out
@@ -49,11 +48,11 @@ def main() -> None:
 
 def constants_of(whole: Maximum) -> list[Constant]:
     """The constants of one variant."""
-    rows, variant = [], (whole.posterior.variable, whole.posterior.model)
+    rows, variant = [], whole.posterior.variable
     for prior, sd in zip(whole.posterior.priors.each, whole.sd.tolist(), strict=True):
         ends = (*whole.interval(prior.name), *prior.interval)
         value = whole.values[prior.name]
-        rows.append(Constant(*variant, prior.name, prior.unit, value, *ends, sd, prior.mechanism, prior.source))
+        rows.append(Constant(variant, prior.name, prior.unit, value, *ends, sd, prior.mechanism, prior.source))
     return rows
 
 
@@ -64,7 +63,6 @@ def predictions_of(whole: Maximum, left_out: Sequence[LeftOut], ablated: Sequenc
     for out in left_out:
         row = out.row
         ends = [row.shown(row.value + side * WITHIN_95 * row.sd) for side in (-1.0, 1.0)]
-        fitted = [row.shown(variants[variant][row.key]) for variant in VARIANTS[1:]]
         predicted = [row.shown(place) for place in (out.predicted, *out.interval)]
         table.append(
             PredictedRow(
@@ -75,8 +73,7 @@ def predictions_of(whole: Maximum, left_out: Sequence[LeftOut], ablated: Sequenc
                 published_low=ends[0],
                 published_high=ends[1],
                 fitted=row.shown(whole.predictions[row.key]),
-                heat_flow=fitted[0],
-                ring_de_dear=fitted[1],
+                heat_flow=row.shown(variants["heat flow"][row.key]),
                 left_out=predicted[0],
                 left_out_low=predicted[1],
                 left_out_high=predicted[2],
@@ -96,7 +93,7 @@ def ablation_of(ablated: Sequence[Ablated]) -> list[AblatedRow]:
         missed, evidence = run.maximum.missed(), run.maximum.log_evidence
         worst = max(missed, key=lambda key: abs(missed[key]))
         gain = evidence - whole[run.variant if run.name else ablated[0].variant]
-        table.append(AblatedRow(*run.variant, run.name, evidence, gain, run.squares, labels[worst], missed[worst]))
+        table.append(AblatedRow(run.variant, run.name, evidence, gain, run.squares, labels[worst], missed[worst]))
     return table
 
 

@@ -108,8 +108,6 @@ def ablation_table() -> str:
 def _ran(row: AblatedRow) -> str:
     if row.without:
         return f"without {row.without}"
-    if row.model == "ring-de-dear":
-        return "**impulses after Ring & de Dear**"
     return f"**{row.variable}**" + ("" if row.difference else " (the whole observer)")
 
 

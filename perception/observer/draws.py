@@ -24,7 +24,7 @@ from .draws_file import DrawsHeader, read_draws, shipped_file
 from .from_draw import observer_with
 from .memory_constants import NOISE
 from .observer import Observer, variant_records
-from .variants import Model, Variable, check_variant, source_of
+from .variants import Variable, check_variable, source_of
 
 BETWEEN_LABORATORIES = "sensitivity between laboratories"
 NEGLIGIBLE = 1e-3
@@ -66,16 +66,14 @@ class PosteriorDraws:
             raise ValueError("every constant of every draw must be a finite number")
 
     @classmethod
-    def load(
-        cls, path: Path | str | None = None, *, variable: Variable = "temperature", model: Model = "adapting"
-    ) -> PosteriorDraws:
+    def load(cls, path: Path | str | None = None, *, variable: Variable = "temperature") -> PosteriorDraws:
         """The shipped draws of a variant, or those of another file.
 
         Parameters
         ----------
         path
             A table written by ``thermicon calibrate`` or kept by ``thermicon observed``; None for the shipped one.
-        variable, model
+        variable
             The variant of the shipped table; a file has its own.
 
         Raises
@@ -89,8 +87,7 @@ class PosteriorDraws:
             For draws of a sampler that did not converge.
 
         """
-        variant = check_variant(variable, model)
-        file = shipped_file(*variant) if path is None else Path(path)
+        file = shipped_file(check_variable(variable)) if path is None else Path(path)
         draws = _read(file, file.stat().st_mtime_ns if file.exists() else 0)
         if not draws.header.converged:
             warnings.warn(f"{file.name}: {draws.header.status}: its intervals are not to be trusted", stacklevel=2)
@@ -100,9 +97,9 @@ class PosteriorDraws:
         return int(self.draws.shape[0])
 
     @property
-    def variant(self) -> tuple[Variable, Model]:
-        """Sensory variable and receptor model."""
-        return self.header.variable, self.header.model
+    def variable(self) -> Variable:
+        """What the receptors go by."""
+        return self.header.variable
 
     def values(self, name: str) -> Array:
         """One constant in every draw (n,), in its own unit; a ValueError names the nearest."""
@@ -128,9 +125,9 @@ class PosteriorDraws:
 
     def table(self, k: int) -> Table:
         """The observer's records with the constants of one draw: for `Observer.from_table`, and how people differ."""
-        values, variant = self.draw(k), source_of(*self.variant)
+        values, variant = self.draw(k), source_of(self.variable)
         records = []
-        for record in variant_records(*self.variant):
+        for record in variant_records(self.variable):
             remembered = NOISE if record.quantity == "memory noise" else record.quantity
             if remembered in self.memory_names:
                 records.append(replace(record, value=values[remembered], low=None, high=None))
@@ -152,8 +149,7 @@ class PosteriorDraws:
 
     def observer(self, k: int) -> Observer:
         """The observer of one draw."""
-        variable, model = self.variant
-        return observer_with(Observer.load(variable=variable, model=model), self.draw(k))
+        return observer_with(Observer.load(variable=self.variable), self.draw(k))
 
     def nominal(self) -> Observer:
         """The observer of the first draw, which is nearest to the medians. The shipped observer is the maximum."""
@@ -171,7 +167,7 @@ class PosteriorDraws:
 
     def __repr__(self) -> str:
         size = f"{len(self)} draws of {len(self.names)} constants"
-        return f"PosteriorDraws({size}, {', '.join(self.variant)}; {self.header.status})"
+        return f"PosteriorDraws({size}, {self.variable}; {self.header.status})"
 
 
 @lru_cache(maxsize=8)

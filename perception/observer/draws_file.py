@@ -22,7 +22,7 @@ from thermicon.icons.near_words import did_you_mean
 from ..arrays import Array
 from .memory_constants import LIMITS, MEMORY_NAMES, objection_to
 from .observer import DATA
-from .variants import Model, Variable, check_variant
+from .variants import Variable, check_variable
 
 MOST_MB, LARGEST = 200.0, 1e9
 """Size of a file, and of a number in it: far more than any constant in its unit."""
@@ -36,13 +36,14 @@ LABORATORY_LINE = "# written by thermicon observed from inputs "
 """How the draws of one laboratory begin."""
 CURE = "write it again with thermicon calibrate -o FILE"
 CONSTANTS = DATA / "constants.csv"
-VARIANT_NAMES: Mapping[str, tuple[Variable, Model]] = {
-    "temperature": ("temperature", "adapting"),
-    "heat-flow": ("heat flow", "adapting"),
-    "ring-de-dear": ("temperature", "ring-de-dear"),
+VARIANT_NAMES: Mapping[str, Variable] = {
+    "temperature": "temperature",
+    "heat-flow": "heat flow",
 }
 """Variants by the names of the command line and of files."""
 APPROXIMATE = "normal approximation"
+RECEPTOR_MODEL = "adapting"
+"""The receptor model that a file names; there is one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,6 @@ class DrawsHeader:
     priors: str
     program: str
     variable: Variable
-    model: Model
     left_out: tuple[str, ...]
     sampler: str
     seed: int
@@ -70,9 +70,10 @@ class DrawsHeader:
     offsets: tuple[str, ...]
     resampled: str = ""
     rig: str = ""
+    model: str = RECEPTOR_MODEL
 
     def __post_init__(self) -> None:
-        check_variant(self.variable, self.model)
+        check_variable(self.variable)
 
     def is_offset(self, name: str) -> bool:
         """Whether a column is the offset of one laboratory of the evidence, in SDs of the spread between them."""
@@ -109,24 +110,24 @@ OF_LABORATORY: Mapping[str, str] = {"resampled": "resampled", "rig": "rig"}
 """Further lines of one laboratory's draws."""
 
 
-def variant_named(name: str) -> tuple[Variable, Model]:
+def variant_named(name: str) -> Variable:
     """The variant by the name that the command line gives it; a ValueError lists the names.
 
     >>> variant_named("heat-flow")
-    ('heat flow', 'adapting')
+    'heat flow'
     """
     if name not in VARIANT_NAMES:
         raise ValueError(f"there is no variant {name!r}: choose one of {', '.join(VARIANT_NAMES)}")
     return VARIANT_NAMES[name]
 
 
-def shipped_file(variable: Variable, model: Model) -> Path:
+def shipped_file(variable: Variable) -> Path:
     """Where the shipped draws of a variant lie.
 
-    >>> shipped_file("heat flow", "adapting").name
+    >>> shipped_file("heat flow").name
     'posterior-heat-flow.csv'
     """
-    name = next(name for name, variant in VARIANT_NAMES.items() if variant == (variable, model))
+    name = next(name for name, variant in VARIANT_NAMES.items() if variant == variable)
     return DATA / ("posterior.csv" if name == "temperature" else f"posterior-{name}.csv")
 
 
@@ -198,7 +199,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
     if len(rows) < 2:
         raise RecordError(f"{path.name}: the table has no draws: {CURE}")
     names = tuple(rows[0])
-    expected = _inferred(header.variable, header.model)
+    expected = _inferred(header.variable)
     _check_names(path.name, expected, names)
     judged = [place for place, name in enumerate(names) if expected.get(name, True) or name in LIMITS]
     draws = _numbers(path.name, names, rows[1:], len(head) + 2, judged)
@@ -244,16 +245,17 @@ def _header(name: str, head: Sequence[str]) -> DrawsHeader:
         raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {CURE}")
     text = {field: known[label] for field, label in LABELS.items()}
     try:
-        variable, model = check_variant(text["variable"], text["model"])
+        variable = check_variable(text["variable"])
     except ValueError as error:
         raise RecordError(f"{name}: {error}") from error
+    if text["model"] != RECEPTOR_MODEL:
+        raise RecordError(f"{name}: draws of the receptor model {quoted(text['model'])}, not {RECEPTOR_MODEL}: {CURE}")
     return DrawsHeader(
         inputs,
         text["evidence"],
         text["priors"],
         text["program"],
         variable,
-        model,
         _words(text["left_out"]),
         text["sampler"],
         int(_number(text["seed"], f"{name}, seed")),
@@ -293,12 +295,12 @@ def _check_names(name: str, expected: Mapping[str, bool], names: Sequence[str]) 
             raise RecordError(f"{name}: there is no column {each!r}: {CURE}")
 
 
-def _inferred(variable: Variable, model: Model) -> dict[str, bool]:
+def _inferred(variable: Variable) -> dict[str, bool]:
     """Names of all constants that are inferred for a variant, and whether their priors allow positive numbers only."""
     with CONSTANTS.open(encoding="utf-8", newline="") as file:
         file.readline()
         rows = csv.DictReader(file)
-        ours = (row for row in rows if (row["variable"], row["model"]) == (variable, model))
+        ours = (row for row in rows if row["variable"] == variable)
         return {row["name"]: float(row["prior_low"]) > 0.0 for row in ours}
 
 

@@ -25,7 +25,7 @@ from .memory import EpisodeMemory, Ratings
 from .observer_file import check_complete, read_observer_file
 from .receptor import Receptor
 from .transducer import Transducer
-from .variants import VARIANTS, Model, Variable, check_variant, drive_unit, source_of
+from .variants import VARIABLES, Variable, check_variable, drive_unit, source_of
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
@@ -80,19 +80,13 @@ class Observer:
         SD (ln) of decision times from trial to trial.
     variable
         What the receptors go by: `temperature` or `heat flow`.
-    model
-        How they do: `adapting` or `ring-de-dear`.
     without
         Mechanisms that are turned off.
-    count_s
-        Window of counted impulses, s; for `ring-de-dear` alone.
-    static_from_C
-        Where static discharge starts, °C; for `ring-de-dear` alone.
 
     Raises
     ------
     ValueError
-        For a constant out of its range, and for a variable and a model that do not go together.
+        For a constant out of its range.
 
     Examples
     --------
@@ -124,10 +118,7 @@ class Observer:
     choice_s: float = 0.0
     decision_noise: float = 0.0
     variable: Variable = "temperature"
-    model: Model = "adapting"
     without: frozenset[str] = frozenset()
-    count_s: float = 20.0
-    static_from_C: float = 33.0
 
     def __post_init__(self) -> None:
         for name in ("a", "p"):
@@ -139,9 +130,7 @@ class Observer:
             raise ValueError(f"the neutral zone {self.neutral_low_C:g} to {self.neutral_high_C:g} °C is empty")
         if not 0.0 <= self.lapse < 1.0:
             raise ValueError(f"lapse = {self.lapse:g} must lie in 0 to 1")
-        if not self.count_s > 0.0:
-            raise ValueError(f"impulses must be counted over more than {self.count_s:g} s")
-        check_variant(self.variable, self.model)
+        check_variable(self.variable)
         if self.variable == "heat flow" and (self.cold.neutral_flux is None or self.warm.neutral_flux is None):
             raise ValueError("an observer of heat flow needs the neutral heat flow of both channels")
 
@@ -151,7 +140,6 @@ class Observer:
         path: Path | str | None = None,
         *,
         variable: Variable = "temperature",
-        model: Model = "adapting",
         without: Iterable[str] = (),
     ) -> Observer:
         """The shipped observer, or one from another parameter file, in one of its variants.
@@ -161,7 +149,7 @@ class Observer:
         path
             A parameter file, or a .csv table of posterior draws, whose draw nearest to the median it is then; None
             for the shipped parameters.
-        variable, model
+        variable
             The variant; a table of draws has its own.
         without
             Mechanisms that are turned off, by the names of `MECHANISMS`; other constants stay what they are.
@@ -174,8 +162,8 @@ class Observer:
             For a variant or a mechanism that does not exist.
 
         """
-        table = None if path is None else read_observer_file(Path(path), (variable, model))
-        whole = _shipped(variable, model) if table is None else cls.from_table(table, variable=variable, model=model)
+        table = None if path is None else read_observer_file(Path(path), variable)
+        whole = _shipped(variable) if table is None else cls.from_table(table, variable=variable)
         off = check_without(without, "observer")
         return whole.with_mechanisms_off(off) if off else whole
 
@@ -196,13 +184,13 @@ class Observer:
         return replace(self, **changes)
 
     @classmethod
-    def from_table(cls, table: Table, *, variable: Variable = "temperature", model: Model = "adapting") -> Observer:
+    def from_table(cls, table: Table, *, variable: Variable = "temperature") -> Observer:
         """Build from calibrated records; a missing one is a `RecordError` that names it.
 
         A variant's own number stands under the quantity's name with the variant's ending, where it has one.
         """
-        check_variant(variable, model)
-        variant, known = source_of(variable, model), {record.quantity for record in table}
+        check_variable(variable)
+        variant, known = source_of(variable), {record.quantity for record in table}
         check_complete(table, variable, variant)
 
         def number(quantity: str, channel: str = "", site: str = "", method: str = "") -> float:
@@ -220,8 +208,6 @@ class Observer:
                 softness_K=number("softness of the limits"),
                 forearm_factor=number("threshold on the forearm", channel),
                 neutral_flux=flux,
-                static_Hz_per_K=abs(number("static gain", channel)),
-                dynamic_Hz_s_per_K=abs(number("dynamic gain", channel)),
             )
 
         def ratings(channel: Channel) -> Ratings:
@@ -257,9 +243,6 @@ class Observer:
                 warm=ratings("warm"),
             ),
             variable=variable,
-            model=model,
-            count_s=number("window of counted impulses"),
-            static_from_C=number("start of static discharge"),
         )
 
     @property
@@ -274,8 +257,8 @@ class Observer:
 
     @property
     def drive_unit(self) -> str:
-        """Unit of receptor drive and of `threshold_drive`: K, W/m² or impulses."""
-        return drive_unit(self.variable, self.model)
+        """Unit of receptor drive and of `threshold_drive`: K or W/m²."""
+        return drive_unit(self.variable)
 
     def delays_s(self, channel: Channel, path_m: Array) -> Array:
         """The same for many paths."""
@@ -302,9 +285,7 @@ class Observer:
         return self.receptor(channel).forearm_factor if site is not None and on_forearm(site) else 1.0
 
     def __repr__(self) -> str:
-        variant = (
-            "" if (self.variable, self.model) == ("temperature", "adapting") else f"{self.variable}, {self.model}; "
-        )
+        variant = "" if self.variable == VARIABLES[0] else f"{self.variable}; "
         return (
             f"Observer({variant}a {self.a:.3g}, p {self.p:.3g}, criterion {self.criterion:.3g} d′, "
             f"memory noise {self.memory.timing:.3g} log units, "
@@ -342,14 +323,14 @@ def observer_records() -> Table:
 
 
 @lru_cache(maxsize=4)
-def variant_records(variable: Variable = "temperature", model: Model = "adapting") -> Table:
+def variant_records(variable: Variable = "temperature") -> Table:
     """The shipped records without those of other variants: all that an observer of this variant makes use of."""
-    variant = source_of(variable, model)
-    others = tuple(ending for each in VARIANTS if (ending := source_of(*each)) not in ("", variant))
+    variant = source_of(variable)
+    others = tuple(ending for each in VARIABLES if (ending := source_of(each)) not in ("", variant))
     shipped = observer_records()
     return Table(shipped.name, tuple(record for record in shipped if not record.quantity.endswith(others)))
 
 
 @lru_cache(maxsize=8)
-def _shipped(variable: Variable, model: Model) -> Observer:
-    return Observer.from_table(observer_records(), variable=variable, model=model)
+def _shipped(variable: Variable) -> Observer:
+    return Observer.from_table(observer_records(), variable=variable)

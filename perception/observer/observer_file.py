@@ -9,12 +9,11 @@ from thermicon.icons.near_words import nearest_words
 
 NEEDED = (
     "neutral zone", "slow adaptation time", "threshold drive", "conduction velocity", "area exponent",
-    "softness of the limits", "threshold on the forearm", "static gain", "dynamic gain", "integration time",
+    "softness of the limits", "threshold on the forearm", "integration time",
     "slope of sensation", "transducer exponent", "gain noise", "reference area", "criterion of speeded answers",
     "noise correlation time", "path length to the cord", "decision time", "choice time", "decision time between trials",
     "lapse rate", "memory noise", "mean rating", "rating at threshold", "rating exponent",
     "scatter of ratings", "share of the scatter of ratings", "cost of a missing episode", "bar of an episode",
-    "window of counted impulses", "start of static discharge",
 )  # fmt: skip
 """Quantities of every variant; a variant's own have its ending."""
 
@@ -29,10 +28,10 @@ CURE = (
 MOST_NAMED = 6
 
 
-def read_observer_file(path: Path, variant: tuple[str, str]) -> Table:
-    """Records of a file for a variant (variable, model); a RecordError names the file, what is wrong, and a cure."""
+def read_observer_file(path: Path, variable: str) -> Table:
+    """Records of a file for a sensory variable; a RecordError names the file, what is wrong, and a cure."""
     if path.suffix.lower() == ".csv":
-        return _nominal_draw(path, variant)
+        return _nominal_draw(path, variable)
     table = load_records(path)
     check_units(table)
     return table
@@ -50,20 +49,20 @@ def check_units(table: Table) -> None:
             )
 
 
-def _nominal_draw(path: Path, variant: tuple[str, str]) -> Table:
+def _nominal_draw(path: Path, variable: str) -> Table:
     """Records of the nominal draw of a table of posterior draws."""
     from .draws import PosteriorDraws
-    from .variants import VARIANTS
+    from .variants import VARIABLES
 
     drawn = PosteriorDraws.load(path)
-    if drawn.variant != variant:
+    if drawn.variable != variable:
         raise RecordError(
-            f"{path.name}: draws of the variant {', '.join(drawn.variant)}, not of {', '.join(variant)}, which was "
+            f"{path.name}: draws of the variant {drawn.variable}, not of {variable}, which was "
             "asked for: ask for the variant of the file"
         )
-    if drawn.variant != VARIANTS[0]:
+    if drawn.variable != VARIABLES[0]:
         raise RecordError(
-            f"{path.name}: draws of {', '.join(drawn.variant)}, which is not the default variant: "
+            f"{path.name}: draws of {drawn.variable}, which is not the default variant: "
             "use PosteriorDraws.load(path).nominal()"
         )
     return drawn.table(0)

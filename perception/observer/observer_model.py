@@ -91,7 +91,7 @@ class ObserverModel:
         if path is None:
             return cls(SHIPPED, _shipped_digest(), Observer.load(), None, variant_records(), _shipped_draws())
         file = Path(path)
-        records = read_observer_file(file, ("temperature", "adapting"))
+        records = read_observer_file(file, "temperature")
         draws = PosteriorDraws.load(file) if file.suffix.lower() == ".csv" else None
         try:
             nominal = Observer.from_table(records) if draws is None else draws.nominal()

@@ -10,10 +10,9 @@ class Receptor:
     """Constants of one channel: times s, velocity m/s, exponents and factors 1.
 
     `limit_C` is the temperature above which there is no cold, or below which there is no warmth, and `softness_K` how
-    gradually it sets in (None: no limit). `threshold_drive` is the drive that feels like a threshold, in K, W/m² or
-    impulses as the observer's variant has it. `forearm_factor` multiplies thresholds at sites of the forearm.
-    `neutral_flux` (W/m² into the skin) bounds complete adaptation where heat flow is what is felt; static and dynamic
-    gain are those of Ring & de Dear.
+    gradually it sets in (None: no limit). `threshold_drive` is the drive that feels like a threshold, in K or W/m²,
+    as the observer's variant has it. `forearm_factor` multiplies thresholds at sites of the forearm.
+    `neutral_flux` (W/m² into the skin) bounds complete adaptation where heat flow is what is felt;
     """
 
     adaptation_s: float
@@ -24,8 +23,6 @@ class Receptor:
     softness_K: float = 0.5
     forearm_factor: float = 1.0
     neutral_flux: tuple[float, float] | None = None
-    static_Hz_per_K: float = 2.0
-    dynamic_Hz_s_per_K: float = 60.0
 
     def __post_init__(self) -> None:
         for name in ("adaptation_s", "threshold_drive", "velocity_m_per_s", "softness_K", "forearm_factor"):

@@ -1,8 +1,6 @@
-"""Which sensory variable an observer goes by, and which receptor model turns it into drive.
+"""Which sensory variable an observer goes by.
 
-Two variables: temperature at receptor depth, or heat flow there (the hypothesis of Shani and
-Lineykin 2021). Two models: `adapting`, this project's, and `ring-de-dear`, impulses counted over
-a window, which exists for temperature alone.
+Two variants: temperature at receptor depth, or heat flow there (the hypothesis of Shani and Lineykin 2021).
 """
 
 from __future__ import annotations
@@ -18,48 +16,33 @@ if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
 Variable = Literal["temperature", "heat flow"]
-Model = Literal["adapting", "ring-de-dear"]
 VARIABLES: tuple[Variable, ...] = get_args(Variable)
-MODELS: tuple[Model, ...] = get_args(Model)
-VARIANTS: tuple[tuple[Variable, Model], ...] = (
-    ("temperature", "adapting"),
-    ("heat flow", "adapting"),
-    ("temperature", "ring-de-dear"),
-)
-"""Every variable and model that go together; the first is the default."""
+"""Every variant; the first is the default."""
 
 
-def check_variant(variable: str, model: str) -> tuple[Variable, Model]:
-    """The pair itself, or an error that says what there is.
+def check_variable(variable: str) -> Variable:
+    """The variable itself, or an error that says what there is.
 
-    >>> check_variant("heat flow", "adapting")
-    ('heat flow', 'adapting')
+    >>> check_variable("heat flow")
+    'heat flow'
     """
-    if variable not in VARIABLES:
-        raise ValueError(f"there is no sensory variable {variable!r}: choose one of {', '.join(VARIABLES)}")
-    if model not in MODELS:
-        raise ValueError(f"there is no receptor model {model!r}: choose one of {', '.join(MODELS)}")
-    for known in VARIANTS:
-        if (variable, model) == known:
+    for known in VARIABLES:
+        if variable == known:
             return known
-    raise ValueError(f"the {model} model has constants for temperature alone: use it without {variable!r}")
+    raise ValueError(f"there is no sensory variable {variable!r}: choose one of {', '.join(VARIABLES)}")
 
 
-def drive_unit(variable: Variable, model: Model) -> str:
-    """Unit of receptor drive: K, W/m² or impulses."""
-    if model == "ring-de-dear":
-        return "impulses"
+def drive_unit(variable: Variable) -> str:
+    """Unit of receptor drive: K or W/m²."""
     return "K" if variable == "temperature" else "W/m²"
 
 
-def source_of(variable: Variable, model: Model) -> str:
+def source_of(variable: Variable) -> str:
     """How the parameter file ends the name of a number that depends on the variant; nothing for the default.
 
-    >>> source_of("temperature", "adapting"), source_of("heat flow", "adapting")
+    >>> source_of("temperature"), source_of("heat flow")
     ('', ' from heat flow')
     """
-    if model == "ring-de-dear":
-        return " from impulses"
     return "" if variable == "temperature" else " from heat flow"
 
 

@@ -169,7 +169,7 @@ def constants_of(prior: LaboratoryPrior, row: Array) -> dict[str, float]:
 def measuring(prior: LaboratoryPrior, row: Array, setting: Setting, people: int, seed: int) -> MeasuringLaboratory:
     """A laboratory by a row of values, which measures in a setting."""
     values = {**constants_of(prior, row), "contact resistance of a thermode": setting.contact_m2K_per_W}
-    return MeasuringLaboratory(values, *prior.draws.variant, people=people, seed=seed)
+    return MeasuringLaboratory(values, prior.draws.variable, people=people, seed=seed)
 
 
 def predicted(

@@ -77,7 +77,7 @@ class LaboratoryPrior:
         own = [each for each in memory_parameters(norm) if each.name in draws.memory_names]
         free = [each for each in memory_parameters(norm, records=records) if each.name not in draws.memory_names]
         self.memory, self._of_draws = (*own, *free), len(own)
-        known = {prior.name: prior for prior in Posterior(*draws.variant).priors.each}
+        known = {prior.name: prior for prior in Posterior(draws.variable).priors.each}
         self._scales: tuple[Prior, ...] = tuple(known[name] for name in draws.names)
         places = np.array([[p.to_place(v) for p, v in zip(self._scales, row, strict=True)] for row in draws.draws])
         places = np.hstack([places, *(_scores(each, draws)[:, None] for each in own)])
@@ -89,7 +89,7 @@ class LaboratoryPrior:
         # Symmetric roots keep each coordinate near its own constant, which the surrogate of the likelihood relies on.
         self._spread = (vectors * np.sqrt(values)) @ vectors.T
         self._whitened = off @ ((vectors * turned) @ vectors.T)
-        self.base = Observer.load(variable=draws.variant[0], model=draws.variant[1])
+        self.base = Observer.load(variable=draws.variable)
 
     @classmethod
     def of(cls, observer: ObserverModel | Path | str | None, norm: Norm) -> LaboratoryPrior:

@@ -57,7 +57,7 @@ def plot_ablation(rows: Sequence[AblatedRow], ax: Axes | None = None) -> Axes:
 def _run(row: AblatedRow) -> str:
     if row.without:
         return f"without {row.without}"
-    return "Ring & de Dear" if row.model == "ring-de-dear" else row.variable
+    return row.variable
 
 
 def plot_left_out(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:

@@ -101,7 +101,7 @@ def _without(
     seed: int,
     evaluate: Evaluate,
 ) -> list[Predictive]:
-    posterior = Posterior(whole.variable, whole.model, whole.without, frozenset({experiment}))
+    posterior = Posterior(whole.variable, whole.without, frozenset({experiment}))
     weights, k_hat = smoothed_weights(0.5 * np.square(draws.misses[:, ~posterior.counted]).sum(axis=1))
     if k_hat <= K_HAT:
         return _predictives(posterior, draws, weights, k_hat, FROM_WEIGHTS)

@@ -12,6 +12,7 @@ from ..inference.rows import load_rows
 from ..inference.table_text import UNITS, markdown, number, signed, span
 from ..inference.tables import TABLES as INFERRED
 from ..observer.draws import PosteriorDraws
+from ..observer.variants import VARIABLES
 from .left_out import FROM_WEIGHTS
 from .left_out_file import LeftOutRow, load_left_out
 from .summaries import UNMOVED_SHIFT, Summary, summarise
@@ -105,7 +106,7 @@ def variants_sentence(scores: Sequence[VariantScores] | None = None) -> str:
 
     The standard error is that of a sum over experiments, whose rows share laboratory and people.
     """
-    names, logs = ("temperature", "heat flow", "impulses after Ring & de Dear"), variant_log_scores(scores)
+    names, logs = VARIABLES, variant_log_scores(scores)
     weights = variant_weights(scores).values()
     parts = [
         f"{name} {signed(mean, 2)} (weight {weight:.2f})"

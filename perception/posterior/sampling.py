@@ -159,7 +159,7 @@ def sample(
 
 def shipped_vector(posterior: Posterior) -> Array:
     """The shipped maximum of the posterior's variant, as a place to begin."""
-    known = {each.name: each.value for each in load_constants(posterior.variable, posterior.model)}
+    known = {each.name: each.value for each in load_constants(posterior.variable)}
     priors = posterior.priors
     places = [prior.to_place(known[prior.name]) for prior in priors.each]
     vector: Array = (np.array(places) - priors.middle) / priors.sd
@@ -182,7 +182,6 @@ def header_of(posterior: Posterior, sampler: str, seed: int, likelihoods: int, r
         hashlib.sha256(repr(load_priors()).encode()).hexdigest()[:16],
         f"thermicon {version('thermicon')}",
         posterior.variable,
-        posterior.model,
         tuple(sorted(posterior.left_out)),
         sampler,
         seed,
@@ -301,7 +300,7 @@ def _check_folder(keep: Path, posterior: Posterior, seed: int) -> None:
     """Refuse a folder that holds chains of another posterior or seed; a new one takes these."""
     wanted = {
         "inputs": inputs_digest(),
-        "variant": [posterior.variable, posterior.model],
+        "variant": posterior.variable,
         "left out": sorted(posterior.left_out),
         "seed": seed,
     }

@@ -41,7 +41,7 @@ class Summary:
 
 def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
     """Every constant of a posterior, in the order of the table."""
-    priors = Posterior(*draws.variant).priors
+    priors = Posterior(draws.variable).priors
     rows = []
     for prior in priors.each:
         values = draws.values(prior.name)

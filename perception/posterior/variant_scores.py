@@ -24,7 +24,7 @@ from ..inference.maximum import maximise
 from ..inference.posterior import Posterior
 from ..inference.results import inputs_digest, read_rows, to_csv
 from ..inference.rows import load_rows
-from ..observer.variants import VARIANTS, Model, Variable
+from ..observer.variants import VARIABLES, Variable
 from .sampling import shipped_vector
 from .scores import stacking_weights
 
@@ -40,7 +40,6 @@ class VariantScores:
     channel: str
     temperature: float
     heat_flow: float
-    ring_de_dear: float
 
 
 @lru_cache(maxsize=1)
@@ -56,21 +55,21 @@ def load_variant_scores() -> tuple[VariantScores, ...]:
 def variant_log_scores(rows: Sequence[VariantScores] | None = None) -> Array:
     """Log scores (variants, rows) of a table (None: the shipped one)."""
     rows = load_variant_scores() if rows is None else rows
-    return np.array([[getattr(row, name) for row in rows] for name in ("temperature", "heat_flow", "ring_de_dear")])
+    return np.array([[getattr(row, name) for row in rows] for name in ("temperature", "heat_flow")])
 
 
-def variant_weights(rows: Sequence[VariantScores] | None = None) -> dict[tuple[Variable, Model], float]:
+def variant_weights(rows: Sequence[VariantScores] | None = None) -> dict[Variable, float]:
     """Weights of the variants that predict the left-out rows best as a mixture.
 
     >>> round(sum(variant_weights().values()), 6)
     1.0
     """
-    return dict(zip(VARIANTS, stacking_weights(variant_log_scores(rows)).tolist(), strict=True))
+    return dict(zip(VARIABLES, stacking_weights(variant_log_scores(rows)).tolist(), strict=True))
 
 
-def log_scores_of(variant: tuple[Variable, Model]) -> list[float]:
+def log_scores_of(variant: Variable) -> list[float]:
     """Log scores of all rows by one variant, each by a fit without its experiment."""
-    posterior = Posterior(*variant)
+    posterior = Posterior(variant)
     with quiet_blas():
         whole = maximise(posterior, shipped_vector(posterior))
         return [out.log_score for out in leave_each_out(whole)]
@@ -78,11 +77,11 @@ def log_scores_of(variant: tuple[Variable, Model]) -> list[float]:
 
 def score_variants(keep: Path, workers: int = 1) -> tuple[VariantScores, ...]:
     """Log scores of every row by every variant; those of a variant that is done are read from the folder."""
-    todo = [variant for variant in VARIANTS if not _part(keep, variant).exists()]
+    todo = [variant for variant in VARIABLES if not _part(keep, variant).exists()]
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         for variant, scores in zip(todo, pool.map(log_scores_of, todo), strict=True):
             _part(keep, variant).write_text(json.dumps(scores), encoding="utf-8")
-    each = [json.loads(_part(keep, variant).read_text(encoding="utf-8")) for variant in VARIANTS]
+    each = [json.loads(_part(keep, variant).read_text(encoding="utf-8")) for variant in VARIABLES]
     return tuple(VariantScores(*row.key, *(scores[k] for scores in each)) for k, row in enumerate(load_rows()))
 
 
@@ -92,5 +91,5 @@ def write(rows: Sequence[VariantScores], path: Path) -> None:
     path.write_text(head + to_csv(rows), encoding="utf-8")
 
 
-def _part(keep: Path, variant: tuple[Variable, Model]) -> Path:
-    return keep / f"scores-{'-'.join(variant).replace(' ', '-')}.json"
+def _part(keep: Path, variant: Variable) -> Path:
+    return keep / f"scores-{variant.replace(' ', '-')}.json"

@@ -21,9 +21,9 @@ def task_constant(
     >>> round(task_constant("yes/no", "criterion of yes and no", Observer.load()), 1)
     5.1
     """
-    table = variant_records(observer.variable, observer.model) if records is None else records
+    table = variant_records(observer.variable) if records is None else records
     known = {record.quantity for record in table}
-    own = f"{quantity}{source_of(observer.variable, observer.model)}"
+    own = f"{quantity}{source_of(observer.variable)}"
     try:
         return table.one(own if own in known else quantity, channel=channel).central
     except RecordError as missing:

@@ -4,8 +4,7 @@ There is no cold above the cold channel's limit and no warmth below the warm cha
 warm, not cold. Adaptation is a level that follows the input clipped to the neutral zone: inside it adaptation is
 complete, outside it a hold keeps a residue. The equations stand in `kernels.adapted_drive`.
 
-The input is temperature (°C) or, for an observer of heat flow, W/m² into the skin. An observer of
-the Ring & de Dear model counts impulses instead (`impulses`).
+The input is temperature (°C) or, for an observer of heat flow, W/m² into the skin.
 """
 
 from __future__ import annotations
@@ -17,12 +16,9 @@ from ..arrays import Array, as_rows
 from ..kernels.parallel import over_rows
 from ..observer.channels import Channel, sign_of
 from ..observer.observer import Observer
-from .impulses import counted_impulses
 
 NO_LIMIT_C = 1e6
 """So far away that a limit does nothing."""
-BLOCK = 16
-"""Rows counted at once, few enough that what lies between the steps stays in the processor's cache."""
 
 
 def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer: Observer) -> Array:
@@ -41,15 +37,6 @@ def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer:
 
     rows, shape = as_rows(received)
     drive = np.empty_like(rows)
-
-    def count(part: slice) -> None:
-        for start in range(part.start, part.stop, BLOCK):
-            block = slice(start, min(start + BLOCK, part.stop))
-            drive[block] = counted_impulses(rows[block], dt_s, channel, observer)
-
-    if observer.model == "ring-de-dear":
-        over_rows(count, rows.shape[0], rows.size)
-        return drive.reshape(shape)
     receptor, sign = observer.receptor(channel), sign_of(channel)
     limit = -NO_LIMIT_C * sign if receptor.limit_C is None else receptor.limit_C
     low, high = observer.neutral(channel)

@@ -20,15 +20,14 @@ from ..observer.channels import CHANNELS, Channel
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import shipped_file
 from ..observer.observer import DATA, Observer, load_thresholds
-from ..observer.variants import VARIANTS, Model, Variable, source_of
+from ..observer.variants import VARIABLES, Variable, source_of
 from ..sensation.fits import neutral_flux
 
 DIGITS = 4
-MODEL_CONSTANTS = ("static gain", "dynamic gain", "window of counted impulses", "start of static discharge")
 COMMENT = """Constants of the nominal observer, written by `python -m thermicon.perception.validation.calibrate`.
 Inferred from published evidence (`data/constants.csv`), or taken over from thresholds.toml; low and high are 95 %.
 `use = "assumed"`: no data behind it, or data that say nothing of it. Nothing here was set on a predicted record.
-Numbers `from heat flow` and `from impulses` are those of the other variants.
+Numbers `from heat flow` are those of the other variant.
 Written by a program: change the evidence or the priors and run it again."""
 
 
@@ -38,11 +37,10 @@ def calibrate(thresholds: Table | None = None) -> Table:
     known = Table(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
     shared = (
         *_taken_over(known),
-        *_model_constants(table),
         *(neutral_flux(known, channel) for channel in CHANNELS),
-        *(record for variant in VARIANTS for record in _inferred(*variant)),
+        *(record for variant in VARIABLES for record in _inferred(variant)),
     )
-    noise = [_memory(known, shared, *variant) for variant in VARIANTS]
+    noise = [_memory(known, shared, variant) for variant in VARIABLES]
     return Table("observer.toml", tuple(_rounded(r) for r in (*shared, *noise)))
 
 
@@ -51,13 +49,13 @@ def to_toml(observer: Table) -> str:
     return dump_records(observer, comment=COMMENT)
 
 
-def _inferred(variable: Variable, model: Model) -> list[Record]:
+def _inferred(variable: Variable) -> list[Record]:
     """Constants of one variant, but for offsets of single laboratories."""
-    variant = source_of(variable, model)
-    constants = [each for each in load_constants(variable, model) if each.mechanism not in LEFT]
-    if not shipped_file(variable, model).exists():
+    variant = source_of(variable)
+    constants = [each for each in load_constants(variable) if each.mechanism not in LEFT]
+    if not shipped_file(variable).exists():
         return [_record(each, variant, AT_MAXIMUM) for each in constants]
-    draws = PosteriorDraws.load(variable=variable, model=model)
+    draws = PosteriorDraws.load(variable=variable)
     return [_record(_drawn(each, draws), variant, FROM_DRAWS) for each in constants]
 
 
@@ -91,17 +89,11 @@ def _record(each: Constant, variant: str, method: str) -> Record:
     )
 
 
-def _memory(known: Table, shared: tuple[Record, ...], variable: Variable, model: Model) -> Record:
+def _memory(known: Table, shared: tuple[Record, ...], variable: Variable) -> Record:
     """Memory noise of a variant, by the rate task through its own distance."""
-    unset = memory_record(source_of(variable, model), 1.0, 1.0, 1.0)
-    draft = Observer.from_table(Table("draft", (*shared, unset)), variable=variable, model=model)
+    unset = memory_record(source_of(variable), 1.0, 1.0, 1.0)
+    draft = Observer.from_table(Table("draft", (*shared, unset)), variable=variable)
     return memory_noise(known, draft)
-
-
-def _model_constants(table: Table) -> tuple[Record, ...]:
-    """Constants of the Ring & de Dear type, as published for it."""
-    published = Table(table.name, tuple(r for r in table if r.use == "reference"))
-    return tuple(record for quantity in MODEL_CONSTANTS for record in published.select(quantity))
 
 
 def _taken_over(known: Table) -> tuple[Record, ...]:

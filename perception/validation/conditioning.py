@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from statistics import NormalDist, median
 
+from ..inference.evidence import load_evidence
 from ..inference.onset_stages import OnsetStages
 from ..inference.posterior import Posterior
 from ..inference.priors import WITHIN_95
@@ -30,6 +31,13 @@ from .magnitudes import Magnitude, magnitudes, stages_of_six
 EDGE = 0.1
 """A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
 OFFSETS = "laboratories"
+TITLES = {
+    "thenar": "Forced choice at the thenar",
+    "wrist": "Forced choice at the wrist",
+    "amplitudes": "Amplitude differences",
+    "steps": "Steps from threshold to pain",
+}
+"""Titles of experiments that are printed in papers and have no table of open data."""
 SAME_NOISE = (
     "noise of gain and sensation is the same for everybody: sensitivity and criterion alone make widths differ less "
     "than they do"
@@ -57,9 +65,8 @@ MECHANISM_SOURCES = {
 """Sources of numbers that are not inferred, by mechanism."""
 VARIANT_SOURCES = {
     "heat flow": "Shani & Lineykin 2021: that heat flow predicts sensation better",
-    "ring-de-dear": "Ring & de Dear 1991: static and dynamic discharge of receptors",
 }
-"""Sources of the other variants of the receptors."""
+"""Sources of the other variant of the receptors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +175,15 @@ def load_conditioning() -> Conditioning:
     )
 
 
+def experiment_title(key: str) -> str:
+    """Title of an experiment of the evidence by its key.
+
+    >>> experiment_title("wrist"), experiment_title("E3")
+    ('Forced choice at the wrist', 'Method of limits on the forearm')
+    """
+    return TITLES[key] if key in TITLES else load_evidence().experiment(key).title
+
+
 def _rows() -> tuple[ConditionedRow, ...]:
     log = {row.key: row.log for row in load_rows()}
     rows = []
@@ -190,8 +206,8 @@ def _shared(each: InferredConstant) -> bool:
 
 def _explained(run: AblatedRow) -> AblatedMechanism:
     if not run.without or run.without == ALL_OFF:
-        variant = () if run.without else (run.model, run.variable)
-        return AblatedMechanism(run, "", tuple(VARIANT_SOURCES[key] for key in variant if key in VARIANT_SOURCES))
+        source = None if run.without else VARIANT_SOURCES.get(run.variable)
+        return AblatedMechanism(run, "", () if source is None else (source,))
     mechanism = find_mechanism(run.without)
     known = {each.name: each.source for each in load_constants()}
     sources = [known[name] for name in mechanism.fixed if name in known]

@@ -6,8 +6,14 @@ from typing import Any
 
 from ..inference.onset_stages import OnsetStages
 from ..inference.results import UNMOVED_SD
-from .comparisons import experiment_title
-from .conditioning import EDGE, AblatedMechanism, ConditionedRow, Conditioning, InferredConstant
+from .conditioning import (
+    EDGE,
+    AblatedMechanism,
+    ConditionedRow,
+    Conditioning,
+    InferredConstant,
+    experiment_title,
+)
 from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude
 
 
@@ -44,7 +50,7 @@ def _row(each: ConditionedRow) -> dict[str, Any]:
         "unit": row.unit,
         "log_scale": each.log,
         "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
-        "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow, "Ring & de Dear": row.ring_de_dear},
+        "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
         "left_out": {
             "value": row.left_out,
             "interval": [row.left_out_low, row.left_out_high],
@@ -77,7 +83,6 @@ def _ablated(each: AblatedMechanism) -> dict[str, Any]:
     run = each.run
     return {
         "variable": run.variable,
-        "model": run.model,
         "without": run.without or None,
         "replaced_by": each.replaced_by or None,
         "log_evidence": run.log_evidence,
@@ -106,7 +111,6 @@ def _magnitude(each: Magnitude) -> dict[str, Any]:
     return {
         "channel": each.channel,
         "variable": each.variable,
-        "model": each.model,
         "changes_K": list(CHANGES_K),
         "peak_d_prime": list(each.peaks),
         "just_noticeable_steps": each.jnds,

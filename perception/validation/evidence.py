@@ -6,58 +6,37 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-import numpy as np
-
 from thermicon.circuit import Rig
 
-from ..arrays import Array
-from ..observer.channels import CHANNELS, Channel
-from ..observer.observer import Observer
 from ..observer.people import OLD_YEARS
-from ..observer.variants import VARIANTS, Model, Variable
+from ..observer.variants import VARIABLES, Variable
 from ..progress import Progress, step_counter
-from ..sensation.bench import Bench, raised_cosine
 from .experiments import limits, methods, rate_curve, reaction_times
-from .experiments_timing import PULSE_K, PULSE_S, first_and_return, peak_lead, whole_body_warmth
+from .experiments_timing import first_and_return, peak_lead, whole_body_warmth
 from .identified import Identified, Shown, show, six_icons, wave_shapes
 from .predicted import Predicted
 from .pulses import named_pulses, show_pulses
-from .waves import LIBRARY, Likeness, SkinWaves, likeness, skin_waves, with_others
+from .waves import LIBRARY, Likeness, likeness, skin_waves, with_others
 
 SIX = "six-icons"
 
 
 @dataclass(frozen=True, slots=True)
-class Pulse:
-    """The smooth pulse of the peak experiment as display and skin have it (K) and as a variant feels it (d′)."""
-
-    variable: Variable
-    model: Model
-    channel: Channel
-    time_s: Array
-    display_K: Array
-    skin_K: Array
-    felt: Array
-
-
-@dataclass(frozen=True, slots=True)
 class Evidence:
-    """Predictions of all variants, and what figures show beyond them."""
+    """Predictions of all variants, confusions, and likeness of the waves at the skin."""
 
     predicted: tuple[Predicted, ...]
-    pulses: tuple[Pulse, ...]
     six: tuple[Identified, ...]
     waves: tuple[Identified, ...]
-    skin: tuple[SkinWaves, ...]
     alike: tuple[Likeness, ...]
 
-    def of(self, variable: Variable, model: Model) -> tuple[Predicted, ...]:
+    def of(self, variable: Variable) -> tuple[Predicted, ...]:
         """Predictions of one variant."""
-        return tuple(one for one in self.predicted if (one.variable, one.model) == (variable, model))
+        return tuple(one for one in self.predicted if one.variable == variable)
 
-    def find(self, variable: Variable, model: Model, experiment: str, quantity: str, channel: str) -> Predicted:
+    def find(self, variable: Variable, experiment: str, quantity: str, channel: str) -> Predicted:
         """One prediction; raises ValueError where it was not made."""
-        for one in self.of(variable, model):
+        for one in self.of(variable):
             if (one.experiment, one.quantity, one.channel) == (experiment, quantity, channel):
                 return one
         raise ValueError(f"no prediction of {quantity!r} ({channel}) by {experiment!r}")
@@ -68,62 +47,50 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
     from thermicon.icons import load_library
 
     rig, six = Rig.load("thenar"), load_library(SIX)
-    skin = skin_waves(rig)
-    alike = likeness(skin)
+    alike = likeness(skin_waves(rig))
     shown = show(six, rig, people, seed)
     waves = show(with_others(load_library(LIBRARY), six), rig, people, seed)
     sequences = show_pulses(people, seed)
     predicted: list[Predicted] = []
     named: dict[str, list[Identified]] = {SIX: [], "waves": []}
-    pulses: list[Pulse] = []
-    total = len(VARIANTS) * (len(_experiments("temperature", "adapting", people, draws, seed)) + 4)
+    total = len(VARIABLES) * (len(_experiments("temperature", people, draws, seed)) + 3)
     step = step_counter(progress, total)
-    for variable, model in VARIANTS:
-        for run in _experiments(variable, model, people, draws, seed):
+    for variable in VARIABLES:
+        for run in _experiments(variable, people, draws, seed):
             predicted += run()
             step()
-        found = _named(named[SIX], shown, variable, model, draws)
+        found = _named(named[SIX], shown, variable, draws)
         predicted += six_icons(found, trials, seed)
         step()
-        predicted += wave_shapes(_named(named["waves"], waves, variable, model, draws), alike)
+        predicted += wave_shapes(_named(named["waves"], waves, variable, draws), alike)
         step()
-        predicted += named_pulses([each.identify(variable, model, draws) for each in sequences])
+        predicted += named_pulses([each.identify(variable, draws) for each in sequences])
         step()
-        pulses += [_pulse(variable, model, channel) for channel in CHANNELS]
-        step()
-    return Evidence(tuple(predicted), tuple(pulses), tuple(named[SIX]), tuple(named["waves"]), skin, alike)
+    return Evidence(tuple(predicted), tuple(named[SIX]), tuple(named["waves"]), alike)
 
 
 def _experiments(
-    variable: Variable, model: Model, people: int, draws: int, seed: int
+    variable: Variable, people: int, draws: int, seed: int
 ) -> Sequence[Callable[[], tuple[Predicted, ...]]]:
     return (
-        partial(rate_curve, variable, model, draws=draws, seed=seed),
-        partial(limits, "hand", variable, model, people=people, draws=draws, seed=seed),
-        partial(limits, "forearm", variable, model, people=people, draws=draws, seed=seed),
-        partial(_old, variable, model, people, seed),
-        partial(reaction_times, variable, model, draws=draws, seed=seed),
-        partial(methods, variable, model, draws=draws, seed=seed),
-        partial(whole_body_warmth, variable, model, draws=draws, seed=seed),
-        partial(peak_lead, variable, model, draws=draws, seed=seed),
-        partial(first_and_return, variable, model, draws=draws, seed=seed),
+        partial(rate_curve, variable, draws=draws, seed=seed),
+        partial(limits, "hand", variable, people=people, draws=draws, seed=seed),
+        partial(limits, "forearm", variable, people=people, draws=draws, seed=seed),
+        partial(_old, variable, people, seed),
+        partial(reaction_times, variable, draws=draws, seed=seed),
+        partial(methods, variable, draws=draws, seed=seed),
+        partial(whole_body_warmth, variable, draws=draws, seed=seed),
+        partial(peak_lead, variable, draws=draws, seed=seed),
+        partial(first_and_return, variable, draws=draws, seed=seed),
     )
 
 
-def _old(variable: Variable, model: Model, people: int, seed: int) -> tuple[Predicted, ...]:
+def _old(variable: Variable, people: int, seed: int) -> tuple[Predicted, ...]:
     """Limits of old people, under a name of their own; age is drawn with the people."""
-    found = limits("hand", variable, model, people=people, age_years=OLD_YEARS, draws=0, seed=seed)
+    found = limits("hand", variable, people=people, age_years=OLD_YEARS, draws=0, seed=seed)
     return tuple(replace(one, experiment="limits on the hand, old") for one in found)
 
 
-def _named(kept: list[Identified], shown: Shown, variable: Variable, model: Model, draws: int) -> Identified:
-    kept.append(shown.identify(variable, model, draws))
+def _named(kept: list[Identified], shown: Shown, variable: Variable, draws: int) -> Identified:
+    kept.append(shown.identify(variable, draws))
     return kept[-1]
-
-
-def _pulse(variable: Variable, model: Model, channel: Channel) -> Pulse:
-    bench = Bench(Rig.load("thenar"), surface="display")
-    played = bench.play([raised_cosine(channel, PULSE_K, PULSE_S)], PULSE_S + 4.0)
-    felt = played.felt(Observer.load(variable=variable, model=model))[CHANNELS.index(channel)][0, 0]
-    display, skin = (np.asarray(played.surface_C(place)[0]) for place in ("display", "skin"))
-    return Pulse(variable, model, channel, played.time_s, display - display[0], skin - skin[0], felt - felt[0])

@@ -19,7 +19,7 @@ from thermicon.circuit import Rig
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
-from ..observer.variants import Model, Variable
+from ..observer.variants import Variable
 from ..procedures.classical import choice_reaction_time, forced_choice, method_of_limits
 from ..procedures.levels import method_of_levels
 from ..sensation.bench import Bench, ramp
@@ -36,7 +36,6 @@ LIMITS: dict[str, tuple[str, float]] = {"hand": ("hand-dorsum", 9.0), "forearm":
 
 def rate_curve(
     variable: Variable = "temperature",
-    model: Model = "adapting",
     *,
     rates_K_per_s: Sequence[float] = RATES_K_PER_S,
     draws: int = DRAWS,
@@ -58,13 +57,12 @@ def rate_curve(
         asked += [
             Asked(f"threshold at {r:g} K/s over that at 0.1", channel, "1", said, partial(_raised, at, r)) for r in slow
         ]
-    return predict("rate curve", asked, variable, model, draws, seed)
+    return predict("rate curve", asked, variable, draws, seed)
 
 
 def limits(
     site: str = "hand",
     variable: Variable = "temperature",
-    model: Model = "adapting",
     *,
     people: int = PEOPLE,
     age_years: float | None = None,
@@ -84,10 +82,8 @@ def limits(
 
     asked = [Asked("limits threshold", channel, "K", said, partial(_limits, bench, channel)) for channel in CHANNELS]
     made = []
-    nominal = Observer.load(variable=variable, model=model)
-    for one, channel in zip(
-        predict(f"limits on the {site}", asked, variable, model, draws, seed), CHANNELS, strict=True
-    ):
+    nominal = Observer.load(variable=variable)
+    for one, channel in zip(predict(f"limits on the {site}", asked, variable, draws, seed), CHANNELS, strict=True):
         each = method_of_limits(nominal, bench, channel, people=crowd)
         low, high = each.quantile(0.16), each.quantile(0.84)
         spread = None if low is None or high is None else (low, high)
@@ -97,7 +93,6 @@ def limits(
 
 def reaction_times(
     variable: Variable = "temperature",
-    model: Model = "adapting",
     *,
     areas_cm2: Sequence[float] = AREAS_CM2,
     draws: int = DRAWS,
@@ -126,12 +121,10 @@ def reaction_times(
     asked.append(
         Asked("warm over cold", "both", "1", ramps, lambda o: at["warm"](o, areas[-1]) / at["cold"](o, areas[-1]))
     )
-    return predict("choice reaction time", asked, variable, model, draws, seed)
+    return predict("choice reaction time", asked, variable, draws, seed)
 
 
-def methods(
-    variable: Variable = "temperature", model: Model = "adapting", *, draws: int = 0, seed: int = 0
-) -> tuple[Predicted, ...]:
+def methods(variable: Variable = "temperature", *, draws: int = 0, seed: int = 0) -> tuple[Predicted, ...]:
     """One observer by three methods at 1 K/s on the back of the hand: forced choice, levels, limits, in K."""
     bench = _bench(*LIMITS["hand"], "display", 32.0)
     said = "display ramps of 1 K/s from 32 °C on the back of the hand, 9 cm²"
@@ -148,7 +141,7 @@ def methods(
         ("limits", partial(_limits, bench)),
     ]
     asked = [Asked(f"threshold by {name}", c, "K", said, partial(by, c)) for name, by in named for c in CHANNELS]
-    return predict("method", asked, variable, model, draws, seed)
+    return predict("method", asked, variable, draws, seed)
 
 
 @lru_cache(maxsize=32)

@@ -15,7 +15,7 @@ from thermicon.circuit import Rig
 
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.observer import Observer, load_thresholds
-from ..observer.variants import Model, Variable
+from ..observer.variants import Variable
 from ..procedures.classical import yes_no
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
@@ -34,7 +34,6 @@ STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percep
 
 def peak_lead(
     variable: Variable = "temperature",
-    model: Model = "adapting",
     *,
     size_K: float = PULSE_K,
     duration_s: float = PULSE_S,
@@ -65,12 +64,11 @@ def peak_lead(
     asked += [Asked("felt peak minus the skin's", c, "s", said, partial(lead, "skin", c)) for c in CHANNELS]
     asked += [Asked("lag of the felt onset", c, "s", said, partial(onset, c)) for c in CHANNELS]
     asked += [Asked("lag of the felt onset", c, "s", STEEP, partial(_steep_onset, c)) for c in CHANNELS]
-    return predict("felt peak", asked, variable, model, draws, seed)
+    return predict("felt peak", asked, variable, draws, seed)
 
 
 def first_and_return(
     variable: Variable = "temperature",
-    model: Model = "adapting",
     *,
     hold_s: float = HOLD_S,
     draws: int = DRAWS,
@@ -96,11 +94,11 @@ def first_and_return(
         return float(detect(after, np.zeros_like(after), played.dt_s, asked).probability)
 
     asked = [Asked("report of the return", c, "proportion", said, partial(returned, c)) for c in CHANNELS]
-    return predict("step and return near threshold", asked, variable, model, draws, seed)
+    return predict("step and return near threshold", asked, variable, draws, seed)
 
 
 def whole_body_warmth(
-    variable: Variable = "temperature", model: Model = "adapting", *, draws: int = DRAWS, seed: int = 0
+    variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0
 ) -> tuple[Predicted, ...]:
     """Radiant flux (W/m²) on the whole body for 3 s that is just felt as warm (d′ = 1), as Hardy & Oppel 1937 had it.
 
@@ -109,7 +107,7 @@ def whole_body_warmth(
     surface that goes with a flux is given beside, to set the published 6.3 W/m² against 0.003 °C.
     """
     body = load_thresholds().one("area of the body").central
-    factor = Observer.load(variable=variable, model=model).site_factor("warm", _forearm().site)
+    factor = Observer.load(variable=variable).site_factor("warm", _forearm().site)
     said = (
         f"{RADIANT_S:g} s of radiant heat on bare skin of the forearm, absorbed at the surface, d′ = 1, "
         f"thresholds {factor:.3g} times those of the thenar"
@@ -124,7 +122,7 @@ def whole_body_warmth(
         Asked("flux just felt, no summation", "warm", "W/m²", said, partial(flux, None)),
         Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(_warmed().surface_K[-1])),
     ]
-    return predict("whole-body warmth", asked, variable, model, draws, seed)
+    return predict("whole-body warmth", asked, variable, draws, seed)
 
 
 def _flux_felt(observer: Observer, area_m2: float | None) -> float:

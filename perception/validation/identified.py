@@ -1,7 +1,7 @@
 """Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
 
-The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow or count
-impulses, and the laboratories of a new one's interval, whose observers stand behind the other experiments too.
+The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow, and
+the laboratories of a new one's interval, whose observers stand behind the other experiments too.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from ..kernels.parallel import in_order
 from ..observer.channels import USUAL_NORM, Norm
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
-from ..observer.variants import VARIABLES, Model, Variable, receptor_column
+from ..observer.variants import VARIABLES, Variable, receptor_column
 from ..ranking.batches import EXPERIMENTS
 from .plausible import plausible_laboratories
 from .predicted import Predicted
@@ -44,7 +44,6 @@ class Identified:
     """Confusions of one variant: of every person, and of fewer people for the nominal observer and each laboratory."""
 
     variable: Variable
-    model: Model
     labels: tuple[str, ...]
     probability: Array
     few: Array
@@ -62,9 +61,7 @@ class Identified:
         value, nominal = score(self.probability), score(self.few)
         each = tuple(float(np.clip(value + score(one) - nominal, 0.0, top)) for one in self.drawn)
         low, high = np.percentile(each, [2.5, 97.5]).tolist() if each else (None, None)
-        return Predicted(
-            experiment, quantity, "both", value, unit, low, high, self.variable, self.model, conditions, draws=each
-        )
+        return Predicted(experiment, quantity, "both", value, unit, low, high, self.variable, conditions, draws=each)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,12 +73,12 @@ class Shown:
     played: tuple[ReceptorTemperatures, ...]
     seed: int
 
-    def identify(self, variable: Variable, model: Model, draws: int, norm: Norm = USUAL_NORM) -> Identified:
+    def identify(self, variable: Variable, draws: int, norm: Norm = USUAL_NORM) -> Identified:
         """Confusions of one variant from memory, by a norm."""
         played = self.played[VARIABLES.index(variable)]
         few = self.crowd.part(0, people_for_intervals(len(self.labels)))
         thin = played.thinned(len(few), EVERY)
-        nominal = Observer.load(variable=variable, model=model)
+        nominal = Observer.load(variable=variable)
 
         def thinly(observer: Observer, people: People) -> Array:
             felt = respond(thin, people, observer, detection=False)
@@ -91,10 +88,10 @@ class Shown:
         whole = identify(felt, norm, self.crowd, nominal, self.seed, SAMPLES)[1]
         kept = np.zeros((0, *whole.probability.shape))
         if draws:
-            others = plausible_laboratories(draws, self.seed, norm, variable, model)
+            others = plausible_laboratories(draws, self.seed, norm, variable)
             invited = others.invited(len(few))
             kept = np.stack(list(in_order(lambda k: thinly(*others.at(k, len(few)))[invited[k]], range(draws))))
-        return Identified(variable, model, self.labels, whole.probability, thinly(nominal, few), kept)
+        return Identified(variable, self.labels, whole.probability, thinly(nominal, few), kept)
 
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
@@ -152,7 +149,7 @@ def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted
         made.append(
             Predicted(
                 "wave shapes", f"largest difference of {both}", "both", largest, "1", None, None,
-                found.variable, found.model, "skin temperature over the swing, largest of four groups",
+                found.variable, "skin temperature over the swing, largest of four groups",
             )
         )  # fmt: skip
         made.append(

@@ -12,7 +12,7 @@ from thermicon.circuit import Rig
 from ..inference.onset_stages import OnsetStages, onset_stages
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
-from ..observer.variants import VARIANTS, Model, Variable
+from ..observer.variants import VARIABLES, Variable
 from ..sensation.bench import Bench, Stimulus, ramp
 
 RIG, ICONS = "thenar", "six-icons"
@@ -29,7 +29,6 @@ class Magnitude:
 
     channel: Channel
     variable: Variable
-    model: Model
     peaks: tuple[float, ...]
 
     @property
@@ -47,8 +46,8 @@ def magnitudes() -> tuple[Magnitude, ...]:
     bench = Bench(Rig.load(RIG), surface="display")
     played = {c: [_played(bench, c, size) for size in CHANGES_K] for c in CHANNELS}
     return tuple(
-        Magnitude(channel, variable, model, tuple(_peak(each, channel, variable, model) for each in played[channel]))
-        for variable, model in VARIANTS
+        Magnitude(channel, variable, tuple(_peak(each, channel, variable) for each in played[channel]))
+        for variable in VARIABLES
         for channel in CHANNELS
     )
 
@@ -64,6 +63,6 @@ def _played(bench: Bench, channel: Channel, size_K: float) -> Stimulus:
     return bench.play([ramp(channel, size_K, RATE_K_PER_S, HOLD_S)], size_K / RATE_K_PER_S + HOLD_S)
 
 
-def _peak(played: Stimulus, channel: Channel, variable: Variable, model: Model) -> float:
-    felt = played.felt(Observer.load(variable=variable, model=model))[CHANNELS.index(channel)]
+def _peak(played: Stimulus, channel: Channel, variable: Variable) -> float:
+    felt = played.felt(Observer.load(variable=variable))[CHANNELS.index(channel)]
     return float((felt - felt[..., :1]).max())

@@ -81,8 +81,8 @@ def compare_forms(
     scores = []
     for norm in norms:
         identified = (
-            *six_icons(six.identify("temperature", "adapting", draws, norm), TRIALS, seed),
-            *wave_shapes(waves.identify("temperature", "adapting", draws, norm), alike),
+            *six_icons(six.identify("temperature", draws, norm), TRIALS, seed),
+            *wave_shapes(waves.identify("temperature", draws, norm), alike),
         )
         predicted = {one.quantity: one for one in identified}
         scores += [_number(norm, predicted[quantity], published[quantity]) for quantity in NUMBERS]

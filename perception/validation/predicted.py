@@ -9,7 +9,7 @@ import numpy as np
 
 from ..kernels.parallel import in_order
 from ..observer.observer import Observer
-from ..observer.variants import Model, Variable
+from ..observer.variants import Variable
 from ..procedures.measured import quantile_felt
 from .plausible import plausible_observers
 
@@ -36,7 +36,6 @@ class Predicted:
     low: float | None
     high: float | None
     variable: Variable
-    model: Model
     conditions: str
     people: tuple[float, float] | None = None
     draws: tuple[float, ...] = ()
@@ -46,7 +45,7 @@ class Predicted:
         span = "" if self.low is None or self.high is None else f" [{self.low:.3g}, {self.high:.3g}]"
         return (
             f"Predicted({self.experiment}, {self.quantity}, {self.channel}: {value}{span} "
-            f"from {self.variable}, {self.model}; {self.conditions})"
+            f"from {self.variable}; {self.conditions})"
         )
 
 
@@ -65,13 +64,12 @@ def predict(
     experiment: str,
     asked: Sequence[Asked],
     variable: Variable,
-    model: Model,
     draws: int = DRAWS,
     seed: int = 0,
 ) -> tuple[Predicted, ...]:
     """Answers of the nominal observer, with the interval over `draws` plausible ones (0: none) of a seed."""
-    nominal = Observer.load(variable=variable, model=model)
-    others = plausible_observers(draws, seed, variable=variable, model=model) if draws else ()
+    nominal = Observer.load(variable=variable)
+    others = plausible_observers(draws, seed, variable=variable) if draws else ()
     made = []
     for one in asked:
         value, each = one.answer(nominal), tuple(in_order(one.answer, others))
@@ -86,7 +84,6 @@ def predict(
                 low=low,
                 high=high,
                 variable=variable,
-                model=model,
                 conditions=one.conditions,
                 draws=each,
             )

@@ -27,7 +27,6 @@ class Answers:
     `away` is +1 where the nominal prediction is too high, −1 where it is too low, 0 where it holds.
     """
 
-    target: int
     label: str
     each: tuple[float, ...]
     holds: tuple[bool, ...]
@@ -38,10 +37,10 @@ class Answers:
 class TradeOff:
     """Two rows over the same observers: Spearman's correlation (None: one does not vary), shares that hold.
 
-    `both_miss` is said of the nominal predictions, `across` of rows of two targets. `against` is True where
-    both miss and what mends one worsens the other, False where it mends both, and None where not both miss or
-    the correlation is weak. `rarer`: so few observers satisfy both that chance alone would give as few or
-    fewer with a probability below 0.001 (Fisher's exact test, one-sided).
+    `both_miss` is said of the nominal predictions. `against` is True where both miss and what mends one worsens the
+    other, False where it mends both, and None where not both miss or the correlation is weak. `rarer`: so few observers
+    satisfy both that chance alone would give as few or fewer with a probability below 0.001 (Fisher's exact test,
+    one-sided).
     """
 
     first: str
@@ -51,7 +50,6 @@ class TradeOff:
     second_holds: float
     both_hold: float
     both_miss: bool
-    across: bool
     against: bool | None
     rarer: bool
 
@@ -76,9 +74,9 @@ def trade_offs(rows: Sequence[Answers]) -> tuple[TradeOff, ...]:
             against = None
             if strong and rho is not None and first.away and second.away:
                 against = first.away * second.away * rho < 0.0
-            missed, across = bool(first.away and second.away), first.target != second.target
+            missed = bool(first.away and second.away)
             rarer = chance_of_as_few(n, round(a * n), round(b * n), round(both * n)) < RARE
-            found.append(TradeOff(first.label, second.label, rho, a, b, both, missed, across, against, rarer))
+            found.append(TradeOff(first.label, second.label, rho, a, b, both, missed, against, rarer))
     return tuple(found)
 
 

@@ -15,7 +15,7 @@ from thermicon.circuit.records import Table
 
 from ..identification.laboratory import DRAWS
 from ..observer.observer import load_thresholds
-from ..observer.variants import VARIANTS, Model, Variable
+from ..observer.variants import VARIABLES, Variable
 from .conditioning import Conditioning, load_conditioning
 from .predicted import Predicted, interval_of
 from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
@@ -40,7 +40,7 @@ class Judged:
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A row of the report: what was published, and the judgement of every variant in the order of VARIANTS."""
+    """A row of the report: what was published, and the judgement of every variant in the order of VARIABLES."""
 
     row: Row
     published: Published
@@ -48,8 +48,8 @@ class Line:
 
     @property
     def nearer(self) -> str:
-        """Which of temperature and heat flow does better, both of them adapting; nothing where it is not judged."""
-        warmth, flow = (one.verdict for one in self.judged[:2])
+        """Which of temperature and heat flow does better; nothing where it is not judged."""
+        warmth, flow = (one.verdict for one in self.judged)
         if warmth.holds is None:
             return ""
         if warmth.holds and flow.holds:
@@ -82,7 +82,7 @@ class ValidationReport:
     sections
         Targets with their verdicts.
     trade_offs
-        Pairs of targets of every variant, in the order of VARIANTS.
+        Pairs of targets of every variant, in the order of VARIABLES.
     evidence
         Curves and answers behind the figures.
     conditioning
@@ -109,9 +109,7 @@ class ValidationReport:
         return sum(one is True for one in held), len(held)
 
     def __repr__(self) -> str:
-        said = ", ".join(
-            "{} {} of {}".format(variant_name(*variant), *self.counts(k)) for k, variant in enumerate(VARIANTS)
-        )
+        said = ", ".join("{} {} of {}".format(variant, *self.counts(k)) for k, variant in enumerate(VARIABLES))
         return f"ValidationReport({len(self.sections)} targets; hold: {said}; {self.draws} draws, {self.people} people)"
 
 
@@ -190,9 +188,9 @@ def assemble(
         lines = []
         for row in target.rows:
             was = known[row.target, row.label]
-            lines.append(Line(row, was, tuple(_judged(row, was, table, evidence, *variant) for variant in VARIANTS)))
+            lines.append(Line(row, was, tuple(_judged(row, was, table, evidence, variant) for variant in VARIABLES)))
         sections.append(Section(target, tuple(lines)))
-    pairs = tuple(trade_offs(answers(sections, k)) for k in range(len(VARIANTS)))
+    pairs = tuple(trade_offs(answers(sections, k)) for k in range(len(VARIABLES)))
     known_from = load_conditioning()
     return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence, known_from)
 
@@ -208,7 +206,7 @@ def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:
             held = tuple(bool(judge_row(row, each, line.published).holds) for each in one.predicted.draws)
             key = (row.experiment, row.quantity, row.channel, row.apply)
             label = f"{section.target.number} {short(row)}"
-            found.setdefault(key, Answers(row.target, label, one.predicted.draws, held, one.verdict.way))
+            found.setdefault(key, Answers(label, one.predicted.draws, held, one.verdict.way))
     return tuple(found.values())
 
 
@@ -222,17 +220,8 @@ def short(row: Row) -> str:
     return f"{name.strip()}, {row.channel}" if row.channel in ("cold", "warm") else name.strip()
 
 
-def variant_name(variable: Variable, model: Model) -> str:
-    """How a variant is headed.
-
-    >>> [variant_name(*one) for one in VARIANTS]
-    ['temperature', 'heat flow', 'Ring & de Dear']
-    """
-    return "Ring & de Dear" if model == "ring-de-dear" else variable
-
-
-def _judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable, model: Model) -> Judged:
-    mine = evidence.of(variable, model)
+def _judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:
+    mine = evidence.of(variable)
     if row.apply in PAIRED:
         cold, warm = (_pick(row, mine, channel) for channel in ("cold", "warm"))
         found = _both(row, cold, warm)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..observer.variants import VARIANTS
+from ..observer.variants import VARIABLES
 from .conditioning_file import conditioning_file
 from .predicted import Predicted
 from .tradeoffs import TradeOff
-from .validate import Judged, Line, ValidationReport, variant_name
+from .validate import Judged, Line, ValidationReport
 from .verdicts import criterion_of_row
 
 
@@ -22,7 +22,7 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
         "draws": report.draws,
         "seed": report.seed,
         "trials": report.trials,
-        "variants": [{"name": variant_name(*v), "variable": v[0], "model": v[1]} for v in VARIANTS],
+        "variants": [{"name": variable, "variable": variable} for variable in VARIABLES],
         "targets": [
             {
                 "number": section.target.number,
@@ -35,13 +35,13 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
             for section in report.sections
         ],
         "trade_offs": [
-            {"variant": variant_name(*variant), "pairs": [_trade(trade) for trade in pairs]}
-            for variant, pairs in zip(VARIANTS, report.trade_offs, strict=True)
+            {"variant": variant, "pairs": [_trade(trade) for trade in pairs]}
+            for variant, pairs in zip(VARIABLES, report.trade_offs, strict=True)
         ],
         "confusions": [
             {
                 "set": name,
-                "variant": variant_name(one.variable, one.model),
+                "variant": one.variable,
                 "labels": list(one.labels),
                 "probability": one.pooled.tolist(),
             }
@@ -81,7 +81,7 @@ def _line(line: Line) -> dict[str, Any]:
 def _judged(one: Judged) -> dict[str, Any]:
     found, verdict = one.predicted, one.verdict
     return {
-        "variant": variant_name(found.variable, found.model),
+        "variant": found.variable,
         "value": _finite(found.value),
         "interval": [_finite(found.low), _finite(found.high)],
         "people_16_to_84": None if found.people is None else list(found.people),
@@ -112,7 +112,7 @@ def _predicted(one: Predicted) -> dict[str, Any]:
         "experiment": one.experiment,
         "quantity": one.quantity,
         "channel": one.channel,
-        "variant": variant_name(one.variable, one.model),
+        "variant": one.variable,
         "value": _finite(one.value),
         "interval": [_finite(one.low), _finite(one.high)],
         "unit": one.unit,

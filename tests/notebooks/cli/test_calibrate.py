@@ -40,7 +40,7 @@ def test_draws_of_converged_chains_are_written(cli: Cli, tmp_path: Path, monkeyp
     assert said.exit_code == 0, said.stderr
     assert said.stderr == f"wrote {out}\n"
     words = " ".join(said.stdout.split())
-    assert "Posterior of 52 constants, temperature, adapting" in words
+    assert "Posterior of 52 constants, temperature" in words
     assert "R-hat up to 1.003, ESS from 900; 5000 likelihoods, 40 % accepted." in words
     draws = PosteriorDraws.load(out)
     assert len(draws) == 1000

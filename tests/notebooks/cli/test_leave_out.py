@@ -26,11 +26,7 @@ def finished(tmp_path: Path) -> Path:
     for experiment in dict.fromkeys(row.experiment for row in rows):
         own = [asdict(row) for row in rows if row.experiment == experiment]
         (folder / f"left-out-{experiment}.json").write_text(json.dumps(own), encoding="utf-8")
-    for name, ending in (
-        ("temperature", "temperature-adapting"),
-        ("heat_flow", "heat-flow-adapting"),
-        ("ring_de_dear", "temperature-ring-de-dear"),
-    ):
+    for name, ending in (("temperature", "temperature"), ("heat_flow", "heat-flow")):
         scores = [getattr(row, name) for row in load_variant_scores()]
         (folder / f"scores-{ending}.json").write_text(json.dumps(scores), encoding="utf-8")
     return folder

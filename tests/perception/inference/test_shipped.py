@@ -71,11 +71,7 @@ def test_ablation_has_every_mechanism_and_variant() -> None:
     table = load_ablation()
     assert {row.without for row in table} >= {each.name for each in MECHANISMS} | {"", "all of them"}
     whole = [row for row in table if not row.without]
-    assert [(row.variable, row.model) for row in whole] == [
-        ("temperature", "adapting"),
-        ("heat flow", "adapting"),
-        ("temperature", "ring-de-dear"),
-    ]
+    assert [row.variable for row in whole] == ["temperature", "heat flow"]
     assert whole[0].difference == 0.0
 
 

@@ -24,7 +24,7 @@ def posterior() -> PosteriorDraws:
 
 @pytest.fixture
 def text() -> str:
-    lines = shipped_file("temperature", "adapting").read_text(encoding="utf-8").splitlines()
+    lines = shipped_file("temperature").read_text(encoding="utf-8").splitlines()
     head = sum(line.startswith("#") for line in lines)
     return "\n".join(lines[: head + 4]) + "\n"
 
@@ -144,10 +144,17 @@ def test_variants_have_names() -> None:
         variant_named("heat")
 
 
+def test_draws_of_a_receptor_model_that_is_gone_are_refused(tmp_path: Path) -> None:
+    text = shipped_file("temperature").read_text(encoding="utf-8")
+    (tmp_path / "old.csv").write_text(text.replace("model: adapting", "model: ring-de-dear", 1), encoding="utf-8")
+    with pytest.raises(RecordError, match=r"old.csv: draws of the receptor model 'ring-de-dear', not adapting"):
+        PosteriorDraws.load(tmp_path / "old.csv")
+
+
 def test_draws_of_another_variant_are_refused(posterior: PosteriorDraws, tmp_path: Path) -> None:
     path = tmp_path / "mine.csv"
     path.write_text(to_text(posterior.header, posterior.names, posterior.draws[:5]), encoding="utf-8")
-    with pytest.raises(RecordError, match=r"mine.csv: draws of the variant temperature, adapting, not of heat flow"):
+    with pytest.raises(RecordError, match=r"mine.csv: draws of the variant temperature, not of heat flow"):
         Observer.load(path, variable="heat flow")
 
 

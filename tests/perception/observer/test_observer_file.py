@@ -9,7 +9,7 @@ import pytest
 from thermicon.circuit.records import RecordError, Table, dump_records, load_records
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer_file import NEEDED, NEEDED_OF, SHIPPED, check_complete
-from thermicon.perception.observer.variants import VARIANTS, Model, Variable
+from thermicon.perception.observer.variants import VARIABLES, Variable
 
 
 def without(quantity: str, instead: str | None = None) -> Table:
@@ -32,13 +32,13 @@ def test_a_missing_number_is_named_with_the_nearest(tmp_path: Path) -> None:
         Observer.from_table(without("limit"))
 
 
-@pytest.mark.parametrize(("variable", "model"), VARIANTS)
-def test_whatever_is_needed_is_asked_for(variable: Variable, model: Model) -> None:
+@pytest.mark.parametrize("variable", VARIABLES)
+def test_whatever_is_needed_is_asked_for(variable: Variable) -> None:
     """Every quantity of the list that an observer is built from leads to this error, and to no other."""
     for quantity in (*NEEDED, *NEEDED_OF[variable]):
         kept = tuple(r for r in load_records(SHIPPED) if not r.quantity.startswith(quantity))
         with pytest.raises(RecordError, match=rf"missing: .*'{quantity}'"):
-            Observer.from_table(Table("x", kept), variable=variable, model=model)
+            Observer.from_table(Table("x", kept), variable=variable)
 
 
 def test_the_shipped_file_is_complete() -> None:

@@ -13,6 +13,7 @@ import pytest
 
 from thermicon.circuit.records import RecordError
 from thermicon.perception.inference.posterior import Posterior
+from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.posterior import learning, sampling
 from thermicon.perception.posterior.chains import Chain, Reference, begin, extend
 from thermicon.perception.posterior.diagnostics import diagnose, smoothed_weights
@@ -111,8 +112,8 @@ def test_a_folder_of_other_chains_is_refused(tmp_path: Path) -> None:
 
 
 def test_the_shipped_maximum_is_where_sampling_begins() -> None:
-    for variant in (("temperature", "adapting"), ("heat flow", "adapting"), ("temperature", "ring-de-dear")):
-        vector = shipped_vector(Posterior(*variant))
+    for variable in VARIABLES:
+        vector = shipped_vector(Posterior(variable))
         assert np.abs(vector).max() < 6.0
 
 

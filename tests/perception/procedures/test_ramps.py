@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
-from thermicon.perception.observer.variants import VARIANTS
+from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.procedures import classical
 from thermicon.perception.procedures.classical import method_of_limits
 from thermicon.perception.procedures.measured import crowd_of
@@ -19,10 +19,10 @@ def bench() -> Bench:
     return Bench(Rig.load("hand-dorsum"), surface="display")
 
 
-@pytest.mark.parametrize(("variable", "model"), VARIANTS)
-def test_what_is_felt_and_reported_rises_with_size(variable: str, model: str, bench: Bench) -> None:
+@pytest.mark.parametrize("variable", VARIABLES)
+def test_what_is_felt_and_reported_rises_with_size(variable: str, bench: Bench) -> None:
     """Bisection needs it, for every variant and for observers far from the nominal one."""
-    for observer in plausible_observers(4, 1, variable=variable, model=model):  # type: ignore[arg-type]
+    for observer in plausible_observers(4, 1, variable=variable):  # type: ignore[arg-type]
         nobody = crowd_of(observer, bench.rig.site, None)
         for channel in ("cold", "warm"):
             played = ramps(bench, channel, 1.0, 1.0)  # type: ignore[arg-type]

@@ -8,8 +8,8 @@ from thermicon.perception import Observer
 from thermicon.perception.inference.results import constant, load_constants
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import CHANNELS, DATA, load_thresholds
-from thermicon.perception.observer.variants import VARIANTS, source_of
-from thermicon.perception.validation.calibrate import MODEL_CONSTANTS, calibrate, to_toml
+from thermicon.perception.observer.variants import VARIABLES, source_of
+from thermicon.perception.validation.calibrate import calibrate, to_toml
 
 SHIPPED = DATA / "observer.toml"
 AGAIN = "the observer is out of date: run python -m thermicon.perception.validation.calibrate"
@@ -35,12 +35,12 @@ def test_predicted_records_do_not_reach_the_observer() -> None:
     assert to_toml(calibrate(kept)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
 
 
-def test_references_reach_only_the_model_that_is_theirs() -> None:
+def test_references_do_not_reach_the_observer() -> None:
     table = load_thresholds()
 
     def doubled(record: Record) -> Record:
-        own = record.use == "reference" and record.quantity not in MODEL_CONSTANTS
-        return replace(record, value=2.0 * record.central, low=None, high=None) if own else record
+        reference = record.use == "reference"
+        return replace(record, value=2.0 * record.central, low=None, high=None) if reference else record
 
     other = Table(table.name, tuple(doubled(r) for r in table))
     assert other != table
@@ -49,10 +49,10 @@ def test_references_reach_only_the_model_that_is_theirs() -> None:
 
 def test_every_number_of_the_observer_says_where_it_is_from() -> None:
     for record in load_records(SHIPPED):
-        assert record.use in ("calibrate", "assumed") or record.quantity in MODEL_CONSTANTS
+        assert record.use in ("calibrate", "assumed")
         assert "not calibrated" not in record.source
-    for variant in VARIANTS:
-        found = load_records(SHIPPED).select(f"memory noise{source_of(*variant)}")
+    for variant in VARIABLES:
+        found = load_records(SHIPPED).select(f"memory noise{source_of(variant)}")
         assert [r.method for r in found] == ["episodes"]
 
 
@@ -63,9 +63,9 @@ def test_constants_are_those_of_the_maximum_with_the_intervals_of_the_draws() ->
     low, _, high = PosteriorDraws.load().interval("cold limit")
     assert record.interval == pytest.approx((low, high), rel=1e-3)
     assert "Campero" in record.source
-    for variant in VARIANTS:
-        drive = shipped.one(f"threshold drive{source_of(*variant)}", channel="warm")
-        own = next(each for each in load_constants(*variant) if each.name == "warm threshold drive")
+    for variant in VARIABLES:
+        drive = shipped.one(f"threshold drive{source_of(variant)}", channel="warm")
+        own = next(each for each in load_constants(variant) if each.name == "warm threshold drive")
         assert drive.central == pytest.approx(own.value, rel=1e-3)
 
 

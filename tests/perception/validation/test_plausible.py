@@ -4,17 +4,17 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.perception import Observer
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.observer.variants import VARIANTS, Model, Variable
+from thermicon.perception.observer.variants import VARIABLES, Variable
 from thermicon.perception.procedures.classical import forced_choice
 from thermicon.perception.sensation.bench import Bench
 from thermicon.perception.validation.plausible import plausible_observers
 
 
-@pytest.mark.parametrize(("variable", "model"), VARIANTS)
-def test_draws_are_those_of_the_posterior_and_fill_it(variable: Variable, model: Model) -> None:
-    drawn = plausible_observers(16, variable=variable, model=model)
-    assert {(o.variable, o.model) for o in drawn} == {(variable, model)}
-    known = PosteriorDraws.load(variable=variable, model=model).values("noise correlation time")
+@pytest.mark.parametrize("variable", VARIABLES)
+def test_draws_are_those_of_the_posterior_and_fill_it(variable: Variable) -> None:
+    drawn = plausible_observers(16, variable=variable)
+    assert {o.variable for o in drawn} == {variable}
+    known = PosteriorDraws.load(variable=variable).values("noise correlation time")
     noise = np.array([o.noise_correlation_s for o in drawn])
     assert set(noise.tolist()) <= set(known.tolist())
     assert 3 <= (noise < np.median(known)).sum() <= 13

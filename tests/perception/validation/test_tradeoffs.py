@@ -1,24 +1,21 @@
 import math
 
 import pytest
-from matplotlib.colors import to_hex
 
-from thermicon.circuit.solver.draw import COOL, WARM
 from thermicon.perception.validation.tradeoffs import Answers, chance_of_as_few, correlation, trade_offs
-from thermicon.perception.validation.validate_maps import TRADE_OFF, _opposed
 
 UP = tuple(float(k) for k in range(20))
 DOWN = UP[::-1]
 
 
-def answers(label: str, each: tuple[float, ...], below: float, away: int, target: int = 1) -> Answers:
-    return Answers(target, label, each, tuple(value < below for value in each), away)
+def answers(label: str, each: tuple[float, ...], below: float, away: int) -> Answers:
+    return Answers(label, each, tuple(value < below for value in each), away)
 
 
 def test_two_that_both_must_fall_and_move_apart_are_against_each_other_and_rarely_hold_together() -> None:
-    (found,) = trade_offs([answers("a", UP, 10, 1), answers("b", DOWN, 10, 1, target=2)])
+    (found,) = trade_offs([answers("a", UP, 10, 1), answers("b", DOWN, 10, 1)])
     assert (found.correlation, found.first_holds, found.second_holds, found.both_hold) == (-1.0, 0.5, 0.5, 0.0)
-    assert (found.against, found.rarer, found.both_miss, found.across) == (True, True, True, True)
+    assert (found.against, found.rarer, found.both_miss) == (True, True, True)
     assert found.by_chance == 0.25
 
 
@@ -46,10 +43,3 @@ def test_few_draws_tell_nothing() -> None:
 def test_ranks_share_ties_and_what_is_not_felt_comes_last() -> None:
     assert correlation((1.0, 1.0, 2.0), (3.0, 3.0, math.inf)) == 1.0
     assert correlation((1.0, 1.0), (1.0, 2.0)) is None
-
-
-def test_the_caption_names_the_colours_of_correlations() -> None:
-    name, caption, _ = TRADE_OFF
-    assert name == "trade-offs"
-    assert "Orange: both rise; blue: one falls" in caption
-    assert [to_hex(_opposed()(place)) for place in (0.0, 1.0)] == [COOL, WARM]

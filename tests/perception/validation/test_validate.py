@@ -14,11 +14,10 @@ from thermicon.circuit.records import Table
 from thermicon.icons import load_library
 from thermicon.perception import rank
 from thermicon.perception.observer.observer import load_thresholds
-from thermicon.perception.observer.variants import VARIANTS
+from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.validation.targets import load_targets, published_for
-from thermicon.perception.validation.validate import ValidationReport, answers, assemble, validate, variant_name
+from thermicon.perception.validation.validate import ValidationReport, answers, assemble, validate
 from thermicon.perception.validation.validate_file import report_file
-from thermicon.perception.validation.validate_maps import FIGURES, TRADE_OFF, _codes
 from thermicon.perception.validation.waves import GROUPS, LIBRARY, SHAPES, wave_name
 
 
@@ -32,7 +31,7 @@ def test_every_target_and_row_is_there_for_every_variant(report: ValidationRepor
     for section in report.sections:
         assert [line.row for line in section.lines] == list(section.target.rows)
         for line in section.lines:
-            assert [(one.predicted.variable, one.predicted.model) for one in line.judged] == list(VARIANTS)
+            assert [one.predicted.variable for one in line.judged] == list(VARIABLES)
             for one in line.judged:
                 assert (one.verdict.holds is None) == (not line.row.judged)
                 assert one.predicted.unit == line.row.unit
@@ -61,7 +60,7 @@ def test_what_is_made_of_both_channels(report: ValidationReport) -> None:
     assert ratio.value == pytest.approx((cold.value or 0.0) / (warm.value or 1.0))
     assert ratio.draws == pytest.approx(np.divide(cold.draws, warm.draws))
     events = report.sections[7].lines[0].judged[0].predicted
-    raw = report.evidence.find(*VARIANTS[0], "step and return near threshold", "report of the return", "cold")
+    raw = report.evidence.find(VARIABLES[0], "step and return near threshold", "report of the return", "cold")
     assert events.value == pytest.approx(1.0 + (raw.value or 0.0))
     touch = report.sections[4].lines[-1].judged[0].predicted
     assert (touch.value or 0.0) < 0.0
@@ -100,12 +99,12 @@ def test_which_does_better(report: ValidationReport) -> None:
     missed = replace(line.judged[0], verdict=replace(line.judged[0].verdict, holds=False, miss=1.5))
     line = replace(line, judged=(missed, *line.judged[1:]))
     near, far = line.judged[0], replace(line.judged[1], verdict=replace(line.judged[1].verdict, miss=9.0))
-    assert replace(line, judged=(near, far, near)).nearer == "neither, temperature nearer"
-    assert replace(line, judged=(near, near, near)).nearer == "neither"
+    assert replace(line, judged=(near, far)).nearer == "neither, temperature nearer"
+    assert replace(line, judged=(near, near)).nearer == "neither"
     holds = replace(near, verdict=replace(near.verdict, holds=True))
-    assert replace(line, judged=(holds, far, near)).nearer == "temperature"
-    assert replace(line, judged=(far, holds, near)).nearer == "heat flow"
-    assert replace(line, judged=(holds, holds, near)).nearer == "both"
+    assert replace(line, judged=(holds, far)).nearer == "temperature"
+    assert replace(line, judged=(far, holds)).nearer == "heat flow"
+    assert replace(line, judged=(holds, holds)).nearer == "both"
 
 
 def test_shares_of_draws_and_trade_offs(report: ValidationReport) -> None:
@@ -123,38 +122,15 @@ def test_the_waves_of_a_group_differ_in_shape_alone() -> None:
         assert len({(c.duration_s, c.lowest, c.highest) for c in lowered}) == 1
 
 
-def test_every_figure_is_drawn(report: ValidationReport) -> None:
-    for name, caption, draw in [one for those in FIGURES.values() for one in those] + [TRADE_OFF]:
-        figure = draw(report)
-        figure.canvas.draw()
-        assert caption.endswith(".")
-        assert name == name.lower()
-        labels = [text for ax in figure.axes for text in (ax.get_xlabel(), ax.get_ylabel())]
-        assert any(labels), name
-    assert sorted(FIGURES) == list(range(1, 9))
-    assert _codes(["1 a", "2 b"]) == ["1a", "2a"]
-
-
-@pytest.mark.slow
-def test_figures_without_draws() -> None:
-    bare = validate(people=2, draws=0)
-    assert bare.trade_offs == ((), (), ())
-    for _, _, draw in [one for those in FIGURES.values() for one in those] + [TRADE_OFF]:
-        draw(bare).canvas.draw()
-    (text,) = TRADE_OFF[2](bare).axes[0].texts
-    assert text.get_text() == "too few draws for correlations"
-
-
 def test_messages(report: ValidationReport) -> None:
     with pytest.raises(ValueError, match=r"a spread between persons needs at least two of them, not 1"):
         validate(people=1)
     with pytest.raises(ValueError, match=r"an interval needs at least two draws, or 0 for none, not 1"):
         validate(draws=1)
     with pytest.raises(ValueError, match=r"no prediction of 'x' \(cold\) by 'rate curve'"):
-        report.evidence.find("temperature", "adapting", "rate curve", "x", "cold")
+        report.evidence.find("temperature", "rate curve", "x", "cold")
     row = replace(load_targets()[0].rows[0], experiment="nothing")
     target = replace(load_targets()[0], rows=(row,))
     was = {(1, row.label): published_for(row, load_thresholds())}
     with pytest.raises(ValueError, match=r"no experiment 'nothing' predicts 'largest change"):
         assemble([target], was, load_thresholds(), report.evidence, 12, 8, 0, 48)
-    assert [variant_name(*variant) for variant in VARIANTS] == ["temperature", "heat flow", "Ring & de Dear"]

@@ -1,60 +1,60 @@
-"""The part of the validation page that shows what the constants were inferred from."""
+"""What the constants were inferred from, as tables for a terminal of 80 columns."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from typing import TYPE_CHECKING
 
 from thermicon.perception.inference.onset_stages import OnsetStages
 from thermicon.perception.inference.results import UNMOVED_SD
 from thermicon.perception.inference.table_text import UNITS, number, signed, span
-from thermicon.perception.observer.variants import VARIANTS
-from thermicon.perception.validation.comparisons import experiment_title
+from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.validation.conditioning import (
     EDGE,
     AblatedMechanism,
     ConditionedRow,
     Conditioning,
     InferredConstant,
+    experiment_title,
 )
 from thermicon.perception.validation.magnitudes import CHANGES_K
-from thermicon.perception.validation.validate import variant_name
 
-from .blocks import Bullets, Cell, Grid, Heading, MarkdownBlock, Text, grid
+from .tables import show, table
 
-NAMES = tuple(variant_name(*variant) for variant in VARIANTS)
+if TYPE_CHECKING:
+    from rich.table import Table
+
+NAMES = VARIABLES
 TITLE = "Experiments the constants were inferred from"
 ROW_UNITS = {"1": "", "0-100": "of 100"}
+FITTED = " temp.  flow"
+HEADS = ("published", FITTED, "left out, 95 %")
+KEY = (
+    "± and 95 %: of what would be measured. temp., flow: fitted by receptors that respond to temperature and to "
+    "heat flow. ✓ the published number is inside, ✗ it is not."
+)
+MARKS = "= not moved by the evidence, ↕ at an edge of the prior."
+IN_LABEL = ("ln", "log10", "ln per decade")
+"""Units that the name of a row says already."""
 
 
-def conditioning_blocks(known: Conditioning) -> Iterator[MarkdownBlock]:
-    """Yield the section: rows, misses, constants, ablation, onsets and sizes."""
-    yield Heading(TITLE)
-    yield Text(summary_text(known))
-    head = ("row", "published [95 %]", *(f"fitted, {name}" for name in NAMES), "left out [95 %]", "miss (SD)")
+def show_conditioning(known: Conditioning) -> None:
+    """Print rows, misses, constants, ablation, onsets and sizes."""
+    show(TITLE, summary_text(known), KEY, "")
     for key in dict.fromkeys(each.row.experiment for each in known.rows):
-        yield Heading(heading(key), 3)
-        yield Grid(head, tuple(_row(each) for each in known.rows if each.row.experiment == key))
-    yield Heading("Rows that are missed, and the mechanism suspected", 3)
-    yield Bullets(tuple(missed_text(each) for each in known.missed))
-    yield Heading("Constants", 3)
-    yield Text(unmoved_text(known))
-    yield Text(edge_text(known))
-    yield grid(
-        ("constant", "value", "95 %", "prior 95 %", "SD left", "place in prior", ""),
-        [_constant(each) for each in known.constants],
-    )
-    yield Heading("What each mechanism is worth", 3)
-    yield Text(
-        "Log evidence against the whole observer when a mechanism is replaced and the constants are inferred again; "
-        "differences under 2 say nothing."
-    )
-    yield grid(
-        ("observer", "in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)", "sources"),
-        [_ablated(each) for each in known.ablation],
-    )
-    yield Heading("Onsets of the six icons by stage, and sizes of sensations", 3)
-    yield grid(("icon", *STAGES), [(s.icon, *stage_numbers(s)) for s in known.stages])
-    yield grid(("channel", *NAMES), [(channel, *cells) for channel, cells in magnitude_cells(known).items()])
+        rows = table("", *HEADS, numbers=HEADS, names=HEADS)
+        for each in known.rows:
+            if each.row.experiment == key:
+                rows.add_row(*_row(each))
+        show(heading(key), rows, "")
+    show("Left out, these rows are missed:", *(f"  - {missed_text(each)}" for each in known.missed), "")
+    show("Constants", _constants(known), MARKS, unmoved_text(known), edge_text(known), "")
+    show("What each mechanism is worth (differences of log evidence under 2 say nothing)", _ablation(known), "")
+    show("Onsets of the six icons by stage, s", _stages(known), "")
+    sizes = table("", *NAMES)
+    for channel, cells in magnitude_cells(known).items():
+        sizes.add_row(channel, *cells)
+    show(f"Peak d′ of a change by {CHANGES_K[0]:g} K, and just noticeable steps to {CHANGES_K[1]:g} K", sizes, "")
 
 
 def heading(key: str) -> str:
@@ -116,16 +116,11 @@ def ablated_name(each: AblatedMechanism) -> str:
     run = each.run
     if run.without:
         return f"without {run.without}"
-    if run.model == "ring-de-dear":
-        return "Ring & de Dear"
     return run.variable if run.difference else f"{run.variable} (the whole observer)"
 
 
-STAGES = ("channel", "skin, receptor", "nerve", "cord", "decision", "onset (s)")
-
-
 def stage_numbers(stages: OnsetStages) -> tuple[str, ...]:
-    """Format the stages of an onset, s, in the order of `STAGES`."""
+    """Format the stages of an onset, s, in the order of the table."""
     seconds = (stages.receptor_s, stages.nerve_s, stages.cord_s, stages.decision_s, stages.onset_s)
     return (stages.channel, *(f"{each:.2f}" for each in seconds))
 
@@ -145,42 +140,61 @@ def row_unit(unit: str) -> str:
     return ROW_UNITS.get(unit, unit)
 
 
-def _row(each: ConditionedRow) -> tuple[Cell, ...]:
+def _row(each: ConditionedRow) -> tuple[str, ...]:
     row = each.row
-    unit = row_unit(row.unit)
-    published = f"{number(row.published)} [{span(row.published_low, row.published_high)}]"
-    kind = "holds" if each.covered else "misses"
+    unit = "" if row.unit in IN_LABEL else row_unit(row.unit)
+    error = 0.5 * (row.published_high - row.published_low)
+    label = row.label.removesuffix(", both")
     return (
-        Cell(f"{row.label.removesuffix(', both')}{f' ({unit})' if unit else ''}"),
-        Cell(published),
-        *(Cell(number(value)) for value in (row.fitted, row.heat_flow, row.ring_de_dear)),
-        Cell(f"{number(row.left_out)} [{span(row.left_out_low, row.left_out_high)}]", kind),
-        Cell(signed(row.score, 1)),
+        f"{label}{f', {unit}' if unit else ''}",
+        f"{_short(row.published)} ±{_short(error)}",
+        "".join(f"{_short(value):>6}" for value in (row.fitted, row.heat_flow)),
+        f"{_short(row.left_out)}, {_both(row.left_out_low, row.left_out_high)} {'✓' if each.covered else '✗'}",
     )
 
 
-def _constant(each: InferredConstant) -> tuple[str, ...]:
-    constant = each.constant
-    unit = UNITS.get(constant.unit, constant.unit)
-    marks = [word for word, said in (("not moved", not each.moved), ("at an edge", each.at_edge)) if said]
-    return (
-        constant.name,
-        f"{number(constant.value)} {unit}".strip(),
-        span(constant.low, constant.high),
-        span(constant.prior_low, constant.prior_high),
-        f"{constant.narrowed:.2f}",
-        f"{100 * each.quantile:.0f} %",
-        ", ".join(marks),
-    )
+def _short(value: float) -> str:
+    """Two figures, as many as fit side by side.
+
+    >>> _short(-0.0954), _short(1072.95), _short(1.0)
+    ('−0.095', '1073', '1')
+    """
+    digits = 1 - math.floor(math.log10(abs(value))) if value else 0
+    text = f"{value:.{max(digits, 0)}f}"
+    return (text.rstrip("0").rstrip(".") if "." in text else text).replace("-", "−")
 
 
-def _ablated(each: AblatedMechanism) -> tuple[str, ...]:
-    run = each.run
-    return (
-        ablated_name(each),
-        each.replaced_by,
-        signed(run.difference, 1),
-        f"{run.squares:.1f}",
-        f"{run.worst} ({signed(run.worst_sd, 1)})",
-        "; ".join(each.sources),
-    )
+def _both(low: float, high: float) -> str:
+    return f"{_short(low)}…{_short(high)}"
+
+
+def _constants(known: Conditioning) -> Table:
+    rows = table("", "value", "95 %", "prior 95 %", "SD left", numbers=("value", "95 %", "prior 95 %", "SD left"))
+    for each in known.constants:
+        constant = each.constant
+        unit = UNITS.get(constant.unit, constant.unit)
+        rows.add_row(
+            f"{constant.name}{f', {unit}' if unit else ''}",
+            number(constant.value),
+            _both(constant.low, constant.high),
+            _both(constant.prior_low, constant.prior_high),
+            f"{constant.narrowed:.2f}{' =' if not each.moved else ' ↕' if each.at_edge else '  '}",
+        )
+    return rows
+
+
+def _ablation(known: Conditioning) -> Table:
+    rows = table("", "log evidence", "Σ(miss/SD)²", "worst row (SD)", numbers=("log evidence", "Σ(miss/SD)²"))
+    for each in known.ablation:
+        run = each.run
+        worst = f"{run.worst} ({signed(run.worst_sd, 1)})"
+        rows.add_row(ablated_name(each), signed(run.difference, 1), f"{run.squares:.1f}", worst)
+    return rows
+
+
+def _stages(known: Conditioning) -> Table:
+    heads = ("skin, receptor", "nerve", "cord", "decision", "onset")
+    rows = table("", "", *heads, numbers=heads)
+    for each in known.stages:
+        rows.add_row(each.icon, *stage_numbers(each))
+    return rows
