@@ -146,8 +146,8 @@ class AnyLoop:
         """Hard rules of temperature with a driver at its limit from either state, and without current afterwards."""
         ensemble, judged = self.module.ensemble, []
         for state, current_A in zip(begun, (limits_A[1], limits_A[0]), strict=True):
-            what = f", display at the cut-off, then {current_A:g} A for {reaction_s:g} s"
-            tally = Tally(ensemble.rig.limits, ensemble.corners, what.replace("-", "−"))
+            what = f", display at the cut-off, then {current_A:g} A for {reaction_s:g} s".replace("then -", "then −")
+            tally = Tally(ensemble.rig.limits, ensemble.corners, what)
             rows: Array = np.linspace(0.0, reaction_s, 5)
             for start_s, amperes, times in ((0.0, current_A, rows), (reaction_s, 0.0, AFTER_ROWS_S)):
                 values, state = ensemble.hold(amperes, state, times)

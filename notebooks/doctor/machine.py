@@ -29,7 +29,7 @@ def check_cache() -> Iterator[Finding]:
     try:
         private_folder(current)
     except NotPrivate as problem:
-        text = f"nothing can be kept, so that every run compiles its code again, about a minute ({problem})"
+        text = f"nothing can be kept, so that every run compiles its code again, about half a minute ({problem})"
         yield Finding("cache", "note", text, "set THERMICON_CACHE to a folder that only you can write to")
         return
     total = sum(sizes(cache.rglob("*"))) / 1e6
