@@ -36,7 +36,8 @@
 #define THERMICON_TEST_S @TEST_S@
 #define THERMICON_TEST_FALL_K @TEST_FALL_K@
 
-/* The loop that was judged: gains in A/K, A/(K s) and A s/K, and current limits, which the output never leaves. */
+/* With set-points, the loop that was judged (otherwise not used): gains in A/K, A/(K s) and A s/K, and current limits,
+   which the output never leaves. */
 #define THERMICON_KP @KP@
 #define THERMICON_KI @KI@
 #define THERMICON_KD @KD@

@@ -107,7 +107,8 @@ def demands_text(gates: Sequence[Named]) -> str:
     loop = every[0][1].loop  # of set-points: one for all icons
     cut_off = f"cut-off at {number(low, 1)} and {number(high, 1)} °C on "
     cut_off += "the measured display" if loop is None else "a second sensor of the display"
-    parts.append(cut_off if within < QUICKEST_S else f"{cut_off} within {within:g} s")
+    quick = f"within {within:g} s" if within >= QUICKEST_S else "(too slow for a driver stuck at its limit)"
+    parts.append(f"{cut_off} {quick}")
     limits = [one.current_limit_A for _, one in every if one.current_limit_A is not None]
     if limits:
         least, most = max(low for low, _ in limits), min(high for _, high in limits)
@@ -124,7 +125,7 @@ def demands_text(gates: Sequence[Named]) -> str:
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]
     rested = [(name, one) for name, one in every if one.rest_before_first_play_s]
     if unrested:
-        parts.append("warming up before the first play" + _of(_names(unrested), len(unrested) < len(every)))
+        parts.append("a display at its baseline before it touches the skin" + _of(_names(unrested), len(unrested) < len(every)))
     elif rested:
         parts.append(f"rest held for {_longest(every)} before the first play")
     limited = [(name, one) for name, one in every if one.zero_current_at_most_s is not None]

@@ -157,7 +157,7 @@ class TestWords:
         ready = [replace(glow.prepared[0], verdict=replace(gate, demands=worse)), glow.prepared[1]]
         demanded = dict(gate_words(ready))["the hardware must provide"]
         assert demanded.startswith("a current that cannot hang (glow), for which no watchdog is quick enough, cut-off")
-        assert "warming up before the first play (glow)" in demanded
+        assert "a display at its baseline before it touches the skin (glow)" in demanded
         assert "zero current in contact for 120 s at most" in demanded
 
     def test_the_page_has_short_scenarios_with_the_full_ones_to_point_at(self) -> None:
