@@ -193,7 +193,9 @@ class Faulty:
                 middle = (low + high) // 2
                 low, high = (low, middle) if tally_after(float(middle)).passes() else (middle, high)
             rest = float(high) if tally_after(float(high)).passes() else None
-        prevented = "nothing need be" if rest == 0.0 else "no rest up to 10 min; bring the display to its baseline before it touches the skin"
+        prevented = "nothing need be"
+        if rest is None:
+            prevented = "no rest up to 10 min; bring the display to its baseline before it touches the skin"
         if rest:
             prevented = f"holding the rest for {rest:g} s before the first play, without contact or with"
         colour = colour_of(findings)

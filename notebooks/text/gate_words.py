@@ -125,7 +125,8 @@ def demands_text(gates: Sequence[Named]) -> str:
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]
     rested = [(name, one) for name, one in every if one.rest_before_first_play_s]
     if unrested:
-        parts.append("a display at its baseline before it touches the skin" + _of(_names(unrested), len(unrested) < len(every)))
+        whose = _of(_names(unrested), len(unrested) < len(every))
+        parts.append(f"a display at its baseline before it touches the skin{whose}")
     elif rested:
         parts.append(f"rest held for {_longest(every)} before the first play")
     limited = [(name, one) for name, one in every if one.zero_current_at_most_s is not None]
