@@ -32,7 +32,7 @@ class Faults:
 
     @property
     def unsafe(self) -> dict[str, dict[str, float]]:
-        """Limits of skin and display that are passed, by fault: the hot plate is not judged during one, as is stated."""
+        """Limits of skin and display that are passed, by fault; the hot plate is not judged during one."""
         passed = {
             fault: {what: by_K for what, by_K in worst.unsafe.items() if not what.startswith("hot plate")}
             for fault, worst in self.worst.items()
