@@ -19,7 +19,7 @@ from ..arrays import Array
 from ..delivery.delivery_deviation import loss_limit
 from ..delivery.samples import Samples
 from ..delivery.temperatures import past_most_cooling, rest_of_a_loop, updates_of
-from ..safety.checks import Check, worst_of
+from ..safety.checks import Check, again, worst_of
 from ..safety.demands import CutOff
 from ..safety.ensemble import LaneDrives
 from ..safety.single_faults import AFTER_ROWS_S
@@ -153,7 +153,7 @@ class AnyLoop:
                 values, state = ensemble.hold(amperes, state, times)
                 tally.add(start_s + times, values, rates=False, sums=False)
             judged.append(tally.checks())
-        return tuple(check for check in worst_of(judged) if check.severity == "hard" and check.unit == "°C")
+        return again([check for check in worst_of(judged) if check.severity == "hard" and check.unit == "°C"])
 
 
 def _whole_A(limit_A: float) -> float:
