@@ -1,7 +1,7 @@
 """What no loop around a module can pass, whatever its gains, lag, delay and supply: within current limits and cut-offs.
 
 The skin moves fastest, and the hot plate gets hottest, where a loop swings from one cut-off to the other at its current
-limits. Every temperature of skin lies between those of a display held at either cut-off for ever, since more heat in
+limits. Every temperature of skin lies between those of a display held at either cut-off indefinitely, since more heat in
 means warmer everywhere; from there the driver gets stuck at its limit until the cut-off on a second sensor acts. That
 the swings are the worst ones is a search, not a proof, so some room is kept.
 """
@@ -139,7 +139,7 @@ class AnyLoop:
         return CutOff(round(edge[0], 1), round(edge[1], 1), 0.0), within_A, checks
 
     def _held_at(self, level_C: float) -> State:
-        """Each corner with its display held at a level for ever, or as near to it as the module can."""
+        """Each corner with its display held at a level indefinitely, or as near to it as the module can."""
         return State.settled(self.bank.states([rest_of_a_loop(rig, level_C)[1] for rig in self.module.rigs]))
 
     def _stuck(self, begun: Sequence[State], limits_A: Limits_A, reaction_s: float) -> tuple[Check, ...]:
