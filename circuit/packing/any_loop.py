@@ -1,9 +1,9 @@
 """What no loop around a module can pass, whatever its gains, lag, delay and supply: within current limits and cut-offs.
 
 The skin moves fastest, and the hot plate gets hottest, where a loop swings from one cut-off to the other at its current
-limits. Every temperature of skin lies between those of a display held at either cut-off indefinitely, since more heat in
-means warmer everywhere; from there the driver gets stuck at its limit until the cut-off on a second sensor acts. That
-the swings are the worst ones is a search, not a proof, so some room is kept.
+limits. Every temperature of skin lies between those of a display held at either cut-off indefinitely, since more heat
+in means warmer everywhere; from there the driver gets stuck at its limit until the cut-off on a second sensor acts.
+That the swings are the worst ones is a search, not a proof, so some room is kept.
 """
 
 from __future__ import annotations
