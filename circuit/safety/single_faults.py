@@ -50,13 +50,12 @@ BEYOND_K = 1.0
 class Moments:
     """Instants of a play and its pause: in lanes, those of one instant side by side, with a command in A each.
 
-    `warmer` is 1 in plays from the warm bound, −1 from the cold one, 0 from rest; `stuck_A` the driver's limit.
+    `stuck_A` is the driver's limit.
     """
 
     state: State
     command_A: Array
     rigs: Index
-    warmer: Index
     instants: tuple[int, ...]
     stuck_A: float | None = None
 
@@ -101,7 +100,6 @@ class Faulty:
             State(*(np.concatenate([getattr(one, part) for one in chosen]) for part in ("nodes_C", "sink"))),
             np.repeat([commands[k] for k in which], len(rigs)),
             np.tile(rigs, len(which)),
-            np.tile(np.repeat([1, -1] if self.bounds else [0], count), len(which)),
             which,
         )
 
@@ -118,6 +116,7 @@ class Faulty:
         times = self.drive.time_s[1:]
         if len(times) < INSTANTS:
             times = np.union1d(times, np.linspace(0.0, times[-1], INSTANTS + 1)[1:])
+        times = times[np.diff(times, prepend=0.0) > 1e-9]  # equal but for rounding
         commands, chosen = self.drive.at(times - 1e-6), set()
         for part in np.array_split(np.arange(len(times))[::-1], INSTANTS):  # the last of equals comes first
             chosen |= {int(part[0]), int(part[commands[part].argmin()]), int(part[commands[part].argmax()])}
@@ -289,21 +288,22 @@ class Faulty:
 
 
 def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_s: float) -> Array:
-    """When a cut-off at two temperatures of the display (lanes, STUCK_ROWS_S) has acted in each lane.
-
-    0 in lanes that heat from the cold bound or cool from the warm one: others are there sooner with warmer skin.
-    """
+    """When a cut-off at two temperatures of the display (lanes, STUCK_ROWS_S) has acted in each lane."""
     out = ~((display > low) & (display < high))
     first = out.argmax(axis=1)
-    side = np.where(display[np.arange(len(first)), first] <= low, -1, 1) * out.any(axis=1)
-    late_s = np.minimum(HANG_S, np.where(side, STUCK_ROWS_S[first], HANG_S) + reaction_s / MARGIN)
-    return np.where(side * moments.warmer < 0, 0.0, late_s)
+    late_s = np.where(out.any(axis=1), STUCK_ROWS_S[first], HANG_S) + reaction_s / MARGIN
+    return np.minimum(HANG_S, late_s)
 
 
 def _passed(limits: Limits, values: Array) -> tuple[str, Array]:
     """By how much hard temperature limits are exceeded at most, in words, and in each lane in K; negative inside."""
     farthest, text = np.full(values.shape[1], -np.inf), "no limit is passed"
-    columns = {"skin surface": "skin_C", "display": "display_C", "cold-receptor depth": "cold_receptor_C"}
+    columns = {
+        "skin surface": "skin_C",
+        "display": "display_C",
+        "cold-receptor depth": "cold_receptor_C",
+        "hot plate": "hot_plate_C",
+    }
     for rule in limits.rules:
         if rule.severity != "hard" or rule.relative or rule.quantity not in columns or rule.above_C is not None:
             continue
