@@ -14,10 +14,10 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("icons", "circuit", "perception", "notebooks")
-ALWAYS = ("tests/perception/ranking", "tests/circuit/packing")
+ALWAYS = ("tests/perception/ranking", "tests/circuit/delivery")
 """A cluster that loses a worker, and exported drives: what costs most when it breaks."""
-SHOWN_IN_A_BROWSER = ("notebooks/workbench", "notebooks/pages", "tests/browser")
-SHOWN_IN_PAGES = ("docs/", "README.md", "notebooks/cli", "notebooks/text")
+SHOWN_IN_A_BROWSER = ("notebooks/workbench", "notebooks/report", "tests/browser")
+SHOWN_IN_PAGES = ("docs/", "README.md", "notebooks/cli", "notebooks/report")
 MOST_ROOMS = 6
 """A change of more rooms than this, such as a renaming, gets `ALWAYS` alone: all slow tests together take an hour."""
 

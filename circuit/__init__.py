@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     from .delivery.delivered_drive import DeliveredDrive
     from .delivery.deliver import deliver
     from .delivery.netlist import netlist
-    from .packing.prepare import Prepared, prepare
-    from .packing.refusal import Refusal
-    from .packing.pack import pack
-    from .packing.export import Export, ExportError, export
+    from .delivery.prepare import Prepared, prepare
+    from .delivery.refusal import Refusal
+    from .delivery.pack import pack
+    from .delivery.export import Export, ExportError, export
     from .fitting.fit import fit
     from .fitting.rig_fit import RigFit
     from .delivery.nearest import nearest_reachable
@@ -125,10 +125,10 @@ if not TYPE_CHECKING:
             "delivery.delivered_drive": "DeliveredDrive",
             "delivery.deliver": "deliver",
             "delivery.netlist": "netlist",
-            "packing.prepare": "Prepared prepare",
-            "packing.refusal": "Refusal",
-            "packing.pack": "pack",
-            "packing.export": "Export ExportError export",
+            "delivery.prepare": "Prepared prepare",
+            "delivery.refusal": "Refusal",
+            "delivery.pack": "pack",
+            "delivery.export": "Export ExportError export",
             "fitting.fit": "fit",
             "fitting.rig_fit": "RigFit",
             "delivery.nearest": "nearest_reachable",

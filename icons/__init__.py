@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from .model.family import Family
     from .model.iconset import IconSet
     from .files.shipped import library_names, load_library, read_cue
-    from .files.gallery import library
+    from .pictures.gallery import library
     from .language.parse import parse
     from .language.layout import format_text
     from .files.exchange import to_json
     from .recordings.recorded import from_csv
-    from .papers.bibtex import bibtex
-    from .papers.methods import methods
+    from .files.bibtex import bibtex
+    from .files.methods import methods
     from .model.builders import back, cool, current, hold, play, ramp, repeat, rest, total, warm
     from .model.wave_builders import pulse, sawtooth, sine, square, step, triangle
 
@@ -70,13 +70,13 @@ if not TYPE_CHECKING:
             "model.family": "Family",
             "model.iconset": "IconSet",
             "files.shipped": "library_names load_library read_cue",
-            "files.gallery": "library",
+            "pictures.gallery": "library",
             "language.parse": "parse",
             "language.layout": "format_text",
             "files.exchange": "to_json",
             "recordings.recorded": "from_csv",
-            "papers.bibtex": "bibtex",
-            "papers.methods": "methods",
+            "files.bibtex": "bibtex",
+            "files.methods": "methods",
             "model.builders": "back cool current hold play ramp repeat rest total warm",
             "model.wave_builders": "pulse sawtooth sine square step triangle",
         },

@@ -6,7 +6,7 @@ from .startup import guard, print_anywhere
 def _examine(error: BaseException) -> int:
     import sys
 
-    from .doctor.examine import doctor
+    from .cli.examine import doctor
 
     print_anywhere()
     return doctor("--json" in sys.argv, error)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.front_door import door
 
 # Bound at once: the function has the name of its room, which would take its place.
-from .sensitivity.sensitivity import Sensitivity, sensitivity
+from .ranking.sensitivity import Sensitivity, sensitivity
 
 if TYPE_CHECKING:
     from .observer.observer import CHANNELS, NORMS, Observer
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from .identification.measures import information_bits, proportion_correct
     from .observer.people import draw_people
     from .sensation.bench import Bench, Stimulus
-    from .procedures.classical import choice_reaction_time, forced_choice, method_of_limits, yes_no
-    from .procedures.levels import method_of_levels
-    from .procedures.prepulse import CoolingAfterPulse, cooling_after_pulse
-    from .procedures.psychometric import PsychometricFunction, psychometric_function
-    from .procedures.rating import Ratings, magnitude_rating
-    from .procedures.repeated_limits import RepeatedLimits, repeated_limits
-    from .procedures.thermode_lag import ThermodeLag, thermode_lag
-    from .comparison.distance_components import DistanceComponent, distance_components
+    from .experiments.classical import choice_reaction_time, forced_choice, method_of_limits, yes_no
+    from .experiments.levels import method_of_levels
+    from .experiments.prepulse import CoolingAfterPulse, cooling_after_pulse
+    from .experiments.psychometric import PsychometricFunction, psychometric_function
+    from .experiments.rating import Ratings, magnitude_rating
+    from .experiments.repeated_limits import RepeatedLimits, repeated_limits
+    from .experiments.thermode_lag import ThermodeLag, thermode_lag
+    from .ranking.distance_components import DistanceComponent, distance_components
     from .selection.goal import Goal
     from .selection.request import ChoiceError, Selection
     from .selection.choose import Choice, choose
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
     from .ranking.scores import IconScore, PairScore
     from .identification.task import Task
     from .ranking.rank import rank
-    from .ranking.frontier import Frontier, frontier
+    from .selection.frontier import Frontier, frontier
     from .identification.map import PerceptualMap, map_of, perceptual_map
     from .pilot.observed import observed
     from .pilot.plan import plan
-    from .validation.validate import ValidationReport, validate
+    from .evidence.validate import ValidationReport, validate
     from .identification.delivered import PerceivedChange, judge_delivered
 
 # In the order of the flow.
@@ -120,14 +120,14 @@ if not TYPE_CHECKING:
             "identification.measures": "information_bits proportion_correct",
             "observer.people": "draw_people",
             "sensation.bench": "Bench Stimulus",
-            "procedures.classical": "choice_reaction_time forced_choice method_of_limits yes_no",
-            "procedures.levels": "method_of_levels",
-            "procedures.prepulse": "CoolingAfterPulse cooling_after_pulse",
-            "procedures.psychometric": "PsychometricFunction psychometric_function",
-            "procedures.rating": "Ratings magnitude_rating",
-            "procedures.repeated_limits": "RepeatedLimits repeated_limits",
-            "procedures.thermode_lag": "ThermodeLag thermode_lag",
-            "comparison.distance_components": "DistanceComponent distance_components",
+            "experiments.classical": "choice_reaction_time forced_choice method_of_limits yes_no",
+            "experiments.levels": "method_of_levels",
+            "experiments.prepulse": "CoolingAfterPulse cooling_after_pulse",
+            "experiments.psychometric": "PsychometricFunction psychometric_function",
+            "experiments.rating": "Ratings magnitude_rating",
+            "experiments.repeated_limits": "RepeatedLimits repeated_limits",
+            "experiments.thermode_lag": "ThermodeLag thermode_lag",
+            "ranking.distance_components": "DistanceComponent distance_components",
             "selection.goal": "Goal",
             "selection.request": "ChoiceError Selection",
             "selection.choose": "Choice choose",
@@ -139,11 +139,11 @@ if not TYPE_CHECKING:
             "ranking.scores": "IconScore PairScore",
             "identification.task": "Task",
             "ranking.rank": "rank",
-            "ranking.frontier": "Frontier frontier",
+            "selection.frontier": "Frontier frontier",
             "identification.map": "PerceptualMap map_of perceptual_map",
             "pilot.observed": "observed",
             "pilot.plan": "plan",
-            "validation.validate": "ValidationReport validate",
+            "evidence.validate": "ValidationReport validate",
             "identification.delivered": "PerceivedChange judge_delivered",
         },
     )

@@ -17,7 +17,7 @@ import pytest
 from tests.remembered import remember_verdicts
 
 if TYPE_CHECKING:
-    from thermicon.perception.validation.validate import ValidationReport
+    from thermicon.perception.evidence.validate import ValidationReport
 
 # Many tests start interpreters of their own: what one has compiled to bytecode, the next need not.
 sys.dont_write_bytecode = False
@@ -83,7 +83,7 @@ def validation_report(tmp_path_factory: pytest.TempPathFactory) -> ValidationRep
     """One small validation report for all tests and for all processes that run them: it takes long to compute."""
     from filelock import FileLock
 
-    from thermicon.perception.validation.validate import validate
+    from thermicon.perception.evidence.validate import validate
 
     kept = shared_folder(tmp_path_factory) / "validation_report.pickle"
     with FileLock(f"{kept}.lock"):

@@ -14,7 +14,7 @@ import pytest
 
 def remember_verdicts(patch: pytest.MonkeyPatch, folder: Path) -> None:
     """Keep what exports ask of the gate in a folder, under a hash of all arguments; errors are not kept."""
-    from thermicon.circuit.packing import worstcase
+    from thermicon.circuit.delivery import worstcase
 
     for name in ("gate_set", "gate_shown", "gate_controlled"):
         patch.setattr(worstcase, name, _remembered(getattr(worstcase, name), folder / name))

@@ -36,7 +36,7 @@ slow_tests, lowest = script("slow_tests"), script("lowest")
         ("circuit/delivery/formats/tdms.py", {"tests/circuit/delivery/formats"}),
         ("circuit/rigs/thenar.toml", {"tests/circuit"}),
         ("circuit/inputs.py", {"tests/circuit"}),
-        ("tests/perception/validation/test_targets.py", {"tests/perception/validation"}),
+        ("tests/perception/evidence/test_targets.py", {"tests/perception/evidence"}),
         ("notebooks/workbench/canvas_parts/draw.js", {"tests/browser", "tests/notebooks/workbench"}),
         ("notebooks/01_first_icon.ipynb", {"tests/notebooks"}),
         ("tests/browser/test_canvas_page.py", {"tests/browser"}),
@@ -57,7 +57,7 @@ def test_some_slow_tests_run_after_any_change() -> None:
 
 
 def test_a_folder_inside_another_is_not_run_twice() -> None:
-    selected = slow_tests.selection(["circuit/inputs.py", "circuit/packing/export.py"])
+    selected = slow_tests.selection(["circuit/inputs.py", "circuit/delivery/export.py"])
     assert [room for room in selected if room.startswith("tests/circuit")] == ["tests/circuit"]
 
 

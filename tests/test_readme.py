@@ -20,15 +20,15 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.notebooks.study.keys_table import keys_table
-from thermicon.notebooks.text.schema_table import (
+from thermicon.notebooks.report.schema_table import (
     device_keys_table,
     device_quantities_table,
     modules_table,
     rig_keys_table,
 )
-from thermicon.perception.posterior import posterior_tables as tables
-from thermicon.perception.validation.memory_forms import forms_table
+from thermicon.notebooks.study.keys_table import keys_table
+from thermicon.perception.evidence import posterior_tables as tables
+from thermicon.perception.evidence.memory_forms import forms_table
 
 ROOT = Path(__file__).resolve().parents[1]
 README = ROOT / "README.md"
@@ -219,10 +219,10 @@ def draw_mechanisms(folder: Path) -> None:
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import load_library
     from thermicon.perception import Observer, perceive
+    from thermicon.perception.evidence.effects import EFFECTS
+    from thermicon.perception.evidence.onset_stages import onset_stages
+    from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
     from thermicon.perception.identification.episodes import remembered
-    from thermicon.perception.inference.effects import EFFECTS
-    from thermicon.perception.inference.onset_stages import onset_stages
-    from thermicon.perception.inference.results import load_ablation, load_constants, load_predictions
     from thermicon.perception.plots.draw_effects import plot_effect, plot_onset_stages
     from thermicon.perception.plots.draw_evidence import (
         plot_ablation,

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import prod
-from typing import TYPE_CHECKING
 
+from ..drawn import Drawn
 from .context import Context, Metadata, name_fault
 from .expand import HOLE, Expander
 from .family_check import Summary, check_family
@@ -15,16 +15,13 @@ from .parameter import Parameter
 from .slots import Slot, in_order, slot_fault
 from .statements import Statement
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 MOST_MEMBERS = 100_000
 """Members of a family, and of all families of a file: each is checked exactly."""
 FEWER = "take larger steps or fewer parameters, or split the family over several files"
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Family:
+class Family(Drawn):
     r"""Icons that differ only in the values of their parameters.
 
     A family is a sequence: ``len``, ``family[3]``, iteration and ``in`` work without creating all members. Members are
@@ -167,12 +164,6 @@ class Family:
         rest, found = self._checked
         return found if rest_level(self.context, start) == rest else check_family(self._expander, self.context, start)
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw up to 24 members, evenly chosen, over one another; returns the Axes."""
-        from ..pictures.draw import plot_family
-
-        return plot_family(self, ax)
-
     def __str__(self) -> str:
         from .format import icon_text
 
@@ -181,11 +172,6 @@ class Family:
     def __repr__(self) -> str:
         over = ", ".join(map(str, self.parameters))
         return f"<Family {self.name}: {len(self):,} icons over {over}, control {self.context.control}>"
-
-    def _repr_html_(self) -> str:
-        from ..pictures.picture import picture
-
-        return picture(self)
 
     def _at(self, places: list[int]) -> Icon:
         members = self._expander

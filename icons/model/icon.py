@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
+from ..drawn import Drawn
 from .check import ASSUMED_BASELINE_C, Problem, problems
 from .context import Context, Metadata, name_fault
 from .corners import Corners, Quantity, corners
@@ -17,12 +17,9 @@ from .statements import LEAVES, Play, Repeat, Statement
 from .units import exact
 from .value_limits import fault
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Icon:
+class Icon(Drawn):
     """A thermal icon: statements that start from a baseline, with their context and metadata.
 
     Parameters
@@ -95,12 +92,6 @@ class Icon:
         """SHA-256 of the canonical text, as 64 hexadecimal digits: equal icons have equal hashes, everywhere."""
         return content_hash(str(self))
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw the icon against time, on ``ax`` or on a new figure, and return the Axes."""
-        from ..pictures.draw import plot_icon
-
-        return plot_icon(self, ax)
-
     def __str__(self) -> str:
         return icon_text(self)
 
@@ -112,11 +103,6 @@ class Icon:
             f"<Icon {self.name}: {corners.duration_s:.6g} s, {corners.lowest:.6g} to {corners.highest:.6g} {unit}, "
             f"at most {corners.steepest_per_s:.6g} {unit}/s, control {self.context.control}{assumed}>"
         )
-
-    def _repr_html_(self) -> str:
-        from ..pictures.picture import picture
-
-        return picture(self)
 
     def _prove(self, level: Fraction) -> None:
         found = problems(self.statements, self.context.control, level)

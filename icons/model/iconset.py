@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
+from ..drawn import Drawn
 from .context import Context, Metadata, name_fault, text_fault
 from .family import Family
 from .family_check import Summary, joined
@@ -12,9 +13,6 @@ from .format import set_text
 from .icon import Icon, content_hash, played_icons
 from .units import quantity
 from .words import nearest
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 _MOST_NAMES = 50
 
@@ -59,7 +57,7 @@ class Members(Sequence[Icon]):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class IconSet:
+class IconSet(Drawn):
     """Icons and families with a common context; ``set["name"]`` is an icon, a family or a member of a family.
 
     Parameters
@@ -180,12 +178,6 @@ class IconSet:
                 return member
         return None
 
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw up to 24 icons, evenly chosen, over one another against time, and return the Axes."""
-        from ..pictures.draw import plot_set
-
-        return plot_set(self, ax)
-
     def __str__(self) -> str:
         return set_text(self)
 
@@ -198,8 +190,3 @@ class IconSet:
         baseline = self.context.baseline_C
         rest = f", baseline {quantity(baseline, 'absolute')}" if baseline is not None else ""
         return f"<IconSet {self.name or '(unnamed)'}: {count}, {length} s, control {self.context.control}{rest}>"
-
-    def _repr_html_(self) -> str:
-        from ..pictures.picture import picture
-
-        return picture(self)

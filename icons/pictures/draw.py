@@ -1,18 +1,22 @@
 """Plot icons with matplotlib: the prescribed level against time, coloured by direction, or one colour an icon."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
+from functools import singledispatch
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
+from ..drawn import Drawn
+from ..model.family import Family
+from ..model.icon import Icon
+from ..model.iconset import IconSet
 from .curve_style import COLOURS, chosen, directions, evenly
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ..model.corners import Corners
-    from ..model.family import Family
-    from ..model.icon import Icon
-    from ..model.iconset import IconSet
 
 MOST_DRAWN, MOST_NAMED = 24, 8
 # Eight colours for icons by name, safe for common kinds of colour vision; dashes distinguish them in grey.
@@ -26,7 +30,14 @@ _DASHES: tuple[Literal["-"] | tuple[int, tuple[float, ...]], ...] = (
 _LONGEST_TITLE = 48
 
 
-def plot_icon(icon: "Icon", ax: "Axes | None" = None) -> "Axes":
+@singledispatch
+def plot(drawn: Drawn, ax: Axes | None = None) -> Axes:
+    """Draw an icon, a family or a set by its type, and return the Axes."""
+    raise TypeError(f"a {type(drawn).__name__} has no picture; an Icon, a Family or an IconSet has")
+
+
+@plot.register(Icon)
+def plot_icon(icon: Icon, ax: Axes | None = None) -> Axes:
     """Draw the level of an icon (°C, or A under control current) against time in s, and return the Axes.
 
     Without ``ax`` a new figure is made, outside of pyplot; nothing is shown or saved. Steps are thinner than ramps.
@@ -46,7 +57,7 @@ def plot_icon(icon: "Icon", ax: "Axes | None" = None) -> "Axes":
     return ax
 
 
-def plot_icons(icons: "Sequence[Icon]", ax: "Axes | None" = None) -> "Axes":
+def plot_icons(icons: Sequence[Icon], ax: Axes | None = None) -> Axes:
     """Draw several icons over one another, and return the Axes.
 
     Up to 8 have a colour and a dash each and a legend with their names; more are coloured by direction. Raises
@@ -59,7 +70,8 @@ def plot_icons(icons: "Sequence[Icon]", ax: "Axes | None" = None) -> "Axes":
     return _overlay(icons, [icon.name for icon in icons], f"{len(icons)} icons", ax)
 
 
-def plot_family(family: "Family", ax: "Axes | None" = None) -> "Axes":
+@plot.register(Family)
+def plot_family(family: Family, ax: Axes | None = None) -> Axes:
     """Draw up to 24 members of a family, its corners among them, over one another, and return the Axes."""
     places = chosen(tuple(map(len, family.parameters)), MOST_DRAWN)
     members = [family[place] for place in places]
@@ -71,7 +83,8 @@ def plot_family(family: "Family", ax: "Axes | None" = None) -> "Axes":
     return _overlay(members, labels, title + drawn, ax)
 
 
-def plot_set(icons: "IconSet", ax: "Axes | None" = None) -> "Axes":
+@plot.register(IconSet)
+def plot_set(icons: IconSet, ax: Axes | None = None) -> Axes:
     """Draw up to 24 icons of a set, evenly chosen, over one another, and return the Axes."""
     members = [icons.icons[place] for place in evenly(len(icons), MOST_DRAWN)]
     title = icons.title or icons.name or f"{len(icons):,} icon{'' if len(icons) == 1 else 's'}"
@@ -79,7 +92,7 @@ def plot_set(icons: "IconSet", ax: "Axes | None" = None) -> "Axes":
     return _overlay(members, [icon.name for icon in members], _short(title) + drawn, ax)
 
 
-def _overlay(icons: "Sequence[Icon]", labels: Sequence[str], title: str, ax: "Axes | None") -> "Axes":
+def _overlay(icons: Sequence[Icon], labels: Sequence[str], title: str, ax: Axes | None) -> Axes:
     from matplotlib.figure import Figure
 
     if not icons:
@@ -111,7 +124,7 @@ def _overlay(icons: "Sequence[Icon]", labels: Sequence[str], title: str, ax: "Ax
     return ax
 
 
-def _directed(ax: "Axes", corners: "Corners", width: float, alpha: float) -> None:
+def _directed(ax: Axes, corners: Corners, width: float, alpha: float) -> None:
     """Add the pieces of a curve, each in the colour of its direction."""
     from matplotlib.collections import LineCollection
 
@@ -124,12 +137,12 @@ def _directed(ax: "Axes", corners: "Corners", width: float, alpha: float) -> Non
     )
 
 
-def _rest(ax: "Axes", all_corners: "Sequence[Corners]") -> None:
+def _rest(ax: Axes, all_corners: Sequence[Corners]) -> None:
     for level in sorted({corners.value[0] for corners in all_corners}):
         ax.axhline(level, color="#999999", linestyle="--", linewidth=1, zorder=1)
 
 
-def _finish(ax: "Axes", icons: "Sequence[Icon]", all_corners: "Sequence[Corners]", title: str) -> None:
+def _finish(ax: Axes, icons: Sequence[Icon], all_corners: Sequence[Corners], title: str) -> None:
     low, high = min(corners.lowest for corners in all_corners), max(corners.highest for corners in all_corners)
     controls = {icon.context.control for icon in icons}
     half = max(0.6 * (high - low), 0.1 if controls == {"current"} else 1.0)

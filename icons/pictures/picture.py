@@ -11,15 +11,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from html import escape
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeGuard, cast
+from typing import TYPE_CHECKING
 
+from ..drawn import Drawn
+from ..model.family import Family
+from ..model.icon import Icon
+from ..model.iconset import IconSet
 from .curve_style import COLOURS, STAY, Direction, Points, chosen, directions, envelope, shown, spread, ticks
 
 if TYPE_CHECKING:
     from ..model.corners import Corners
-    from ..model.family import Family
-    from ..model.icon import Icon
-    from ..model.iconset import IconSet
 
 MOST_MEMBERS, MOST_PICTURES = 24, 12
 _COLUMNS = 3
@@ -42,7 +43,7 @@ class Curves:
     axis: str
 
 
-def picture(drawn: Icon | Family | IconSet) -> str:
+def picture(drawn: Drawn) -> str:
     """Return an icon, a family (up to 24 of its members, over one another) or a set (up to 12 pictures) as SVG.
 
     A curve with more pieces than the picture can show is drawn as the grey band that it fills.
@@ -51,9 +52,11 @@ def picture(drawn: Icon | Family | IconSet) -> str:
     >>> len(picture(read_cue("six-icons")["cooling-step"])) < 3000
     True
     """
-    if _is_set(drawn):
+    if isinstance(drawn, IconSet):
         return _grid(drawn)
-    curves = _curves(cast("Icon | Family", drawn), MOST_MEMBERS, alone=True)
+    if not isinstance(drawn, Icon | Family):
+        raise TypeError(f"a {type(drawn).__name__} has no picture; an Icon, a Family or an IconSet has")
+    curves = _curves(drawn, MOST_MEMBERS, alone=True)
     cell = _Cell(320, 196, 13, min(4, len(curves.lines)))
     return document(cell.width, cell.height, _label(curves), [cell.draw(curves)])
 
@@ -65,17 +68,9 @@ def thumbnail(entry: Icon | Family, width: int = 72, height: int = 34) -> str:
     return document(width, height, _label(curves), [_baseline(frame, curves), _paths(frame, curves, 2.0)])
 
 
-def _is_set(drawn: Icon | Family | IconSet) -> TypeGuard[IconSet]:
-    return hasattr(drawn, "entries")
-
-
-def _is_family(entry: Icon | Family) -> TypeGuard[Family]:
-    return hasattr(entry, "parameters")
-
-
 def _grid(icons: IconSet) -> str:
     entries = icons.entries[:MOST_PICTURES]
-    families = sum(_is_family(entry) for entry in entries)
+    families = sum(isinstance(entry, Family) for entry in entries)
     # Few curves a family when there are many families, so that a picture of a set stays small.
     all_curves = _alike([_curves(entry, max(3, MOST_MEMBERS // max(1, families))) for entry in entries])
     found = icons.summary()
@@ -98,7 +93,7 @@ def _grid(icons: IconSet) -> str:
         x, y = column * cell.width, 46 + row * cell.height
         parts.append(f'<g transform="translate({x} {y})">{cell.draw(curves)}</g>')
     height = 46 + cell.height * -(-len(entries) // columns)
-    if rest := len(icons) - sum(len(entry) if _is_family(entry) else 1 for entry in entries):
+    if rest := len(icons) - sum(len(entry) if isinstance(entry, Family) else 1 for entry in entries):
         parts.append(words(10, height + 13, f"and {rest:,} more", 12, width - 20))
         height += 24
     return document(width, height, f"{title}: {count}", parts)
@@ -121,8 +116,8 @@ def _curves(entry: Icon | Family, most: int, alone: bool = False) -> Curves:
     axis = "current (A)" if frame.control == "current" else f"{frame.control} (°C)"
     if alone and frame.control != "current" and frame.baseline_C is None:
         axis += ", baseline assumed"
-    if not _is_family(entry):
-        one = _fine(cast("Icon", entry))
+    if not isinstance(entry, Family):
+        one = _fine(entry)
         return Curves((one,), one.lowest, one.highest, one.duration_s, entry.name, tuple(lines), axis)
     places = chosen(tuple(map(len, entry.parameters)), most)
     drawn = f"{len(places)} drawn · " if len(places) < len(entry) else ""

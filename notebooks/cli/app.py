@@ -11,8 +11,8 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from ..text.messages import fail, interrupted, into_nowhere, is_ours, late_notes
-from ..text.number_fault import reworded
+from ..messages import fail, interrupted, into_nowhere, is_ours, late_notes
+from ..report.number_fault import reworded
 
 SENTENCE = 400
 """More letters than any first sentence of a command's help has."""

@@ -10,8 +10,8 @@ import typer
 
 from thermicon.icons.number_text import number, span
 
-from ..files.cues import MOST_ICONS, warn_of_site
-from ..text.messages import fail, note
+from ..messages import fail, note
+from .cues import MOST_ICONS, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -11,13 +11,13 @@ from thermicon.icons.number_text import number, percent
 from ..figures.differences import Aligned, align, differences, quantity, with_unit
 from ..figures.figure_look import SCREEN, Look
 from ..figures.print_figure import write_figure
-from ..files.cues import pick, read_set
 from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
-from ..text.compare_inputs import Request, check_request, kind_of_both
-from ..text.messages import DEFAULT_RIG, load_rig, note, usage
-from ..text.set_matrix import FEWEST, show_matrix
-from ..text.tables import show, table
+from ..messages import DEFAULT_RIG, load_rig, note, usage
+from ..report.compare_inputs import Request, check_request, kind_of_both
+from ..report.set_matrix import FEWEST, show_matrix
+from ..report.tables import show, table
+from .cues import pick, read_set
 from .simulate import headline
 
 if TYPE_CHECKING:

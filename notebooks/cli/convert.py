@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number
 
-from ..files.cues import pick, read_set
 from ..files.outputs import STDOUT, OutputError, check_output, complete_or_absent
-from ..text.messages import fail, note
+from ..messages import fail, note
+from .cues import pick, read_set
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet

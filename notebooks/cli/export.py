@@ -11,15 +11,15 @@ import typer
 
 from thermicon.icons.number_text import number
 
-from ..files.cues import pick, read_set, warn_of_site
 from ..files.export_folder import check_export_folder
 from ..files.exporting import PreparedExport, others, prepare_icons, write
-from ..text.gate_words import gate_words
-from ..text.messages import REFUSED, note, progress_bar
+from ..messages import REFUSED, note, progress_bar
+from ..report.gate_words import gate_words
+from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import DeliveredDrive, Rig
-    from thermicon.circuit.packing.prepare import Prepared
+    from thermicon.circuit.delivery.prepare import Prepared
 
 NUMBER = re.compile(r"\d+(\.\d+)?")
 CAUTION = (
@@ -41,7 +41,7 @@ def export_file(
 ) -> None:
     """Write the icons of a file (or the one named) as drives for a device; exit code 3 if that is refused."""
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.pack import check_names
+    from thermicon.circuit.delivery.pack import check_names
 
     form = load_format(to)
     check_export_folder(folder, replace=force)

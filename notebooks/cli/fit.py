@@ -21,8 +21,8 @@ from ..figures.figure_look import (
     figure_look,
 )
 from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..text.messages import check_changes, load_rig, note, usage
-from ..text.options import Changes, RigName
+from ..messages import check_changes, load_rig, note, usage
+from ..report.options import Changes, RigName
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, RigFit
@@ -167,8 +167,8 @@ def fit_logs(logs: Sequence[str], rig: Rig, request: Request) -> None:
 
 def show_fit(fitted: RigFit, before: Rig) -> None:
     """Print parameters, residuals, what was not identified, and the uncertainty that the rig gets."""
-    from ..text.fit_text import doubts, parameter_table, residual_table, uncertainty_line
-    from ..text.tables import show
+    from ..report.fit_text import doubts, parameter_table, residual_table, uncertainty_line
+    from ..report.tables import show
 
     show(parameter_table(fitted), "", residual_table(fitted))
     for line in doubts(fitted):
@@ -183,8 +183,8 @@ def show_plan(rig: Rig, request: Request) -> None:
     """Print how well each choice of sensors will identify the keys."""
     from thermicon.circuit.fitting.plan import plan
 
-    from ..text.fit_text import PLAN_HEAD, plan_table
-    from ..text.tables import show
+    from ..report.fit_text import PLAN_HEAD, plan_table
+    from ..report.tables import show
 
     expected = plan(rig, request.free, offset_K=request.offset_K, fixed_skin=request.fixed_skin)
     show(PLAN_HEAD, "", plan_table(expected))

@@ -9,7 +9,7 @@ from pathlib import Path
 import typer
 
 from ..files.outputs import OutputError, check_output, complete_or_absent
-from ..text.messages import BAD_INPUT, note
+from ..messages import BAD_INPUT, note
 
 
 def format_files(files: Sequence[str], check: bool) -> None:

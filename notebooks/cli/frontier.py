@@ -12,8 +12,7 @@ from thermicon.icons.number_text import count_of, number, percent
 
 from ..figures.figure_look import FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
-from ..text.choices import OBJECTIVES, GoalText, MostTime, check_totals, goal_lines
-from ..text.messages import (
+from ..messages import (
     check_bounds,
     check_changes,
     check_draws,
@@ -23,7 +22,8 @@ from ..text.messages import (
     progress_bar,
     usage,
 )
-from ..text.options import (
+from ..report.choices import OBJECTIVES, GoalText, MostTime, check_totals, goal_lines
+from ..report.options import (
     Changes,
     Draws,
     Files,
@@ -34,11 +34,11 @@ from ..text.options import (
     check_norm_option,
     check_tracking,
 )
-from ..text.tables import show, table
+from ..report.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.perception import Frontier
-    from thermicon.perception.ranking.frontier_point import FrontierPoint
+    from thermicon.perception.selection.frontier_point import FrontierPoint
 
 
 def frontier_command(
@@ -91,7 +91,7 @@ def frontier_command(
     from thermicon.perception import Goal, frontier
     from thermicon.perception.identification.laboratory import DRAWS
 
-    from ..files.cues import read_set, warn_of_frames
+    from .cues import read_set, warn_of_frames
     from .sweep import write_study
 
     check_norm_option(norm)

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from ..text.messages import Missing, check_changes, load_rig, usage
-from ..text.options import Changes, IconName, RigName, Tail, check_pause, check_tail
+from ..messages import Missing, check_changes, load_rig, usage
+from ..report.options import Changes, IconName, RigName, Tail, check_pause, check_tail
 
 
 def export_command(
@@ -71,7 +71,7 @@ def export_command(
         _alone(file, {**options, "--rig": rig, "--set": changes})
         if force or tail:
             raise usage("takes no other argument; leave out --force and --tail", "--verify")
-        from ..files.verifying import verify_folder
+        from .verifying import verify_folder
 
         verify_folder(verify)
         return

@@ -23,7 +23,7 @@ from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 from ..files.cue_document import open_document
 from ..files.outputs import check_folder, complete_or_absent, stopped_cleanly
 from ..files.start_folder import FILE, OBSERVER, RIG, VARIABLE
-from ..text.messages import check_bounds, fail, interrupted, load_observer, load_rig, note, usage
+from ..messages import check_bounds, fail, interrupted, load_observer, load_rig, note, usage
 
 FOLDER = Path("thermicon-notebooks")
 FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
@@ -34,7 +34,7 @@ MOST_BYTES = 200_000_000
 """Bytes of a notebook that is looked at; with all its pictures one has some millions."""
 STAMP = "thermicon"
 """The key of a copy's metadata that holds the fingerprint it was written with."""
-PROMPT = "--ServerApp.kernel_websocket_connection_class=thermicon.notebooks.pages.prompt_socket.PromptSocket"
+PROMPT = "--ServerApp.kernel_websocket_connection_class=thermicon.notebooks.cli.prompt_socket.PromptSocket"
 """Option of JupyterLab by which answers of a kernel on this machine do not wait; a gateway has a socket of its own."""
 ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
 
@@ -216,9 +216,9 @@ def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> 
     With -P, Python imports nothing from the folder that it is started in.
 
     >>> command_of(Path("/mine"), True, False, 9000)[1:]
-    ['-P', '-m', 'thermicon.notebooks.pages.page_server', '/mine/workbench.ipynb', '--port=9000']
+    ['-P', '-m', 'thermicon.notebooks.cli.page_server', '/mine/workbench.ipynb', '--port=9000']
     """
-    module, notebook = ("thermicon.notebooks.pages.page_server", PAGE) if page else ("jupyterlab", FIRST)
+    module, notebook = ("thermicon.notebooks.cli.page_server", PAGE) if page else ("jupyterlab", FIRST)
     words = [sys.executable, "-P", "-m", module, str(folder.resolve() / notebook)]
     if not page and "JUPYTER_GATEWAY_URL" not in os.environ:
         words.append(PROMPT)

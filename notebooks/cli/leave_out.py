@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 from thermicon.icons.userfolder import cache_folder, private_folder
 
 from ..files.outputs import check_folder, complete_or_absent
-from ..text.messages import fail, note, progress_bar
-from ..text.tables import show, table
+from ..messages import fail, note, progress_bar
+from ..report.tables import show, table
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rich.table import Table
 
-    from thermicon.perception.posterior.left_out_file import LeftOutRow
+    from thermicon.perception.evidence.left_out_file import LeftOutRow
 
 FOLDER = "leave-out"
 
@@ -24,12 +24,12 @@ FOLDER = "leave-out"
 def leave_out_files(output: Path | None, keep: Path | None, seed: int) -> None:
     """Sample the posterior, leave every experiment out, score the variants; what is done already is not done again."""
     from thermicon.circuit.cores import cores
-    from thermicon.perception.inference.posterior import Posterior
-    from thermicon.perception.posterior import left_out_file, variant_scores
-    from thermicon.perception.posterior.diagnostics import require_extra
-    from thermicon.perception.posterior.learning import CHAINS
-    from thermicon.perception.posterior.posterior_tables import scores_sentence, variants_sentence
-    from thermicon.perception.posterior.sampling import sample
+    from thermicon.perception.evidence import left_out_file, variant_scores
+    from thermicon.perception.evidence.diagnostics import require_extra
+    from thermicon.perception.evidence.learning import CHAINS
+    from thermicon.perception.evidence.posterior import Posterior
+    from thermicon.perception.evidence.posterior_tables import scores_sentence, variants_sentence
+    from thermicon.perception.evidence.sampling import sample
 
     require_extra()
     if output is not None:
@@ -72,7 +72,7 @@ def _folder(keep: Path | None) -> Path:
         check_folder(keep)
         keep.mkdir(exist_ok=True)
         return keep
-    from thermicon.perception.inference.results import inputs_digest
+    from thermicon.perception.evidence.results import inputs_digest
 
     own = cache_folder() / FOLDER / inputs_digest()
     try:

@@ -22,10 +22,9 @@ from ..figures.figure_look import (
     NoTitle,
     figure_look,
 )
-from ..startup import is_command, print_anywhere, warn_if_hidden
-from ..text.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
-from ..text.messages import check_bounds, check_changes, check_parameters, interrupted, load_rig, usage
-from ..text.options import (
+from ..messages import check_bounds, check_changes, check_parameters, interrupted, load_rig, usage
+from ..report.choices import ChooseCount, GoalText, MostEnergy, MostTime, Must, ObjectiveName, chosen_as
+from ..report.options import (
     Bias,
     Changes,
     Cluster,
@@ -46,6 +45,7 @@ from ..text.options import (
     check_task,
     check_tracking,
 )
+from ..startup import is_command, print_anywhere, warn_if_hidden
 from . import (
     fit,
     frontier,
@@ -336,7 +336,7 @@ def doctor_command(
     Every line is ok, a note (something that can be done without) or a fault, with its cure. With a fault, the exit code
     is 1.
     """
-    from ..doctor.examine import doctor
+    from .examine import doctor
 
     raise typer.Exit(doctor(json))
 

@@ -12,8 +12,8 @@ import typer
 
 from ..figures.figure_look import FigureFile, FigureStyle, FigureWidth, Look, NoTitle, figure_look
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_free, check_output, check_separate, complete_or_absent
-from ..text.messages import check_bounds, check_changes, load_observer, load_rig, note, progress_bar, usage
-from ..text.options import (
+from ..messages import check_bounds, check_changes, load_observer, load_rig, note, progress_bar, usage
+from ..report.options import (
     Changes,
     DrawsFile,
     NormName,
@@ -114,9 +114,9 @@ def observed_command(
     from thermicon.perception.pilot.observed import Observed, observed
     from thermicon.perception.pilot.trials_file import read_trials
 
-    from ..files.cues import read_set, warn_of_frames
-    from ..text.measured_text import show_measured
-    from ..text.observed_text import show_observed
+    from ..report.measured_text import show_measured
+    from ..report.observed_text import show_observed
+    from .cues import read_set, warn_of_frames
 
     icons, where = read_set([file]), load_rig(rig, changes or [])
     model = load_observer(observer, where, "laboratories are drawn from draws of a posterior")
@@ -155,7 +155,7 @@ def _rank_lines(file: str, icons: IconSet, rig: Rig, request: Request) -> list[s
     """The command that ranks the set with the laboratory that was kept, and the per cent correct that it shows."""
     from thermicon.perception import rank
 
-    from ..text.observed_text import rank_lines
+    from ..report.observed_text import rank_lines
     from .ranking import command_text
 
     with progress_bar("ranking") as progress:
@@ -267,8 +267,8 @@ def plan_command(
     check_separate(files, [json])
     from thermicon.perception.pilot.plan import plan
 
-    from ..files.cues import read_set, warn_of_frames
-    from ..text.plan_text import show_plan
+    from ..report.plan_text import show_plan
+    from .cues import read_set, warn_of_frames
 
     sets, where = [read_set([name]) for name in files], load_rig(rig, changes or [])
     model = load_observer(observer, where, "laboratories are drawn from draws of a posterior")

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import typer
 
 from ..figures.figure_look import SCREEN, Look
-from ..files.cues import MOST_ICONS, read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
-from ..text.messages import check_draws, load_observer, note, progress_bar, usage
-from ..text.options import check_norm_option
-from ..text.rank_text import show_ranking
+from ..messages import check_draws, load_observer, note, progress_bar, usage
+from ..report.options import check_norm_option
+from ..report.rank_text import show_ranking
+from .cues import MOST_ICONS, read_set, warn_of_frames
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -140,7 +140,7 @@ def rank_files(
         write_figures(ranking, icons, rig, figures, look)
     near = cures(ranking, icons, rig) if report_out is not None or json_out != STDOUT else {}
     if report_out is not None:
-        from ..pages.report import report
+        from ..report.report import report
 
         made = report(ranking, icons, rig, command_text(files, rig, request), near)
         with complete_or_absent(report_out) as draft:

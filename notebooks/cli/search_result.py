@@ -11,16 +11,16 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from ..figures.figure_look import SCREEN, Look
 from ..files.outputs import complete_or_absent
-from ..text.choices import NAMES, goal_lines, goal_value, laboratory
-from ..text.messages import note, progress_bar
-from ..text.tables import show, table
+from ..messages import note, progress_bar
+from ..report.choices import NAMES, goal_lines, goal_value, laboratory
+from ..report.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal, Ranking, SearchResult
     from thermicon.perception.observer.observer_model import ObserverModel
-    from thermicon.perception.ranking.reach import Advice, Trial
+    from thermicon.perception.selection.reach import Advice, Trial
 
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.evaluators`, repeated here to avoid its imports."""
@@ -64,7 +64,7 @@ class FoundSet:
         """Rank both sets and judge them by the goal; try what would help where the found one misses it."""
         from thermicon.icons import IconSet
         from thermicon.perception import rank
-        from thermicon.perception.ranking.reach import what_would_help
+        from thermicon.perception.selection.reach import what_would_help
 
         start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
         draws = 0 if model.posterior is None else how.parameters
@@ -115,7 +115,7 @@ class FoundSet:
 
             write_figures(self.after, icons, rig, figures, look)
         if report_out is not None:
-            from ..pages.report import report
+            from ..report.report import report
 
             made = report(self.after, icons, rig, command, cures(self.after, icons, rig))
             with complete_or_absent(report_out) as draft:
@@ -270,7 +270,7 @@ def advice_lines(advice: Advice | None) -> Iterator[str]:
 
 def _nearer(trial: Trial, advice: Advice) -> str:
     """The part that misses most without the change, before and with it."""
-    from thermicon.perception.ranking.reach import missing
+    from thermicon.perception.selection.reach import missing
 
     place = max(range(len(advice.baseline.parts)), key=lambda k: missing(advice.baseline.parts[k]))
     before, after = (goal_value(each.parts[place].to_dict())[0] for each in (advice.baseline, trial.result))

@@ -18,8 +18,7 @@ from ..figures.figure_look import (
     figure_look,
 )
 from ..files.outputs import STDOUT, check_output, check_separate, complete_or_absent
-from ..text.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
-from ..text.messages import (
+from ..messages import (
     DEFAULT_RIG,
     check_bounds,
     check_changes,
@@ -31,7 +30,8 @@ from ..text.messages import (
     progress_bar,
     usage,
 )
-from ..text.options import (
+from ..report.choices import OBJECTIVES, GoalText, MostEnergy, MostTime, Must, check_totals
+from ..report.options import (
     Changes,
     Draws,
     NormName,
@@ -133,7 +133,7 @@ def search_command(
     from thermicon.perception import Goal, search
     from thermicon.perception.identification.laboratory import DRAWS
 
-    from ..files.cues import read_set, warn_of_frames
+    from .cues import read_set, warn_of_frames
 
     wanted = None if goal is None else Goal.parse(goal)
     objective = objective or _objective(wanted)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import percent
 
 from ..figures.figure_look import SCREEN, Look
-from ..files.cues import read_set, warn_of_frames
 from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
-from ..text.messages import check_draws, fail, load_observer, progress_bar
-from ..text.options import check_norm_option
-from ..text.tables import show, table
+from ..messages import check_draws, fail, load_observer, progress_bar
+from ..report.options import check_norm_option
+from ..report.tables import show, table
+from .cues import read_set, warn_of_frames
 from .sweep import write_study
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def sensitivity_file(
 ) -> None:
     """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import sensitivity
-    from thermicon.perception.sensitivity.sensitivity import DRAWS, FEWEST_DRAWS
+    from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS
 
     check_norm_option(request.norm)
     if output is not None:

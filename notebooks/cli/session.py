@@ -20,8 +20,8 @@ from ..figures.figure_look import (
     NoTitle,
     figure_look,
 )
-from ..text.messages import check_bounds, check_changes, load_rig, note, usage
-from ..text.options import Changes, OneFile, RigName
+from ..messages import check_bounds, check_changes, load_rig, note, usage
+from ..report.options import Changes, OneFile, RigName
 from .export import CAUTION
 
 if TYPE_CHECKING:
@@ -128,9 +128,9 @@ def session_file(file: str, rig: Rig, request: Request) -> None:
     from thermicon.circuit import play_session
     from thermicon.circuit.safety.sessionplan import order_text
 
-    from ..files.cues import read_set, warn_of_site
     from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate, complete_or_absent
-    from ..text.messages import progress_bar
+    from ..messages import progress_bar
+    from .cues import read_set, warn_of_site
 
     for path, suffixes, what in (
         (request.json, (), "a report"),
@@ -192,7 +192,7 @@ def show_session(session: Session) -> None:
     """Print the verdict, a summary of the session, and one row per play."""
     from thermicon.icons.number_text import number, span
 
-    from ..text.tables import show, table
+    from ..report.tables import show, table
 
     rows = table(
         *("play", "icon", "start", "skin", "display", "baseline", "safety"),

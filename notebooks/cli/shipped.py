@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from thermicon.icons.number_text import number
 
-from ..text.tables import show, table
+from ..report.tables import show, table
 
 
 def show_rigs() -> None:

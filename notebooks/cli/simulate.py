@@ -13,9 +13,9 @@ from thermicon.icons.number_text import number, signed, span
 
 from ..figures.figure_look import SCREEN, Look
 from ..figures.trace_overview import FELT_TAIL_S, draw_overview
-from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..text.messages import note, usage
+from ..messages import note, usage
+from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace

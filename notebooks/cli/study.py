@@ -9,7 +9,7 @@ import typer
 
 from thermicon.icons.number_text import number
 
-from ..text.messages import REFUSED, note, progress_bar
+from ..messages import REFUSED, note, progress_bar
 from .export import CAUTION
 
 if TYPE_CHECKING:

@@ -15,12 +15,12 @@ from thermicon.icons.number_text import percent, span
 
 from ..figures.figure_look import SCREEN, Look
 from ..figures.print_figure import write_figure
-from ..files.cues import pick, read_set, warn_of_site
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..text.messages import Progress, fail, note, progress_bar
-from ..text.sweep_text import swept_table
-from ..text.tables import show
-from ..text.varied import Vary
+from ..messages import Progress, fail, note, progress_bar
+from ..report.sweep_text import swept_table
+from ..report.tables import show
+from ..report.varied import Vary
+from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -115,7 +115,7 @@ def sweep(
     import pandas as pd
 
     from thermicon.circuit.safety.summary import Summary
-    from thermicon.perception.sensitivity.swept import AGE, ALL, MEASURES, SITE, check_conditions
+    from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, SITE, check_conditions
 
     varied = [(key, values), *([second] if second is not None else [])]
     for name, numbers in varied:
@@ -155,7 +155,7 @@ def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float
     import numpy
 
     from thermicon.circuit import InputError, simulate, summarise
-    from thermicon.perception.sensitivity.swept import rig_under
+    from thermicon.perception.ranking.swept import rig_under
 
     try:
         with numpy.errstate(all="ignore"):  # what overflows ends as a reason
@@ -170,7 +170,7 @@ def _measure(
 ) -> None:
     """Add what people perceive to the last rows, those of the icons, and a row of the whole set."""
     from thermicon.circuit import InputError
-    from thermicon.perception.sensitivity.swept import ALL, measured_rows
+    from thermicon.perception.ranking.swept import ALL, measured_rows
 
     try:
         found = measured_rows(
@@ -249,7 +249,7 @@ def sweep_file(
 
 def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Sequence[str]) -> Figure:
     """Lines over one key, heat maps over two: of what is measured, else of what the rig does."""
-    from thermicon.perception.sensitivity.swept import ALL, MEASURES
+    from thermicon.perception.ranking.swept import ALL, MEASURES
 
     columns = [MEASURES[name] for name in what]
     if len(varied) == 1 and columns:
@@ -316,7 +316,7 @@ def headline(rows: pd.DataFrame, points: str = "values") -> str:
 
 def _measured_lines(frame: pd.DataFrame, keys: Sequence[str], measure: Measure | None) -> list[str]:
     """Proportion correct of the set where it is lowest and highest, and so what 95 % of people reach, if measured."""
-    from thermicon.perception.sensitivity.swept import ALL
+    from thermicon.perception.ranking.swept import ALL
 
     lines = []
     for column, words in (("correct", "correct"), ("correct_95", "correct for 95 % of people")):

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..files.cues import read_set, warn_of_site
-from ..text.messages import check_changes, load_rig, usage
-from ..text.options import Changes, IconName, OneFile
+from ..messages import check_changes, load_rig, usage
+from ..report.options import Changes, IconName, OneFile
+from .cues import read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

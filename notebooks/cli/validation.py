@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..files.outputs import STDOUT, check_folder, check_output, complete_or_absent
-from ..text.messages import check_bounds, fail, note, usage
+from ..messages import check_bounds, fail, note, usage
 
 if TYPE_CHECKING:
-    from thermicon.perception.validation.validate import Judged, Line, ValidationReport
+    from thermicon.perception.evidence.validate import Judged, Line, ValidationReport
 
 HEADS = ("temp.", "flow")
 NOTEBOOK, DATA = "07_validation.ipynb", "validation.json"
@@ -87,9 +87,9 @@ def validate_command(
             fail(f"-o executes a notebook, which needs {missing[0]}: pip install {missing[0]}, or use --json")
     if json_out is not None:
         check_output(json_out, (), "JSON")
-    from thermicon.perception.validation.validate import validate
+    from thermicon.perception.evidence.validate import validate
 
-    from ..text.messages import progress_bar
+    from ..messages import progress_bar
 
     with progress_bar("validating") as progress:
         report = validate(people=people, draws=draws, seed=seed, progress=progress)
@@ -111,8 +111,8 @@ def show_report(report: ValidationReport) -> None:
     """Print every number, published and predicted, and how many agree."""
     from thermicon.perception.observer.variants import VARIABLES
 
-    from ..text.conditioning_text import show_conditioning
-    from ..text.tables import show, table
+    from ..report.conditioning_text import show_conditioning
+    from ..report.tables import show, table
 
     show_conditioning(report.conditioning)
     mark = {"holds": "✓", "misses": "✗", "shown": " "}
@@ -135,7 +135,7 @@ def show_report(report: ValidationReport) -> None:
 
 def number_text(line: Line, one: Judged) -> str:
     """Format a prediction."""
-    from thermicon.perception.validation.verdicts import value_text
+    from thermicon.perception.evidence.verdicts import value_text
 
     if one.predicted.value is None:
         return "not felt"
@@ -192,6 +192,6 @@ def executed_notebook(numbers: str) -> str:
 
 def json_text(report: ValidationReport) -> str:
     """Every number of the report as JSON."""
-    from thermicon.perception.validation.validate_file import report_file
+    from thermicon.perception.evidence.validate_file import report_file
 
     return json.dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"

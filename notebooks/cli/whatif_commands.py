@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..figures.figure_look import FigureFile, FigureStyle, FigureWidth, NoTitle, figure_look
-from ..files.cues import only, read_set, warn_of_site
 from ..files.outputs import (
     NETLIST_SUFFIXES,
     STDOUT,
@@ -21,8 +20,9 @@ from ..files.outputs import (
     check_separate,
     complete_or_absent,
 )
-from ..text.messages import REFUSED, check_bounds, check_changes, load_rig, note, progress_bar, usage
-from ..text.options import Changes, DrawsFile, IconName, OneFile, RigName, Tail, check_tail
+from ..messages import REFUSED, check_bounds, check_changes, load_rig, note, progress_bar, usage
+from ..report.options import Changes, DrawsFile, IconName, OneFile, RigName, Tail, check_tail
+from .cues import only, read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -181,9 +181,9 @@ def sweep_command(
     """
     check_changes(changes or [])
     check_tail(tail)
-    from thermicon.perception.sensitivity.swept import AGE
+    from thermicon.perception.ranking.swept import AGE
 
-    from ..text.varied import read_measures, read_varied
+    from ..report.varied import read_measures, read_varied
     from .sweep import sweep_file
 
     look = figure_look(figure, width, style, no_title)
@@ -227,7 +227,7 @@ def compare_command(
     what is predicted for them.
     """
     check_changes(changes or [])
-    from ..text.compare_inputs import Request
+    from ..report.compare_inputs import Request
     from .compare import compare
 
     look = figure_look(figure, width, style, no_title)
@@ -326,13 +326,13 @@ def calibrate_command(
     if keep is not None:
         check_folder(keep)
     from thermicon.circuit.cores import cores
-    from thermicon.perception.inference.posterior import Posterior
+    from thermicon.perception.evidence.diagnostics import require_extra
+    from thermicon.perception.evidence.learning import CHAINS
+    from thermicon.perception.evidence.posterior import Posterior
+    from thermicon.perception.evidence.sampling import LEAST_STEPS, sample
     from thermicon.perception.observer.draws_file import to_text, variant_named
-    from thermicon.perception.posterior.diagnostics import require_extra
-    from thermicon.perception.posterior.learning import CHAINS
-    from thermicon.perception.posterior.sampling import LEAST_STEPS, sample
 
-    from ..text.calibrate_text import show_constants, worst_text
+    from ..report.calibrate_text import show_constants, worst_text
 
     require_extra()
     with progress_bar("sampling") as bar:

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from ..text.messages import usage
+from ..messages import usage
 
 STYLES = ("screen", "paper")
 MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}

@@ -150,7 +150,7 @@ def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
     """
     from matplotlib.figure import Figure
 
-    from thermicon.perception.plots import draw, draw_heat
+    from thermicon.perception.plots import draw_heat
 
     longest = max(map(len, map(draw_heat.short, ranking.labels)))
     side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
@@ -159,8 +159,8 @@ def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
     high = down * (FLAT if stacked else 1.0) * side - names
     figure = Figure(figsize=(across * (side + 0.6), high), layout="constrained")
     distance, confusion = figure.subplots(down, across)
-    draw.plot_distance(ranking, ax=distance)
-    draw.plot_confusion(ranking, ax=confusion)
+    draw_heat.plot_distance(ranking, ax=distance)
+    draw_heat.plot_confusion(ranking, ax=confusion)
     if stacked:
         distance.set_xlabel("")
         distance.tick_params(labelbottom=False)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..files.outputs import FIGURE_SUFFIXES
-from ..text.messages import note
+from ..messages import note
 from .figure_look import SCREEN, Look
 from .print_figure import MM_PER_INCH, write_figure
 
@@ -26,7 +26,7 @@ MAP_HEIGHT = 0.85
 def _one_figure(ranking: Ranking, file: Path, look: Look) -> None:
     """Distances and confusions beside each other; by rules the ranking."""
     if ranking.by == "rules":
-        from thermicon.perception.plots.draw import plot_ranking
+        from thermicon.perception.plots.draw_table import plot_ranking
 
         drawn: Any = plot_ranking(ranking, words=not look.narrow).figure
     else:
@@ -102,7 +102,9 @@ def set_axes(ranking: Ranking, words: bool = True, width_mm: float | None = None
     from matplotlib.figure import Figure
 
     from thermicon.perception.identification.map import map_of
-    from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
+    from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance, plot_places
+    from thermicon.perception.plots.draw_map import plot_map
+    from thermicon.perception.plots.draw_table import plot_ranking
 
     made = {"ranking": plot_ranking(ranking, words=words)}
     if ranking.by == "rules":

@@ -103,7 +103,7 @@ def _listed(folder: Path) -> list[str]:
 
 def _check_owned(folder: Path) -> None:
     """Raise OutputError where a folder that goes holds a file that no export wrote."""
-    from thermicon.circuit.packing.claims import LONGEST, claims_of
+    from thermicon.circuit.delivery.claims import LONGEST, claims_of
 
     known: set[str] = set()
     for path in folder.glob("*.json"):

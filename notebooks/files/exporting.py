@@ -44,7 +44,7 @@ class PreparedExport:
 
         Perceptual losses are listed only without other reasons, from which they would follow.
         """
-        from thermicon.circuit.packing.refusal import Refusal
+        from thermicon.circuit.delivery.refusal import Refusal
 
         found = []
         for one in self.prepared:
@@ -105,7 +105,7 @@ def prepare_icons(
     """
     from thermicon.circuit import Device
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.prepare import prepare_set
+    from thermicon.circuit.delivery.prepare import prepare_set
 
     made = load_format(form)
     played = device if isinstance(device, Device) else Device.load(device or made.device)

@@ -128,7 +128,7 @@ def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
 def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:
     from thermicon.icons.near_words import did_you_mean
 
-    from ..text.messages import usage
+    from ..messages import usage
 
     names = [str(name) for name in frame["icon"].dropna().unique()] if "icon" in frame else []
     if icon is None:

@@ -106,7 +106,7 @@ def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
     """Derive the pauses, order the trials, and judge drives and sessions; raises Refused, StudyError, InputError."""
     from thermicon.circuit import duration_s
     from thermicon.circuit.delivery.formats import load_format
-    from thermicon.circuit.packing.pack import check_names
+    from thermicon.circuit.delivery.pack import check_names
 
     study, rig, icons = materials.study, materials.rig, materials.chosen
     form = load_format(study.stimuli.format)

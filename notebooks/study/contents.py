@@ -186,7 +186,7 @@ def _texts(plan: Plan) -> dict[str, str]:
 
 
 def _drive(name: str, plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> dict[str, str]:
-    from thermicon.circuit.packing.pack import sidecar_name
+    from thermicon.circuit.delivery.pack import sidecar_name
 
     return {
         "drive_file": stimuli[name],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..text.schema_table import default_of, values_of
+from ..report.schema_table import default_of, values_of
 from .keys import TABLES, Study, Table
 
 

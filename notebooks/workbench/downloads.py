@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from ..files.exporting import PreparedExport, write
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

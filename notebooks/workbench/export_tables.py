@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import number, percent
 
 from ..cli.export import CAUTION, steps_of
-from ..pages.blocks import fragment
-from ..text.gate_words import gate_words, short_scenario
+from ..report.blocks import fragment
+from ..report.gate_words import gate_words, short_scenario
 
 if TYPE_CHECKING:
     from thermicon.circuit import Prepared

@@ -12,7 +12,7 @@ from ..editing.cue_check import read_text
 from ..files.exporting import FORMAT, PreparedExport, formats_for, prepare_icons, write
 from ..files.outputs import OutputError
 from ..files.start_folder import below_start
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 from .background import Job
 from .downloads import drives_zip, link
 from .export_tables import delivered_html, gate_html, written_html

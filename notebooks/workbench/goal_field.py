@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
-from ..pages.blocks import fragment
-from ..text.choices import goal_value
+from ..report.blocks import fragment
+from ..report.choices import goal_value
 
 if TYPE_CHECKING:
-    from thermicon.perception.ranking.goal_result import GoalPartResult, GoalResult
     from thermicon.perception.selection.goal import Goal
+    from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
 PATTERNS = (
     "correct >= 90 % for 95 % of people, safety green",
@@ -96,7 +96,7 @@ def verdict_html(reached: GoalResult) -> str:
 def goal_row(part: GoalPartResult) -> tuple[str, str, str, str, str]:
     """Mark, text, prediction, distance and obstacle of one part of a goal.
 
-    >>> from thermicon.perception.ranking.goal_result import GoalPartResult
+    >>> from thermicon.perception.selection.goal_result import GoalPartResult
     >>> from thermicon.perception.selection.goal import Goal
     >>> goal_row(GoalPartResult(Goal.parse("time <= 10 s").parts[0], 12.5, False, "dip takes most"))
     ('✗', 'time <= 10 s', '12.5 s', '2.5 s over', 'dip takes most')

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 from ..timeline.terms import glossary
 
 SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (

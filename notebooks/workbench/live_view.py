@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 
 import ipywidgets as widgets
 
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 from .background import BackgroundWorker, Job
 from .design_model import DesignModel
 

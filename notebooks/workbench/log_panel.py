@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 from ..timeline.measured import read_measured, read_uploaded
 
 if TYPE_CHECKING:

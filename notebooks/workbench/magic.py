@@ -70,7 +70,7 @@ def cue(shell: InteractiveShell, line: str, cell: str | None = None) -> IconSet 
     name, rig_name = _read_line(line)
     rig = None
     if rig_name is not None:
-        from ..text.messages import is_ours, load_rig
+        from ..messages import is_ours, load_rig
 
         try:
             rig = load_rig(rig_name, [])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import ipywidgets as widgets
 
 from ..files.outputs import OutputError
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 from .help_sheet import help_html
 from .log_panel import LogPanel
 from .project import SHIPPED, Project

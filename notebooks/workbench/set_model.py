@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..cli.cues import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
 from ..figures.map_drawing import distinct
-from ..files.cues import MOST_ICONS
 from ..timeline.frames import CanvasFrame, traces_of
 from ..timeline.overlaid import STYLES, series_of, values_on
 from ..timeline.terms import terms_of

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import number, percent, percent_span, seconds
 
-from ..pages.blocks import fragment
-from ..text.choices import choice_lines, laboratory
-from ..text.rank_notes import outside_lines, trouble_lines
-from ..text.rank_text import caveat, rival
+from ..report.blocks import fragment
+from ..report.choices import choice_lines, laboratory
+from ..report.rank_notes import outside_lines, trouble_lines
+from ..report.rank_text import caveat, rival
 from ..timeline.terms import SIMULATED, terms_of
 
 if TYPE_CHECKING:

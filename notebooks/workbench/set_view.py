@@ -10,8 +10,8 @@ import ipywidgets as widgets
 from ..editing.apply_edit import with_edit
 from ..editing.cue_check import read_text
 from ..figures.map_drawing import map_svg
-from ..pages.blocks import fragment
-from ..text.choices import NAMES
+from ..report.blocks import fragment
+from ..report.choices import NAMES
 from .background import BackgroundWorker, Job
 from .design_view import SideCanvas
 from .goal_field import GoalField

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, percent, seconds
 
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 from .goal_field import SAFETY, goal_row
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
-    from thermicon.perception.ranking.goal_result import GoalResult
+    from thermicon.perception.selection.goal_result import GoalResult
 
     from .versions_model import RankedVersions
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
-from ..pages.blocks import fragment
+from ..report.blocks import fragment
 from .background import Job
 from .design_view import SideCanvas
 from .downloads import link

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, own_arrays
+from ..drawn import Drawn
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from ..ranking.ranking import Ranking
 
 STEPS, TOLERANCE = 500, 1e-9
@@ -27,7 +26,7 @@ ALIKE = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class PerceptualMap:
+class PerceptualMap(Drawn):
     """Icons as points of a plane, in d′, and how far the plane bends the distances.
 
     Attributes
@@ -70,12 +69,6 @@ class PerceptualMap:
                 raise ValueError(f"a map needs finite {name} of shape {(len(self.labels), *shape)}, not {own.shape}")
             own.setflags(write=False)
             object.__setattr__(self, name, own)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the points with their names and ellipses; return the axes."""
-        from ..plots.draw_map import plot_map
-
-        return plot_map(self, ax)
 
     def __repr__(self) -> str:
         icons = "1 icon" if len(self.labels) == 1 else f"{len(self.labels)} icons"

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..inference.rows import DISCREPANCY, UNSTATED
+from ..experiments.task_constants import DISCREPANCY, UNSTATED
 from .measurements import Measurements
 from .simulated_measurements import Predicted
 

@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..inference.crowd import PEOPLE, SEED, Crowd, draw_crowd
-from ..inference.experiments import psychometric_logs
-from ..inference.laboratory import FEEBLE, Laboratory, Samples, samples_of
-from ..inference.rows import UNSTATED
+from ..experiments.crowd import PEOPLE, SEED, Crowd, draw_crowd
+from ..experiments.laboratory import FEEBLE, Laboratory, Samples, samples_of
+from ..experiments.published import psychometric_logs
+from ..experiments.task_constants import UNSTATED
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, sign_of
 from ..observer.draws import BETWEEN_LABORATORIES

@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 from thermicon.circuit.records import Table
 
 from ..arrays import Array
-from ..inference.posterior import Posterior
-from ..inference.priors import Prior
 from ..observer.channels import CHANNELS, Norm
 from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
+from ..observer.prior_file import priors_of
+from ..observer.priors import Prior
 from ..sensation.memory_parameters import memory_parameters
 from ..sensation.parameters import ObserverParameter, latin
 
@@ -77,7 +77,7 @@ class LaboratoryPrior:
         own = [each for each in memory_parameters(norm) if each.name in draws.memory_names]
         free = [each for each in memory_parameters(norm, records=records) if each.name not in draws.memory_names]
         self.memory, self._of_draws = (*own, *free), len(own)
-        known = {prior.name: prior for prior in Posterior(draws.variable).priors.each}
+        known = {prior.name: prior for prior in priors_of(draws.variable).each}
         self._scales: tuple[Prior, ...] = tuple(known[name] for name in draws.names)
         places = np.array([[p.to_place(v) for p, v in zip(self._scales, row, strict=True)] for row in draws.draws])
         places = np.hstack([places, *(_scores(each, draws)[:, None] for each in own)])

@@ -12,8 +12,8 @@ from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..inference.effects import Effect
-    from ..inference.onset_stages import OnsetStages
+    from ..evidence.effects import Effect
+    from ..evidence.onset_stages import OnsetStages
 
 LOOKS: dict[str, dict[str, Any]] = {
     "cold": {"color": COOL, "lw": 2.0},

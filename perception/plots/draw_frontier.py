@@ -11,7 +11,7 @@ from thermicon.circuit.solver.draw import new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..ranking.frontier import Frontier
+    from ..selection.frontier import Frontier
 
 DARK, GREY = "0.15", "0.55"
 

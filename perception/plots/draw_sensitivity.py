@@ -11,7 +11,7 @@ from thermicon.circuit.solver.draw import new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..sensitivity.sensitivity import Sensitivity
+    from ..ranking.sensitivity import Sensitivity
 
 HEIGHT = 0.38
 MOST = 16

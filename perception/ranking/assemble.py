@@ -8,10 +8,6 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from ..comparison.distance_components import components_of
-from ..comparison.reasons import pair_reasons
-from ..comparison.rule_score import icon_score, pair_margin
-from ..comparison.rules import icon_rules, pair_rules
 from ..identification.episodes import remembered
 from ..observer.observer import Norm, Observer
 from ..sensation.coverage import outside_data
@@ -19,6 +15,10 @@ from ..sensation.detection import channel_name
 from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept
 from .batches import PooledResult
+from .distance_components import components_of
+from .reasons import pair_reasons
+from .rule_score import icon_score, pair_margin
+from .rules import icon_rules, pair_rules
 from .scores import IconScore, PairScore
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ import numpy as np
 
 from ..identification.laboratory import NewLaboratory
 from ..selection.choose import Choice
+from ..selection.goal_result import SetOutcome
 from .assemble import Assembled
 from .batches import PooledResult
-from .goal_result import SetOutcome
 
 
 def outcome_of_set(

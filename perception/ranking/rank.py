@@ -14,8 +14,6 @@ import numpy as np
 from thermicon.circuit.program import own_version
 
 from ..arrays import Array
-from ..comparison.rule_score import disagreements, worst_by_rules
-from ..comparison.rules import rig_rules
 from ..identification.carry_over import CarryOver, prepare_task, task_among
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
@@ -29,15 +27,17 @@ from ..observer.people import People
 from ..progress import Progress, step_counter
 from ..selection.choose import Choice, choose
 from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
+from ..selection.goal_result import judge_goal
 from ..selection.pair_edits import with_edits
 from ..selection.request import Selection, check_selection, energy_J, objection
 from ..sensation.percept import perceive
 from .assemble import assemble, playable_pairs, worst_of
 from .assumptions import assumptions_of
 from .batches import Execution, Job, PooledResult, collect_batches
-from .goal_result import judge_goal
 from .outcome import outcome_of_choice, outcome_of_set
 from .ranking import Ranking
+from .rule_score import disagreements, worst_by_rules
+from .rules import rig_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

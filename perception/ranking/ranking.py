@@ -14,19 +14,19 @@ import numpy as np
 from thermicon.icons.number_text import count_of
 
 from ..arrays import Array, own_arrays
-from ..comparison.rule_score import counted
-from ..comparison.rules import RuleResult
+from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
 from ..identification.map import PersonSpread
 from ..identification.task import USUAL, Task
 from ..observer.observer_model import SHIPPED
+from ..selection.goal_result import GoalResult
 from .assumptions import Assumptions
-from .goal_result import GoalResult
+from .rule_score import counted
+from .rules import RuleResult
 from .scores import IconScore, PairScore
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
     from ..identification.carry_over import CarryOver
     from ..selection.choose import Choice
@@ -36,7 +36,7 @@ PERCENTAGE_POINT = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Ranking:
+class Ranking(Drawn):
     """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
 
     Attributes
@@ -259,12 +259,6 @@ class Ranking:
 
         return as_text(self.to_dict())
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the pooled confusion matrix; return the axes."""
-        from ..plots.draw import plot_confusion
-
-        return plot_confusion(self, ax)
-
     def __repr__(self) -> str:
         low, high = self.proportion_correct_interval
         icons = count_of(len(self.icons), "icon")
@@ -282,11 +276,6 @@ class Ranking:
             f"Ranking(predicted: {icons} on {where}, {crowd}, "
             f"{100 * self.proportion_correct:.1f} % correct{spread}{bits}{worst})"
         )
-
-    def _repr_html_(self) -> str:
-        from ..plots.draw import as_svg, plot_confusion
-
-        return as_svg(plot_confusion(self, None))
 
     def _order(self, icon: IconScore) -> tuple[bool, float, float, str]:
         if self.by == "rules":

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..comparison.distance_components import DistanceComponent
-from ..comparison.rules import DISTINGUISHABLE, RuleResult
 from ..observer.observer import Channel
+from .distance_components import DistanceComponent
+from .rules import DISTINGUISHABLE, RuleResult
 
 if TYPE_CHECKING:
     from ..selection.edit_result import Edit, NoEdit

@@ -1,7 +1,7 @@
 """Goals for a set of icons: what is wanted of it, in a few words.
 
 A goal has one or more parts, joined by commas: ``correct >= 90 % for 95 % of people, time <= 10 s, safety green``.
-Rankings are judged by it in `thermicon.perception.ranking.goal_result`.
+Rankings are judged by it in `thermicon.perception.selection.goal_result`.
 """
 
 from __future__ import annotations

@@ -19,6 +19,7 @@ from thermicon.circuit.rig.rigfile import RigError
 
 from ..arrays import Array, as_rows
 from ..criteria import FELT_FROM
+from ..drawn import Drawn
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.variants import receptor_input
@@ -28,13 +29,11 @@ from .receptors import receptor_drive
 from .sensation import sense
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
     from thermicon.circuit import Trace
 
 
 @dataclass(frozen=True, slots=True)
-class Percept:
+class Percept(Drawn):
     """Sensation over time in d′ units, and whether the nominal person reports it.
 
     Three clocks are distinguished: the receptor clock starts with the cue, the percept clock is later by conduction,
@@ -141,12 +140,6 @@ class Percept:
             return f"not felt, p {self.detected_probability:.3f}"
         return f"felt at {self.onset_s:.2f} s by {self.channel}, p {self.detected_probability:.3f}"
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw both sensations; returns the axes."""
-        from ..plots.draw import plot_sensation
-
-        return plot_sensation(self, ax)
-
     def __repr__(self) -> str:
         beyond = ", outside the data" if self.outside_data else ""
         return (
@@ -154,11 +147,6 @@ class Percept:
             f"peaks cold {self.psi_cold.max():.3g} d′, warm {self.psi_warm.max():.3g} d′, "
             f"{self.time_s[-1]:.3g} s, {self.clock} clock{beyond})"
         )
-
-    def _repr_html_(self) -> str:
-        from ..plots.draw import as_svg, plot_sensation
-
-        return as_svg(plot_sensation(self, None))
 
 
 def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | None = None) -> Percept:

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from thermicon.perception.validation.validate import validate
+from thermicon.perception.evidence.validate import validate
 
 LIMIT_S = 180.0
 

@@ -11,7 +11,7 @@ from thermicon.circuit import DeliveredDrive, Device, DeviceError, Rig, deliver,
 from thermicon.circuit.delivery.deliver import traces_until
 from thermicon.circuit.delivery.samples import Samples, rate_of, within
 from thermicon.circuit.delivery.setpoints import Setpoints, closed, setpoints_of
-from thermicon.circuit.packing.worstcase import worst_case
+from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.records import Record
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Limits, Rig, deliver, gate
-from thermicon.circuit.packing.worstcase import worst_case
+from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety import playmap
 from thermicon.circuit.safety.ensemble import Ensemble

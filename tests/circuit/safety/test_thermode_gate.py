@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.circuit import Device, Limits, Rig, deliver
 from thermicon.circuit.arrays import Array
-from thermicon.circuit.packing.worstcase import ways_of, worst_case, worst_cases
+from thermicon.circuit.delivery.worstcase import ways_of, worst_case, worst_cases
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.safety.thermode import DisplayCourse, Under

@@ -146,7 +146,7 @@ EVIL = "</text></svg><script>alert('x')</script><img src=x onerror=\"alert(1)\">
 def test_texts_cannot_become_markup(show: str) -> None:
     icon = Icon("a", (Hold(1),), Context("skin", 32), Metadata(means=EVIL, by=EVIL))
     icons = IconSet("s", EVIL, icon.context, Metadata(by=EVIL), (icon,))
-    from thermicon.icons.files.gallery import Library
+    from thermicon.icons.pictures.gallery import Library
 
     made = {
         "set": icons._repr_html_,
@@ -284,7 +284,7 @@ def test_an_unknown_shipped_set_is_told() -> None:
 
 
 def test_families_in_the_library_count_without_being_made() -> None:
-    from thermicon.icons.files.gallery import Library
+    from thermicon.icons.pictures.gallery import Library
 
     shelf = Library((("huge", HUGE),))
     assert shelf.entries[0].count == 1_000

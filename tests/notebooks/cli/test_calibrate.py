@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.perception.inference.posterior import Posterior
+from thermicon.perception.evidence import diagnostics, sampling
+from thermicon.perception.evidence.diagnostics import Diagnostics
+from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.evidence.sampling import Sampled, shipped_vector
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.posterior import diagnostics, sampling
-from thermicon.perception.posterior.diagnostics import Diagnostics
-from thermicon.perception.posterior.sampling import Sampled, shipped_vector
 
 Cli = Callable[..., Any]
 

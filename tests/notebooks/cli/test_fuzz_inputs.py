@@ -24,7 +24,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.text.messages import is_ours
+from thermicon.notebooks.messages import is_ours
 
 COUNT, CHUNKS = int(os.environ.get("THERMICON_FUZZ", "50000")), 50
 COMMANDS = 200

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
+from thermicon.perception.evidence.left_out_file import load_left_out
+from thermicon.perception.evidence.variant_scores import load_variant_scores
 from thermicon.perception.observer.observer import DATA
-from thermicon.perception.posterior.left_out_file import load_left_out
-from thermicon.perception.posterior.variant_scores import load_variant_scores
 
 Cli = Callable[..., Any]
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.text.messages import late_notes, load_rig, note, note_at_end
+from thermicon.notebooks.messages import late_notes, load_rig, note, note_at_end
 
 Cli = Callable[..., Any]
 DOUBT = "that its two data sheets stand for"

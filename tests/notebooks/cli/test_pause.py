@@ -15,7 +15,7 @@ from tests.circuit.surerig import SURE, sure_rig
 from thermicon.circuit import Gate, Rig, pack
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.files.exporting import PreparedExport, prepare_icons
-from thermicon.notebooks.text.gate_words import gate_words
+from thermicon.notebooks.report.gate_words import gate_words
 from thermicon.notebooks.workbench.export_tables import delivered_html, gate_html
 
 Cli = Callable[..., Any]

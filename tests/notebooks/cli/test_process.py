@@ -163,7 +163,7 @@ def test_the_library_is_listed_with_its_source(cli: Cli) -> None:
 
 
 def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
-    from thermicon.notebooks.text.tables import show, table
+    from thermicon.notebooks.report.tables import show, table
 
     made = table("icon")
     made.add_row("[red]loud[/red]")

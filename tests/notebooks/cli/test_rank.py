@@ -204,7 +204,7 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
-    from thermicon.notebooks.text.rank_text import disagreement_lines
+    from thermicon.notebooks.report.rank_text import disagreement_lines
 
     found = [{"icon": "a", "text": "a: rules say felt, the model 0.42 detected (felt from 0.5)"}]
     said = list(disagreement_lines(found))
@@ -317,7 +317,7 @@ def test_icons_outside_the_data_are_told(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_what_is_outside_is_said_once_with_its_icons() -> None:
-    from thermicon.notebooks.text.rank_notes import outside_lines
+    from thermicon.notebooks.report.rank_notes import outside_lines
 
     icons = [{"name": n, "outside_data": ["too fast"] if n != "b" else []} for n in "abc"]
     assert outside_lines(icons) == ["Outside the data: a, c: too fast"]

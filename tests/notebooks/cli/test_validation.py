@@ -12,8 +12,8 @@ import pytest
 from thermicon.notebooks.cli import validation
 from thermicon.notebooks.cli.validation import COMPUTED, KEPT, executed_notebook, json_text, show_report, write_report
 from thermicon.notebooks.files.outputs import OutputError
-from thermicon.notebooks.text.conditioning_text import TITLE
-from thermicon.perception.validation.validate import ValidationReport, validate
+from thermicon.notebooks.report.conditioning_text import TITLE
+from thermicon.perception.evidence.validate import ValidationReport, validate
 
 NOTEBOOK = Path(__file__).parents[3] / "notebooks/07_validation.ipynb"
 PICTURES = 12
@@ -74,7 +74,7 @@ def test_the_same_numbers_give_the_same_notebook_also_without_draws() -> None:
 def test_json_to_a_file_or_to_stdout(
     report: ValidationReport, cli: Callable[..., object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("thermicon.perception.validation.validate.validate", lambda **_: report)
+    monkeypatch.setattr("thermicon.perception.evidence.validate.validate", lambda **_: report)
     said = cli("validate", "--json", tmp_path / "v.json")
     assert said.exit_code == 0  # type: ignore[attr-defined]
     assert "wrote" in said.stderr  # type: ignore[attr-defined]

@@ -19,7 +19,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from thermicon.circuit.packing.claims import claims_of
+from thermicon.circuit.delivery.claims import claims_of
 from thermicon.notebooks.files.export_folder import publish
 from thermicon.notebooks.files.outputs import OutputError
 

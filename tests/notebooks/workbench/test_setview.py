@@ -13,7 +13,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.editing.apply_edit import CannotApply, with_edit
 from thermicon.notebooks.editing.icon_edits import only
-from thermicon.notebooks.text.rank_text import number_lines
+from thermicon.notebooks.report.rank_text import number_lines
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set

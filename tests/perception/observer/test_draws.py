@@ -10,8 +10,8 @@ import pytest
 
 from thermicon.circuit.records import RecordError
 from thermicon.perception import Observer
-from thermicon.perception.inference.posterior import Posterior
-from thermicon.perception.inference.results import inputs_digest
+from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.evidence.results import inputs_digest
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.draws_file import current_inputs, read_draws, shipped_file, to_text, variant_named
 from thermicon.perception.observer.observer import variant_records

@@ -7,6 +7,7 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.perception import Observer, perceive
+from thermicon.perception.experiments.classical import forced_choice
 from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
 from thermicon.perception.observer.observer import Receptor
 from thermicon.perception.observer.variants import (
@@ -16,7 +17,6 @@ from thermicon.perception.observer.variants import (
     receptor_column,
     receptor_input,
 )
-from thermicon.perception.procedures.classical import forced_choice
 from thermicon.perception.sensation.bench import Bench, ramp
 from thermicon.perception.sensation.sensation import sensitivity
 

@@ -15,7 +15,7 @@ from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.nominal import middle_of, off_middle
 from thermicon.perception.pilot.observed import Observed, observed
 from thermicon.perception.pilot.synthetic import synthetic_trials
-from thermicon.perception.sensitivity.sensitivity import sensitivity
+from thermicon.perception.ranking.sensitivity import sensitivity
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
-from thermicon.perception.inference.laboratory import Laboratory
+from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.pilot.likelihood import effective, normalised_weights

@@ -9,9 +9,9 @@ from matplotlib.text import Text
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception.inference.effects import EFFECTS, Curve, Effect
-from thermicon.perception.inference.onset_stages import OnsetStages, onset_stages
-from thermicon.perception.inference.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.evidence.effects import EFFECTS, Curve, Effect
+from thermicon.perception.evidence.onset_stages import OnsetStages, onset_stages
+from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
 from thermicon.perception.plots.draw_effects import STAGES, plot_effect, plot_onset_stages
 from thermicon.perception.plots.draw_evidence import (
     plot_ablation,

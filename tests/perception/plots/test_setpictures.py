@@ -17,9 +17,16 @@ from thermicon.perception.identification.map import (
     place_probability,
     spread_over_people,
 )
-from thermicon.perception.plots.draw import plot_confusion, plot_distance, plot_map, plot_places, plot_ranking
-from thermicon.perception.plots.draw_heat import clustered_order, heat, light_map
-from thermicon.perception.plots.draw_map import label_offsets, text_width
+from thermicon.perception.plots.draw_heat import (
+    clustered_order,
+    heat,
+    light_map,
+    plot_confusion,
+    plot_distance,
+    plot_places,
+)
+from thermicon.perception.plots.draw_map import label_offsets, plot_map, text_width
+from thermicon.perception.plots.draw_table import plot_ranking
 
 
 @pytest.fixture(scope="module")

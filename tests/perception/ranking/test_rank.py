@@ -106,7 +106,7 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     assert sorted(t.get_text() for t in axes.get_xticklabels()) == sorted(ranking.labels)
     assert axes.get_title().startswith("Predicted answers, % (diagonal correct: ")
     assert ranking._repr_html_().startswith("<svg")
-    from thermicon.perception.plots.draw import plot_distance
+    from thermicon.perception.plots.draw_heat import plot_distance
 
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
     apart = plot_distance(ranking)
@@ -166,7 +166,7 @@ def test_one_icon_has_no_bits_in_its_repr(rig: Rig) -> None:
     text = "cue 1\nset s { control skin; baseline 32 °C }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }"
     ranking = rank(parse(text), rig, people=2, parameters=0)
     assert repr(ranking) == "Ranking(predicted: 1 icon on thenar, 2 people, 100.0 % correct [100, 100])"
-    from thermicon.perception.plots.draw import plot_distance
+    from thermicon.perception.plots.draw_heat import plot_distance
 
     assert [cell.get_text() for cell in ranking.plot().texts] == ["100"]
     assert [cell.get_text() for cell in plot_distance(ranking).texts] == ["0"]

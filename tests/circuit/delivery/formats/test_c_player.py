@@ -13,7 +13,7 @@ import pytest
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Rig, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.packing.pack import pack
+from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})

@@ -19,8 +19,8 @@ from tests.circuit.surerig import sure_rig
 from thermicon.circuit import DeliveredDrive, Device, Rig, deliver, prepare
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
+from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.setpoints import Setpoints
-from thermicon.circuit.packing.pack import pack
 from thermicon.icons import Icon, load_library, parse
 from thermicon.icons.model.corners import Corners
 

@@ -17,8 +17,8 @@ from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig, prepare
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
+from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
-from thermicon.circuit.packing.pack import pack
 from thermicon.circuit.records import Record
 from thermicon.icons import load_library
 

@@ -1,0 +1,161 @@
+"""What no loop around a module can pass, whatever its gains, lag, delay and supply: within current limits and cut-offs.
+
+The skin moves fastest, and the hot plate gets hottest, where a loop swings from one cut-off to the other at its current
+limits. Every temperature of skin lies between those of a display held at either cut-off indefinitely, since more heat
+in means warmer everywhere; from there the driver gets stuck at its limit until the cut-off on a second sensor acts.
+That the swings are the worst ones is a search, not a proof, so some room is kept.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array
+from ..safety.checks import Check, again, worst_of
+from ..safety.demands import CutOff
+from ..safety.ensemble import LaneDrives
+from ..safety.single_faults import AFTER_ROWS_S
+from ..safety.tally import Tally
+from ..solver.batch_inputs import Bank, State, run_follow
+from ..solver.plate import COMPLIANCE_V, HIGHEST_A, LOWEST_A
+from .delivery_deviation import loss_limit
+from .following_module import FollowingModule
+from .samples import Samples
+from .temperatures import past_most_cooling, rest_of_a_loop, updates_of
+
+SENSOR_K = 0.3
+"""Greatest offset of the sensors of loop and cut-off: what interchangeable thermistors promise (±0.2 K), and glue."""
+SWINGS_S = (3.0, 3.0, 1.0, 1.0, 0.3, 0.3, 0.1, 0.1)
+"""For how long a loop swings to the lower, then to the upper cut-off, and so on: it arrives, stays, or turns before."""
+ROOM = 0.97
+"""Share of a limit that the worst of these swings may reach."""
+STEP_A, TRIES = 0.01, 12
+"""Current limits are sought in such steps, and so often."""
+ANY_V = 1e4
+"""A supply that holds no current back."""
+BEYONDS_K = ((1.0, 1.0), (1.0, 0.5), (0.5, 0.5))
+"""How far below and above what the display reaches a cut-off may be: more than its sensor may be wrong."""
+REACTIONS_S = (0.2, 0.1, 0.05, 0.02)
+"""Reactions of cut-offs that are tried, the slowest first, with the sensor's own lag."""
+
+Limits_A = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AnyLoop:
+    """A module in its corners, under loops that send any current within limits."""
+
+    module: FollowingModule
+    bank: Bank
+
+    @staticmethod
+    def of(module: FollowingModule) -> AnyLoop:
+        """Loops around a module."""
+        return AnyLoop(module, past_most_cooling(module.rigs))
+
+    def within(self, limits_A: Limits_A) -> Bank:
+        """The corners with current limits as commanded, and a supply of any voltage."""
+        plates, gain = self.bank.plates.copy(), self.module.ensemble.gain
+        plates[:, LOWEST_A], plates[:, HIGHEST_A], plates[:, COMPLIANCE_V] = *np.outer(limits_A, gain), ANY_V
+        return replace(self.bank, plates=plates)
+
+    def limits_A(self, cut: CutOff, plays: Sequence[Samples]) -> tuple[Limits_A, tuple[Check, ...]]:
+        """The widest current limits within the driver's at which no loop moves skin or heats the hot plate too much.
+
+        Where the set-points need more than these, the checks, which are returned too, are those of the driver's limits.
+        """
+        driver = self.module.ensemble.rig.driver
+        given = limits = driver.current_min_A, driver.current_max_A
+        checks = wide = self._swings(cut, given)
+        for _ in range(TRIES):
+            share = {(check.quantity, check.upper): check.value / check.limit / ROOM for check in checks}
+            warming, cooling = share["rate of skin temperature", True], share["rate of skin temperature", False]
+            hot = 1.1 if share["hot plate", True] * ROOM > 1.0 else 0.0
+            if max(warming, cooling, hot) <= 1.0:
+                break
+            limits = -_whole_A(-limits[0] / max(1.0, warming)), _whole_A(limits[1] / max(1.0, cooling, hot))
+            checks = self._swings(cut, limits)
+        slower_K = max(
+            float(np.sqrt(np.mean((self._shown(one, limits) - self._shown(one, given)) ** 2))) for one in plays
+        )
+        if slower_K <= loss_limit("receptor difference"):
+            return limits, checks
+        cure = f", as its set-points need; a driver.current_limit_A of {min(-limits[0], limits[1]):g} A slows them"
+        return given, tuple(replace(check, scenario=f"{check.scenario}{cure}") for check in wide)
+
+    def _shown(self, play: Samples, limits_A: Limits_A) -> Array:
+        """The display of the rig as given that follows set-points within current limits."""
+        period, lane = 1.0 / self.module.ensemble.rig.driver.update_Hz, np.zeros(1, dtype=np.int64)
+        state = self.bank.states([rest_of_a_loop(self.module.rigs[0], float(play.command[0]))[1]])
+        goals = updates_of(play, period)[np.newaxis]
+        return run_follow(self.within(limits_A), lane, lane, period, goals, False, state)[1]
+
+    def _swings(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
+        """Rates and hot plate where a loop swings between the cut-offs, from a display without power on."""
+        ensemble = self.module.ensemble
+        period = 1.0 / ensemble.rig.driver.update_Hz
+        counts = [max(1, round(swing / period)) for swing in SWINGS_S]
+        levels = [level for level, _ in zip(itertools.cycle((cut.low, cut.high)), counts, strict=False)]
+        goals, start = np.repeat(levels, counts)[np.newaxis], ensemble.at_rest(0.0)
+        lanes = ensemble.lanes
+        flows, _, _ = run_follow(
+            self.within(limits_A), lanes, np.zeros_like(lanes), period, goals, False, start.nodes_C
+        )
+        currents: Array = np.append(flows, flows[:, -1:], axis=1)
+        times: Array = np.arange(currents.shape[1], dtype=np.float64) * period
+        drives = LaneDrives(times, currents / ensemble.gain[:, np.newaxis])
+        what = f", under any loop of {limits_A[0]:g} … {limits_A[1]:g} A"
+        tally = Tally(ensemble.rig.limits, ensemble.corners, what.replace("-", "−"))
+        for (rows, values), _ in ensemble.play(drives, start):
+            tally.add(rows, values, sums=False)
+        wanted = ("rate of skin temperature", "hot plate")
+        return tuple(check for check in tally.checks() if check.quantity in wanted)
+
+    def cut_off(
+        self, reach_C: tuple[float, float], limits_A: Limits_A, used_A: Limits_A
+    ) -> tuple[CutOff, Limits_A, tuple[Check, ...]]:
+        """The slowest cut-off around what the display reaches without a fault that holds every temperature.
+
+        For it the current limits may come down half-way to what is used in some corner. With the hard rules of
+        temperature.
+        """
+        hard = [rule for rule in self.module.ensemble.rig.limits.rules if rule.severity == "hard"]
+        ends = {rule.upper: rule.limit for rule in hard if rule.quantity == "display" and rule.above_C is None}
+        half = [0.5 * (limit + used) for limit, used in zip(limits_A, used_A, strict=True)]
+        narrow_A = -_whole_A(-max(limits_A[0], half[0])), _whole_A(min(limits_A[1], half[1]))
+        edges = [
+            (max(ends[False], reach_C[0] - below), min(ends[True], reach_C[1] + above)) for below, above in BEYONDS_K
+        ]
+        begun = {edge: [self._held_at(level) for level in (edge[0] - SENSOR_K, edge[1] + SENSOR_K)] for edge in edges}
+        for reaction, edge, within_A in itertools.product(REACTIONS_S, edges, (limits_A, narrow_A)):
+            checks = self._stuck(begun[edge], within_A, reaction)
+            if all(check.passed for check in checks):
+                return CutOff(round(edge[0], 1), round(edge[1], 1), reaction), within_A, checks
+        return CutOff(round(edge[0], 1), round(edge[1], 1), 0.0), within_A, checks
+
+    def _held_at(self, level_C: float) -> State:
+        """Each corner with its display held at a level indefinitely, or as near to it as the module can."""
+        return State.settled(self.bank.states([rest_of_a_loop(rig, level_C)[1] for rig in self.module.rigs]))
+
+    def _stuck(self, begun: Sequence[State], limits_A: Limits_A, reaction_s: float) -> tuple[Check, ...]:
+        """Hard rules of temperature with a driver at its limit from either state, and without current afterwards."""
+        ensemble, judged = self.module.ensemble, []
+        for state, current_A in zip(begun, (limits_A[1], limits_A[0]), strict=True):
+            what = f", display at the cut-off, then {current_A:g} A for {reaction_s:g} s".replace("then -", "then −")
+            tally = Tally(ensemble.rig.limits, ensemble.corners, what)
+            rows: Array = np.linspace(0.0, reaction_s, 5)
+            for start_s, amperes, times in ((0.0, current_A, rows), (reaction_s, 0.0, AFTER_ROWS_S)):
+                values, state = ensemble.hold(amperes, state, times)
+                tally.add(start_s + times, values, rates=False, sums=False)
+            judged.append(tally.checks())
+        return again([check for check in worst_of(judged) if check.severity == "hard" and check.unit == "°C"])
+
+
+def _whole_A(limit_A: float) -> float:
+    """A limit rounded down to whole steps."""
+    return round(STEP_A * math.floor(limit_A / STEP_A + 1e-9), 2)

@@ -1,0 +1,166 @@
+"""Why a cue is not exported: each cause once, the root cause first, with its cure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from thermicon.icons.number_text import signed
+
+from ..rig.rig import Rig
+from ..safety.checks import more_and_cure
+from ..solver.inverse import design
+from ..solver.simulate import duration_s
+from ..solver.trace import Outcome
+from .delivery_deviation import DeliveryDeviation, loss_limit
+from .setpoints import Setpoints
+
+if TYPE_CHECKING:
+    from thermicon.icons import Icon
+
+    from .delivered_drive import DeliveredDrive
+    from .prepare import Verdict
+
+_HEADS = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
+
+STRONGEST = 20.0
+"""How many times a driver's limits are raised, at most, to find the current that a cue needs."""
+FINELY_A = 0.05
+"""The needed current is reported in steps of this size, rounded up: a limit that a person would type."""
+FREE_V = 1000.0
+"""A compliance voltage that holds nothing back, in V: only the current is sought."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why a cue is not exported.
+
+    Parameters
+    ----------
+    kind
+        `unsafe`, `unreachable` or `lossy`; an export that is unsafe cannot be forced.
+    text
+        The reason, with its cure.
+
+    Examples
+    --------
+    >>> refusal = Refusal("lossy", "the device is too coarse")
+    >>> str(refusal), refusal.forcible
+    ('loses too much: the device is too coarse', True)
+    """
+
+    kind: Literal["unsafe", "unreachable", "lossy"]
+    text: str
+
+    @property
+    def forcible(self) -> bool:
+        """Whether the export may be forced."""
+        return self.kind != "unsafe"
+
+    def __str__(self) -> str:
+        return f"{_HEADS[self.kind]}: {self.text}"
+
+
+def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryDeviation) -> tuple[Refusal, ...]:
+    """Return the causes against exporting a cue, those that cannot be forced first.
+
+    A consequence is not listed besides its cause: what a device with too small a range misses or loses is reported with
+    the range, and losses are not reported where the drive is unsafe.
+    """
+    refusals, narrowed = [], delivery.narrowed
+    if verdict.colour == "red":
+        reason = verdict.reason or "the gate says red"
+        more = "" if verdict.mended_by_pause else more_and_cure(verdict.findings)
+        refusals.append(Refusal("unsafe", reason + more))
+    lost = lost_text(deviation)
+    if delivery.outcome is not None and not delivery.outcome.reached:
+        refusals.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))
+        lost = "" if narrowed else lost
+    elif narrowed and narrowed.outcome is not None and not narrowed.outcome.reached:
+        refusals.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}"))
+        lost = ""
+    if lost and verdict.colour != "red":
+        refusals.append(Refusal("lossy", f"{narrowed.text}. With that {lost}" if narrowed else _lossy(delivery, lost)))
+    return tuple(refusals)
+
+
+def needed_A(icon: Icon, rig: Rig) -> float | None:
+    """Return the smallest current limit in A with which a rig reaches a cue's target, rounded up to 0.05 A.
+
+    Both directions grow together. None where no current does, where the cue prescribes none, or where the rig has a
+    loop of its own, whose gains matter more. The compliance voltage is left out.
+
+    >>> from thermicon.icons import load_library
+    >>> needed_A(load_library("cooling-step-skin")["cooling-step"], Rig.load("shani2021"))
+    1.9
+    """
+    if icon.context.control == "current" or rig.controller is not None:
+        return None
+    most, least, end = rig.driver.current_max_A, rig.driver.current_min_A, duration_s(icon, rig)
+
+    def reaches(limit_A: float) -> bool:
+        wide = rig.with_(
+            **{
+                "driver.current_limit_A": limit_A,
+                "driver.current_min_A": least * limit_A / most,
+                "driver.voltage_limit_V": FREE_V,
+            }
+        )
+        outcome = design(icon, wide, end).outcome
+        return outcome is not None and outcome.reached
+
+    low, high = most, most * STRONGEST
+    if not reaches(high):
+        return None
+    while high - low > 0.1 * FINELY_A:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if reaches(middle) else (middle, high)
+    return round(FINELY_A * -(-high // FINELY_A), 2)
+
+
+def lost_text(deviation: DeliveryDeviation) -> str:
+    """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
+    limit = loss_limit("receptor difference")
+    if not deviation.lost:
+        return ""
+    first, *others = sorted(deviation.lost, key=lambda place: -place.rms_K)
+    also = "".join(f" (the {place.place} by {place.rms_K:.3f} K)" for place in others)
+    return f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{also}, over the stated {limit:g} K"
+
+
+def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome) -> str:
+    """The rig's own shortfall, with what it would take."""
+    text = outcome.reason or "the target is missed"
+    if delivery.drives is None:  # a thermode, which has neither driver nor module
+        return f"{text}; use a slower or smaller change, or use a thermode that can"
+    rig, driver = delivery.rig, delivery.rig.driver
+    limits_met = [name for name, _ in outcome.limits]
+    if not limits_met or rig.controller is not None:
+        return f"{text}; use a slower or smaller change"
+    if limits_met == ["compliance voltage"]:
+        return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or use a slower change"
+    needed = needed_A(delivery.icon, rig)
+    if needed is None:
+        return f"{text}; no current of this module reaches it: use a slower or smaller change"
+    narrow = ""
+    if delivery.narrowed:
+        narrow = f" and {delivery.device.name} plays at most {delivery.narrowed.most_A:g} A"
+    return (
+        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: use a "
+        f"slower or smaller change, or raise the limit if driver and module can"
+    )
+
+
+def _lossy(delivery: DeliveredDrive, lost: str) -> str:
+    """What is lost, why, and what would lose less."""
+    device, played = delivery.device, delivery.played
+    if isinstance(played, Setpoints):
+        why = f"its set-points have steps of {played.step_K:g} K"
+    elif delivery.device_warnings:
+        why = "; ".join(text.removeprefix(f"{device.name}: ") for text in delivery.device_warnings)
+    elif delivery.rate_Hz < 0.9 * delivery.requested_Hz:
+        why = f"it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
+    else:
+        unit = " of full duty" if device.driven_by == "duty" else f" {device.unit}"
+        why = f"its steps are {signed(played.scale.step, '.3g')}{unit}"
+    return f"{lost}; {device.name}: {why}; use a device that is finer or faster there"

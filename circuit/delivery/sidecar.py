@@ -1,0 +1,184 @@
+"""The sidecar of an exported drive as JSON: what it is, what produced it, its predicted effect, and warnings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields
+from typing import Any
+
+from ..program import own_version, this_program
+from ..records import Record
+from ..safety.summary import summarise
+from .delivered_drive import DeliveredDrive
+from .delivery_deviation import DeliveryDeviation, loss_table
+from .device import Device
+from .digests import digest, digest_of_content, plain
+from .formats.form import Format, events_in
+from .samples import Samples
+from .setpoints import Setpoints
+from .spread import OpenLoopSpread
+from .thermode import lag_of
+
+NO_CLEARANCE = (
+    "A simulation was checked against limits. This is not a medical or ethical clearance. Hardware that touches people "
+    "needs a temperature cut-off of its own that works without any software."
+)
+
+OF_THE_TARGET = ("reached", "largest_miss_K", "largest_miss_s", "rms_miss_K")
+"""Left out of `predicted`: a design is judged by its target (`reached`), what is delivered by the design."""
+
+
+def sidecar(
+    delivery: DeliveredDrive,
+    form: Format,
+    deviation: DeliveryDeviation,
+    safety: Mapping[str, object],
+    felt: Mapping[str, object] | None,
+    forced: Sequence[str],
+    *,
+    demanded: Mapping[str, object],
+    drive: bytes,
+    set_files: Mapping[str, bytes],
+    spread: OpenLoopSpread | None = None,
+) -> dict[str, Any]:
+    """Return everything known about one exported drive; units are in the names.
+
+    `safety` and `felt` are the reports of gate and perception, `forced` the reasons why the drive would have been
+    refused (empty where it was not), `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes
+    of its files, recorded by their digests. `spread` is the effect of an unmeasured module under an open loop.
+    """
+    icon, rig, outcome, device = delivery.icon, delivery.rig, delivery.outcome, _device(delivery.device)
+    text, warnings = str(icon), [*rig.warnings, *delivery.warnings]
+    if not delivery.device.played:
+        warnings.append(f"{delivery.device.name}: no such device was ever driven by thermicon")
+    return {
+        "thermicon": own_version(),
+        "program": this_program(),
+        "what_it_is_not": NO_CLEARANCE,
+        "format": {
+            **{"name": form.name, "source": form.source, "how_to_play": form.how},
+            **(form.facts(delivery) if form.facts else {}),
+        },
+        "file": form.file_name(delivery),
+        "drive_sha256": digest(drive),
+        "set_files": {name: digest(content) for name, content in set_files.items()},
+        "columns": [asdict(column) for column in form.columns(delivery)],
+        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.context.control},
+        "rig_sha256": digest(rig.document.encode("utf-8")),
+        "rig": {
+            "name": rig.name,
+            "content_hash": digest(rig.document.encode("utf-8")),
+            "changes": list(rig.changes),
+            "document": json.loads(rig.document),
+        },
+        "device_sha256": digest_of_content(device),
+        "device": device,
+        "update_rate_Hz": {"requested": delivery.requested_Hz, "realised": delivery.rate_Hz},
+        "played": _played(delivery),
+        "events": [_event(event, icon.context.control) for event in events_in(delivery)],
+        "reached": None if outcome is None else outcome.reached,
+        "reason": None if outcome is None else outcome.reason,
+        "predicted": _predicted(delivery),
+        "delivered_minus_designed": {place.place: _without(asdict(place), "place") for place in deviation.places},
+        "open_loop_spread": None if spread is None else spread.to_dict(),
+        "perception": None if felt is None else dict(felt),
+        "stated_losses": [_record(record) for record in loss_table()],
+        "safety": dict(safety),
+        "hardware_must_prevent": dict(demanded),
+        "warnings": warnings,
+        "forced": bool(forced),
+        "forced_over": list(forced),
+        "seed": None,
+    }
+
+
+def sidecar_text(content: Mapping[str, Any]) -> bytes:
+    """Return a sidecar as JSON; missing numbers are null, never NaN.
+
+    >>> sidecar_text({"a": float("nan")})
+    b'{\\n  "a": null\\n}\\n'
+    """
+    return (json.dumps(plain(content), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode("utf-8")
+
+
+def sealed(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a sidecar with the SHA-256 of its own text, which is that of the file without this key.
+
+    >>> sealed({"a": 1})["sidecar_sha256"][:8]
+    '5e36b656'
+    """
+    bare = {key: value for key, value in content.items() if key != "sidecar_sha256"}
+    return {**bare, "sidecar_sha256": digest(sidecar_text(bare))}
+
+
+def _event(event: Any, control: str) -> dict[str, object]:
+    unit = "level_A" if control == "current" else "level_C"
+    return {"name": event.name, "time_s": event.time_s, unit: event.level, "level_of": control}
+
+
+def _played(delivery: DeliveredDrive) -> dict[str, object]:
+    played = delivery.played
+    if isinstance(played, Setpoints):
+        return {
+            "segments": len(played.segments),
+            "tick_s": played.tick_s,
+            "step_K": played.step_K,
+            "baseline_C": float(played.level_C[0]),
+            "least_level_C": float(played.level_C.min()),
+            "greatest_level_C": float(played.level_C.max()),
+            "icon_begins_at_s": 0.0,
+            "duration_s": delivery.file_s,
+            "cue_ends_at_s": played.cue_s,
+            "lag_s": lag_of(delivery.device),
+            "clock": (
+                "times count from the start command; the display follows with the lag, which is a delay and not "
+                "counted as a miss or a loss"
+            ),
+        }
+    return _samples(played, delivery.lead_s)
+
+
+def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
+    numbers: dict[str, object] = dict(summarise(delivery.trace).to_dict())
+    predicted = {key: value for key, value in numbers.items() if key not in OF_THE_TARGET}
+    if not isinstance(delivery.played, Setpoints):
+        return predicted
+    return {**predicted, "duration_s": delivery.file_s}
+
+
+def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
+    scale = samples.scale
+    unit = {"1": "duty", "°C": "C"}.get(scale.unit, scale.unit)
+    ends = (scale.offset + scale.step * scale.lowest, scale.offset + scale.step * scale.highest)
+    return {
+        "samples": len(samples.codes),
+        "icon_begins_at_s": lead_s,
+        "duration_s": float(samples.time_s[-1]),
+        f"offset_{unit}": scale.offset,
+        f"step_{unit}": scale.step,
+        "lowest_code": scale.lowest,
+        "highest_code": scale.highest,
+        f"low_level_{unit}": ends[0],
+        f"high_level_{unit}": ends[1],
+        f"rest_{unit}": float(samples.command[0]),
+        f"least_command_{unit}": float(samples.command.min()),
+        f"greatest_command_{unit}": float(samples.command.max()),
+    }
+
+
+def _device(device: Device) -> dict[str, object]:
+    named = {field.name: getattr(device, field.name) for field in fields(device) if field.name != "records"}
+    return {**named, "records": [_record(record) for record in device.records]}
+
+
+def _record(record: Record) -> dict[str, object]:
+    known = {
+        key: getattr(record, key)
+        for key in ("quantity", "unit", "value", "low", "high", "source", "conditions", "confidence")
+    }
+    return {key: value for key, value in known.items() if value not in (None, "")}
+
+
+def _without(content: dict[str, Any], key: str) -> dict[str, Any]:
+    return {name: value for name, value in content.items() if name != key}

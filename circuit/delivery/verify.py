@@ -1,0 +1,135 @@
+"""Whether the files of an export are as they were exported: drives, set files, sidecars, rig, device and program."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from ..program import own_version, this_program
+from .claims import Claims, claims_of, table_of
+from .digests import digest, digest_of_content
+from .sidecar import sealed, sidecar_text
+
+STUDY = "study.json"
+RESTORE = "put the file back as it was exported, or export again"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A finding about a file: `wrong` where it does not belong to the others, otherwise `told`; with the cure."""
+
+    file: str
+    kind: Literal["wrong", "told"]
+    text: str
+    cure: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.file}: {self.text}" + (f"; {self.cure}" if self.cure else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """What each sidecar of a folder claims, by its name, and all findings; `well` where nothing is wrong."""
+
+    claims: Mapping[str, Claims]
+    findings: tuple[Finding, ...]
+
+    @property
+    def well(self) -> bool:
+        """Whether everything belongs together."""
+        return all(finding.kind != "wrong" for finding in self.findings)
+
+    def belongs(self, sidecar: str) -> bool:
+        """Whether nothing is wrong with a sidecar, its drive and what that is played with."""
+        files = {sidecar, *self.claims[sidecar].digests}
+        return all(finding.kind != "wrong" or finding.file not in files for finding in self.findings)
+
+
+def verify(files: Mapping[str, bytes]) -> Verification:
+    """Return what does and does not belong together among the files of a folder, by their names.
+
+    Another version or code of the program is reported but is not wrong, since its drives stay valid.
+
+    >>> verify({"a.csv": b"1"}).well
+    False
+    """
+    tables = {name: table_of(content) for name, content in sorted(files.items()) if name.endswith(".json")}
+    claims = {name: each for name in tables if (each := claims_of(files[name])) is not None}
+    bound = {name: each.digests for name, each in claims.items()}
+    studied = (tables.get(STUDY) or {}).get("study_files")
+    if isinstance(studied, dict):
+        bound[STUDY] = {**bound.get(STUDY, {}), **{str(name): str(known) for name, known in studied.items()}}
+    findings = [*_changed(files, bound), *_unbound(files, tables, bound)]
+    for name, each in claims.items():
+        about = tables[name] or {}
+        findings += [*_own(name, files[name], about), *_names(name, each, claims), *_program(name, about)]
+    if not claims and all(finding.kind != "wrong" for finding in findings):
+        findings.append(Finding(".", "wrong", "holds no sidecar", "give a folder that was exported"))
+    return Verification(claims, tuple(findings))
+
+
+def _changed(files: Mapping[str, bytes], bound: Mapping[str, Mapping[str, str]]) -> Iterator[Finding]:
+    """Files against the digests in all sidecars that name them, and in the list of a study."""
+    for file in dict.fromkeys(file for digests in bound.values() for file in digests):
+        here = digest(files[file]) if file in files else None
+        against = [name for name, digests in bound.items() if digests.get(file, here) != here]
+        by = f"{against[0]} and {len(against) - 1} more" if len(against) > 1 else "".join(against)
+        if here is None:
+            yield Finding(file, "wrong", f"is missing; it was exported with {by}", RESTORE)
+        elif against:
+            yield Finding(file, "wrong", f"is not the file that was exported with {by}: its digest differs", RESTORE)
+
+
+def _unbound(
+    files: Mapping[str, bytes], tables: Mapping[str, object], bound: Mapping[str, Mapping[str, str]]
+) -> Iterator[Finding]:
+    """Files that no digest covers: wrong where they look like a drive or a sidecar, since somebody might play them."""
+    from .formats import format_names, load_format
+
+    ends = tuple({load_format(name).suffix.lower() for name in format_names()})
+    covered = {*bound, *(file for digests in bound.values() for file in digests)}
+    for name in sorted(set(files) - covered):
+        if name in tables and tables[name] is None:
+            yield Finding(name, "wrong", "is damaged: it cannot be read as JSON, so it describes no drive", RESTORE)
+        elif name not in tables and name.lower().endswith(ends):
+            text = "has no sidecar that can be read, so its content is unknown"
+            yield Finding(name, "wrong", text, "remove it, or export its icon again")
+        else:
+            yield Finding(name, "told", "does not belong to an export and was not checked")
+
+
+def _own(name: str, content: bytes, about: Mapping[str, Any]) -> Iterator[Finding]:
+    """The sidecar against its own digest, byte for byte, and the rig and device in it against theirs."""
+    if sidecar_text(sealed(about)) != content:
+        yield Finding(name, "wrong", "was changed after it was exported: its own digest does not match", RESTORE)
+    rig = about.get("rig")
+    document = rig.get("document") if isinstance(rig, dict) else None
+    for what, held in (("rig", document), ("device", about.get("device"))):
+        if digest_of_content(held) != about.get(f"{what}_sha256"):
+            text = f"contains another {what} than the one of its digest ({what}_sha256)"
+            yield Finding(name, "wrong", text, RESTORE)
+
+
+def _names(name: str, claims: Claims, others: Mapping[str, Claims]) -> Iterator[Finding]:
+    """The sidecar's name against that of its drive, and against other sidecars of the same drive."""
+    if not claims.drive.startswith(name.removesuffix("json")):
+        text = f"describes {claims.drive}, which does not match this name"
+        yield Finding(name, "wrong", text, "rename it back, or export again")
+    if twice := [each for each, other in others.items() if other.drive == claims.drive and each != name]:
+        yield Finding(name, "wrong", f"describes {claims.drive}, as {twice[0]} does", "remove the one that is a copy")
+
+
+def _program(name: str, about: Mapping[str, Any]) -> Iterator[Finding]:
+    """Notes where the program or the shipped rig has changed since."""
+    from ..rig.rig import Rig, rig_names
+
+    rig = about.get("rig")
+    shipped = rig.get("name") if isinstance(rig, dict) and not rig.get("changes") else None
+    if shipped in rig_names() and digest(Rig.load(str(shipped)).document.encode("utf-8")) != about.get("rig_sha256"):
+        text = f"was exported for a rig called {shipped} that differs from the rig that is shipped now"
+        yield Finding(name, "told", text)
+    then, now = about.get("thermicon"), own_version()
+    if about.get("program") != this_program() or then != now:
+        by = f"thermicon {then}, this is {now}" if then != now else f"other code of version {now}"
+        yield Finding(name, "told", f"was exported by {by}; if it is exported again, the drive may differ")

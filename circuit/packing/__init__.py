@@ -1,1 +1,0 @@
-"""An export as files: the verdict on what is written, sidecars, digests, and verification of a folder."""

@@ -1,1 +1,0 @@
-"""References and the methods paragraph of a paper."""

@@ -1,1 +1,0 @@
-"""Reports as HTML pages, and the server of the page."""

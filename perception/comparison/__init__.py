@@ -1,1 +1,0 @@
-"""Why two icons are distinguishable: parts of the distance, reasons, published rules."""

@@ -1,0 +1,151 @@
+"""Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
+
+Constants are those of the maximum of the posterior (`inference`), so that they belong together: with so many constants
+no draw is near the middle of them all. Intervals cover 95 % of the draws; for a variant without draws, of the normal
+approximation. Records marked `predict` are never read.
+`python -m thermicon.perception.evidence.calibrate` writes the shipped file again.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from thermicon.circuit.records import Record, Table, dump_records
+
+from ..identification.rate_task import memory_noise, memory_record
+from ..observer.channels import CHANNELS, Channel
+from ..observer.draws import PosteriorDraws
+from ..observer.draws_file import shipped_file
+from ..observer.observer import DATA, Observer, load_thresholds
+from ..observer.variants import VARIABLES, Variable, source_of
+from ..sensation.fits import neutral_flux
+from .results import UNMOVED_SD, Constant, load_constants
+from .statistics import load_evidence
+
+DIGITS = 4
+COMMENT = """Constants of the nominal observer, written by `python -m thermicon.perception.evidence.calibrate`.
+Inferred from published evidence (`data/constants.csv`), or taken over from thresholds.toml; low and high are 95 %.
+`use = "assumed"`: no data behind it, or data that say nothing of it. Nothing here was set on a predicted record.
+Numbers `from heat flow` are those of the other variant.
+Written by a program: change the evidence or the priors and run it again."""
+
+
+def calibrate(thresholds: Table | None = None) -> Table:
+    """Records of the observer and its variants, with thresholds from the shipped table or another one like it."""
+    table = load_thresholds() if thresholds is None else thresholds
+    known = Table(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
+    shared = (
+        *_taken_over(known),
+        *(neutral_flux(known, channel) for channel in CHANNELS),
+        *(record for variant in VARIABLES for record in _inferred(variant)),
+    )
+    noise = [_memory(known, shared, variant) for variant in VARIABLES]
+    return Table("observer.toml", tuple(_rounded(r) for r in (*shared, *noise)))
+
+
+def to_toml(observer: Table) -> str:
+    """Text of the parameter file, the same bytes for the same records."""
+    return dump_records(observer, comment=COMMENT)
+
+
+def _inferred(variable: Variable) -> list[Record]:
+    """Constants of one variant, but for offsets of single laboratories."""
+    variant = source_of(variable)
+    constants = [each for each in load_constants(variable) if each.mechanism not in LEFT]
+    if not shipped_file(variable).exists():
+        return [_record(each, variant, AT_MAXIMUM) for each in constants]
+    draws = PosteriorDraws.load(variable=variable)
+    return [_record(_drawn(each, draws), variant, FROM_DRAWS) for each in constants]
+
+
+AT_MAXIMUM = "maximum a posteriori, 95 % interval"
+FROM_DRAWS = "maximum a posteriori, 95 % of the draws of the posterior"
+
+
+def _drawn(each: Constant, draws: PosteriorDraws) -> Constant:
+    low, _, high = draws.interval(each.name)
+    return replace(each, low=low, high=high)
+
+
+LEFT = ("laboratories",)
+
+
+def _record(each: Constant, variant: str, method: str) -> Record:
+    channel, _, rest = each.name.partition(" ")
+    named = channel in CHANNELS
+    return Record(
+        quantity=f"{rest if named else each.name}{variant}",
+        unit=each.unit,
+        source=f"inferred from published evidence; prior: {each.source}",
+        value=each.value,
+        low=min(each.low, each.value),
+        high=max(each.high, each.value),
+        channel=channel if named else "both",
+        method=method,
+        conditions=f"SD {each.narrowed:.2f} times the prior's, {each.prior_low:.3g} to {each.prior_high:.3g}",
+        confidence="low" if each.narrowed > UNMOVED_SD else "medium",
+        use="assumed" if each.narrowed > UNMOVED_SD else "calibrate",
+    )
+
+
+def _memory(known: Table, shared: tuple[Record, ...], variable: Variable) -> Record:
+    """Memory noise of a variant, by the rate task through its own distance."""
+    unset = memory_record(source_of(variable), 1.0, 1.0, 1.0)
+    draft = Observer.from_table(Table("draft", (*shared, unset)), variable=variable)
+    return memory_noise(known, draft)
+
+
+def _taken_over(known: Table) -> tuple[Record, ...]:
+    """Records that enter as they are, under the observer's own names."""
+    zone = known.one("complete adaptation")
+    low, high = zone.interval
+    return (
+        replace(zone, quantity="neutral zone", low=low, high=high),
+        replace(known.one("thermode area of the forced-choice thresholds"), quantity="reference area"),
+        *(known.one("path length to the cord", site=site) for site in ("hand", "forearm")),
+        known.one("lapse rate"),
+        known.one("share of the scatter of ratings"),
+        known.one("cost of a missing episode"),
+        known.one("bar of an episode"),
+        *(_mean_rating(channel) for channel in CHANNELS),
+    )
+
+
+STRIPS = range(1, 6)
+
+
+def _mean_rating(channel: Channel) -> Record:
+    """Geometric mean of the ratings of E2 over its areas, at which their pooled scatter is taken to hold."""
+    evidence = load_evidence()
+    found = [evidence.find("E2", f"rating_mean_{strips}strip", channel) for strips in STRIPS]
+    logs = [math.log(each.place) for each in found]
+    return Record(
+        quantity="mean rating",
+        unit="points of 100",
+        source="statistics of open trial data, experiment E2 of evidence.csv",
+        value=math.exp(sum(logs) / len(logs)),
+        channel=channel,
+        site="forearm",
+        conditions=(
+            "geometric mean over 1 to 5 strips of 1.96 cm²; only sets where the scatter of ratings is taken to hold"
+        ),
+        confidence="medium",
+        use="calibrate",
+    )
+
+
+def _rounded(record: Record) -> Record:
+    def short(number: float | None) -> float | None:
+        return None if number is None else float(f"{number:.{DIGITS}g}")
+
+    return replace(record, value=short(record.value), low=short(record.low), high=short(record.high))
+
+
+def main() -> None:
+    """Write the parameter file of the package."""
+    (DATA / "observer.toml").write_text(to_toml(calibrate()), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,103 @@
+"""One predicted number with its uncertainty: parameters that nobody has measured, and people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..experiments.measured import quantile_felt
+from ..kernels.parallel import in_order
+from ..observer.observer import Observer
+from ..observer.variants import Variable
+from .plausible import plausible_observers
+
+DRAWS = 24
+"""Observers drawn for an interval: enough to see its size, not its second digit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """A number that a published experiment can be compared with; a prediction, not a measurement.
+
+    `value` is that of the nominal observer (median of people where there are some), None where nothing
+    was felt. `low`, `high` enclose 95 % of the observers that the assumed and calibrated intervals leave
+    possible; `people` is the 16 to 84 % interval over virtual people at nominal parameters. `draws` has the
+    answers of those observers (inf: not felt): the k-th is the same observer in every experiment of a
+    variant that was run with as many draws, so that two predictions can be plotted against each other.
+    """
+
+    experiment: str
+    quantity: str
+    channel: str
+    value: float | None
+    unit: str
+    low: float | None
+    high: float | None
+    variable: Variable
+    conditions: str
+    people: tuple[float, float] | None = None
+    draws: tuple[float, ...] = ()
+
+    def __repr__(self) -> str:
+        value = "nothing felt" if self.value is None else f"{self.value:.3g} {self.unit}"
+        span = "" if self.low is None or self.high is None else f" [{self.low:.3g}, {self.high:.3g}]"
+        return (
+            f"Predicted({self.experiment}, {self.quantity}, {self.channel}: {value}{span} "
+            f"from {self.variable}; {self.conditions})"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What an experiment is asked for: quantity, channel, unit, conditions, and how an observer answers (inf: not)."""
+
+    quantity: str
+    channel: str
+    unit: str
+    conditions: str
+    answer: Callable[[Observer], float]
+
+
+def predict(
+    experiment: str,
+    asked: Sequence[Asked],
+    variable: Variable,
+    draws: int = DRAWS,
+    seed: int = 0,
+) -> tuple[Predicted, ...]:
+    """Answers of the nominal observer, with the interval over `draws` plausible ones (0: none) of a seed."""
+    nominal = Observer.load(variable=variable)
+    others = plausible_observers(draws, seed, variable=variable) if draws else ()
+    made = []
+    for one in asked:
+        value, each = one.answer(nominal), tuple(in_order(one.answer, others))
+        low, high = interval_of(each)
+        made.append(
+            Predicted(
+                experiment=experiment,
+                quantity=one.quantity,
+                channel=one.channel,
+                value=float(value) if np.isfinite(value) else None,
+                unit=one.unit,
+                low=low,
+                high=high,
+                variable=variable,
+                conditions=one.conditions,
+                draws=each,
+            )
+        )
+    return tuple(made)
+
+
+def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
+    """What encloses 95 % of answers (inf: not felt); an end that lies among those not felt is None.
+
+    >>> interval_of((1.0, 2.0, 3.0)), interval_of(())
+    ((1.05, 2.95), (None, None))
+    """
+    ordered = np.sort(np.asarray(each, dtype=np.float64))
+    if not ordered.size:
+        return None, None
+    return quantile_felt(ordered, 0.025), quantile_felt(ordered, 0.975)

@@ -1,0 +1,134 @@
+"""The shipped results of the inference: constants, predictions in and out of the fit, and the ablation.
+
+Written by `python -m thermicon.perception.evidence.run`; a test checks that they belong to the shipped evidence and
+priors. All are CSV tables, so that a spreadsheet opens them.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, fields
+from functools import lru_cache
+from io import StringIO
+from typing import Any
+
+from thermicon.icons.near_words import did_you_mean
+
+from ..observer.prior_file import load_priors
+from ..observer.variants import Variable
+from .rows import load_rows
+from .statistics import DATA
+
+UNMOVED_SD = 0.9
+"""A constant that keeps more of its prior's SD was hardly moved by the evidence."""
+CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """One constant of one variant at its maximum: its value, 95 % interval and prior's 95 % interval.
+
+    `narrowed` is the SD over the prior's: 1 where the evidence says nothing.
+    """
+
+    variable: str
+    name: str
+    unit: str
+    value: float
+    low: float
+    high: float
+    prior_low: float
+    prior_high: float
+    narrowed: float
+    mechanism: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
+class PredictedRow:
+    """A published number with its 95 % interval, fitted by each variant, and predicted without its experiment."""
+
+    experiment: str
+    statistic: str
+    channel: str
+    label: str
+    unit: str
+    published: float
+    published_low: float
+    published_high: float
+    fitted: float
+    heat_flow: float
+    left_out: float
+    left_out_low: float
+    left_out_high: float
+    score: float
+    log_score: float
+
+
+@dataclass(frozen=True, slots=True)
+class AblatedRow:
+    """One run of the ablation: `difference` is its log evidence minus that of its variant with every mechanism."""
+
+    variable: str
+    without: str
+    log_evidence: float
+    difference: float
+    squares: float
+    worst: str
+    worst_sd: float
+
+
+@lru_cache(maxsize=4)
+def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
+    """Constants of a variant at its maximum.
+
+    >>> constant("cold limit").unit
+    'degC'
+    """
+    return tuple(row for row in read_rows(CONSTANTS, Constant) if row.variable == variable)
+
+
+@lru_cache(maxsize=1)
+def load_predictions() -> tuple[PredictedRow, ...]:
+    """Predictions of every row."""
+    return tuple(read_rows(PREDICTIONS, PredictedRow))
+
+
+@lru_cache(maxsize=1)
+def load_ablation() -> tuple[AblatedRow, ...]:
+    """The ablation, the default variant first."""
+    return tuple(read_rows(ABLATION, AblatedRow))
+
+
+def constant(name: str) -> Constant:
+    """One constant by name; a ValueError names the nearest."""
+    for each in load_constants():
+        if each.name == name:
+            return each
+    raise ValueError(f"there is no constant {name!r}: {did_you_mean(name, {each.name for each in load_constants()})}")
+
+
+def to_csv(rows: Sequence[Any]) -> str:
+    """A table with a header, numbers to six figures, from frozen rows of one kind."""
+    text = StringIO()
+    writer = csv.DictWriter(text, [field.name for field in fields(rows[0])], lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in asdict(row).items()})
+    return text.getvalue()
+
+
+def inputs_digest() -> str:
+    """Hash of everything that was conditioned on, rows and priors; the first line of every table ends with it."""
+    return hashlib.sha256(repr((load_rows(), load_priors())).encode()).hexdigest()[:16]
+
+
+def read_rows(name: str, kind: Any) -> Iterable[Any]:
+    """Rows of a shipped table as frozen rows of a kind."""
+    with (DATA / name).open(encoding="utf-8", newline="") as file:
+        file.readline()
+        types = {field.name: field.type for field in fields(kind)}
+        for row in csv.DictReader(file):
+            yield kind(**{k: float(v) if types[k] == "float" else v for k, v in row.items()})

@@ -1,0 +1,152 @@
+"""Rows of the likelihood: one published number each, with its error and what the model itself may miss by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+from ..experiments.published import Key
+from ..experiments.task_constants import DISCREPANCY, UNSTATED
+from ..observer.channels import CHANNELS
+from ..observer.observer import load_thresholds
+from .statistics import Evidence, load_evidence
+
+SPREAD_DISCREPANCY = 0.20
+"""What DISCREPANCY is for spreads between and within people, of which the model is cruder; assumed."""
+CORRELATION_DISCREPANCY = 0.05
+WARM_WIDTH_BIAS, WARM_WIDTH_SPREAD_BIAS = 0.14, -0.05
+"""What the fit of E4 adds to warm ln σ and to its spread in log10, found on simulated sets (evidence.toml)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A published number on the scale of its prediction: `sd` holds its error and the model's discrepancy.
+
+    `label` says in words what it is, `unit` in which unit `shown` gives it (its exponential where it is a logarithm).
+    """
+
+    key: Key
+    value: float
+    sd: float
+    log: bool
+    unit: str
+    label: str
+
+    def __post_init__(self) -> None:
+        if not self.sd > 0.0:
+            raise ValueError(f"{' '.join(self.key)}: an error above 0 is needed, not {self.sd:g}")
+
+    @property
+    def experiment(self) -> str:
+        """The experiment, whose rows are left out together."""
+        return self.key[0]
+
+    def shown(self, place: float) -> float:
+        """A value or prediction in the row's own unit."""
+        return math.exp(min(place, 20.0)) if self.log else place
+
+
+@lru_cache(maxsize=1)
+def load_rows() -> tuple[Row, ...]:
+    """All rows of the likelihood, experiment by experiment."""
+    evidence = load_evidence()
+    return (*_from_statistics(evidence), *_from_thresholds())
+
+
+def _from_statistics(evidence: Evidence) -> list[Row]:
+    rows = []
+    for experiment, statistic, channels, label, discrepancy in STATISTICS:
+        for channel in channels:
+            found = evidence.find(experiment, statistic, channel)
+            value, error = found.place, found.se
+            log = found.scale == "log"
+            if statistic.startswith("rating_mean") or statistic == "rating_within_sd_pooled":
+                value, error, log = math.log(value), error / value, True
+            if channel == "warm" and statistic == "sigma_gm_age30":
+                value -= WARM_WIDTH_BIAS
+            if channel == "warm" and statistic == "sigma_between_sd_log10_noise_removed":
+                value -= WARM_WIDTH_SPREAD_BIAS
+            more = discrepancy if log or label.startswith("correlation") else discrepancy * abs(value)
+            sd = math.hypot(error, max(more, LEAST))
+            rows.append(Row((experiment, statistic, channel), value, sd, log, found.unit, f"{label}, {channel}"))
+    # The spread between people stands in a column of its own row.
+    young = evidence.find("E5", "cold_change_at_report_peak1_age_lt36", "cold")
+    spread = young.between_people_sd
+    if spread is not None and young.n_people is not None:
+        error = spread / math.sqrt(2.0 * young.n_people)
+        sd = math.hypot(error, SPREAD_DISCREPANCY * spread)
+        label = "between people, ln of cooling after warmth"
+        rows.append(Row(("E5", "between_people_sd_peak1_age_lt36", "cold"), spread, sd, False, "ln", label))
+    return rows
+
+
+LEAST = 0.01
+"""No row is taken for more certain than this, on its own scale."""
+
+
+def _from_thresholds() -> list[Row]:
+    table, rows = load_thresholds(), []
+    for channel in CHANNELS:
+        thenar = table.one("detection threshold", channel=channel, site="thenar")
+        rows.append(_threshold("thenar", channel, math.log(thenar.central), UNSTATED))
+        wrist = table.one("detection threshold", channel=channel, site="wrist")
+        spread = 0.5 * math.log(wrist.interval[1] / wrist.interval[0])
+        rows.append(_threshold("wrist", channel, math.log(wrist.central), spread / math.sqrt(PEOPLE_WRIST)))
+        sd = math.hypot(spread / math.sqrt(2.0 * PEOPLE_WRIST), SPREAD_DISCREPANCY * spread)
+        label = f"between people, ln of forced choice at the wrist, {channel}"
+        rows.append(Row(("wrist", "spread of detection thresholds", channel), spread, sd, False, "ln", label))
+        band = table.one("amplitude difference threshold", channel=channel).interval
+        key = ("amplitudes", "amplitude difference threshold", channel)
+        middle, error = 0.5 * math.log(band[0] * band[1]), 0.5 * math.log(band[1] / band[0])
+        rows.append(Row(key, middle, math.hypot(error, PEDESTAL_ERROR), True, "K", f"amplitude difference, {channel}"))
+    key = ("steps", "steps from threshold to pain", "warm")
+    rows.append(Row(key, math.log(STEPS), STEPS_ERROR, True, "1", "steps from threshold to pain, warm"))
+    return rows
+
+
+def _threshold(place: str, channel: str, log_threshold: float, error: float) -> Row:
+    """A forced-choice threshold: the prediction is how far the published one is from one multiple of threshold."""
+    key = (place, "detection threshold", channel)
+    sd = math.hypot(error, DISCREPANCY)
+    return Row(key, 0.0, sd, True, f"times {math.exp(log_threshold):.2g} K", f"forced choice, {place}, {channel}")
+
+
+PEOPLE_WRIST = 106
+PEDESTAL_ERROR = 0.35
+"""The amplitudes compared are not stated: the pedestal is assumed, and moves the row by this, ln."""
+STEPS, STEPS_ERROR = 30.0, 0.3
+"""Herget et al. 1941, forehead, radiant; the error is assumed."""
+
+BOTH = ("cold", "warm")
+STATISTICS: tuple[tuple[str, str, tuple[str, ...], str, float], ...] = (
+    ("E1", "rt_gm_5strip_onset_clock", BOTH, "choice reaction time", DISCREPANCY),
+    ("E1", "rt_area_exponent_onset_clock", BOTH, "area exponent of reaction time", DISCREPANCY),
+    ("E1", "rt_between_sd_ln_5strip_onset_clock", BOTH, "between people, ln of reaction time", SPREAD_DISCREPANCY),
+    ("E1", "rt_within_sd_ln_5strip_onset_clock", BOTH, "within people, ln of reaction time", SPREAD_DISCREPANCY),
+    ("E1", "rt_cold_warm_correlation_5strip_onset_clock", ("both",), "correlation of reaction times",
+     CORRELATION_DISCREPANCY),
+    ("E2", "rating_mean_5strip", BOTH, "rating of five strips", DISCREPANCY),
+    ("E2", "rating_area_exponent_group", BOTH, "area exponent of ratings", DISCREPANCY),
+    ("E2", "rating_within_sd_pooled", BOTH, "within people, ratings", SPREAD_DISCREPANCY),
+    ("E3", "threshold_gm", BOTH, "limits", DISCREPANCY),
+    ("E3", "between_sd_log10_noise_removed", BOTH, "between people, log10 of limits", SPREAD_DISCREPANCY),
+    ("E3", "within_sd_log10_median_person", BOTH, "within people, log10 of limits", SPREAD_DISCREPANCY),
+    ("E3", "cold_warm_correlation_log", ("both",), "correlation of limits", CORRELATION_DISCREPANCY),
+    ("E4", "threshold50_gm_age30", BOTH, "yes/no at 30 years", DISCREPANCY),
+    ("E4", "threshold50_ln_per_decade", BOTH, "yes/no, ln per decade of age", DISCREPANCY),
+    ("E4", "sigma_gm_age30", BOTH, "width of yes/no at 30 years", SPREAD_DISCREPANCY),
+    ("E4", "threshold_between_sd_log10_noise_removed", BOTH, "between people, log10 of yes/no", SPREAD_DISCREPANCY),
+    ("E4", "sigma_between_sd_log10_noise_removed", BOTH, "between people, log10 of width", SPREAD_DISCREPANCY),
+    ("E4", "cold_warm_threshold_correlation_person_fits", ("both",), "correlation of yes/no", CORRELATION_DISCREPANCY),
+    ("E5", "cold_change_at_report_peak1_age_lt36", ("cold",), "cooling after a pulse to 35 °C", DISCREPANCY),
+    ("E5", "ratio_to_lowest_peak2_age_lt36", ("cold",), "after 38 °C, ratio", DISCREPANCY),
+    ("E5", "ratio_to_lowest_peak3_age_lt36", ("cold",), "after 45 °C, ratio", DISCREPANCY),
+    ("E5", "ratio_to_lowest_peak4_age_lt36", ("cold",), "after 47 °C, ratio", DISCREPANCY),
+    ("E5", "within_sd_ln_peak1", ("cold",), "within people, ln of cooling after warmth", SPREAD_DISCREPANCY),
+    ("E5", "share_called_warm_peak1_age_lt36", ("cold",), "cooling called warm after 35 °C", DISCREPANCY),
+    ("E5", "share_called_warm_peak2_age_lt36", ("cold",), "cooling called warm after 38 °C", DISCREPANCY),
+    ("E5", "share_called_warm_peak3_age_lt36", ("cold",), "cooling called warm after 45 °C", DISCREPANCY),
+    ("E5", "share_called_warm_peak4_age_lt36", ("cold",), "cooling called warm after 47 °C", DISCREPANCY),
+    ("E6", "rating_local_exponent_mean", BOTH, "exponent of ratings by size", DISCREPANCY),
+)  # fmt: skip

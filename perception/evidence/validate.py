@@ -1,0 +1,270 @@
+"""The validation report: every published target, predicted beside reported, for every variant of the observer.
+
+No parameter is set here, and no count of passes is aimed at: a miss with its size and the mechanism
+suspected is a result.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from thermicon.circuit.records import Table
+
+from ..identification.laboratory import DRAWS
+from ..observer.observer import load_thresholds
+from ..observer.variants import VARIABLES, Variable
+from .conditioning import Conditioning, load_conditioning
+from .predicted import Predicted, interval_of
+from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
+from .tradeoffs import Answers, TradeOff, trade_offs
+from .verdicts import Verdict, judge_row
+
+if TYPE_CHECKING:
+    from ..progress import Progress
+    from .shown import Evidence
+
+PEOPLE, TRIALS = 200, 48
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A row as one variant predicts it: what was made of the prediction, verdict, share of draws that hold."""
+
+    predicted: Predicted
+    verdict: Verdict
+    share_holding: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A row of the report: what was published, and the judgement of every variant in the order of VARIABLES."""
+
+    row: Row
+    published: Published
+    judged: tuple[Judged, ...]
+
+    @property
+    def nearer(self) -> str:
+        """Which of temperature and heat flow does better; nothing where it is not judged."""
+        warmth, flow = (one.verdict for one in self.judged)
+        if warmth.holds is None:
+            return ""
+        if warmth.holds and flow.holds:
+            return "both"
+        if warmth.holds or flow.holds:
+            return "temperature" if warmth.holds else "heat flow"
+        if math.isclose(warmth.miss, flow.miss, rel_tol=0.02) or warmth.miss == flow.miss:
+            return "neither"
+        return f"neither, {'temperature' if warmth.miss < flow.miss else 'heat flow'} nearer"
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """One target with its lines."""
+
+    target: Target
+    lines: tuple[Line, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ValidationReport:
+    """Everything that the validation report shows.
+
+    Attributes
+    ----------
+    version
+        Version of the program.
+    people, draws, seed, trials
+        Arguments of the run.
+    sections
+        Targets with their verdicts.
+    trade_offs
+        Pairs of targets of every variant, in the order of VARIABLES.
+    evidence
+        Curves and answers behind the figures.
+    conditioning
+        What the constants were inferred from, with left-out predictions.
+
+    See Also
+    --------
+    validate : Returns the report.
+    """
+
+    version: str
+    people: int
+    draws: int
+    seed: int
+    trials: int
+    sections: tuple[Section, ...]
+    trade_offs: tuple[tuple[TradeOff, ...], ...]
+    evidence: Evidence
+    conditioning: Conditioning
+
+    def counts(self, variant: int) -> tuple[int, int]:
+        """How many judged rows hold for a variant, of how many."""
+        held = [line.judged[variant].verdict.holds for s in self.sections for line in s.lines if line.row.judged]
+        return sum(one is True for one in held), len(held)
+
+    def __repr__(self) -> str:
+        said = ", ".join("{} {} of {}".format(variant, *self.counts(k)) for k, variant in enumerate(VARIABLES))
+        return f"ValidationReport({len(self.sections)} targets; hold: {said}; {self.draws} draws, {self.people} people)"
+
+
+def validate(
+    *,
+    people: int = PEOPLE,
+    draws: int = DRAWS,
+    seed: int = 0,
+    trials: int = TRIALS,
+    published: Table | None = None,
+    progress: Progress | None = None,
+) -> ValidationReport:
+    """Predict every published target and judge it; the same arguments give the same report.
+
+    Parameters
+    ----------
+    people
+        Number of virtual people behind spreads between persons.
+    draws
+        Number of plausible observers behind intervals and trade-offs; 0: none.
+    seed
+        Seed of people and observers.
+    trials
+        Length of the identification experiment.
+    published
+        A table in place of the shipped one of published numbers.
+    progress
+        Called with (steps done, steps in all).
+
+    Returns
+    -------
+    ValidationReport
+        Every target, predicted beside published.
+
+    Raises
+    ------
+    ValueError
+        For no people, a single draw, and a table that lacks what a target names.
+
+    Examples
+    --------
+    >>> validate(people=0)
+    Traceback (most recent call last):
+    ...
+    ValueError: ...
+    """
+    from .shown import collect_evidence
+
+    if people < 2:
+        raise ValueError(f"a spread between persons needs at least two of them, not {people}")
+    if draws < 0 or draws == 1:
+        raise ValueError(f"an interval needs at least two draws, or 0 for none, not {draws}")
+    table = load_thresholds() if published is None else published
+    targets = load_targets()
+    known = {(row.target, row.label): published_for(row, table) for target in targets for row in target.rows}
+    return assemble(
+        targets, known, table, collect_evidence(people, draws, seed, trials, progress), people, draws, seed, trials
+    )
+
+
+def assemble(
+    targets: Sequence[Target],
+    known: dict[tuple[int, str], Published],
+    table: Table,
+    evidence: Evidence,
+    people: int,
+    draws: int,
+    seed: int,
+    trials: int,
+) -> ValidationReport:
+    """Judge evidence that is there already."""
+    from thermicon.circuit.program import own_version
+
+    sections = []
+    for target in targets:
+        lines = []
+        for row in target.rows:
+            was = known[row.target, row.label]
+            lines.append(Line(row, was, tuple(_judged(row, was, table, evidence, variant) for variant in VARIABLES)))
+        sections.append(Section(target, tuple(lines)))
+    pairs = tuple(trade_offs(answers(sections, k)) for k in range(len(VARIABLES)))
+    known_from = load_conditioning()
+    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence, known_from)
+
+
+def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:
+    """The judged rows of a variant over its draws; twice judged predictions count once."""
+    found: dict[tuple[str, str, str, str], Answers] = {}
+    for section in sections:
+        for line in section.lines:
+            one, row = line.judged[variant], line.row
+            if not row.judged or not one.predicted.draws:
+                continue
+            held = tuple(bool(judge_row(row, each, line.published).holds) for each in one.predicted.draws)
+            key = (row.experiment, row.quantity, row.channel, row.apply)
+            label = f"{section.target.number} {short(row)}"
+            found.setdefault(key, Answers(label, one.predicted.draws, held, one.verdict.way))
+    return tuple(found.values())
+
+
+def short(row: Row) -> str:
+    """A label for axes: name, without what follows a colon or comma, and the channel."""
+    name = row.name.split(",")[0] if row.channel != "both" else row.name
+    name = name.replace("over that with any other icon, least of four groups", "").replace("confusion of ", "")
+    name = name.replace("threshold at 0.02 K/s over that at 0.1", "raised at 0.02 K/s")
+    name = name.replace("threshold at 0.03 K/s over that at 0.1", "raised at 0.03 K/s")
+    name = name.partition(" (")[0]
+    return f"{name.strip()}, {row.channel}" if row.channel in ("cold", "warm") else name.strip()
+
+
+def _judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:
+    mine = evidence.of(variable)
+    if row.apply in PAIRED:
+        cold, warm = (_pick(row, mine, channel) for channel in ("cold", "warm"))
+        found = _both(row, cold, warm)
+    else:
+        found = _pick(row, mine, row.channel)
+        if row.apply == "negative":
+            found = _linear(found, -1.0, 0.0)
+        elif row.apply == "one plus":
+            found = _linear(found, 1.0, 1.0)
+        elif row.apply == "times":
+            found = _linear(found, table.one(row.times).central, 0.0)
+    found = replace(found, unit=row.unit)
+    verdict = judge_row(row, found.value, was)
+    share = None
+    if row.judged and found.draws:
+        share = sum(bool(judge_row(row, each, was).holds) for each in found.draws) / len(found.draws)
+    return Judged(found, verdict, share)
+
+
+def _pick(row: Row, predicted: Sequence[Predicted], channel: str) -> Predicted:
+    for one in predicted:
+        same = (one.experiment, one.quantity, one.channel) == (row.experiment, row.quantity, channel)
+        if same and row.predicted_where in one.conditions:
+            return one
+    raise ValueError(f"{row.label}: no experiment {row.experiment!r} predicts {row.quantity!r} ({channel})")
+
+
+def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
+    """One prediction of two channels; None or nan where one of them was not felt."""
+    value = None if cold.value is None or warm.value is None else combined(row.apply, cold.value, warm.value)
+    each = []
+    for one, other in zip(cold.draws, warm.draws, strict=True):
+        felt = math.isfinite(one) and math.isfinite(other)
+        each.append(combined(row.apply, one, other) if felt else math.inf)
+    low, high = interval_of(each)
+    return replace(cold, channel="both", value=value, low=low, high=high, people=None, draws=tuple(each))
+
+
+def _linear(one: Predicted, times: float, plus: float) -> Predicted:
+    def moved(value: float) -> float:
+        return times * value + plus if math.isfinite(value) else math.inf
+
+    ends = [None if end is None else moved(end) for end in (one.low, one.high)]
+    low, high = ends if times > 0.0 else ends[::-1]
+    value = None if one.value is None else moved(one.value)
+    return replace(one, value=value, low=low, high=high, people=None, draws=tuple(moved(each) for each in one.draws))

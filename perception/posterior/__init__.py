@@ -1,1 +1,0 @@
-"""Draws from the posterior of all constants, and experiments predicted without having been seen."""

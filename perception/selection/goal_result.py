@@ -1,0 +1,191 @@
+"""Whether a set meets a goal, by how much, and what is in the way.
+
+A part without people is about their mean. One for a share of people is about people and uncertainty of the model
+together: the value that this share of (draw, person) pairs reaches, a person being one of a new laboratory.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from .goal import NEEDS_DRAWS, QUANTITIES, SAFETY, VERDICTS, Goal, GoalError, GoalPart
+
+TOLERANCE = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class SetOutcome:
+    """What goals are judged by: scores of a set, its icons, and its people.
+
+    Attributes
+    ----------
+    names
+        Names of all icons.
+    correct, bits, d_prime
+        Means over people, and d′ of the nearest pair.
+    detected, onset_s
+        Of every icon; onset is NaN where it is not felt.
+    durations_s, energies_J
+        Of every icon; energies are NaN on a thermode, which states none.
+    worst_pair
+        Names of the pair that is confused most; None for one icon.
+    nearest_pair
+        Names of the pair with the smallest d′; None for one icon.
+    amber, red
+        Names of the icons that pass a soft limit of safety, and of those that pass a hard one.
+    unreached
+        Names of the icons that the rig does not reach: no matter of safety, which judges what the rig plays of them.
+    persons
+        Values of `correct`, `detected` (of the icon that is detected least) and `bits` for single people (n,), of all
+        draws together; empty without draws.
+    """
+
+    names: tuple[str, ...]
+    correct: float
+    bits: float
+    d_prime: float
+    detected: Array
+    onset_s: Array
+    durations_s: Array
+    energies_J: Array
+    worst_pair: tuple[str, str] | None
+    nearest_pair: tuple[str, str] | None
+    amber: tuple[str, ...]
+    red: tuple[str, ...]
+    persons: dict[str, Array]
+    unreached: tuple[str, ...] = ()
+
+    @property
+    def unplayable(self) -> tuple[str, ...]:
+        """Names of the icons that are not safe or not reached."""
+        return tuple(name for name in self.names if name in self.red or name in self.unreached)
+
+
+@dataclass(frozen=True, slots=True)
+class GoalPartResult:
+    """One part with the value that was predicted, in the unit of its limit; None where there is none."""
+
+    part: GoalPart
+    value: float | None
+    met: bool
+    binding: str
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for `rank --json`; of safety, value and limit are words."""
+        safety = self.part.quantity == SAFETY
+        wanted: float | str = VERDICTS[int(self.part.limit)] if safety else self.part.limit
+        value: float | str | None = self.value
+        if safety and self.value is not None:
+            value = (*VERDICTS, "red")[int(self.value)]
+        return {"text": self.part.text, "met": self.met, "value": value, "wanted": wanted}
+
+    def __repr__(self) -> str:
+        return f"GoalPartResult({self.part.text}: {self.value}, {'met' if self.met else 'not met'})"
+
+
+@dataclass(frozen=True, slots=True)
+class GoalResult:
+    """A goal with its parts judged.
+
+    Attributes
+    ----------
+    goal
+        The goal.
+    parts
+        Its parts in their order.
+    unreached
+        Names of the icons that the rig does not reach: they are judged as the rig would play them.
+    """
+
+    goal: Goal
+    parts: tuple[GoalPartResult, ...]
+    unreached: tuple[str, ...] = ()
+
+    @property
+    def met(self) -> bool:
+        """Whether every part is met."""
+        return all(each.met for each in self.parts)
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """What is in the way of the parts that are not met, each once."""
+        return tuple(dict.fromkeys(each.binding for each in self.parts if not each.met))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for `rank --json`."""
+        return {
+            "text": self.goal.text,
+            "met": self.met,
+            "parts": [each.to_dict() for each in self.parts],
+            "binding": list(self.binding),
+            "not_reached": list(self.unreached),
+        }
+
+    def __repr__(self) -> str:
+        return f"GoalResult({self.goal.text}: {'met' if self.met else 'not met'})"
+
+
+def judge_goal(goal: Goal, outcome: SetOutcome) -> GoalResult:
+    """Judge every part of a goal; one for a share of people needs an outcome of draws, or it is a `GoalError`."""
+    if goal.single_people and not outcome.persons:
+        raise GoalError(NEEDS_DRAWS)
+    return GoalResult(goal, tuple(_judged(part, outcome) for part in goal.parts), outcome.unreached)
+
+
+def _judged(part: GoalPart, outcome: SetOutcome) -> GoalPartResult:
+    value = _value(part, outcome)
+    if value is None or math.isnan(value):
+        return GoalPartResult(part, None, met=False, binding=_binding(part, outcome))
+    lower = part.quantity == SAFETY or QUANTITIES[part.quantity].comparison == "<="
+    met = value <= part.limit + TOLERANCE if lower else value >= part.limit - TOLERANCE
+    return GoalPartResult(part, value, met, "" if met else _binding(part, outcome))
+
+
+def _value(part: GoalPart, outcome: SetOutcome) -> float | None:
+    if part.people is not None:
+        return float(np.quantile(outcome.persons[part.quantity], 1.0 - part.people))
+    return {
+        "correct": lambda: outcome.correct,
+        "bits": lambda: outcome.bits,
+        "d_prime": lambda: outcome.d_prime,
+        "detected": lambda: float(outcome.detected.min()),
+        "onset": lambda: float(outcome.onset_s.max()),
+        "time": lambda: math.fsum(outcome.durations_s),
+        "energy": lambda: math.fsum(outcome.energies_J),
+        "count": lambda: float(len(outcome.names) - len(outcome.unplayable)),
+        SAFETY: lambda: 2.0 if outcome.red else 1.0 if outcome.amber else 0.0,
+    }[part.quantity]()
+
+
+def _binding(part: GoalPart, outcome: SetOutcome) -> str:
+    """What is in the way: a pair, an icon, or those that cannot be played."""
+    if part.quantity == SAFETY:
+        names = (*outcome.red, *outcome.amber)
+        return f"{_listed(names)} {'is' if len(names) == 1 else 'are'} not green"
+    if part.quantity == "count":
+        return f"{_listed(outcome.unplayable)} cannot be played" if outcome.unplayable else "the set has fewer icons"
+    if part.quantity in ("correct", "bits", "d_prime"):
+        apart = part.quantity == "d_prime"
+        if (pair := outcome.nearest_pair if apart else outcome.worst_pair) is None:
+            return "there is one icon only"
+        return f"{pair[0]} and {pair[1]} {'have the smallest d′' if apart else 'are confused most'}"
+    if part.quantity == "detected":
+        return f"{outcome.names[int(outcome.detected.argmin())]} is detected least"
+    if part.quantity == "onset":
+        late = np.where(np.isnan(outcome.onset_s), np.inf, outcome.onset_s)
+        name = outcome.names[int(late.argmax())]
+        return f"{name} is not felt" if np.isinf(late.max()) else f"{name} is felt last"
+    largest = outcome.durations_s if part.quantity == "time" else outcome.energies_J
+    if np.isnan(largest).any():
+        return "a thermode states no energy"
+    return f"{outcome.names[int(largest.argmax())]} takes most"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")

@@ -1,1 +1,0 @@
-"""Which constants of the observer move a prediction most."""

@@ -1,0 +1,131 @@
+"""Cues that a coarse look would pass: steps at the end, pulses between updates, a weak driver, trains in long holds."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Device, Drive, Rig, deliver, prepare
+from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.prepare import Prepared
+from thermicon.circuit.delivery.worstcase import worst_case
+from thermicon.circuit.safety.ensemble import Ensemble, row_of
+from thermicon.icons import Icon, parse
+
+THENAR = Rig.load("thenar")
+FEWER = THENAR.with_(
+    **{f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates", "contact_resistance")},
+    **{"uncertainty.reason": "a test in fewer corners"},
+)
+DISPLAY = "cue 1\nset s { control display\n baseline 32 °C }\n"
+AMP = """format = 1
+name = "amp"
+title = "current source"
+driven_by = "amperes"
+[[record]]
+quantity = "output range"
+unit = "A"
+low = -6
+high = 6
+source = "a made-up amplifier"
+[[record]]
+quantity = "resolution"
+unit = "bit"
+value = 16
+source = "a made-up amplifier"
+[[record]]
+quantity = "update rate"
+unit = "Hz"
+high = 1000
+source = "a made-up amplifier"
+"""
+TRAIN = "repeat 10 { pulse by 3 A for 40 ms; pulse by -3 A for 40 ms; hold for 20 ms }; hold for 2 s }"
+
+
+def icon_of(text: str, head: str = DISPLAY) -> Icon:
+    (icon,) = parse(head + text)
+    return icon
+
+
+def train(hold_s: float) -> Icon:
+    return icon_of(f"icon x {{ hold for {hold_s:g} s; {TRAIN}", "cue 1\nset s { control current }\n")
+
+
+@pytest.fixture
+def amp(tmp_path: Path) -> Device:
+    path = tmp_path / "amp.toml"
+    path.write_text(AMP, "utf-8")
+    return Device.load(path)
+
+
+def strong() -> Rig:
+    return FEWER.with_(**{"driver.current_limit_A": 6.0, "driver.update_Hz": 1000, "driver.voltage_limit_V": 60.0})
+
+
+def ready(text: str, rig: Rig, device: str = "dac-16") -> Prepared:
+    return prepare(icon_of(text), rig, Device.load(device), load_format("csv"), pause_s=120.0)
+
+
+def test_a_step_back_at_the_very_end_is_judged_with_the_current_it_leaves_on() -> None:
+    delivery = deliver(icon_of("icon down { warm by 5 °C at 2 °C/s; hold for 1 s; step to 32 °C }"), FEWER,
+                       Device.load("dac-16"))  # fmt: skip
+    current = delivery.delivered.current_A
+    assert current[-1] == pytest.approx(current[0], abs=1e-3), "the drive ends with its rest"
+    found = worst_case(delivery, 120.0)
+    assert found.after_C["last value held"] == pytest.approx(32.0, abs=0.6)
+
+
+@pytest.mark.parametrize("kind", ["cool by 26 °C", "warm by 12 °C"])
+def test_pulses_between_slow_updates_are_missed_and_said_to_be(kind: str) -> None:
+    """At one update a second every pulse falls between two: nothing is delivered, and the cue is not reached."""
+    text = f"icon a {{ rest for 250 ms; repeat 20 {{ pulse {kind} for 500 ms; rest for 500 ms }} }}"
+    one = ready(text, FEWER.with_(**{"driver.update_Hz": 1.0}))
+    assert [refusal.kind for refusal in one.refusals] == ["unreachable"]
+    assert "its step at 0.25 s does not arrive in time" in str(one.refusals[0])
+
+
+@pytest.mark.slow
+def test_what_is_unsafe_on_a_weak_driver_is_not_forced() -> None:
+    one = ready("icon x { cool to 8 °C at 2 °C/s; hold for 60 s; return at 2 °C/s }", FEWER)
+    unsafe = [refusal for refusal in one.refusals if not refusal.forcible]
+    assert [refusal.kind for refusal in unsafe] == ["unsafe"]
+    assert "NOT SAFE: " in str(unsafe[0])
+    assert "below the hard limit of 15 °C" in str(unsafe[0])
+    with pytest.raises(FormatError, match="x: NOT SAFE: "):
+        pack([one], load_format("csv"))
+
+
+def test_a_train_of_pulses_after_a_hold_is_seen_in_full(amp: Device) -> None:
+    found = worst_case(deliver(train(10.0), strong(), amp), 120.0)
+    rate = [one for one in found.checks if one.quantity == "rate of skin temperature"]
+    assert found.colour == "red"
+    broken = [one for one in rate if not one.passed]
+    assert broken, [str(one) for one in rate]
+    assert all(10.0 < one.time_s < 11.2 for one in broken)
+
+
+@pytest.mark.slow
+def test_a_train_after_five_minutes_is_seen_as_one_after_ten_seconds(amp: Device) -> None:
+    early, late = (worst_case(deliver(train(hold_s), strong(), amp), 120.0) for hold_s in (10.0, 300.0))
+    for one, other in zip(early.checks, late.checks, strict=True):
+        if one.quantity == "rate of skin temperature":
+            assert other.value == pytest.approx(one.value, rel=0.02)
+
+
+@pytest.mark.parametrize("length_s", [1.0, 290.0, 310.0, 2000.0])
+def test_rows_are_never_coarser_than_the_updates_or_ten_milliseconds(length_s: float) -> None:
+    slow = Drive([0, 1, length_s - 0.5, length_s], [0.08, 0.1, 0.1, 0.08]) if length_s > 2 else None
+    fast = Drive([0, length_s - 0.011, length_s - 0.009, length_s - 0.005, length_s], [0.08, 1.0, 0.08, 1.0, 0.08],
+                 held=True)  # fmt: skip
+    few = Ensemble.of(THENAR).only([0])
+    for drive, most in ((slow, 0.01), (fast, 0.002)):
+        if drive is None:
+            continue
+        assert row_of(drive) <= most + 1e-12
+        last, rows, widest = 0.0, 0, 0.0
+        for (times, _), _ in few.play(drive, few.at_rest(0.08)):
+            assert times[0] == pytest.approx(last), "no row is left out between stretches"
+            last, rows, widest = float(times[-1]), rows + len(times), max(widest, float(np.diff(times).max()))
+        assert last == pytest.approx(length_s)
+        assert widest <= most + 1e-9

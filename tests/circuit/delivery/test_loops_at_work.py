@@ -1,0 +1,116 @@
+"""Controllers inside what a sidecar demands stay inside every limit, also with single faults; others by its cut-off.
+
+The ordinary suite has one export; `-m slow` has 200 of shipped and made-up cues on shipped rigs, twelve controllers
+each, or as many as THERMICON_EVIDENCE says.
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ProcessPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.circuit.delivery.adversarial import BASES, between
+from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
+from tests.circuit.delivery.loops_at_work import Controllers, at_work
+from thermicon.circuit import Device, Rig, prepare
+from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.delivery.pack import pack
+from thermicon.icons import Icon, load_library, parse
+
+EXPORTS = min(200, int(os.environ.get("THERMICON_EVIDENCE", "200")))
+SETS = ("six-icons", "wave-shapes", "pulse-sequences")
+EACH, FAULTS = 6, 25
+
+
+def some_icon(rng: np.random.Generator) -> Icon:
+    """A shipped icon, or steps, ramps and pulses about a baseline."""
+    if rng.random() < 0.4:
+        icons = [one for one in load_library(str(rng.choice(SETS))) if one.context.control != "current"]
+        return icons[int(rng.integers(len(icons)))]
+    way, other = ("warm", "cool") if rng.random() < 0.6 else ("cool", "warm")
+    size, rate = between(rng, 0.5, 8.0), between(rng, 0.5, 5.0)
+    shape = f"{way} by {size} °C at {rate} °C/s; hold for {between(rng, 0.1, 4)} s"
+    kind = rng.random()
+    if kind < 0.3:
+        shape += f"; {other} by {between(rng, 0.2, 1.5) * size:.2f} °C at 3 °C/s; hold for 0.5 s"
+    elif kind < 0.7:
+        shape += f"; return at {between(rng, 0.5, 4)} °C/s"
+    control = "display" if rng.random() < 0.7 else "skin"
+    text = f"cue 1\nset s {{ control {control}\n baseline {rng.uniform(30, 34):.1f} °C }}\nicon a {{ {shape} }}"
+    return parse(text)["a"]
+
+
+def some_export(number: int, quick: bool = False) -> tuple[str, list[str], int]:
+    """One export by chance: what was unsafe, and how many controllers played it; none where it was not written."""
+    rng = np.random.default_rng([33, number])
+    rig, icon = Rig.load(str(rng.choice(BASES))), some_icon(rng)
+    if quick:
+        rig = rig.with_(**{"driver.update_Hz": 20.0})
+    form = load_format("setpoint-csv")
+    try:
+        ready = prepare(icon, rig, Device.load("closed-loop-controller"), form)
+    except ValueError:
+        return "", [], 0
+    if ready.refusals:
+        return "", [], 0
+    files, stem = pack([ready], form), form.stem(icon.name)
+    told, course = sidecar_in(files, stem), read_file(files, stem)
+    assert isinstance(course, Course)
+    demands, what = told["hardware_must_prevent"], f"#{number} {rig.name} {' '.join(str(icon).split())}"
+    plays, pause = int(rng.choice([1, 2, 20], p=[0.4, 0.5, 0.1])), float(demands["pause_at_least_s"])
+    inside = Controllers.within(demands["loop"], rng, EACH)
+    beyond = Controllers.of_any_kind(demands["loop"], rng, EACH)
+    document, found = told["rig"]["document"], []
+    for kind, which in (("inside", inside), ("beyond", beyond)):
+        within = kind == "inside"
+        worst = at_work(
+            document, demands, course, which, rng, plays if within else 1, pause, doses=within,
+            faults=(FAULTS if number % 4 == 0 else 5) if within else 0,
+        )  # fmt: skip
+        if worst.unsafe:
+            found.append(f"{what}: {kind} the demands: {worst.unsafe}")
+    return what, found, 2 * EACH
+
+
+def test_a_few_controllers_stay_inside_every_limit() -> None:
+    what, found, _ = some_export(1, quick=True)
+    assert what
+    assert found == []
+
+
+def test_beyond_the_demanded_current_the_same_controllers_pass_a_limit() -> None:
+    form = load_format("setpoint-csv")
+    rig = Rig.load("thenar").with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5})
+    icon = parse("cue 1\nset s { control display }\nicon w { warm by 6 °C at 2 °C/s; hold for 1 s }")["w"]
+    files = pack([prepare(icon, rig, Device.load("closed-loop-controller"), form)], form)
+    told, course = sidecar_in(files, "w"), read_file(files, "w")
+    assert isinstance(course, Course)
+    demands: dict[str, Any] = told["hardware_must_prevent"]
+    rng = np.random.default_rng(1)
+    which = Controllers.of_any_kind(demands["loop"], rng, 12)
+    safe = at_work(told["rig"]["document"], demands, course, which, rng, 1, 0.0, doses=False)
+    assert not safe.unsafe
+    stronger = demands | {"current_limit_A": [-4.0, 4.0]}
+    assert "rate" in at_work(told["rig"]["document"], stronger, course, which, rng, 1, 0.0, doses=False).unsafe
+    blind = demands | {"cut_off_display_C": {"low": -50.0, "high": 90.0, "react_within_s": 1.0}}
+    which.offset_K[:] = -8.0
+    hot = at_work(told["rig"]["document"], blind, course, which, rng, 1, 0.0, doses=False)
+    assert "skin high" in hot.unsafe, "a sensor that is wrong needs the second one"
+
+
+@pytest.mark.slow
+def test_controllers_inside_the_demands_stay_inside_every_limit() -> None:
+    written, played, unsafe, number = 0, 0, [], 100
+    with ProcessPoolExecutor(2) as pool:
+        while written < EXPORTS:
+            some = range(number, number + max(2, EXPORTS // 10))
+            for what, found, count in pool.map(some_export, some):
+                written, played, unsafe = written + bool(what), played + count, [*unsafe, *found]
+            number = some.stop
+            assert number < 100 + 10 * EXPORTS, "a gate that refuses everything is safe and of no use"
+    print(f"{written} of {number - 100} exports were written, and played by {played} controllers")
+    assert unsafe == []

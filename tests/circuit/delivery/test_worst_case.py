@@ -1,0 +1,259 @@
+"""The gate on what every kind of device delivers."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, simulate_current
+from thermicon.circuit.delivery.controlled import samples_of
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
+from thermicon.circuit.delivery.following_module import FollowingModule
+from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.temperatures import follow_samples
+from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.safety.checks import more_and_cure, worst_of
+from thermicon.circuit.safety.corners import corners_of
+from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
+from thermicon.circuit.safety.gate import Gate, gate_set
+from thermicon.circuit.safety.single import Single, checks_of_lanes
+from thermicon.icons import load_library, parse
+
+RIG = Rig.load("thenar")
+SIX = load_library("six-icons")
+CSV = load_format("csv")
+
+
+@cache
+def ready(name: str = "cooling-step", device: str = "dac-16", form: str = "csv", rig: Rig = RIG) -> Prepared:
+    return prepare(SIX[name], rig, Device.load(device), load_format(form))
+
+
+class TestWorstCase:
+    """What every kind of device meets."""
+
+    @pytest.mark.slow
+    def test_it_is_the_default_and_in_it_more_is_red_than_on_the_rig_as_given(self) -> None:
+        icon = parse(
+            "cue 1\nset s { control skin\n baseline 32 °C }\n"
+            "icon hot { warm by 9.2 °C at 2 °C/s\n hold for 3 s\n return at 2 °C/s }\n"
+        )
+        one = prepare(icon["hot"], RIG, Device.load("dac-16"), CSV)
+        assert judge_safety(one.delivery.trace).colour == "amber"
+        assert one.verdict == worst_case(one.delivery)
+        assert one.verdict.colour == "red"
+        (refusal,) = (refusal for refusal in one.refusals if refusal.kind == "unsafe")
+        assert "with contact −30 %, ambient −3 K, gain +10 %, heat sink +1 K, " in str(refusal)
+        with pytest.raises(FormatError, match="hot: NOT SAFE: skin surface reaches "):
+            pack([one], CSV)
+
+    def test_open_loop_it_is_the_gate_on_what_flows(self) -> None:
+        found = ready().delivery
+        assert worst_case(found) == gate(found.delivered, RIG)
+
+    @pytest.mark.slow
+    def test_a_bridge_rests_and_ends_with_means(self) -> None:
+        found = ready(device="pwm-h-bridge-10").delivery
+        (rest, *_) = found.played.command  # type: ignore[union-attr]
+        means = Drive(found.played.time_s, 1.5 * found.played.command, held=True)  # type: ignore[union-attr]
+        assert found.device.most("carrier frequency") >= 100.0, "too fast for a plate to follow"
+        (by_means,) = gate_set([(means, 1.5 * float(rest))], RIG, bridge_A=1.5, averaged=True)
+        assert worst_case(found) == by_means
+
+    def test_lanes_with_drives_of_their_own_are_judged_as_each_corner_by_itself(self) -> None:
+        corners = [replace(corners_of(RIG)[k], gain_relative=0.0) for k in (0, 5, 40)]
+        time_s = np.arange(41) * 0.1
+        amps = [0.08 + 0.3 * (k + 1) * np.sin(np.pi * time_s / 4.0) for k in range(3)]
+        together = checks_of_lanes(
+            Ensemble.on(RIG, tuple(corners), None), LaneDrives(time_s, np.array(amps)), RIG.limits
+        )
+        each = [
+            Single.of(
+                Ensemble.on(RIG, (corner,), None), Drive(time_s, own, held=True), float(own[0]), RIG.limits
+            ).checks
+            for corner, own in zip(corners, amps, strict=True)
+        ]
+        for one, other in zip(together, worst_of(each), strict=True):
+            assert one.value == pytest.approx(other.value, rel=1e-9)
+            assert replace(one, value=0.0) == replace(other, value=0.0)
+
+    def test_a_thermode_follows_its_set_points_in_every_corner_and_has_no_gain(self) -> None:
+        found = worst_case(ready(device="qst-tcs2", form="tcs2-serial").delivery)
+        assert (found.drift_C, found.scenarios, len(found.checks)) == (None, 20, 21)
+        lowest = min(check.value for check in found.checks if check.quantity == "display" and not check.upper)
+        assert lowest == pytest.approx(26.0, abs=0.06), "the set-point, in the corners too"
+        coldest = next(check for check in found.checks if check.quantity == "skin surface" and not check.upper)
+        given = deliver(SIX["cooling-step"], RIG, Device.load("qst-tcs2")).trace.skin_C.min()
+        assert coldest.value < given - 0.1
+        assert coldest.scenario.startswith("contact −30 %")
+
+    def test_a_thermode_is_stronger_than_the_rig(self) -> None:
+        text = (
+            "cue 1\nset s { control display\n baseline 32 °C }\n"
+            "icon a { cool by 8 °C at 30 °C/s\n hold for 3 s\n return at 30 °C/s }\n"
+        )
+        found = deliver(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
+        assert judge_safety(found.trace).colour == "red", "the thermode follows its set-points, whatever the rig can"
+        assert worst_case(found).reason is not None
+        assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
+
+    @pytest.mark.slow
+    def test_the_rigs_driver_does_not_hold_a_thermode_back(self) -> None:
+        weak = RIG.with_(**{"driver.current_limit_A": 0.4})
+        (refusal,) = ready(rig=weak).refusals
+        assert refusal.kind == "unreachable"
+        one = ready(device="qst-tcs2", form="tcs2-serial", rig=weak)
+        assert (one.refusals, one.warnings) == ((), ())
+        assert one.delivery.trace.display_C.min() == pytest.approx(26.0, abs=0.01)
+
+    def test_a_set_point_that_the_module_cannot_reach_is_judged_all_the_same(self) -> None:
+        text = (
+            "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 29 °C at 2 °C/s\n return at 2 °C/s }\n"
+        )
+        rig = RIG.with_(**{"module.seebeck_V_per_K": 0.026})
+        found = worst_case(deliver(parse(text)["a"], rig, Device.load("qst-tcs2")))
+        check = next(check for check in found.findings if check.quantity == "display")
+        assert (check.value, check.scenario) == (pytest.approx(3.0), "the rig as given, followed at once")
+
+
+class TestRefusals:
+    """What a refusal names beside its first reason."""
+
+    def test_every_hard_limit_and_a_cure(self) -> None:
+        icon = parse("cue 1\nset s { control display\n baseline 32 °C }\nicon bang { step by 12 °C\n hold for 8 s }\n")
+        refusal = str(prepare(icon["bang"], RIG, Device.load("dac-16"), CSV).refusals[0])
+        assert refusal.startswith("NOT SAFE: rate of skin temperature reaches ")
+        assert refusal.count("rate of skin temperature") == 1
+        assert "; also beyond hard limits: " in refusal
+        assert "skin surface 4" in refusal
+        assert refusal.endswith("; use a slower change, a shorter hold, a smaller or shorter change")
+
+    def test_a_current_beyond_the_driver_names_the_driver(self) -> None:
+        icon = parse("cue 1\nset s { control current }\nicon amp { step by -2 A\n hold for 0.5 s\n step to 0 A }\n")
+        narrowed = deliver(icon["amp"], RIG, Device.load("dac-16")).narrowed
+        assert narrowed is not None
+        assert "driver gives −1.5 … 1.5 A (driver.current_limit_A)" in narrowed.text
+        assert "transconductance" not in narrowed.text
+
+
+class TestFollowedSetPoints:
+    """A module that a controller takes along set-points, which it cannot follow at once where they jump."""
+
+    @pytest.mark.parametrize(
+        "change",
+        [
+            *(pytest.param(f"{sign} by 6", marks=pytest.mark.slow) for sign in ("cool", "warm")),
+            "cool by 3",
+            "warm by 3",
+        ],
+    )
+    def test_steps_of_skin_are_not_refused_for_a_jump_that_no_module_makes(self, change: str) -> None:
+        shape = f"{change} °C at 3 °C/s; hold for 4 s; return at 3 °C/s"
+        found = worst_case(by_controller(shape, RIG, "skin"))
+        assert found.safe, found.reason
+        assert rate_in(found) > 3.0, "a skin that changes at 3 K/s"
+
+    def test_a_step_that_needs_more_current_than_any_loop_may_have_is_refused_with_one_that_is_safe(self) -> None:
+        shape = "step warm by 0.8 °C; hold for 0.06 s; step cool by 0.8 °C; hold for 0.1 s"
+        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5})
+        found = worst_case(by_controller(shape, rig))
+        told = re.search(
+            r"under any loop of −1\.5 … 1\.5 A, as its set-points need; a driver\.current_limit_A of (\d\.\d+) A slows",
+            " ".join(check.scenario for check in found.findings),
+        )
+        assert told, found.reason
+        assert not found.safe
+        assert worst_case(by_controller(shape, rig.with_(**{"driver.current_limit_A": float(told[1])}))).safe
+
+    def test_current_limits_keep_any_return_slow_and_are_no_narrower_than_ramps_need(self) -> None:
+        small = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 2.0, "contact.resistance_m2K_per_W": 3e-4})
+        delivery = by_controller("warm by 3 °C at 2 °C/s; hold for 1 s", small)
+        found, used = worst_case(delivery), delivery.delivered.current_A
+        assert found.safe, found.reason
+        assert found.demands.current_limit_A is not None
+        least, most = found.demands.current_limit_A
+        assert -1.4 < least <= used.min() < used.max() <= most <= 1.5
+
+    def test_a_baseline_beyond_a_limit_is_named_as_the_cause(self) -> None:
+        icon = parse("cue 1\nset s { control display\n baseline 47 °C }\nicon a { warm by 1 °C at 1 °C/s }")["a"]
+        found = worst_case(deliver(icon, RIG, Device.load("closed-loop-controller")))
+        assert more_and_cure(found.findings).endswith(
+            "use a baseline nearer to resting skin, since it is beyond the limit from the start"
+        )
+
+    def test_in_a_set_what_is_refused_by_itself_is_not_played_with_the_rest(self) -> None:
+        shapes = (
+            "warm by 11 °C at 2 °C/s; hold for 9 s",
+            "cool by 1 °C at 2 °C/s; hold for 1 s",
+            "warm by 1 °C at 1 °C/s",
+        )
+        first, *rest = worst_cases([by_controller(shape, RIG.with_(**SMALL)) for shape in shapes], 0.0)
+        assert not first.safe
+        assert all(verdict.safe for verdict in rest)
+        assert len({verdict.demands.current_limit_A for verdict in rest}) == 1, "one controller plays them all"
+
+    def test_a_loop_saturates_where_its_source_does_and_not_where_its_file_says(self) -> None:
+        small = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5, "driver.current_limit_A": 0.97})
+        played = "step warm by 1 °C; hold for 1 s; step cool by 1 °C; hold for 1 s"
+        found = worst_case(by_controller(played, small))
+        assert re.match(r"rate of skin temperature reaches .* K/s .*, gain \+10 %, ", str(found.reason)), found.reason
+        measured = small.with_(
+            **{
+                "uncertainty.gain_relative": 0.0,
+                "uncertainty.reason": "a test: its current source was measured",
+            }
+        )
+        assert worst_case(by_controller(played, measured)).safe
+
+    def test_a_loop_runs_to_the_limit_of_its_driver_where_a_set_point_cannot_be_reached(self) -> None:
+        weak = RIG.with_(**SMALL, **{"heat_sink.temperature_C": 46.0, "module.seebeck_V_per_K": 0.03})
+        samples = samples_of(by_controller("cool by 4 °C at 2 °C/s; hold for 4 s; return at 2 °C/s", weak))
+        assert follow_samples(weak, samples).current_A.max() < 1.4, "a design does not pass the most cooling"
+        assert FollowingModule.of(weak).drives(samples).current_A[0].max() == pytest.approx(1.5)
+
+    def test_a_corner_that_cannot_hold_the_baseline_rests_at_the_limit(self) -> None:
+        weak = RIG.with_(**SMALL, **{"heat_sink.temperature_C": 46.0, "module.seebeck_V_per_K": 0.02})
+        module, samples = FollowingModule.of(weak), samples_of(by_controller("warm by 2 °C at 2 °C/s", weak))
+        with pytest.raises(RigError, match="the module cools it to 3"):
+            [follow_samples(rig, samples) for rig in module.rigs]
+        begun = module.drives(samples).current_A[:, 0]
+        display = module.ensemble.hold(begun, module.ensemble.at_rest(begun), np.array([0.0, 1.0]))[0][1, :, 0]
+        assert len(display) == 33
+        assert display[0] == pytest.approx(32.0, abs=1e-3), "the rig as given holds it"
+        away = np.abs(display - 32.0) > 0.01
+        assert away.sum() == 4
+        assert begun[away] == pytest.approx(1.5)
+        assert display[away].min() > 42.0
+
+
+SMALL = {"skin.elements": [1] * 5, "driver.update_Hz": 20.0, "module.hot_plate_J_per_K": 1.5}
+
+
+def by_controller(shape: str, rig: Rig, control: str = "display") -> DeliveredDrive:
+    text = f"cue 1\nset s {{ control {control}\n baseline 32 °C }}\nicon a {{ {shape} }}\n"
+    return deliver(parse(text)["a"], rig, Device.load("closed-loop-controller"))
+
+
+def rate_in(verdict: Gate) -> float:
+    return max(abs(check.value) for check in verdict.checks if check.quantity == "rate of skin temperature")
+
+
+class TestStartWithoutPower:
+    """A controller starts from a display that had no power, and is there again after a stop."""
+
+    def test_the_cut_off_has_room_for_it_and_the_rest_is_held(self) -> None:
+        verdict = ready("cooling-step", "closed-loop-controller", "setpoint-csv").verdict
+        demands: dict[str, Any] = verdict.demanded
+        unpowered = simulate_current(Drive([0.0, 1.0], [0.0, 0.0]), RIG).display_C[0]
+        cut = demands["cut_off_display_C"]
+        assert unpowered > 38.0, "without power the heat sink of this rig warms the display"
+        assert cut["low"] < unpowered < cut["high"] < 43.0
+        assert 10.0 < demands["rest_before_first_play_s"] < 600.0
+        assert any("without power" in fault["fault"] for fault in demands["faults"])

@@ -1,0 +1,265 @@
+"""``rank --report``: one page that stands alone, escapes what people wrote, and is the same bytes every time."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+from markupsafe import escape
+
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet, load_library, parse
+from thermicon.notebooks.cli.ranking import Request, command_text
+from thermicon.notebooks.report.blocks import as_html
+from thermicon.notebooks.report.report import LIMITS, SAFETY, report
+from thermicon.perception import Ranking, rank
+from thermicon.perception.selection.request import Selection
+
+Cli = Callable[..., Any]
+NASTY = """cue 1
+set nasty "Hot & <b>cold</b> <script>alert(1)</script>" { control display; baseline 32 °C }
+icon dip means "a <img src=x onerror=y> dip" { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }
+icon glow by "R&D" { warm by 4 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
+icon slow { warm by 3 °C at 0.5 °C/s; return at 2 °C/s }
+"""
+VOID = {"meta", "img", "br"}
+
+
+class Reader(HTMLParser):
+    """Every tag opened and closed in its turn, every address, and the text."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.seen: list[str] = []
+        self.addresses: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.seen.append(tag)
+        self.addresses += [value or "" for name, value in attrs if name in ("src", "href", "data", "srcset")]
+        assert not any(name.startswith("on") for name, _ in attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.open and self.open[-1] != "style":
+            self.text += data
+
+
+def read(made: str) -> Reader:
+    reader = Reader()
+    reader.feed(made)
+    reader.close()
+    assert not reader.open
+    return reader
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def icons() -> IconSet:
+    return parse(NASTY)
+
+
+@pytest.fixture(scope="module")
+def three() -> IconSet:
+    """Three of the six icons: half of the pictures, which take long to draw."""
+    six = load_library("six-icons")
+    return replace(six, entries=six.entries[:3])
+
+
+@pytest.fixture(scope="module")
+def ranking(icons: IconSet, rig: Rig) -> Ranking:
+    return rank(icons, rig, people=6, parameters=4, edits="worst")
+
+
+@pytest.fixture(scope="module")
+def made(ranking: Ranking, icons: IconSet, rig: Rig) -> str:
+    return report(ranking, icons, rig, "thermicon rank a&b.cue")
+
+
+@pytest.mark.slow
+def test_the_page_stands_alone(made: str) -> None:
+    reader = read(made)
+    assert made.startswith("<!DOCTYPE html>\n")
+    assert all(address.startswith("data:image/") for address in reader.addresses)
+    assert not {"script", "link", "iframe", "object"} & set(reader.seen)
+    assert "@import" not in made
+    assert "url(" not in made
+    assert 'name="viewport"' in made
+    assert "@media print" in made
+    assert reader.seen.count("img") == 4 + 2 * 3  # the set's pictures, then course and overview of each icon
+    assert all(re.search(r'alt="[^"]+"', image) for image in re.findall(r"<img[^>]{0,200}", made))
+
+
+def test_what_people_wrote_is_text(made: str) -> None:
+    reader = read(made)
+    assert reader.seen.count("b") == 4  # the large numbers, which are ours
+    for words in ("Hot & <b>cold</b>", "<script>alert(1)</script>", "a <img src=x onerror=y> dip", '"R&D"'):
+        assert words in reader.text
+        assert escape(words) in made
+    assert "thermicon rank a&b.cue" in reader.text
+
+
+def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: IconSet) -> None:
+    words = " ".join(read(made).text.split())
+    result = ranking.to_dict()
+    for text in (*LIMITS, SAFETY, ranking.content_hash, f"thermicon {ranking.version}", "6 virtual, seed 0"):
+        assert text in words
+    for pair in result["pairs"]:
+        if [pair["a"], pair["b"]] == result["set"]["worst_pair"]:
+            assert all(reason in words for reason in pair["why"])
+            assert f"Worst pair: {pair['a']} and {pair['b']}" in words
+    for icon in result["icons"]:
+        for rule in icon["rules"]:
+            assert (rule["text"] in words) == (not rule["pass"])
+    for icon in icons:
+        assert " ".join(str(icon)[str(icon).index("icon ") :].split()) in words
+    low, high = result["set"]["proportion_correct_interval"]
+    assert f"95 % of people: {100 * low:.0f}–{100 * high:.0f} %" in words
+    for part in ("direction", "intensity", "rate", "duration", "pause"):
+        assert words.count(part) >= 2
+    for heading in ("Settings", "Ranking", "Pictures of the set", "Rules of thumb", "Icons", "Safety"):
+        assert f"<h2>{heading}</h2>" in made
+
+
+@pytest.mark.slow
+def test_it_is_the_same_every_time_and_dated_only_on_demand(
+    made: str, ranking: Ranking, icons: IconSet, rig: Rig
+) -> None:
+    dated = report(ranking, icons, rig, "thermicon rank a&b.cue", date="2031-02-03")
+    assert re.findall(r"20\d\d-\d\d-\d\d", read(made).text) == []
+    assert re.findall(r"20\d\d-\d\d-\d\d", read(dated).text) == ["2031-02-03"]
+    (row,) = re.findall(r"<tr>(?:(?!<tr>).)*<td>2031-02-03</td></tr>\n?", dated, re.DOTALL)
+    assert dated.replace(row, "") == made
+    assert len(made) < 1_500_000
+
+
+@pytest.mark.slow
+def test_by_rules_it_has_no_number_of_the_model(rig: Rig, three: IconSet) -> None:
+    words = read(report(rank(three, rig, people=2, by="rules"), three, rig)).text
+    for word in ("bits", "detected", "d′ ", "perceptual", "named correctly"):
+        assert word not in words.replace("model: d′ ", "")
+    assert "Worst pair by rules: " in words
+    assert "3 of 3" in words
+    assert "rules passed" in words
+
+
+def test_one_icon_has_no_pairs(rig: Rig) -> None:
+    icons = parse("cue 1\nicon only { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n")
+    made = report(rank(icons, rig, people=1, parameters=0), icons, rig)
+    words = read(made).text
+    assert "Predicted ranking of 1 icon by thermicon" in words
+    for heading in ("Pairs", "Pictures of the set", "Worst pair"):
+        assert heading not in words
+    assert "95 % of people" not in words
+
+
+@pytest.mark.slow
+def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
+    icons = parse(
+        "cue 1\nset s { control current }\n"
+        "icon burn { to -3 A at 20 A/s; hold for 20 s; return at 20 A/s }\n"
+        "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n"
+    )
+    made = report(rank(icons, rig, people=2, parameters=0), icons, rig, cures={"jolt": "it would be with less"})
+    assert '<p class="warn">* burn is NOT SAFE and not reached: ' in made
+    assert "; it would be with less</p>" in made
+    assert '<p class="note">Outside the data: burn: ' in made
+    assert "<td>not safe, not reached</td>" in made
+
+
+@pytest.mark.slow
+def test_the_choice_is_told(rig: Rig, three: IconSet) -> None:
+    ranking = rank(three, rig, people=4, parameters=0, choosing=Selection(2))
+    assert "<h3>Best 2 of 3, by the worst pair: " in report(ranking, three, rig)
+
+
+@pytest.mark.slow
+def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out = tmp_path / "report.html"
+    options = ("--people", 3, "--parameters", 0, "--set", "contact.area_cm2=4")
+    said = cli("rank", two, *options, "--report", out, "--json", tmp_path / "a.json")
+    assert said.exit_code == 0, said.stderr
+    assert f"wrote {out}" in said.stderr
+    text = out.read_text(encoding="utf-8")
+    assert "thermicon rank two.cue --set contact.area_cm2=4 --people 3 --parameters 0" in read(text).text
+    assert json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))["content_hash"] in text
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.json", "report.html", "two.cue"]
+    again = tmp_path / "again.html"
+    assert cli("rank", two, *options, "--report", again).exit_code == 0
+    assert again.read_bytes() == out.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("out", "code", "told"),
+    [
+        ("report.pdf", 1, "a report is written as .html or .htm, not .pdf"),
+        ("no/report.html", 1, "does not exist; make it first"),
+        ("-", 2, "- is not a file; give the name of a page, such as report.html"),
+    ],
+)
+def test_a_page_that_cannot_be_written_is_said_at_once(
+    cli: Cli, two: Path, tmp_path: Path, out: str, code: int, told: str
+) -> None:
+    said = cli("rank", two, "--people", 100_000, "--report", out if out == "-" else tmp_path / out)
+    assert said.exit_code == code
+    assert told in " ".join(said.stderr.replace("│", " ").split())
+
+
+def test_the_command_can_be_given_again(rig: Rig) -> None:
+    assert command_text(["six-icons"], rig, Request()) == "thermicon rank six-icons"
+    asked = Request(
+        seed=3,
+        norm="naming",
+        by="rules",
+        tracking="ideal",
+        choosing=Selection(3, "bits", ("a", "b"), 20.0),
+        edits="all",
+    )
+    changed = Rig.load("forearm").with_set(["driver.current_limit_A=1.2"])
+    assert command_text(["/home/x/my icons.cue", "b.cue"], changed, asked) == (
+        "thermicon rank 'my icons.cue' b.cue --rig forearm --set driver.current_limit_A=1.2 --seed 3 --tracking ideal "
+        "--norm naming --by rules --choose 3 --objective bits --must a --must b --most-time 20 --edits"
+    )
+
+
+def test_a_page_escapes_its_title() -> None:
+    assert "<title>a &lt;b&gt;</title>" in as_html([], "a <b>")
+
+
+def test_the_command_names_files_as_they_are_given() -> None:
+    rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4.0})
+    asked = Request(rig="/home/x/watch.toml", observer=Path("/home/x/lab.csv"), goal="correct >= 90 %")
+    assert command_text(["six-icons"], rig, asked) == (
+        "thermicon rank six-icons --rig watch.toml --set contact.area_cm2=4.0 --observer lab.csv "
+        "--goal 'correct >= 90 %'"
+    )
+
+
+@pytest.mark.slow
+def test_a_page_holds_goal_warnings_and_the_whole_rig() -> None:
+    from thermicon.icons import load_library
+    from thermicon.perception import rank
+
+    rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4.0})
+    six = load_library("six-icons")
+    ranking = rank(six, rig, people=4, parameters=0, goal="correct >= 99 %", warnings=("for another site",))
+    page = report(ranking, six, rig)
+    assert "Goal: NOT met" in page
+    assert "✗ correct &gt;= 99 %" in page
+    assert "warning: for another site" in page
+    assert "area_cm2 = 4.0" in page

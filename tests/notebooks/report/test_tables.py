@@ -1,0 +1,72 @@
+"""Tables on narrow terminals: wrapped or folded, but with every letter."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import pytest
+from rich.table import Table
+
+from thermicon.icons import library_names, load_library
+from thermicon.notebooks.report.tables import rendered, table
+
+NAMES = ("icon", "most confused with")
+RANK = ("icon", "detected", "onset", "channel", "correct", "most confused with")
+SESSION = ("play", "icon", "start", "skin", "display", "baseline", "safety")
+STYLE = re.compile(r"\x1b\[[0-9;]*m")
+
+
+def letters(text: str) -> Counter[str]:
+    return Counter(re.sub(r"[\s─]", "", STYLE.sub("", text)))
+
+
+def ranked() -> tuple[Table, str]:
+    made = table(*RANK, numbers=RANK[1:3], names=RANK)
+    names = [icon.name for icon in load_library("wave-confusions")]
+    rows = [(name, "100 %", "0.92 s", "cold", "91 %", f"{name} 24 %") for name in names]
+    for row in rows:
+        made.add_row(*row)
+    return made, "".join(("".join(RANK), *("".join(row) for row in rows)))
+
+
+@pytest.mark.parametrize("width", [80, 60, 40])
+def test_no_letter_of_a_name_or_a_heading_is_lost(width: int) -> None:
+    made, text = ranked()
+    lines = rendered(made, width)
+    assert max(len(STYLE.sub("", line)) for line in lines) <= width
+    assert letters("".join(lines)) == letters(text)
+
+
+def test_at_80_columns_the_names_of_shipped_sets_stay_on_one_line() -> None:
+    made, _ = ranked()
+    shown = [STYLE.sub("", line) for line in rendered(made, 80)]
+    for name in (icon.name for icon in load_library("wave-confusions")):
+        assert sum(name in line for line in shown) >= 1
+
+
+def test_a_pipe_gets_one_line_per_row() -> None:
+    made, _ = ranked()
+    assert len(rendered(made, 40, is_terminal=False)) == 2 + 12
+
+
+@pytest.mark.parametrize("width", [80, 60])
+def test_listings_fit(width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    from thermicon.notebooks.cli.shipped import show_library, show_rigs
+
+    monkeypatch.setenv("COLUMNS", str(width))
+    show_library()
+    show_rigs()
+    said = capsys.readouterr().out
+    compact = re.sub(r"\s", "", said)
+    for name in library_names():
+        assert f"{name}:" in said
+        assert all(entry.name in compact for entry in load_library(name).entries)
+
+
+@pytest.mark.parametrize("width", [80, 60])
+def test_a_session_keeps_every_heading(width: int) -> None:
+    made = table(*SESSION, numbers=("play", "start", "baseline"), names=("icon",))
+    row = ("12", "triangle-unipolar-8s", "1234.25 s", "29.5–33.8 °C", "28.5–34.8 °C", "−0.25 K", "amber")
+    made.add_row(*row)
+    assert letters("".join(rendered(made, width))) == letters("".join((*SESSION, *row)))

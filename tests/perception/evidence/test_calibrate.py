@@ -1,0 +1,107 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermicon.circuit.records import Record, RecordError, Table, load_records
+from thermicon.perception import Observer
+from thermicon.perception.evidence.calibrate import calibrate, to_toml
+from thermicon.perception.evidence.results import constant, load_constants
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.observer import CHANNELS, DATA, load_thresholds
+from thermicon.perception.observer.variants import VARIABLES, source_of
+
+SHIPPED = DATA / "observer.toml"
+AGAIN = "the observer is out of date: run python -m thermicon.perception.evidence.calibrate"
+
+
+def test_the_shipped_observer_is_what_calibrate_finds() -> None:
+    assert to_toml(calibrate()) == SHIPPED.read_text(encoding="utf-8"), AGAIN
+
+
+def test_predicted_records_do_not_reach_the_observer() -> None:
+    table = load_thresholds()
+    rng = np.random.default_rng(0)
+
+    values = [r.central for r in table if r.use == "predict"]
+    swapped = iter(rng.permutation(values))
+    other = Table(
+        table.name,
+        tuple(replace(r, value=float(next(swapped)), low=None, high=None) if r.use == "predict" else r for r in table),
+    )
+    assert other != table
+    assert to_toml(calibrate(other)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
+    kept = Table(table.name, tuple(r for r in table if r.use != "predict"))
+    assert to_toml(calibrate(kept)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
+
+
+def test_references_do_not_reach_the_observer() -> None:
+    table = load_thresholds()
+
+    def doubled(record: Record) -> Record:
+        reference = record.use == "reference"
+        return replace(record, value=2.0 * record.central, low=None, high=None) if reference else record
+
+    other = Table(table.name, tuple(doubled(r) for r in table))
+    assert other != table
+    assert to_toml(calibrate(other)) == SHIPPED.read_text(encoding="utf-8"), AGAIN
+
+
+def test_every_number_of_the_observer_says_where_it_is_from() -> None:
+    for record in load_records(SHIPPED):
+        assert record.use in ("calibrate", "assumed")
+        assert "not calibrated" not in record.source
+    for variant in VARIABLES:
+        found = load_records(SHIPPED).select(f"memory noise{source_of(variant)}")
+        assert [r.method for r in found] == ["episodes"]
+
+
+def test_constants_are_those_of_the_maximum_with_the_intervals_of_the_draws() -> None:
+    shipped = load_records(SHIPPED)
+    limit, record = constant("cold limit"), shipped.one("limit", channel="cold")
+    assert record.central == pytest.approx(limit.value, rel=1e-3)
+    low, _, high = PosteriorDraws.load().interval("cold limit")
+    assert record.interval == pytest.approx((low, high), rel=1e-3)
+    assert "Campero" in record.source
+    for variant in VARIABLES:
+        drive = shipped.one(f"threshold drive{source_of(variant)}", channel="warm")
+        own = next(each for each in load_constants(variant) if each.name == "warm threshold drive")
+        assert drive.central == pytest.approx(own.value, rel=1e-3)
+
+
+def test_what_the_evidence_does_not_narrow_says_so() -> None:
+    shipped = load_records(SHIPPED)
+    for each in load_constants():
+        channel, _, rest = each.name.partition(" ")
+        if each.mechanism == "laboratories":
+            continue
+        named = channel in CHANNELS
+        record = shipped.one(rest, channel=channel) if named else shipped.one(each.name)
+        assert (record.use == "assumed") == (each.narrowed > 0.9), each.name
+
+
+def test_a_table_without_what_is_needed_is_refused() -> None:
+    table = load_thresholds()
+    without = Table(table.name, tuple(r for r in table if r.quantity != "rate Weber fraction"))
+    with pytest.raises(RecordError, match=r"thresholds.toml: no quantity 'rate Weber fraction'"):
+        calibrate(without)
+
+
+def test_all_published_numbers_load() -> None:
+    table = load_thresholds()
+    assert {r.channel for r in table} == {"cold", "warm", "both"}
+    assert len(table.select("limits threshold")) == 12
+    assert all(r.use for r in table)
+
+
+def test_observer_proves_itself() -> None:
+    person = Observer.load()
+    assert person.path_m("forearm") == 0.55
+    assert person.path_m("thenar") == 0.7
+    assert repr(person).startswith("Observer(a ")
+    with pytest.raises(ValueError, match=r"the sensation needs a above 0, not 0"):
+        replace(person, a=0.0)
+    with pytest.raises(ValueError, match=r"neutral zone 36 to 36 °C is empty"):
+        replace(person, neutral_low_C=36.0)
+    with pytest.raises(ValueError, match=r"lapse = 1.2 must lie in 0 to 1"):
+        replace(person, lapse=1.2)

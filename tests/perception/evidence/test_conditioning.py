@@ -1,0 +1,90 @@
+"""The evidence behind the constants is shown as the shipped tables have it, with a reason for every miss."""
+
+import json
+import math
+
+import pytest
+
+from thermicon.perception.evidence.conditioning import EDGE, SUSPECTED, experiment_title, load_conditioning
+from thermicon.perception.evidence.conditioning_file import conditioning_file
+from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.evidence.tables import unmoved_sentence
+from thermicon.perception.evidence.validate import ValidationReport
+from thermicon.perception.evidence.validate_file import report_file
+from thermicon.perception.observer.mechanisms import MECHANISMS
+from thermicon.perception.observer.priors import Prior
+
+
+def test_every_row_is_there_and_every_miss_has_a_suspect() -> None:
+    known = load_conditioning()
+    assert [each.row for each in known.rows] == list(load_predictions())
+    for each in known.rows:
+        inside = each.row.left_out_low <= each.row.published <= each.row.left_out_high
+        assert each.covered == inside
+        assert bool(each.suspected) == (not each.covered)
+    missed = {(r.row.experiment, r.row.statistic, r.row.channel) for r in known.missed}
+    assert missed == set(SUSPECTED)
+    scores = [abs(each.row.score) for each in known.missed]
+    assert scores == sorted(scores, reverse=True)
+
+
+def test_widths_are_factors_or_shares() -> None:
+    known = load_conditioning()
+    limits = next(each for each in known.rows if each.row.label == "limits, cold")
+    assert limits.log
+    assert limits.row.left_out * limits.half_width == pytest.approx(limits.row.left_out_high, rel=1e-4)
+    widths = sorted(each.half_width for each in known.rows if each.log)
+    assert known.median_half_width(log=True) == pytest.approx(widths[len(widths) // 2])
+    assert known.median_half_width(log=False) > 0.0
+
+
+def test_constants_that_did_not_move_are_those_of_the_documentation() -> None:
+    known = load_conditioning()
+    names = sorted(each.constant.name for each in known.unmoved)
+    assert unmoved_sentence() == f"{len(names)} constants keep more than 90 % of their prior's SD: {', '.join(names)}."
+    assert len(known.constants) + len(known.offsets) == len(load_constants())
+    assert {each.constant.unit for each in known.offsets} == {"SD"}
+
+
+def test_an_edge_is_an_outer_tenth_of_the_prior() -> None:
+    for each in load_conditioning().constants:
+        constant = each.constant
+        if constant.prior_low > 0.0 and constant.name.endswith(("time", "between people")):
+            middle = math.sqrt(constant.prior_low * constant.prior_high)
+            prior = Prior.log("x", "1", middle, constant.prior_low, constant.prior_high, "m", "s")
+            z = (math.log(constant.value) - prior.middle) / prior.sd
+            assert each.at_edge == (abs(z) > 1.2815516)
+            assert each.at_edge == (min(each.quantile, 1.0 - each.quantile) < EDGE)
+
+
+def test_every_mechanism_has_its_sources() -> None:
+    known = load_conditioning()
+    runs = {each.run.without: each for each in known.ablation}
+    assert len(known.ablation) == len(load_ablation())
+    for mechanism in MECHANISMS:
+        assert runs[mechanism.name].replaced_by == mechanism.replaced_by
+        assert runs[mechanism.name].sources
+    variants = [each for each in known.ablation if not each.run.without]
+    assert sorted(len(each.sources) for each in variants) == [0, 1]
+    losses = [each.run.difference for each in known.ablation]
+    assert losses == sorted(losses)
+
+
+def test_the_file_has_the_same_facts(validation_report: ValidationReport) -> None:
+    file = json.loads(json.dumps(report_file(validation_report), allow_nan=False))["conditioning"]
+    known = validation_report.conditioning
+    assert file == json.loads(json.dumps(conditioning_file(known)))
+    assert file["summary"]["covered"] == sum(each["left_out"]["covered"] for each in file["rows"]) == 49
+    assert sum(each["mechanism_suspected"] is not None for each in file["rows"]) == len(known.missed)
+    assert [each["name"] for each in file["constants"] if each["at_edge"]] == [c.constant.name for c in known.at_edge]
+    assert len(file["onset_stages"]) == 6
+    for each in file["onset_stages"]:
+        parts = [each[f"{part}_s"] for part in ("receptor", "nerve", "cord", "decision")]
+        assert sum(parts) == pytest.approx(each["onset_s"])
+    for each in file["magnitudes"]:
+        assert each["just_noticeable_steps"] == int(each["peak_d_prime"][1])
+        assert 1.0 < each["peak_d_prime"][0] < each["peak_d_prime"][1]
+
+
+def test_experiments_have_titles() -> None:
+    assert experiment_title("E1") == "Choice reaction time by area"

@@ -1,0 +1,105 @@
+"""The mechanisms one by one: what each does, and that each can be turned off."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.experiments.laboratory import Laboratory, samples_of
+from thermicon.perception.experiments.published import predict
+from thermicon.perception.observer.delays import Conduction
+from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
+from thermicon.perception.observer.transducer import Transducer
+from thermicon.perception.sensation.summation import area_factor, summed_area_cm2
+
+
+@pytest.fixture(scope="module")
+def laboratory() -> Laboratory:
+    posterior = Posterior()
+    return Laboratory(posterior.values(np.zeros(len(posterior.priors))))
+
+
+@pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda each: each.name)
+def test_turning_a_mechanism_off_changes_a_prediction(mechanism) -> None:
+    posterior = Posterior(without=frozenset({mechanism.name}))
+    whole = Posterior()
+    assert not set(mechanism.fixed) & set(posterior.priors.names)
+    # At places off the middle, so that a mechanism whose prior's middle is "off" shows too.
+    start = np.full(len(whole.priors), 0.3)
+    named = dict(zip(whole.priors.names, start.tolist(), strict=True))
+    reduced = np.array([named[name] for name in posterior.priors.names])
+    keys = predict(Laboratory(whole.values(start)))
+    off = posterior.predictions(reduced)
+    assert off.keys() == keys.keys()
+    assert max(abs(off[key] - keys[key]) for key in keys) > 1e-3
+
+
+def test_an_unknown_mechanism_names_the_nearest() -> None:
+    with pytest.raises(ValueError, match=r"no mechanism 'warm limt'.*warm limit"):
+        find_mechanism("warm limt")
+    with pytest.raises(ValueError, match="no mechanism 'colour'"):
+        Posterior(without=frozenset({"colour"}))
+    with pytest.raises(ValueError, match="no experiment 'E9' to leave out"):
+        Posterior(left_out=frozenset({"E9"}))
+
+
+@pytest.mark.parametrize(("a", "p"), [(12.0, 1.0), (6.0, 2.0), (30.0, 0.7)])
+def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: float, p: float) -> None:
+    transducer = Transducer(a, p)
+    assert float(transducer.psi(1.0)) == pytest.approx(1.0)
+    low = float(transducer.psi(2e-4) / transducer.psi(1e-4))
+    assert math.log2(low) == pytest.approx(p, abs=0.01)
+    high = float(transducer.psi(2e9) - transducer.psi(1e9))
+    assert high == pytest.approx(a * p * math.log(2.0), rel=1e-3)
+    steps = transducer.difference_threshold(np.array([3.0]))
+    assert float((transducer.psi(3.0 + steps) - transducer.psi(3.0))[0]) == pytest.approx(1.0)
+
+
+def test_a_transducer_of_no_slope_is_refused() -> None:
+    with pytest.raises(ValueError, match="needs a above 0"):
+        Transducer(0.0, 1.0)
+
+
+def test_summation_has_two_ends() -> None:
+    assert summed_area_cm2(0.001) == pytest.approx(summed_area_cm2(0.0001), rel=0.2)
+    assert area_factor(400.0, 225.0, 0.9) < 1.2 < 1.4 < area_factor(225.0, 100.0, 0.9)
+    assert area_factor(18000.0, 9.0, 0.9) < 20.0 < (18000.0 / 9.0) ** 0.9
+    middle = math.log(area_factor(20.0, 10.0, 0.7)) / math.log(2.0)
+    assert middle == pytest.approx(0.7, abs=0.12)
+    with pytest.raises(ValueError, match="above 0 cm²"):
+        summed_area_cm2(0.0)
+
+
+def test_the_spine_adds_to_the_nerve() -> None:
+    cold, warm = Conduction("cold", 6.0, 0.7), Conduction("warm", 1.0, 0.7)
+    assert cold.delay_s == pytest.approx(0.7 / 6.0 + 0.225 / 12.0)
+    assert warm.delay_s == pytest.approx(0.7 + 0.225 / 2.0)
+    with pytest.raises(ValueError, match="velocity and a path above 0"):
+        Conduction("cold", 0.0, 0.7)
+
+
+def test_a_later_decade_raises_thresholds(laboratory: Laboratory) -> None:
+    young, old = (laboratory.gain("cold", 9.0, "E3", "hand", years) for years in (25.0, 65.0))
+    lost = laboratory.values["cold sensitivity lost per decade"]
+    assert math.log(young / old) == pytest.approx(4.0 * lost)
+
+
+def test_answers_come_later_by_conduction_and_decision(laboratory: Laboratory) -> None:
+    corners = ((14 / 4.81, 14.0),)
+    drive, samples = laboratory.drive("forearm", "warm", 31.0, corners, 6.0), samples_of(corners, 6.0)
+    gain = laboratory.gain("warm", 9.8, "E1", "forearm", 28.0)
+    crossed, _ = laboratory.passages(drive, samples, "warm", gain, laboratory.values["criterion of speeded answers"])
+    simple = laboratory.answers_s(drive, samples, "warm", gain, site="forearm")
+    choice = laboratory.answers_s(drive, samples, "warm", gain, site="forearm", choice=True)
+    felt = np.isfinite(crossed)
+    assert (simple[felt] > crossed[felt] + laboratory.delay_s("warm", "forearm")).all()
+    assert (choice[felt] > simple[felt]).all()
+
+
+def test_heat_flow_answers_too() -> None:
+    posterior = Posterior("heat flow")
+    found = posterior.residuals(np.zeros(len(posterior.priors)))
+    assert np.isfinite(found).all()

@@ -1,0 +1,134 @@
+"""What is remembered of short pulses: distances that are distances, numbers that count, and a bound that is refused."""
+
+import re
+from itertools import permutations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from thermicon.circuit import Rig, simulate, simulate_all
+from thermicon.icons import IconSet, load_library, read_cue
+from thermicon.icons.language.parse import parse
+from thermicon.notebooks.cli.main import app
+from thermicon.perception import dprime_from_memory, judge_delivered, perceive, rank
+from thermicon.perception.arrays import Array
+from thermicon.perception.evidence.pulses import CUES, RIG
+from thermicon.perception.identification.carry_over import carry_over
+from thermicon.perception.identification.confusion import embed
+from thermicon.perception.identification.episodes import EpisodesError
+from thermicon.perception.observer.people import draw_people
+from thermicon.perception.selection.appraise import population_dprime
+from thermicon.perception.selection.nominal import dprimes, sense
+from thermicon.perception.selection.request import Selection
+
+HEAD = "cue 1\nset pulses { site thenar; control skin; baseline 32 °C }\n"
+
+
+def excess(apart: Array) -> float:
+    """By how much d′ of a pair exceeds the way over a third icon, at most, in d′."""
+    icons = apart.shape[-1]
+    return max(
+        float((apart[:, :, j] - apart[:, :, k] - apart[:, k, j][:, None]).max())
+        for j, k in permutations(range(icons), 2)
+    )
+
+
+@pytest.mark.parametrize(
+    ("icons", "rig", "bent"),
+    [
+        (load_library("six-icons"), "thenar", 0.05),
+        (load_library("pulse-sequences"), "thenar", 0.05),
+        pytest.param(load_library("wave-shapes"), "thenar", 0.05, marks=pytest.mark.slow),
+        pytest.param(load_library("wilson-ramps"), "thenar", 0.05, marks=pytest.mark.slow),
+        pytest.param(load_library("wave-confusions"), "thenar", 0.05, marks=pytest.mark.slow),
+        pytest.param(read_cue(CUES), RIG, 0.07, marks=pytest.mark.slow),
+    ],
+    ids=lambda given: getattr(given, "name", given),
+)
+def test_memory_keeps_distances(icons: IconSet, rig: str, bent: float) -> None:
+    """No cost is so high that d′ are no distances any more, which points in space would have to bend."""
+    apart, _ = population_dprime(list(icons), Rig.load(rig), draw_people(8, 3))
+    assert excess(apart) < 0.3
+    assert embed(apart)[1].max() < bent
+
+
+def dprime(one: str, other: str) -> float:
+    icons, rig = parse(f"{HEAD}icon one {{ {one} }}\nicon other {{ {other} }}\n"), Rig.load("thenar")
+    felt = [perceive(simulate(icon, rig, tail_s=12.0 - 4.0)) for icon in icons]
+    return dprime_from_memory(*felt)
+
+
+def test_a_second_pulse_counts_and_cold_is_not_warm() -> None:
+    cold, warm = (f"change by {by} °C at 4 °C/s; hold for 500 ms; return at 4 °C/s; rest for 500 ms" for by in (-3, 3))
+    assert dprime(f"{cold}; {warm}", f"{cold}; {warm}; {warm}") > 2.0
+    assert dprime(cold, warm) > 5.0
+
+
+@pytest.mark.slow
+def test_twenty_two_short_pulses_are_named() -> None:
+    found = rank(read_cue(CUES), Rig.load(RIG), seed=11, choosing=Selection(22)).chosen
+    assert found is not None and len(found.icons) == 22
+    assert found.at_own_range.proportion_correct > 0.8
+    assert found.new_laboratory is not None and found.new_laboratory.proportion_correct[1] >= 0.93
+
+
+@pytest.mark.slow
+def test_six_icons_are_named_as_often_as_published() -> None:
+    for seed in (11, 12):
+        found = rank(load_library("six-icons"), Rig.load("thenar"), seed=seed, parameters=0)
+        assert 0.86 < found.proportion_correct < 0.95
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rig", ["thenar", "tcs2"])
+def test_trains_of_any_length_differ(rig: str) -> None:
+    trains = "".join(
+        f"icon t{n} {{ repeat {n} {{ change by -3 °C at 6 °C/s; return at 6 °C/s; rest for 300 ms }} }}\n"
+        for n in range(7, 21)
+    )
+    icons = parse(HEAD.replace("skin", "display") + trains)
+    apart, _ = population_dprime(list(icons), Rig.load(rig), draw_people(24, 11))
+    assert np.median(apart, axis=0)[~np.eye(len(trains.splitlines()), dtype=bool)].min() > 0.5
+
+
+LONG = "icon long { repeat 80 { change by -3 °C at 9 °C/s; return at 9 °C/s; rest for 200 ms } }\n"
+PLAIN = "icon plain(by in [-3, -2] °C) { change by by at 3 °C/s; hold for 1 s; return at 3 °C/s }\n"
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "rank {0} --people 4 --parameters 0",
+        "search {0} --people 4",
+        "frontier {0}",
+        "sensitivity {0} --people 4",
+        "plan {0}",
+    ],
+)
+def test_an_icon_with_too_many_episodes_is_refused_by_name(command: str, tmp_path: Path) -> None:
+    file = tmp_path / "trains.cue"
+    file.write_text(
+        HEAD.replace("control skin", "control display").replace("thenar", "forearm") + LONG + PLAIN, encoding="utf-8"
+    )
+    result = CliRunner().invoke(app, [*command.format(file).split(), "--rig", RIG])
+    assert result.exit_code == 1, result.output
+    assert re.match(
+        r"long: felt as \d\d separate episodes of cold and warmth; .* at most 64 of an icon: give", result.output
+    )
+
+
+def test_it_is_named_wherever_it_is_met() -> None:
+    """Between icons, after icons, among those of a file as a device delivers them, and for pairs of percepts."""
+    rig = Rig.load(RIG)
+    icons = list(parse(HEAD.replace("control skin", "control display").replace("thenar", "forearm") + LONG + PLAIN))[:2]
+    traces = simulate_all(icons, rig, end_s=75.0)
+    for met in (
+        lambda: dprime_from_memory(*map(perceive, traces)),
+        lambda: carry_over(icons, rig, 75.0, 3.0),
+        lambda: judge_delivered(["long", "other"], traces, traces),
+        lambda: dprimes(sense(icons[:1], rig, 75.0), sense(icons[1:], rig, 75.0), "episodes"),
+    ):
+        with pytest.raises(EpisodesError, match=r"^long: felt as"):
+            met()

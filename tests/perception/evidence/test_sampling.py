@@ -1,0 +1,157 @@
+"""Chains, surrogate and diagnostics on posteriors that can be written down, and resuming to the same bytes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from thermicon.circuit.records import RecordError
+from thermicon.perception.evidence import learning, sampling
+from thermicon.perception.evidence.chains import Chain, Reference, begin, extend
+from thermicon.perception.evidence.diagnostics import diagnose, smoothed_weights
+from thermicon.perception.evidence.limit_features import LimitFeatures
+from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.evidence.sampling import in_the_middle, sample, shipped_vector
+from thermicon.perception.evidence.surrogate import Surrogate, fit_surrogate
+from thermicon.perception.observer.variants import VARIABLES
+
+SIZE = 3
+TRUTH = np.array([[1.0, 0.5, 0.0], [0.0, 2.0, -0.5], [0.3, 0.0, 1.5], [1.0, 1.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class Bent:
+    """Four rows that are quadratic in three constants."""
+
+    def residuals(self, vector: np.ndarray) -> np.ndarray:
+        return np.concatenate([TRUTH @ vector + 0.2 * vector[0] ** 2, vector])
+
+
+def surrogate_and_reference() -> tuple[Surrogate, Reference]:
+    precision = TRUTH.T @ TRUTH + np.eye(SIZE)
+    reference = Reference.at(np.zeros(SIZE), np.linalg.inv(precision))
+    white = np.random.default_rng(1).standard_normal((300, SIZE))
+    rows = np.stack([Bent().residuals(vector)[:4] for vector in reference.vector(white)])
+    return fit_surrogate(white, rows, reference.middle, reference.factor), reference
+
+
+def test_a_surrogate_of_quadratics_is_exact_and_its_gradient_is_one() -> None:
+    surrogate, reference = surrogate_and_reference()
+    white = np.array([0.3, -0.8, 0.5])
+    density, gradient = surrogate.log_density(white)
+    residuals = Bent().residuals(reference.vector(white))
+    assert density == pytest.approx(-0.5 * residuals @ residuals, rel=0.01)
+    for place in range(SIZE):
+        step = np.zeros(SIZE)
+        step[place] = 1e-5
+        slope = (surrogate.log_density(white + step)[0] - surrogate.log_density(white - step)[0]) / 2e-5
+        assert gradient[place] == pytest.approx(slope, rel=1e-5)
+
+
+@pytest.mark.slow
+def test_chains_have_the_moments_of_the_posterior() -> None:
+    surrogate, reference = surrogate_and_reference()
+    chains = [extend(begin(SIZE, 0, k), Bent(), reference, surrogate, 1500) for k in range(4)]
+    drawn = reference.vector(np.stack([chain.white[100:] for chain in chains]))
+    axis = np.linspace(-4.0, 4.0, 61)
+    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, SIZE)
+    residuals = np.concatenate([grid @ TRUTH.T + 0.2 * grid[:, :1] ** 2, grid], axis=1)
+    weights = np.exp(-0.5 * np.square(residuals).sum(axis=1))
+    weights /= weights.sum()
+    found = diagnose(("a", "b", "c"), drawn)
+    assert found.converged
+    mean, sd = weights @ grid, np.sqrt(weights @ grid**2 - (weights @ grid) ** 2)
+    np.testing.assert_allclose(drawn.mean(axis=(0, 1)), mean, atol=5.0 * float((sd / np.sqrt(found.ess)).max()))
+    np.testing.assert_allclose(drawn.std(axis=(0, 1)), sd, rtol=0.1)
+
+
+def test_a_chain_is_the_same_in_one_go_and_in_parts(tmp_path: Path) -> None:
+    surrogate, reference = surrogate_and_reference()
+    start = begin(SIZE, 7, 2)
+    whole = extend(start, Bent(), reference, surrogate, 60)
+    part = extend(start, Bent(), reference, surrogate, 25)
+    part.save(tmp_path / "chain.npz")
+    rest = extend(Chain.load(tmp_path / "chain.npz"), Bent(), reference, surrogate, 35)
+    np.testing.assert_array_equal(rest.white, whole.white)
+    assert rest.accepted == whole.accepted
+    assert [path.name for path in tmp_path.iterdir()] == ["chain.npz"]
+
+
+def test_chains_apart_have_not_converged() -> None:
+    rng = np.random.default_rng(0)
+    apart = rng.standard_normal((4, 500, 2))
+    apart[0, :, 1] += 3.0
+    found = diagnose(("near", "far"), apart)
+    assert not found.converged
+    assert found.worst == "far"
+    assert "not converged, worst far" in repr(found)
+
+
+def test_smoothed_weights_tell_a_wide_proposal_from_a_narrow_one() -> None:
+    rng = np.random.default_rng(0)
+    wide, narrow = 1.3 * rng.standard_normal(2000), 0.2 * rng.standard_normal(2000)
+    weights, good = smoothed_weights(-0.5 * wide**2 + 0.5 * (wide / 1.3) ** 2)
+    _, bad = smoothed_weights(-0.5 * narrow**2 + 0.5 * (narrow / 0.2) ** 2)
+    assert good < 0.3 < 0.5 < bad
+    assert math.sqrt(float(weights @ wide**2)) == pytest.approx(1.0, abs=0.06)
+
+
+def test_a_folder_of_other_chains_is_refused(tmp_path: Path) -> None:
+    sampling._check_folder(tmp_path, Posterior(), 3)
+    sampling._check_folder(tmp_path, Posterior(), 3)
+    with pytest.raises(RecordError, match=r"have seed 3, not 4: give another folder"):
+        sampling._check_folder(tmp_path, Posterior(), 4)
+    with pytest.raises(RecordError, match=r"have left out \[\], not \['E3'\]"):
+        sampling._check_folder(tmp_path, Posterior(left_out=frozenset({"E3"})), 3)
+
+
+def test_the_shipped_maximum_is_where_sampling_begins() -> None:
+    for variable in VARIABLES:
+        vector = shipped_vector(Posterior(variable))
+        assert np.abs(vector).max() < 6.0
+
+
+@pytest.mark.slow
+def test_a_short_run_can_be_repeated_and_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(learning, "AROUND", 1500)
+    monkeypatch.setattr(learning, "ROUNDS", (240,))
+    monkeypatch.setattr(learning, "CHAIN_ROUNDS", 1)
+    monkeypatch.setattr(sampling, "CHAIN_STEPS", 50)
+    posterior = Posterior()
+    once = sample(posterior, 5, least_steps=100, most_steps=200)
+    sample(posterior, 5, keep=tmp_path, least_steps=100, most_steps=100)
+    again = sample(posterior, 5, keep=tmp_path, least_steps=100, most_steps=200)
+    np.testing.assert_array_equal(once.vectors, again.vectors)
+    assert not once.diagnostics.converged
+
+
+def test_features_of_the_limits_have_the_right_slopes() -> None:
+    priors = Posterior().priors
+    features = LimitFeatures.of(priors)
+    assert features is not None
+    vector = np.random.default_rng(2).standard_normal(len(priors))
+    slopes = features.slopes(vector)
+    for k, place in enumerate(features.places):
+        step = np.zeros(vector.size)
+        step[place] = 1e-6
+        np.testing.assert_allclose(
+            slopes[:, k], (features.at(vector + step) - features.at(vector - step)) / 2e-6, atol=1e-6
+        )
+    assert LimitFeatures.of(Posterior("heat flow").priors) is None
+
+
+def test_the_nominal_draw_is_nearest_to_the_medians_of_constants_and_of_predictions() -> None:
+    constant, offset = SimpleNamespace(mechanism="depth"), SimpleNamespace(mechanism="laboratories")
+    posterior: Any = SimpleNamespace(
+        priors=SimpleNamespace(each=(constant, offset)),
+        rows=(SimpleNamespace(key="latency"),),
+        predictions=lambda vector: {"latency": vector[0] ** 2},
+    )
+    vectors = np.array([[-2.0, 0.0], [0.9, 50.0], [1.0, 9.0], [1.1, 0.0], [4.0, 0.0]])
+    assert in_the_middle(posterior, vectors) == 2

@@ -1,0 +1,112 @@
+"""The shipped draws and left-out predictions: of the shipped inputs, converged, and as good as the pages say."""
+
+from __future__ import annotations
+
+import math
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.perception.evidence.left_out_file import LEFT_OUT, load_left_out
+from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.evidence.posterior_tables import TABLES, covered
+from thermicon.perception.evidence.results import inputs_digest, load_constants
+from thermicon.perception.evidence.rows import load_rows
+from thermicon.perception.evidence.statistics import DATA
+from thermicon.perception.evidence.summaries import summarise
+from thermicon.perception.evidence.tables import TABLES as INFERRED
+from thermicon.perception.evidence.variant_scores import SCORES, variant_weights
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.draws_file import current_inputs
+
+
+def test_draws_have_converged_and_left_nothing_out() -> None:
+    header = PosteriorDraws.load().header
+    assert header.converged
+    assert header.r_hat < 1.01
+    assert header.ess > 400.0
+    assert header.left_out == ()
+
+
+def test_draws_lie_around_the_maximum_and_fit_as_well() -> None:
+    draws, posterior = PosteriorDraws.load(), Posterior()
+    for each in load_constants():
+        low, _, high = draws.interval(each.name, 0.98)
+        assert low < each.value < high, each.name
+    priors = posterior.priors
+    for k in range(0, 1000, 250):
+        places = priors.places(dict(draws.draw(k)))
+        residuals = posterior.residuals((places - priors.middle) / priors.sd)
+        # Twice the negative log density of a draw is about that of the maximum plus the number of constants.
+        assert 60.0 < float(np.square(residuals).sum()) < 190.0
+
+
+def test_every_row_is_predicted_without_its_experiment() -> None:
+    rows = load_left_out()
+    assert current_inputs(DATA / LEFT_OUT) == inputs_digest()
+    assert sorted((row.experiment, row.statistic, row.channel) for row in rows) == sorted(r.key for r in load_rows())
+    assert all(row.low < row.lower < row.median < row.upper < row.high for row in rows)
+    assert all((row.method == "weights") <= (row.k_hat <= 0.7) for row in rows)
+    for row in rows:
+        assert covered(row, 0.95) == (row.low <= row.published <= row.high)
+
+
+def test_left_out_predictions_cover_and_beat_the_naive_baseline() -> None:
+    rows = load_left_out()
+    assert 0.85 <= np.mean([covered(row, 0.95) for row in rows]) <= 0.99
+    assert 0.35 <= np.mean([covered(row, 0.5) for row in rows]) <= 0.75
+    compared = [row for row in rows if not math.isnan(row.naive)]
+    assert len(compared) > 15
+    assert sum(row.log_score - row.naive for row in compared) > 0.0
+
+
+def test_summaries_say_what_was_not_moved() -> None:
+    found = {each.name: each for each in summarise(PosteriorDraws.load())}
+    assert found["softness of the limits"].unmoved
+    assert not found["warm threshold drive"].unmoved
+    assert found["warm threshold drive"].narrowed < 0.4
+
+
+def test_temperature_predicts_best_of_the_variants() -> None:
+    weights = variant_weights()
+    assert current_inputs(DATA / SCORES) == inputs_digest()
+    assert max(weights, key=lambda each: weights[each]) == "temperature"
+
+
+@pytest.mark.parametrize("name", sorted(set(TABLES) - set(INFERRED)))
+def test_a_table_has_one_width_and_no_exponents(name: str) -> None:
+    text = TABLES[name]()
+    assert len({line.count(" | ") for line in text.splitlines()}) == 1
+    assert not re.search(r"\d[eE][+-]?\d", text)
+
+
+def parted(text: str) -> tuple[dict[str, str], list[str], np.ndarray]:
+    """Lines of the header by their first words, names of the columns, and draws (draws, columns)."""
+    lines = text.splitlines()
+    header = dict(line[1:].split(":", 1) for line in lines if line.startswith("#") and ":" in line)
+    names, *rows = [line for line in lines if not line.startswith("#")]
+    return header, names.split(","), np.array([row.split(",") for row in rows], dtype=np.float64)
+
+
+@pytest.mark.slow
+def test_calibrate_makes_draws_of_the_shipped_distribution_from_their_seed(tmp_path: Path) -> None:
+    """Six minutes of processor time. The draws themselves are the same only where a computer rounds alike."""
+    made = tmp_path / "draws.csv"
+    command = [sys.executable, "-m", "thermicon.notebooks", "calibrate", "--seed", "0", "-o", made]
+    subprocess.run(command, check=True, capture_output=True)
+    (header, names, shipped), (own_header, own_names, own) = (
+        parted(path.read_text("utf-8")) for path in (DATA / "posterior.csv", made)
+    )
+    assert own_names == names
+    assert {key: own_header[key] for key in (" evidence", " priors")} == {
+        key: header[key] for key in (" evidence", " priors")
+    }
+    assert own.shape == shipped.shape == (1000, len(names))
+    spread = shipped.std(axis=0)
+    # With 400 effective draws each, means differ by 0.07 of the spread (1 SD), spreads by 5 %.
+    assert (np.abs(own.mean(axis=0) - shipped.mean(axis=0)) / spread).max() < 0.35
+    assert np.abs(np.log(own.std(axis=0) / spread)).max() < 0.3

@@ -1,0 +1,200 @@
+from typing import Any
+
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.perception import Observer, perceive
+from thermicon.perception.ranking.rules import (
+    DISTINGUISHABLE,
+    RuleResult,
+    icon_rules,
+    load_rules,
+    pair_rules,
+    rig_rules,
+)
+
+
+def by_name(results: tuple[RuleResult, ...]) -> dict[str, RuleResult]:
+    return {r.rule: r for r in results}
+
+
+def scored(cue: Any, observer: Observer, **changes: Any) -> dict[str, RuleResult]:
+    trace = cue(**changes)
+    return by_name(icon_rules(trace, perceive(trace, observer)))
+
+
+def pair(cue: Any, a: dict[str, Any], b: dict[str, Any]) -> dict[str, RuleResult]:
+    one, two = cue(name="a", **a), cue(name="b", **b)
+    return by_name(pair_rules(one, two))
+
+
+def test_a_clear_cooling_passes(cue: Any, observer: Observer) -> None:
+    found = scored(cue, observer, change=-6.0)
+    change = found["change at the receptor (cold)"]
+    assert (change.passed, change.threshold, change.unit) == (True, 0.11, "K")
+    assert change.value == pytest.approx(6.0)
+    assert change.margin == pytest.approx(5.89)
+    assert change.text == "change at the receptor (cold): 6 K against at least 0.11 K: passes"
+    assert "Stevens & Choo 1998" in change.source
+    assert "change at the receptor (warm)" not in found
+
+
+def test_a_small_slow_warming_fails(cue: Any, observer: Observer) -> None:
+    found = scored(cue, observer, change=0.15, rate=0.05)
+    assert found["change at the receptor (warm)"].margin == pytest.approx(-0.05)
+    text = "rate at the receptor (warm): 0.05 K/s against at least 0.1 K/s: fails"
+    assert found["rate at the receptor (warm)"].text == text
+    assert not any(name.startswith("latency") for name in found)  # the window is for rates over 0.1 K/s
+
+
+def test_an_icon_that_is_not_felt_has_no_latency(cue: Any, observer: Observer) -> None:
+    latency = scored(cue, observer, change=0.15)["latency (warm)"]
+    assert (latency.passed, latency.value, latency.margin) == (False, None, None)
+    assert (
+        latency.text
+        == "latency: the nominal person does not feel the icon, so it has no onset to compare with 0.5 to 0.9 s"
+    )
+
+
+def test_latency_is_held_against_its_window(cue: Any, observer: Observer) -> None:
+    latency = scored(cue, observer, change=6.0)["latency (warm)"]
+    assert latency.value is not None
+    assert latency.value > 1.4 + 0.2
+    assert (latency.passed, latency.threshold_low, latency.threshold) == (False, 0.5, 0.9)
+    assert (latency.to_dict()["threshold_low"], latency.to_dict()["threshold"]) == (0.5, 0.9)
+    assert latency.margin == pytest.approx(0.9 - latency.value)
+    assert "against 0.5 to 0.9 s: fails" in latency.text
+
+
+def test_neutral_zone(cue: Any, observer: Observer) -> None:
+    zone = scored(cue, observer, change=-6.0)["neutral zone (cold)"]
+    assert (zone.passed, zone.value, zone.margin) == (True, 32.0, 2.0)
+    assert (zone.threshold_low, zone.threshold) == (30.0, 36.0)
+
+
+def test_a_rule_with_one_end_has_no_lower_threshold(cue: Any, observer: Observer) -> None:
+    change = scored(cue, observer, change=-6.0)["change at the receptor (cold)"]
+    assert change.threshold_low is None
+    assert change.to_dict()["threshold_low"] is None
+
+
+def test_an_icon_that_is_not_felt_keeps_both_ends_of_the_window(cue: Any, observer: Observer) -> None:
+    latency = scored(cue, observer, change=0.15)["latency (warm)"]
+    assert (latency.threshold_low, latency.threshold) == (0.5, 0.9)
+
+
+@pytest.mark.parametrize(("change", "said"), [(-0.10999, "fails"), (-0.11001, "passes")])
+def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, change: float, said: str) -> None:
+    text = scored(cue, observer, change=change)["change at the receptor (cold)"].text
+    assert text == f"change at the receptor (cold): {-change:g} K against at least 0.11 K: {said}"
+
+
+def test_directions_tell_apart(cue: Any) -> None:
+    found = pair(cue, {"change": -4.0}, {"change": 4.0})
+    assert found["direction"].text == "direction: a cools, b warms: directions differ"
+    assert found[DISTINGUISHABLE].passed
+    assert not any(name.startswith("amplitude") for name in found)
+
+
+def test_equal_cues_are_not_told_apart(cue: Any) -> None:
+    found = pair(cue, {"change": -4.0}, {"change": -4.05})
+    assert found["direction"].text == "direction: a cools, b cools: directions are the same"
+    assert found["peak (cold)"].text == "peak (cold): 0.05 K against at least 0.07 K: fails"
+    assert found["rate ratio (cold)"].value == pytest.approx(1.0)
+    assert found["rate ratio (cold)"].text == "rate ratio (cold): 1 against at least 1.43: fails"
+    assert found["onset (cold)"].text.endswith("s against at least 0.2 s: fails")
+    assert found[DISTINGUISHABLE].text == "distinguishable: no rule separates the two"
+    assert not found[DISTINGUISHABLE].passed
+
+
+def test_each_of_ours_alone_tells_apart(cue: Any) -> None:
+    peak = pair(cue, {"change": 4.0}, {"change": 4.1})
+    assert peak[DISTINGUISHABLE].text == "distinguishable: by peak (warm)"
+    assert peak["amplitude difference (warm)"].margin == pytest.approx(0.01)
+    rate = pair(cue, {"change": -4.0, "rate": 3.0}, {"change": -4.0, "rate": 4.5})
+    assert rate[DISTINGUISHABLE].text == "distinguishable: by rate ratio (cold)"
+    late = pair(cue, {"change": -4.0}, {"change": -4.0, "lag_s": 0.3})
+    assert late[DISTINGUISHABLE].text == "distinguishable: by onset (cold)"
+
+
+def test_icons_below_every_threshold_have_no_onset(cue: Any) -> None:
+    one = pair(cue, {"change": -4.0}, {"change": -0.05})
+    assert one["onset (cold)"].text == "onset: only one of the two passes the threshold of a receptor"
+    none = pair(cue, {"change": -0.05}, {"change": -0.04})
+    assert none["onset (cold)"].text == "onset: neither passes the threshold of a receptor"
+    assert none["onset (cold)"].value is None
+    assert not none["onset (cold)"].passed
+
+
+def test_rules_are_records_that_say_whose_they_are() -> None:
+    for record in load_rules():
+        assert record.get("scope") in ("icon", "pair", "set")
+        assert record.get("basis") in ("trace", "rig", "model")
+        assert str(record.get("statement"))
+    ours = [r for r in load_rules() if r.source.startswith("this project")]
+    assert {r.quantity for r in ours} == {"depth", "direction", "peak", "rate ratio", "onset", DISTINGUISHABLE}
+
+
+def test_every_rule_of_the_design_is_there() -> None:
+    said = {(r.quantity, r.channel): (r.low, r.value, r.high) for r in load_rules()}
+    assert said["change at the receptor", "warm"][1] == 0.2
+    assert said["change at the receptor", "cold"][1] == 0.11
+    assert said["rate at the receptor", "both"][1] == 0.1
+    assert said["latency", "cold"] == (0.3, None, 0.5)
+    assert said["latency", "warm"] == (0.5, None, 0.9)
+    assert said["amplitude difference", "cold"] == (0.02, 0.07, 0.07)
+    assert said["amplitude difference", "warm"] == (0.03, 0.09, 0.09)
+    assert said["neutral zone", "both"] == (30.0, None, 36.0)
+    assert (said["depth", "cold"][1], said["depth", "warm"][1]) == (0.10, 0.21)
+    assert ("felt peak", "cold") in said
+    assert ("felt peak", "warm") in said
+    assert (said["peak", "cold"][1], said["peak", "warm"][1], said["rate ratio", "both"][1]) == (0.07, 0.09, 1.43)
+    assert (said["onset", "cold"][1], said["onset", "warm"][1]) == (0.2, 0.4)
+
+
+def test_a_slow_icon_that_is_felt_has_no_latency_window(cue: Any, observer: Observer) -> None:
+    slow = scored(cue, observer, change=5.0, rate=0.09, hold=1.0, end_s=130.0)
+    assert not slow["rate at the receptor (warm)"].passed
+    assert not any(name.startswith("latency") for name in slow)
+
+
+def test_felt_peaks_are_held_against_the_published_signs(cue: Any, observer: Observer) -> None:
+    warm = scored(cue, observer, change=4.0, rate=1.0, hold=0.0)["felt peak (warm)"]
+    assert warm.passed
+    assert warm.value is not None
+    assert warm.value > 0
+    assert (
+        warm.text
+        == f"felt peak (warm): predicted {warm.value:.2f} s after that of the skin, published after it: passes"
+    )
+    cold = scored(cue, observer, change=-4.0, rate=1.0, hold=0.0)["felt peak (cold)"]
+    assert cold.value is not None
+    assert cold.passed == (cold.value < 0)
+    assert cold.margin == -cold.value
+
+
+def test_only_latency_and_felt_peak_come_from_the_model(cue: Any, observer: Observer) -> None:
+    found = scored(cue, observer, change=-4.0)
+    assert {r.quantity for r in found.values() if r.from_model} == {"latency", "felt peak"}
+    assert not any(r.from_model for r in pair(cue, {"change": 4.0}, {"change": -4.0}).values())
+    assert found["latency (cold)"].to_dict()["from_model"] is True
+
+
+def test_depths_are_a_rule_on_the_rig() -> None:
+    cold, warm = rig_rules(Rig.load("thenar"))
+    assert (cold.passed, warm.passed) == (True, True)
+    assert cold.text == (
+        "depth (cold): 0.1 mm against 0.046 to 0.21 mm: passes; on this rig that is inside the viable epidermis"
+    )
+    deep = rig_rules(Rig.load("thenar").with_(**{"skin.warm_receptor_mm": 0.5}))[1]
+    assert (deep.passed, deep.margin) == (False, pytest.approx(-0.08))
+    assert deep.text.endswith("0.5 mm against 0.11 to 0.42 mm: fails; on this rig that is inside the dermis")
+    surface = Rig.load("thenar").with_(**{"skin.depth_from": "surface", "skin.cold_receptor_mm": 0.15})
+    assert rig_rules(surface)[0].text.startswith("depth (cold): -0.02 mm against 0.046 to 0.21 mm: fails")
+
+
+def test_margins_are_compared_in_shares_of_their_threshold(cue: Any, observer: Observer) -> None:
+    found = scored(cue, observer, change=-0.22)
+    assert found["change at the receptor (cold)"].normalised_margin == pytest.approx(1.0)
+    assert found["neutral zone (cold)"].normalised_margin == pytest.approx(2.0 / 3.0)
+    assert scored(cue, observer, change=-0.05)["latency (cold)"].normalised_margin is None

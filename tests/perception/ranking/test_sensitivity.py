@@ -1,0 +1,121 @@
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import load_library, parse
+from thermicon.perception import Sensitivity, draw_people, sensitivity
+from thermicon.perception.observer.channels import NORMS
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.ranking.measurements import MEASUREMENTS, base_name
+from thermicon.perception.ranking.rig_doubt import NODES, UncertainRig, _parabola
+from thermicon.perception.sensation.memory_parameters import memory_parameters
+
+TWO = """cue 1
+set s { control skin; baseline 32 °C }
+icon a { cool by 3 °C at 2 °C/s; hold for 1 s; return at 2 °C/s }
+icon b { cool by 4 °C at 1 °C/s; hold for 1 s; return at 2 °C/s }
+"""
+
+
+@pytest.fixture(scope="module")
+def rig() -> Rig:
+    return Rig.load("thenar")
+
+
+@pytest.fixture(scope="module")
+def found(rig: Rig) -> Sensitivity:
+    return sensitivity(parse(TWO), rig, people=6, draws=96)
+
+
+def test_effects_are_ordered_and_measurements_too(found: Sensitivity) -> None:
+    names = [each.constant for each in found.effects]
+    assert len(names) == len(set(names))
+    assert {"contact resistance", "laboratory, cold", "memory noise (episodes)"} <= set(names)
+    sizes = [each.proportion_correct for each in found.effects]
+    assert sizes == sorted(sizes, reverse=True)
+    assert all(0.0 <= size <= 1.0 for size in sizes)
+    # A measurement tells several constants at once: no less than the one that counts most.
+    first = found.first[0]
+    alone = max(each.proportion_correct for each in found.effects if each.constant in first.constants)
+    assert first.proportion_correct > 0.8 * alone
+    assert [each.proportion_correct for each in found.reductions] == sorted(
+        (each.proportion_correct for each in found.reductions), reverse=True
+    )
+    assert f"measure first: {first.measurement}" in repr(found)
+    low, high = found.proportion_correct_interval
+    assert low < found.proportion_correct < high
+
+
+def test_a_constant_that_hurts_memory_lowers_the_prediction(found: Sensitivity) -> None:
+    (memory,) = (each for each in found.effects if each.constant == "memory noise (episodes)")
+    assert memory.low < memory.high
+    assert memory.at_low > memory.at_high
+
+
+def test_offsets_of_published_laboratories_are_left_out(found: Sensitivity) -> None:
+    offsets = PosteriorDraws.load().header.offsets
+    assert offsets
+    assert not {each.constant for each in found.effects} & set(offsets)
+
+
+def test_every_constant_has_its_measurement() -> None:
+    draws = PosteriorDraws.load()
+    names = [name for name in draws.names if not draws.header.is_offset(name)]
+    names += [parameter.name for norm in NORMS for parameter in memory_parameters(norm)]
+    names += ["laboratory, cold", "laboratory, warm", "contact resistance", "thickness of the outermost layer"]
+    assert {base_name(name) for name in names} == {constant for each in MEASUREMENTS for constant in each.constants}
+
+
+def test_as_a_table_and_a_picture(found: Sensitivity) -> None:
+    frame = found.to_frame()
+    assert len(frame) == len(found.effects)
+    assert {"constant", "unit", "low", "high", "proportion_correct_share"} <= set(frame.columns)
+    axes = found.plot()
+    assert [t.get_text() for t in axes.get_yticklabels()] == list(frame["constant"])[:16]
+    assert axes.yaxis_inverted()
+    assert len({bar.get_facecolor()[:3] for bar in axes.patches}) == 2
+    assert found._repr_html_().startswith("<svg")
+
+
+def test_the_same_arguments_give_the_same_numbers(found: Sensitivity, rig: Rig) -> None:
+    steps: list[tuple[int, int]] = []
+    again = sensitivity(parse(TWO), rig, people=6, draws=96, progress=lambda done, total: steps.append((done, total)))
+    assert again == found
+    assert steps == [(k, 96) for k in range(1, 97)]
+
+
+@pytest.mark.slow
+def test_a_rig_whose_contact_is_known_leaves_less_doubt_about_it(rig: Rig, found: Sensitivity) -> None:
+    known = rig.with_(**{"uncertainty.contact_resistance_relative": 0.31})
+    wide = rig.with_(**{"uncertainty.contact_resistance_relative": 0.9})
+    low, high = (
+        next(e for e in sensitivity(parse(TWO), each, people=6, draws=96).effects if e.constant == "contact resistance")
+        for each in (known, wide)
+    )
+    assert high.high > 1.3 * low.high
+    assert high.proportion_correct > low.proportion_correct
+
+
+def test_temperatures_between_the_nodes_are_those_of_a_run(rig: Rig) -> None:
+    from thermicon.circuit import simulate_many
+
+    people, icons = draw_people(3, 0), tuple(parse(TWO))
+    uncertain = UncertainRig.simulate(icons, rig, people, 8.0)
+    moved = rig.with_(**{"contact.resistance_m2K_per_W": uncertain.contact.at(0.7)})
+    batch = simulate_many(icons, people.rigs(moved), nominal=rig, end_s=8.0, rate_Hz=12.5)
+    played = uncertain.played(0.7, 0.5)
+    assert played.cold_C == pytest.approx(batch.cold_C, abs=0.02)
+    assert played.warm_C == pytest.approx(batch.warm_C, abs=0.02)
+    for k, node in enumerate(NODES):
+        assert _parabola(node) == pytest.approx(np.eye(3)[k])
+
+
+def test_messages(rig: Rig) -> None:
+    icons = load_library("six-icons")
+    with pytest.raises(ValueError, match=r"needs 64 to 1000 draws of the posterior, not 1001"):
+        sensitivity(icons, rig, draws=1001)
+    with pytest.raises(ValueError, match=r"there is no norm 'mean'"):
+        sensitivity(icons, rig, norm="mean")
+    one = parse("cue 1\nset s { control skin }\nicon a { cool by 2 °C at 1 °C/s }")
+    with pytest.raises(ValueError, match=r"needs at least two icons"):
+        sensitivity(one, rig)

@@ -1,0 +1,111 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
+from thermicon.perception import Goal, rank
+from thermicon.perception.selection.goal_result import SetOutcome, judge_goal
+from thermicon.perception.selection.request import Selection
+
+OUTCOME = SetOutcome(
+    names=("dip", "glow", "wave"),
+    correct=0.9,
+    bits=1.4,
+    d_prime=2.4,
+    detected=np.array([0.99, 0.93, 1.0]),
+    onset_s=np.array([0.9, 1.6, 1.1]),
+    durations_s=np.array([3.0, 4.0, 5.0]),
+    energies_J=np.array([2.0, 1.0, 4.0]),
+    worst_pair=("glow", "wave"),
+    nearest_pair=("dip", "wave"),
+    amber=(),
+    red=(),
+    persons={"correct": np.linspace(0.5, 1.0, 101), "bits": np.full(10, 1.2), "detected": np.full(10, 0.9)},
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "met", "binding"),
+    [
+        ("correct >= 90 %", 0.9, True, ()),
+        ("correct >= 91 %", 0.9, False, ("glow and wave are confused most",)),
+        ("correct >= 55 % for 90 % of people", 0.55, True, ()),
+        ("correct >= 56 % for 90 % of people", 0.55, False, ("glow and wave are confused most",)),
+        ("detected >= 95 %", 0.93, False, ("glow is detected least",)),
+        ("d_prime >= 2", 2.4, True, ()),
+        ("d_prime >= 2.56", 2.4, False, ("dip and wave have the smallest d′",)),
+        ("bits >= 1.5 bits", 1.4, False, ("glow and wave are confused most",)),
+        ("time <= 12 s", 12.0, True, ()),
+        ("time <= 11 s", 12.0, False, ("wave takes most",)),
+        ("energy <= 6 J", 7.0, False, ("wave takes most",)),
+        ("onset <= 1.5 s", 1.6, False, ("glow is felt last",)),
+        ("count 4", 3.0, False, ("the set has fewer icons",)),
+        ("safety green", 0.0, True, ()),
+    ],
+)
+def test_every_quantity_is_judged(text: str, value: float, met: bool, binding: tuple[str, ...]) -> None:
+    result = judge_goal(Goal.parse(text), OUTCOME)
+    assert result.parts[0].value == pytest.approx(value)
+    assert (result.met, result.binding) == (met, binding)
+
+
+def test_safety_is_the_worst_of_the_icons() -> None:
+    amber = dataclasses.replace(OUTCOME, amber=("dip",))
+    red = dataclasses.replace(amber, red=("wave",))
+    green, tolerant = Goal.parse("safety green"), Goal.parse("safety amber")
+    assert [judge_goal(green, each).met for each in (OUTCOME, amber, red)] == [True, False, False]
+    assert [judge_goal(tolerant, each).met for each in (OUTCOME, amber, red)] == [True, True, False]
+    assert judge_goal(green, red).binding == ("wave, dip are not green",)
+    assert judge_goal(green, amber).to_dict()["parts"][0]["value"] == "amber"
+    assert judge_goal(Goal.parse("count 3"), red).binding == ("wave cannot be played",)
+
+
+def test_an_icon_that_is_not_reached_is_no_matter_of_safety() -> None:
+    missed = dataclasses.replace(OUTCOME, unreached=("wave",))
+    result = judge_goal(Goal.parse("safety green, count 3"), missed)
+    assert [part.met for part in result.parts] == [True, False]
+    assert result.binding == ("wave cannot be played",)
+    assert result.to_dict()["not_reached"] == ["wave"]
+
+
+def test_a_weak_rig_makes_icons_unreached_not_red() -> None:
+    weak = Rig.load("thenar").with_(**{"driver.current_limit_A": 0.5})
+    ranking = rank(load_library("six-icons"), weak, people=2, parameters=0, goal="safety green")
+    assert ranking.goal is not None
+    assert all(icon.safe for icon in ranking.icons)
+    assert ranking.goal.met
+    assert ranking.goal.unreached == tuple(icon.name for icon in ranking.icons if not icon.reachable) != ()
+
+
+def test_an_icon_that_is_not_felt_has_no_onset() -> None:
+    silent = dataclasses.replace(OUTCOME, onset_s=np.array([0.9, np.nan, 1.1]))
+    result = judge_goal(Goal.parse("onset <= 5 s"), silent)
+    assert (result.met, result.parts[0].value) == (False, None)
+    assert result.binding == ("glow is not felt",)
+
+
+def test_a_share_of_people_needs_draws() -> None:
+    with pytest.raises(ValueError, match="needs draws of the posterior"):
+        judge_goal(Goal.parse("correct >= 50 % for 95 % of people"), dataclasses.replace(OUTCOME, persons={}))
+
+
+def test_a_ranking_and_a_choice_are_judged_by_their_own_numbers() -> None:
+    six, rig = load_library("six-icons"), Rig.load("thenar")
+    goal = "correct >= 99 % for 95 % of people, correct >= 30 %, time <= 500 s"
+    whole = rank(six, rig, people=6, parameters=12, goal=goal)
+    chosen = rank(six, rig, people=6, parameters=12, goal=Goal.parse(goal), choosing=Selection(2))
+    assert whole.goal is not None
+    assert chosen.goal is not None
+    assert [part.met for part in whole.goal.parts] == [False, True, True]
+    assert whole.goal.parts[1].value == whole.proportion_correct
+    assert chosen.goal.parts[0].value > whole.goal.parts[0].value  # type: ignore[operator]
+    assert chosen.chosen is not None
+    assert chosen.goal.parts[2].value == pytest.approx(chosen.chosen.total_s)
+    # People and model together: the 5 % quantile lies below the mean over people.
+    assert whole.goal.parts[0].value < whole.proportion_correct  # type: ignore[operator]
+    held = whole.to_dict()["goal"]
+    assert (held["text"], held["met"]) == (Goal.parse(goal).text, False)
+    assert held["parts"][0]["wanted"] == 0.99
+    assert held["binding"]

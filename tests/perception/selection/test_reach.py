@@ -1,0 +1,77 @@
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet, parse
+from thermicon.perception import Goal, search
+from thermicon.perception.ranking import reach
+from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
+
+TEXT = (
+    "cue 1; icon dip(depth in 1..3 step 1 K) { cool by depth at 2 K/s; return at 2 K/s };"
+    "icon glow(k in 1..3 step 1 K) { warm by k at 2 K/s; return at 2 K/s }"
+)
+
+
+@pytest.mark.slow
+def test_changes_are_tried_and_the_most_helpful_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reach, "EVALUATIONS", 10)
+    monkeypatch.setattr(reach, "PEOPLE", 4)
+    monkeypatch.setattr(reach, "DRAWS", 4)
+    monkeypatch.setattr(reach, "FACTORS", reach.FACTORS[:2])
+    steps: list[tuple[int, int]] = []
+    goal, rig = Goal.parse("correct >= 99.9 %, time <= 3 s"), Rig.load("thenar")
+    given = search(parse(TEXT), rig, evaluations=10, people=4, goal=goal).found
+    advice = reach.what_would_help(parse(TEXT), rig, goal, given, step=lambda done, total: steps.append((done, total)))
+    assert steps[0] == (1, 5)
+    assert steps[-1] == (5, 5)
+    changes = {trial.change for trial in advice.trials}
+    assert changes <= {"contact.area_cm2=18", "driver.current_limit_A=2.25", "time <= 4.5 s"}
+    assert len(advice.trials) >= 2
+    gains = [(not trial.met, -trial.gain) for trial in advice.trials]
+    assert gains == sorted(gains)
+    assert {*advice.helpful, *advice.idle} == {*advice.trials}
+    assert advice.again >= 0.0
+
+
+@pytest.mark.slow
+def test_what_changes_nothing_gains_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reach, "EVALUATIONS", 10)
+    monkeypatch.setattr(reach, "PEOPLE", 4)
+    monkeypatch.setattr(reach, "DRAWS", 4)
+    monkeypatch.setattr(reach, "FACTORS", (reach.FACTORS[2],))
+    rig = Rig.load("thenar")
+    worst = IconSet("few", "", parse(TEXT).context, parse(TEXT).metadata, tuple(parse(TEXT))[:2])
+    advice = reach.what_would_help(parse(TEXT), rig, Goal.parse("correct >= 99.9 %"), worst)
+    # The voltage is no limit here, so that all that is gained is that of a second search.
+    assert advice.trials[0].gain == pytest.approx(0.0, abs=1e-9)
+    assert advice.again > 0.04
+    assert advice.helpful == ()
+
+
+def test_changes_stay_within_what_the_module_allows() -> None:
+    rig = Rig.load("fingertip").with_(
+        module={"name": "TEC1-12706"}, driver={"current_limit_A": 5.0}, contact={"area_cm2": 9.0}
+    )
+    changes = {change: words for change, words, *_ in reach._rigs(rig)}
+    assert changes["contact.area_cm2=16"] == "contact with the module's whole face of 16 cm²"
+    assert changes["driver.current_limit_A=6.4"] == "the module's Imax of 6.4 A"
+    whole = reach._rigs(rig.with_(contact={"area_cm2": 16.0}))
+    assert not any(change.startswith("contact.area_cm2") for change, *_ in whole)
+
+
+def test_a_thermode_has_no_driver_to_change() -> None:
+    assert {change.split("=")[0] for change, *_ in reach._rigs(Rig.load("tcs2"))} <= {
+        "contact.area_cm2",
+        "contact.resistance_m2K_per_W",
+    }
+
+
+def test_shortfall_is_that_of_the_part_that_misses_most() -> None:
+    goal = Goal.parse("correct >= 80 %, time <= 10 s, onset <= 1 s")
+    values = (0.6, 11.0, 0.5)
+    parts = tuple(
+        GoalPartResult(part, value, met, "")
+        for part, value, met in zip(goal.parts, values, (False, False, True), strict=True)
+    )
+    assert reach.shortfall(GoalResult(goal, parts)) == pytest.approx(0.25)
+    assert reach.shortfall(GoalResult(goal, parts[2:])) == 0.0
