@@ -17,12 +17,9 @@ CHECKS = (
     ("files", "machine", "check_data"),
     ("packages", "packages", "check_required"),
     ("extras", "packages", "check_extras"),
-    ("outside programs", "programs", "check_programs"),
+    ("ngspice", "machine", "check_ngspice"),
     ("cache", "machine", "check_cache"),
-    ("threads", "machine", "check_threads"),
-    ("fonts", "machine", "check_fonts"),
-    ("widgets", "jupyter", "check_widgets"),
-    ("kernel", "jupyter", "check_kernel"),
+    ("kernel", "machine", "check_kernel"),
     ("self-test", "self_test", "check_self_test"),
 )
 """What is checked, the module of this room that does it, and its function: the slowest last."""

@@ -11,29 +11,10 @@ State = Literal["ok", "note", "fault"]
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What a check found.
+    """What a check found: one sentence without a full stop, and the cure exactly where the state is not ``ok``.
 
-    Attributes
-    ----------
-    check
-        What was looked at, such as ``ngspice``.
-    state
-        ``ok``, ``note`` for something that can be done without, ``fault``.
-    text
-        One sentence without a full stop.
-    cure
-        What to do about it, a command where one will do; None exactly where the state is ``ok``.
-
-    Raises
-    ------
-    ValueError
-        For an unknown state, a text of several lines, a finding to act on without its cure, or a cure of nothing.
-
-    Examples
-    --------
     >>> print(Finding("voila", "note", "not installed", 'pip install "thermicon[page]"').line)
     note   voila: not installed; pip install "thermicon[page]"
-
     """
 
     check: str

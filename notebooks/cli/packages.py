@@ -6,14 +6,14 @@ Nothing that may be broken is imported.
 from __future__ import annotations
 
 import platform
+import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
 
 from ..startup import hidden_by, installed_folders
 from .finding import Finding, State
-from .programs import run_program
 
 PROGRAM = "thermicon"
 REPORTED = ("numpy", "scipy", "pandas", "matplotlib", "numba", "pydantic", "typer", "jupyterlab", "ipywidgets")
@@ -107,3 +107,19 @@ def installed_version(name: str) -> str | None:
         return version(name)
     except PackageNotFoundError:
         return None
+
+
+def run_program(
+    command: Sequence[str], longest_s: float, environment: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    """Run a program without input and return what it says; one that takes longer raises `subprocess.TimeoutExpired`."""
+    return subprocess.run(
+        command,
+        capture_output=True,
+        encoding="utf-8",
+        errors="replace",
+        stdin=subprocess.DEVNULL,
+        timeout=longest_s,
+        check=False,
+        env=environment,
+    )
