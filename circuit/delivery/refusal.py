@@ -74,7 +74,7 @@ def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryD
         refusals.append(Refusal("unsafe", reason + more))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
-        refusals.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome)))
+        refusals.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome, verdict.colour != "red")))
         lost = "" if narrowed else lost
     elif narrowed and narrowed.outcome is not None and not narrowed.outcome.reached:
         refusals.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}"))
@@ -128,14 +128,14 @@ def lost_text(deviation: DeliveryDeviation) -> str:
     return f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{also}, over the stated {limit:g} K"
 
 
-def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome) -> str:
-    """The rig's own shortfall, with what it would take."""
+def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome, safe: bool) -> str:
+    """The rig's own shortfall, with what it would take; a cue that is unsafe should not get more current."""
     text = outcome.reason or "the target is missed"
     if delivery.drives is None:  # a thermode, which has neither driver nor module
         return f"{text}; use a slower or smaller change, or use a thermode that can"
     rig, driver = delivery.rig, delivery.rig.driver
     limits_met = [name for name, _ in outcome.limits]
-    if not limits_met or rig.controller is not None:
+    if not limits_met or rig.controller is not None or not safe:
         return f"{text}; use a slower or smaller change"
     if limits_met == ["compliance voltage"]:
         return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or use a slower change"

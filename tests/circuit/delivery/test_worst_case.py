@@ -135,6 +135,14 @@ class TestRefusals:
         assert "skin surface 4" in refusal
         assert refusal.endswith("; use a slower change, a shorter hold, a smaller or shorter change")
 
+    def test_an_unsafe_icon_is_not_told_to_use_more_current(self) -> None:
+        icon = parse(
+            "cue 1\nset s { control display\n baseline 33 °C }\nicon a { cool by 18 °C over 0.1 s\n hold for 6 s\n }\n"
+        )
+        refusals = prepare(icon["a"], RIG, Device.load("dac-16"), CSV).refusals
+        assert [refusal.kind for refusal in refusals] == ["unsafe", "unreachable"]
+        assert str(refusals[1]).endswith("; use a slower or smaller change")
+
     def test_a_current_beyond_the_driver_names_the_driver(self) -> None:
         icon = parse("cue 1\nset s { control current }\nicon amp { step by -2 A\n hold for 0.5 s\n step to 0 A }\n")
         narrowed = deliver(icon["amp"], RIG, Device.load("dac-16")).narrowed
