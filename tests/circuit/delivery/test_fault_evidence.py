@@ -27,7 +27,7 @@ from thermicon.circuit.delivery.prepare import Prepared, prepare_set
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.icons import CueErrors, library_names, load_library
 
-EXPORTS, WORLDS = int(os.environ.get("THERMICON_FAULTS", "20")), 12
+EXPORTS, WORLDS = int(os.environ.get("THERMICON_FAULTS", "20")), 3
 OF_A_SET = 12
 """Icons of a shipped set at most, by chance of a family."""
 VOLTS = (("dac-12", "csv"), ("dac-16", "csv"), ("coarse", "csv"), ("ni-analogue-output", "csv"))
