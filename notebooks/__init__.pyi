@@ -1,9 +1,8 @@
 # The names of this package in the order of the flow; each is imported when it is first asked for.
 import IPython.core.interactiveshell
 
-from .figures.overview import overview as overview, set_figure as set_figure
 from .cli.sweep import sweep as sweep
-from .figures.sweep_figure import sweep_figure as sweep_figure
+from .figures.overview import overview as overview
 from .workbench.workbench import Workbench as Workbench
 
 def load_ipython_extension(shell: IPython.core.interactiveshell.InteractiveShell) -> None: ...

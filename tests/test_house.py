@@ -151,7 +151,7 @@ def test_package_is_typed_and_lists_its_names(package: str) -> None:
     ("package", "order"),
     [
         ("icons", ("parse", "Icon")),
-        ("circuit", ("Rig", "read_drive", "simulate", "judge_safety")),
+        ("circuit", ("Rig", "read_drive", "simulate", "gate")),
         ("perception", ("perceive", "Ranking")),
     ],
 )
