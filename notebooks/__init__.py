@@ -14,33 +14,16 @@ def _examine(error: BaseException) -> int:
 
 guard(_examine)  # before anything that takes time to import, or that may be broken
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from contextlib import suppress
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
-    from .cli.sweep import sweep as sweep
-    from .figures.overview import overview as overview, set_figure as set_figure
-    from .figures.sweep_figure import sweep_figure as sweep_figure
-    from .workbench.workbench import Workbench as Workbench
+with suppress(ImportError):  # where it is missing, ``thermicon doctor`` has to say so
+    from lazy_loader import attach_stub
 
-__all__ = ["overview", "set_figure", "sweep", "sweep_figure", "Workbench"]
-
-_ROOMS = {
-    "overview": "figures.overview",
-    "set_figure": "figures.overview",
-    "sweep": "cli.sweep",
-    "sweep_figure": "figures.sweep_figure",
-    "Workbench": "workbench.workbench",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Load what is first asked for: commands do without, and where a library is missing, the others still work."""
-    if name in _ROOMS:
-        return getattr(import_module(f".{_ROOMS[name]}", __name__), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
 
 
 def load_ipython_extension(shell: "InteractiveShell") -> None:

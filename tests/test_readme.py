@@ -201,7 +201,8 @@ def draw_images(folder: Path) -> None:
     """Draw the pictures that README.md and docs/ show."""
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import read_cue
-    from thermicon.notebooks import overview, set_figure
+    from thermicon.notebooks import overview
+    from thermicon.notebooks.figures.overview import set_figure
     from thermicon.perception import perceive, rank
 
     rig = Rig.load("thenar")

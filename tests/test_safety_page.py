@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Device, Rig, SessionPlan, device_names, play_session
+from thermicon.circuit import Device, Rig, SessionPlan, play_session
+from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.records import Record
 from thermicon.circuit.rig.rules import LONGEST_SESSION_MIN, Limits, limit_table
 from thermicon.circuit.rig.uncertainty import uncertainty_table

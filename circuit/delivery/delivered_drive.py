@@ -57,7 +57,8 @@ class DeliveredDrive:
 
     Examples
     --------
-    >>> from thermicon.circuit import Device, deliver
+    >>> from thermicon.circuit import Device
+    >>> from thermicon.circuit.delivery.deliver import deliver
     >>> from thermicon.icons import load_library
     >>> delivery = deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     >>> delivery.delivered

@@ -69,7 +69,8 @@ def pack(
 
     Examples
     --------
-    >>> from thermicon.circuit import Device, Rig, prepare
+    >>> from thermicon.circuit import Device, Rig
+    >>> from thermicon.circuit.delivery.prepare import prepare
     >>> from thermicon.circuit.delivery.formats import load_format
     >>> from thermicon.icons import load_library
     >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")

@@ -36,7 +36,8 @@ def worst_case(delivery: DeliveredDrive, pause_s: float | None = None) -> Gate:
 
     See `gate`. Raises PauseError for an impossible pause.
 
-    >>> from thermicon.circuit import Device, Rig, deliver
+    >>> from thermicon.circuit import Device, Rig
+    >>> from thermicon.circuit.delivery.deliver import deliver
     >>> from thermicon.icons import load_library
     >>> icon, rig = load_library("six-icons")["cooling-step"], Rig.load("thenar")
     >>> worst_case(deliver(icon, rig, Device.load("dac-12")))

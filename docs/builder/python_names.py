@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import inspect
 from collections import Counter
 from collections.abc import Iterator
 from importlib import import_module
+from pathlib import Path
+from types import ModuleType
 
 from command_options import plain
 
@@ -36,17 +39,24 @@ def _page(package: str) -> Iterator[str]:
     yield f"{(module.__doc__ or '').strip()}\n"
     yield "| name | what it is |\n|---|---|"
     seen: Counter[str] = Counter()
-    for name in module.__all__:
+    names = listed(module)
+    for name in names:
         slug = name.lower() + (f"-{seen[name.lower()]}" if seen[name.lower()] else "")
         seen[name.lower()] += 1
         yield f"| [`{name}`](#{slug}) | {plain(_summary(getattr(module, name)))} |"
     yield ""
-    for name in module.__all__:
+    for name in names:
         value = getattr(module, name)
         kind = "class" if isinstance(value, type) else "function" if callable(value) else "data"
         kind = "exception" if isinstance(value, type) and issubclass(value, BaseException) else kind
         members = "\n   :members:" if kind == "class" else ""
         yield f"## `{name}`\n\n```{{eval-rst}}\n.. auto{kind}:: thermicon.{package}.{name}{members}\n```\n"
+
+
+def listed(module: ModuleType) -> list[str]:
+    """Return the public names of a package in the order in which its stub lists them: that of the flow."""
+    tree = ast.parse(Path(str(module.__file__)).with_suffix(".pyi").read_text(encoding="utf-8"))
+    return [alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
 
 
 def _summary(value: object) -> str:

@@ -1,6 +1,8 @@
 """Steps, pulses and waves written in Python as they are in a cue text: ``pulse(by=-3, duration=0.5)``."""
 
-from .builder_arguments import amperes, documented, given, number, one_of
+from typing import get_args
+
+from .builder_arguments import amperes, given, number, one_of
 from .shapes import Pulse, Shape, Start, Step, Wave
 
 
@@ -73,36 +75,8 @@ def pulse(*, by: float | None = None, by_A: float | None = None, duration: float
     return Pulse("change", by, amount, given("pulse", "duration", duration, "time"))
 
 
-WAVE = """Parameters
-----------
-by
-    Amplitude in K; give `by` or `by_A`.
-every
-    Period in s.
-duration
-    Duration in s: a whole number of periods, unless `cut` is true.
-starting
-    Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
-cut
-    Whether the last period may be incomplete.
-by_A
-    Amplitude in A, under current control.
-
-Returns
--------
-Wave
-    The statement of that name.
-
-Raises
-------
-ValueError
-    For another direction, and for numbers outside the limits of the language.
-"""
-"""What the docstrings of all waves share."""
-
-
-@documented(WAVE)
-def sine(
+def wave(
+    shape: Shape,
     *,
     by: float | None = None,
     every: float,
@@ -111,93 +85,52 @@ def sine(
     cut: bool = False,
     by_A: float | None = None,
 ) -> Wave:
-    """Play a sine about the present level.
+    """Play a wave about the present level.
+
+    Parameters
+    ----------
+    shape
+        ``sine``, ``square``, ``triangle`` or ``sawtooth``, which rises slowly and falls in a step, or the reverse.
+    by
+        Amplitude in K; give `by` or `by_A`.
+    every
+        Period in s.
+    duration
+        Duration in s: a whole number of periods, unless `cut` is true.
+    starting
+        Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
+    cut
+        Whether the last period may be incomplete.
+    by_A
+        Amplitude in A, under current control.
+
+    Returns
+    -------
+    Wave
+        The statement ``sine``, ``square``, ``triangle`` or ``sawtooth``.
+
+    Raises
+    ------
+    ValueError
+        For another shape or direction, and for numbers outside the limits of the language.
 
     Examples
     --------
-    >>> sine(by=3, every=4, duration=12, starting="cool")
+    >>> wave("sine", by=3, every=4, duration=12, starting="cool")
     Wave(shape='sine', by_K=3.0, by_A=None, period_s=4.0, duration_s=12.0, start='cool', cut=False)
-    """
-    return _wave("sine", by, every, duration, starting, cut, by_A)
-
-
-@documented(WAVE)
-def square(
-    *,
-    by: float | None = None,
-    every: float,
-    duration: float,
-    starting: Start | None = None,
-    cut: bool = False,
-    by_A: float | None = None,
-) -> Wave:
-    """Play a square wave about the present level.
-
-    Examples
-    --------
-    >>> square(by=3, every=4, duration=10, cut=True) == Wave("square", by_K=3, period_s=4, duration_s=10, cut=True)
-    True
-    """
-    return _wave("square", by, every, duration, starting, cut, by_A)
-
-
-@documented(WAVE)
-def triangle(
-    *,
-    by: float | None = None,
-    every: float,
-    duration: float,
-    starting: Start | None = None,
-    cut: bool = False,
-    by_A: float | None = None,
-) -> Wave:
-    """Play a triangle wave about the present level.
-
-    Examples
-    --------
-    >>> triangle(by=3, every=4, duration=8) == Wave("triangle", by_K=3, period_s=4, duration_s=8)
-    True
-    """
-    return _wave("triangle", by, every, duration, starting, cut, by_A)
-
-
-@documented(WAVE)
-def sawtooth(
-    *,
-    by: float | None = None,
-    every: float,
-    duration: float,
-    starting: Start | None = None,
-    cut: bool = False,
-    by_A: float | None = None,
-) -> Wave:
-    """Play a wave that rises slowly and falls in a step, or the reverse.
-
-    Examples
-    --------
-    >>> sawtooth(by_A=0.5, every=1, duration=3, starting="down").start
+    >>> wave("sawtooth", by_A=0.5, every=1, duration=3, starting="down").start
     'down'
     """
-    return _wave("sawtooth", by, every, duration, starting, cut, by_A)
-
-
-def _wave(
-    shape: Shape,
-    by: float | None,
-    every: float,
-    duration: float,
-    starting: Start | None,
-    cut: bool,
-    by_A: float | None,
-) -> Wave:
-    one_of(shape, {"by": by, "by_A": by_A})
-    size, amount = number(shape, "by", by, "difference"), amperes(shape, by_A)
+    if shape not in get_args(Shape):
+        raise ValueError(f'wave({shape!r}): "sine", "square", "triangle" or "sawtooth" is needed')
+    one_of("wave", {"by": by, "by_A": by_A})
+    size, amount = number("wave", "by", by, "difference"), amperes("wave", by_A)
     ways = ("warm", "cool") if by_A is None else ("up", "down")
     if amount is not None and amount < 0:
-        raise ValueError(f'{shape}(by_A={by_A!r}): an amplitude is positive; to begin downwards, say starting="down"')
+        raise ValueError(f'wave(by_A={by_A!r}): an amplitude is positive; to begin downwards, say starting="down"')
     if starting not in (None, *ways):
-        raise ValueError(f'{shape}(starting={starting!r}): "{ways[0]}" or "{ways[1]}" is needed')
+        raise ValueError(f'wave(starting={starting!r}): "{ways[0]}" or "{ways[1]}" is needed')
     if not isinstance(cut, bool):
-        raise ValueError(f"{shape}(cut={cut!r}): True or False is needed")
-    period, time = given(shape, "every", every, "time"), given(shape, "duration", duration, "time")
+        raise ValueError(f"wave(cut={cut!r}): True or False is needed")
+    period, time = given("wave", "every", every, "time"), given("wave", "duration", duration, "time")
     return Wave(shape, size, amount, period, time, starting, cut)

@@ -48,7 +48,7 @@ def check(files: Sequence[str], rig: Rig | None = None) -> None:
 
 def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
     """One message for everything in this set that the rig cannot do; another site is only a warning on stderr."""
-    from thermicon.circuit import check_static
+    from thermicon.circuit.solver.static import check_static
 
     warn_of_site(file, icons, rig)
     count = len(icons)

@@ -23,11 +23,11 @@ from .simulate import headline
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception import SetComparison
+    from thermicon.perception.selection.robust import SetComparison
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
 MOST_IN_A_SET = 30
-"""Larger sets are compared icon by icon alone; `thermicon.perception.compare_sets` takes them."""
+"""Larger sets are compared icon by icon alone; `thermicon.perception.selection.robust.compare_sets` takes them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +191,7 @@ def _shifted(first: Curves, second: Curves) -> tuple[Curves, str]:
 
 def compare_identification(first: IconSet, second: IconSet, rig: Rig) -> str | None:
     """Return one sentence on which set is identified better; None if one has a single icon or very many."""
-    from thermicon.perception import compare_sets
+    from thermicon.perception.selection.robust import compare_sets
 
     if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (first, second)):
         return None
@@ -201,7 +201,7 @@ def compare_identification(first: IconSet, second: IconSet, rig: Rig) -> str | N
 def comparison_line(found: SetComparison) -> str:
     """Report how often A is identified better than B, and by how much.
 
-    >>> from thermicon.perception import SetComparison
+    >>> from thermicon.perception.selection.robust import SetComparison
     >>> comparison_line(SetComparison(0.93, 0.02, 0.41, "worst", 100))
     'predicted: the icons of A are easier to distinguish than those of B in 93 % of 100 draws of person, contact, room \
 and rig; the d′ of its worst pair is larger by 0.4 (median)'

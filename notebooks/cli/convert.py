@@ -55,7 +55,8 @@ def read(file: str, recording: Recording) -> IconSet:
     """Return the icons of a file, or of a recording in CSV."""
     if not file.lower().endswith(".csv"):
         return read_set([file])
-    from thermicon.icons import IconSet, Metadata
+    from thermicon.icons import IconSet
+    from thermicon.icons.model.context import Metadata
     from thermicon.icons.recordings.recorded import from_csv
 
     given = {name: value for name in _GIVEN if (value := getattr(recording, name)) is not None}

@@ -18,7 +18,8 @@ from ..report.gate_words import gate_words
 from .cues import pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
-    from thermicon.circuit import DeliveredDrive, Rig
+    from thermicon.circuit import Rig
+    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
 
 NUMBER = re.compile(r"\d+(\.\d+)?")

@@ -25,7 +25,8 @@ from ..messages import check_changes, load_rig, note, usage
 from ..report.options import Changes, RigName
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, RigFit
+    from thermicon.circuit import Rig
+    from thermicon.circuit.fitting.rig_fit import RigFit
 
 OFFSET_K, MOST_OFFSET_K = 0.1, 10.0
 """As in `thermicon.circuit.fitting.fit`, repeated here to avoid its imports."""

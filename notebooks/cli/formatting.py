@@ -58,8 +58,8 @@ def canonical(data: bytes, file: str) -> bytes:
 
 
 def _read(file: str) -> bytes:
-    from thermicon.icons import library_names, load_library
-    from thermicon.icons.files.shipped import file_bytes
+    from thermicon.icons import load_library
+    from thermicon.icons.files.shipped import file_bytes, library_names
 
     data = file_bytes(file)
     if data is None and file in library_names():

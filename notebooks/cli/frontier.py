@@ -37,7 +37,7 @@ from ..report.options import (
 from ..report.tables import show, table
 
 if TYPE_CHECKING:
-    from thermicon.perception import Frontier
+    from thermicon.perception.selection.frontier import Frontier
     from thermicon.perception.selection.frontier_point import FrontierPoint
 
 

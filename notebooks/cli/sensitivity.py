@@ -18,7 +18,7 @@ from .sweep import write_study
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.perception import Sensitivity
+    from thermicon.perception.ranking.sensitivity import Sensitivity
 
 SHOWN = 12
 """Constants in the table; a file has them all."""
@@ -39,8 +39,7 @@ def sensitivity_file(
     file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None, look: Look = SCREEN
 ) -> None:
     """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
-    from thermicon.perception import sensitivity
-    from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS
+    from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS, sensitivity
 
     check_norm_option(request.norm)
     if output is not None:

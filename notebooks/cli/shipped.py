@@ -9,7 +9,8 @@ from ..report.tables import show, table
 
 def show_rigs() -> None:
     """Print the shipped rigs: site, resting temperature, blood temperature and resting heat flow."""
-    from thermicon.circuit import Rig, rig_names
+    from thermicon.circuit import Rig
+    from thermicon.circuit.rig.rig import rig_names
 
     numbers = ("rest °C", "blood °C", "flux W/m²")
     made = table("name", "title", "site", *numbers, numbers=numbers)
@@ -24,7 +25,8 @@ def show_rigs() -> None:
 
 def show_library() -> None:
     """Print the shipped icon sets: icons with their meanings, what they control, and their source."""
-    from thermicon.icons import Family, library_names, load_library
+    from thermicon.icons import Family, load_library
+    from thermicon.icons.files.shipped import library_names
 
     for position, name in enumerate(library_names()):
         icons = load_library(name)
@@ -45,7 +47,8 @@ def show_library() -> None:
 
 def show_devices() -> None:
     """Print the shipped devices with input, range, resolution and rate, then the file formats."""
-    from thermicon.circuit import Device, device_names
+    from thermicon.circuit import Device
+    from thermicon.circuit.delivery.device import device_names
     from thermicon.circuit.delivery.formats import format_names, load_format
 
     made = table("device", "driven by", "range", "resolution", "rate")

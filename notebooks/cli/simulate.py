@@ -169,8 +169,8 @@ def _report(
 
 def unsafe(trace: Trace) -> list[str]:
     """Return one sentence per exceeded safety limit, or the reason why the run cannot be judged."""
-    from thermicon.circuit import judge_safety
     from thermicon.circuit.rig.load import LOAD_SITES, without_skin
+    from thermicon.circuit.safety.limits import judge_safety
 
     if trace.site in LOAD_SITES:
         return [without_skin(trace.site, "safety for people")]
@@ -180,7 +180,7 @@ def unsafe(trace: Trace) -> list[str]:
 
 def write_traces(traces: Sequence[Trace], output: Path, power: bool = False) -> None:
     """Write all traces to one file in the format of its suffix; ``-`` is CSV on stdout. `power`: with `power_W`."""
-    from thermicon.circuit import write_trace
+    from thermicon.circuit.solver.trace import write_trace
 
     if output == STDOUT:
         with tempfile.TemporaryDirectory() as folder:

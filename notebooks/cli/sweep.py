@@ -92,7 +92,7 @@ def sweep(
     -------
     pandas.DataFrame
         One row per icon and value (or combination). Columns: icon, the key or keys, the fields of
-        `thermicon.circuit.Summary`, what the receptors see, what is measured, and `reason`; with
+        `thermicon.circuit.safety.summary.Summary`, what the receptors see, what is measured, and `reason`; with
         `measured` a last row of each value is that of the whole set. Where the rig is impossible or cannot play
         the icon, the row has only the reason.
 
@@ -154,7 +154,8 @@ RECEPTORS = tuple(
 def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float) -> dict[str, Any]:
     import numpy
 
-    from thermicon.circuit import InputError, simulate, summarise
+    from thermicon.circuit import InputError, simulate
+    from thermicon.circuit.safety.summary import summarise
     from thermicon.perception.ranking.swept import rig_under
 
     try:

@@ -10,7 +10,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import DeliveredDrive, Prepared
+    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
+    from thermicon.circuit.delivery.prepare import Prepared
 
     from ..files.exporting import PreparedExport
 

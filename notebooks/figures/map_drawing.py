@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from thermicon.perception import PerceptualMap
     from thermicon.perception.arrays import Array
+    from thermicon.perception.identification.map import PerceptualMap
 
 WIDTH, LOWEST, HIGHEST, EDGE = 330.0, 110.0, 300.0, 14.0
 LETTER, LINE, DOT = 5.9, 13.0, 3.5
@@ -30,7 +30,7 @@ def map_svg(found: PerceptualMap) -> str:
     """Return the map as SVG in the colours of the page; one d′ is as long across as it is upwards.
 
     >>> import numpy as np
-    >>> from thermicon.perception import perceptual_map
+    >>> from thermicon.perception.identification.map import perceptual_map
     >>> map_svg(perceptual_map([[0, 3], [3, 0]], ["near", "far"])).count("<circle")
     2
     """

@@ -11,11 +11,12 @@ from .export_folder import HOW, publish
 from .outputs import OutputError
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Device, Prepared, Refusal, Rig
+    from thermicon.circuit import Device, Rig
     from thermicon.circuit.delivery.formats import Format
+    from thermicon.circuit.delivery.prepare import Prepared
+    from thermicon.circuit.delivery.refusal import Refusal
     from thermicon.icons import Icon
-    from thermicon.perception import PerceivedChange
-    from thermicon.perception.identification.delivered import DeliveredChange
+    from thermicon.perception.identification.delivered import DeliveredChange, PerceivedChange
 
 FORMAT = "csv"
 
@@ -131,10 +132,10 @@ def compare_felt(
     warn: Callable[[str], None],
 ) -> tuple[PerceivedChange, ...]:
     """How the device changes detection of the exported icons by people, and d′ of a nominal person within the set."""
-    from thermicon.circuit import duration_s
     from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
-    from thermicon.perception import judge_delivered
+    from thermicon.circuit.solver.simulate import duration_s
+    from thermicon.perception.identification.delivered import judge_delivered
     from thermicon.perception.identification.delivered_people import PEOPLE, detected_as_delivered
     from thermicon.perception.identification.run_end import TAIL_S, run_end_s
 
@@ -177,7 +178,7 @@ def write(
     Raises OutputError where that is refused: what is unsafe always, what is lossy or not reached unless ``insist``,
     a folder with files unless ``overwrite``, which ``how`` tells a person how to ask for.
     """
-    from thermicon.circuit import pack
+    from thermicon.circuit.delivery.pack import pack
 
     stops = [f"{name}: {refusal}" for name, refusal in ready.against if not (insist and refusal.forcible)]
     if stops:

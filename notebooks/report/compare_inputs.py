@@ -33,8 +33,8 @@ def kind_of(text: str, option: str) -> str:
     >>> [kind_of(text, "A") for text in ("thenar", "my.toml", "six-icons:double-dip", "my.cue", "log.csv")]
     ['rig', 'rig', 'icon', 'set', 'table']
     """
-    from thermicon.circuit import rig_names
-    from thermicon.icons import library_names
+    from thermicon.circuit.rig.rig import rig_names
+    from thermicon.icons.files.shipped import library_names
 
     suffix = Path(text).suffix.lower()
     file, colon, _ = text.rpartition(":")

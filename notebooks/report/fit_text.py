@@ -11,8 +11,9 @@ from .tables import table
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from thermicon.circuit import Rig, RigFit
+    from thermicon.circuit import Rig
     from thermicon.circuit.fitting.plan import Expected
+    from thermicon.circuit.fitting.rig_fit import RigFit
 
 PLAN_HEAD = (
     "Half widths of the 95 % intervals to expect from one log of the shipped calibration drive, with 10 independent "

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import number, signed
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Prepared
+    from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.circuit.safety.demands import Demands
     from thermicon.circuit.safety.gate import Gate
     from thermicon.circuit.safety.repeated import Repeated

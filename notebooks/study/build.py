@@ -104,9 +104,9 @@ def _beside(name: str, folder: Path) -> str:
 
 def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
     """Derive the pauses, order the trials, and judge drives and sessions; raises Refused, StudyError, InputError."""
-    from thermicon.circuit import duration_s
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
+    from thermicon.circuit.solver.simulate import duration_s
 
     study, rig, icons = materials.study, materials.rig, materials.chosen
     form = load_format(study.stimuli.format)

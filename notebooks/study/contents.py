@@ -49,7 +49,7 @@ def files_of(plan: Plan) -> dict[str, bytes]:
 
     Raises FormatError where a drive cannot be packed.
     """
-    from thermicon.circuit import pack
+    from thermicon.circuit.delivery.pack import pack
     from thermicon.circuit.rig.rig_text import toml_text
 
     materials, ready = plan.materials, plan.judged.ready

@@ -171,7 +171,8 @@ def _nominal(
     """Coldest and warmest skin in °C, dose in min CEM43 and largest drift in K of an order on the rig as given."""
     import numpy as np
 
-    from thermicon.circuit import SessionPlan, cem43_min, simulate_current
+    from thermicon.circuit import SessionPlan, simulate_current
+    from thermicon.circuit.safety.exposure import cem43_min
     from thermicon.circuit.safety.sessiondrive import drive_of
 
     known = {icon.name: icon for icon in icons}

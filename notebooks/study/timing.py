@@ -70,7 +70,7 @@ def regulated(driven_by: str) -> bool:
 
 def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> tuple[float, tuple[str, str]]:
     """Largest d′ by which an icon differs from itself alone, after which icon, and which one it is."""
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
     from thermicon.perception.identification.carry_over import carry_over
     from thermicon.perception.identification.run_end import TAIL_S
     from thermicon.perception.observer.channels import NORMS, USUAL_NORM
@@ -151,10 +151,11 @@ def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[NDArray[n
     Skin arrives in the steady state of a surface `from_K` warmer or colder than it rests. The display waits at the
     baseline of the icon; `held`: it stays there, otherwise the resting current flows and the hand warms the module.
     """
-    from thermicon.circuit import Drive, design, duration_s, simulate_current
+    from thermicon.circuit import Drive, design, simulate_current
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.circuit.solver.network import SKIN
     from thermicon.circuit.solver.prescribed import FELT, modes_of
+    from thermicon.circuit.solver.simulate import duration_s
 
     modes = modes_of(rig)
     columns = ("skin_C", "cold_receptor_C", "warm_receptor_C")

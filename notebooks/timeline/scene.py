@@ -136,8 +136,11 @@ def scene(
 
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     """Play one icon and judge it; raises what simulation raises: RigError, CueErrors, ValueError."""
-    from thermicon.circuit import duration_s, judge_safety, simulate, steady_state
+    from thermicon.circuit import simulate
+    from thermicon.circuit.safety.limits import judge_safety
     from thermicon.circuit.solver.inverse import baseline_C
+    from thermicon.circuit.solver.simulate import duration_s
+    from thermicon.circuit.solver.steady import steady_state
     from thermicon.perception import perceive
 
     from .event_times import event_times_of, missed_spans

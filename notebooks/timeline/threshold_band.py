@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.perception import CHANNELS, Observer
-from thermicon.perception.observer.observer import Channel, load_thresholds
+from thermicon.perception import Observer
+from thermicon.perception.observer.observer import CHANNELS, Channel, load_thresholds
 from thermicon.perception.sensation.receptors import receptor_drive
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from ..report.blocks import fragment
 from ..report.gate_words import gate_words, short_scenario
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Prepared
+    from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.circuit.safety.checks import Check
-    from thermicon.perception import PerceivedChange
+    from thermicon.perception.identification.delivered import PerceivedChange
 
     from ..files.exporting import PreparedExport, Written
 

@@ -40,7 +40,8 @@ class ExportView(LiveView[ExportRequest]):
         self._build(folder)
 
     def _build(self, folder: Path) -> None:
-        from thermicon.circuit import Device, device_names
+        from thermicon.circuit import Device
+        from thermicon.circuit.delivery.device import device_names
         from thermicon.circuit.delivery.formats import load_format
 
         names = device_names()

@@ -8,8 +8,11 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from thermicon.circuit import Rig, RigError, rig_names, steady_state
+from thermicon.circuit import Rig
 from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.rig.rig import rig_names
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons.number_text import number, span
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import load_thresholds, observer_records

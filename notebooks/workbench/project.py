@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.icons import library_names
+from thermicon.icons.files.shipped import library_names
 
 from ..editing.icon_edits import only, with_copy, with_name, with_new, without
 from ..files.autosave import Autosave, Unsaved, unsaved_texts

@@ -143,7 +143,7 @@ class ProjectBar:
         self.say("")
 
     def _offer_rigs(self) -> None:
-        from thermicon.circuit import rig_names
+        from thermicon.circuit.rig.rig import rig_names
 
         nominal = self.project.design.nominal
         if nominal.name not in rig_names():

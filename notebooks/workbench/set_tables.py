@@ -13,7 +13,9 @@ from ..report.rank_text import caveat, rival
 from ..timeline.terms import SIMULATED, terms_of
 
 if TYPE_CHECKING:
-    from thermicon.perception import Edit, NoEdit, PairScore, Ranking
+    from thermicon.perception import Ranking
+    from thermicon.perception.ranking.scores import PairScore
+    from thermicon.perception.selection.edit_result import Edit, NoEdit
 
 TITLED = {"detected": "detected", "onset": "onset", "as": "felt", "correct": "proportion correct"}
 """Columns with a word of the glossary as their tooltip."""
@@ -103,7 +105,7 @@ def why_html(pair: PairScore) -> str:
 
 def edit_html(edit: Edit | NoEdit | None) -> str:
     """The cheapest edit of a pair, or why there is none."""
-    from thermicon.perception import NoEdit
+    from thermicon.perception.selection.edit_result import NoEdit
 
     if edit is None:
         return fragment("marked", "looking for the cheapest edit …", "th-status")

@@ -39,7 +39,8 @@ from .set_tables import (
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.perception import Edit, NoEdit, PerceptualMap
+    from thermicon.perception.identification.map import PerceptualMap
+    from thermicon.perception.selection.edit_result import Edit, NoEdit
     from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
@@ -164,7 +165,7 @@ class SetView(LiveView[SetRequest]):
 
     def apply_edit(self) -> None:
         """Apply the suggested edit to the text, as one step that can be undone."""
-        from thermicon.perception import Edit
+        from thermicon.perception.selection.edit_result import Edit
 
         edit = self.edit
         if not isinstance(edit, Edit):
@@ -257,7 +258,7 @@ class SetView(LiveView[SetRequest]):
         self.said["edit_text"].value = fragment("marked", f"no edit: {said}", "th-caution")
 
     def _offer_edit(self, found: Edit | NoEdit) -> None:
-        from thermicon.perception import NoEdit
+        from thermicon.perception.selection.edit_result import NoEdit
 
         self.edit = found
         self.said["edit_text"].value = edit_html(found)

@@ -75,7 +75,8 @@ class Version:
 
         A ValueError where this release no longer knows its rig or its knobs.
         """
-        from thermicon.circuit import Rig, RigError
+        from thermicon.circuit import Rig
+        from thermicon.circuit.rig.rigfile import RigError
 
         from .knobs import apply
 

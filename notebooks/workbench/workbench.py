@@ -6,7 +6,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from thermicon.icons import CueErrors, Icon, IconSet, library_names, load_library, parse, read_cue
+from thermicon.icons import CueErrors, Icon, IconSet, load_library, parse, read_cue
+from thermicon.icons.files.shipped import library_names
 
 from ..files.cue_document import CueDocument, open_document
 from ..files.outputs import OutputError

@@ -96,7 +96,8 @@ class Shown:
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
     """Play icons to virtual people, each on their own skin and contact, as `rank` does."""
-    from thermicon.circuit import duration_s, simulate_many
+    from thermicon.circuit import simulate_many
+    from thermicon.circuit.solver.simulate import duration_s
 
     members, crowd = list(icons), draw_people(people, seed)
     names = tuple(icon.name for icon in members)

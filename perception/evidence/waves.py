@@ -64,7 +64,8 @@ def with_others(icons: IconSet, others: IconSet) -> IconSet:
 
 def skin_waves(rig: Rig) -> tuple[SkinWaves, ...]:
     """What the display of a rig makes of the waves, a group at a time."""
-    from thermicon.circuit import duration_s, simulate
+    from thermicon.circuit import simulate
+    from thermicon.circuit.solver.simulate import duration_s
     from thermicon.icons import load_library
 
     icons, made = load_library(LIBRARY), []

@@ -80,7 +80,7 @@ def carry_over(
     >>> bool(near > 3 * far)
     True
     """
-    from thermicon.circuit import duration_s, simulate_all
+    from thermicon.circuit.solver.simulate import duration_s, simulate_all
 
     if not gap_s >= 0.0:
         raise ValueError(f"a gap of {gap_s:g} s between icons must be 0 or more")
@@ -153,7 +153,8 @@ def _rows(values: Array) -> tuple[tuple[float, ...], ...]:
 
 def _replayed(icon: Icon, rig: Rig, end_s: float) -> Trace:
     """The current of an icon open loop, and then its resting current until `end_s`, as exported drives are played."""
-    from thermicon.circuit import Drive, design, duration_s, simulate_current
+    from thermicon.circuit import Drive, design, simulate_current
+    from thermicon.circuit.solver.simulate import duration_s
 
     plan = design(icon, rig, duration_s(icon, rig))
     times, currents = plan.drive.time_s, plan.drive.current_A

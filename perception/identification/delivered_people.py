@@ -22,7 +22,8 @@ from .population import ReceptorTemperatures, population_detection
 from .run_end import RATE_HZ, run_end_s
 
 if TYPE_CHECKING:
-    from thermicon.circuit import DeliveredDrive, Trace
+    from thermicon.circuit import Trace
+    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 
 PEOPLE, SEED = 200, 0
 """The people of `rank` unless it is asked for others, so that both show the same number."""
@@ -44,13 +45,14 @@ def detected_as_delivered(
     the set ends (None: 10 s after this icon). Raises `RigError` where the skin of a person cannot be held at the
     icon's baseline.
 
-    >>> from thermicon.circuit import Device, Rig, deliver
+    >>> from thermicon.circuit import Device, Rig
+    >>> from thermicon.circuit.delivery.deliver import deliver
     >>> from thermicon.icons import read_cue
     >>> made = deliver(read_cue("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
     >>> detected_as_delivered(made, made.designed_trace, made.trace, people=4).delivered > 0.9
     True
     """
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     icon, rig = delivery.icon, delivery.rig
     crowd, observer = draw_people(people, seed), Observer.load()

@@ -111,7 +111,7 @@ def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tr
 
     Raises ValueError for fewer than two icons and for more than 64.
     """
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     members = list(icons)
     if not 2 <= len(members) <= MOST_ICONS:

@@ -23,10 +23,27 @@ if TYPE_CHECKING:
 
 @singledispatch
 def plot(result: object, ax: Axes | None = None) -> Axes:
-    """Draw a result on the axes or on new ones, and return them.
+    """Draw a result: a percept as its sensations, a ranking as its confusion matrix.
 
-    A percept is drawn as its sensations, a ranking as its confusion matrix. Raises TypeError for what has no picture.
+    Parameters
+    ----------
+    result
+        A Percept, Ranking, Sensitivity, Frontier or PerceptualMap.
+    ax
+        Axes to draw on; None: new ones.
 
+    Returns
+    -------
+    Axes
+        The axes with the picture.
+
+    Raises
+    ------
+    TypeError
+        For what has no picture.
+
+    Examples
+    --------
     >>> plot([1.0, 2.0])
     Traceback (most recent call last):
     TypeError: a list has no picture; a Percept, Ranking, Sensitivity, Frontier or PerceptualMap has

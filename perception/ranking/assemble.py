@@ -96,7 +96,7 @@ def assemble(
 
 def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
     """Safe, every reason why it is not safe or cannot be played, and what is amber: soft limits that it passes."""
-    from thermicon.circuit import judge_safety
+    from thermicon.circuit.safety.limits import judge_safety
 
     safety = judge_safety(trace)
     objection = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]

@@ -132,7 +132,7 @@ def rank(
     >>> ranking.worst_pair
     ('warming-step', 'linear-warming')
     """
-    from thermicon.circuit import duration_s, simulate_all
+    from thermicon.circuit.solver.simulate import duration_s, simulate_all
 
     members = list(icons)
     if not members:

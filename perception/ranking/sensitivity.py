@@ -215,7 +215,7 @@ def sensitivity(
     ...
     ValueError: a sensitivity needs 64 to 1000 draws of the posterior, not 3
     """
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
     if len(members) < 2:

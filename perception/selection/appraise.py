@@ -163,7 +163,7 @@ def population_response(
     observer: Observer | None = None,
 ) -> tuple[PopulationResponse, Array]:
     """What every person feels of every icon, and durations (s) of the icons; arguments as for `population_dprime`."""
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     nominal = Observer.load() if observer is None else observer
     durations = np.array([duration_s(icon, rig) for icon in icons])

@@ -144,7 +144,7 @@ class _Search:
         norm: Norm,
         observer: Observer | None,
     ) -> None:
-        from thermicon.circuit import duration_s
+        from thermicon.circuit.solver.simulate import duration_s
 
         self.icons, self.rig, self.pair, self.wanted, self.norm = icons, rig, pair, wanted, norm
         self.observer = Observer.load() if observer is None else observer
@@ -315,7 +315,7 @@ class _Search:
         return [one for count in REPEATS for one in tried(count)]
 
     def _valid(self, make: Any, tell: Any, place: int, way: tuple[int, int]) -> list[_CandidateEdit]:
-        from thermicon.circuit import duration_s
+        from thermicon.circuit.solver.simulate import duration_s
         from thermicon.icons import CueErrors
 
         try:

@@ -62,7 +62,7 @@ class NominalEvaluator:
         return felt
 
     def _durations(self, icons: Sequence[Icon]) -> Array:
-        from thermicon.circuit import duration_s
+        from thermicon.circuit.solver.simulate import duration_s
 
         return np.array([duration_s(icon, self.rig) for icon in icons])
 

@@ -86,7 +86,7 @@ class FinalJudge:
 
     def _persons(self, icons: Sequence[Icon], scores: Appraisal) -> dict[str, Array]:
         """Values of single people of all draws, laid about what all people reach, as in `rank`."""
-        from thermicon.circuit import duration_s
+        from thermicon.circuit.solver.simulate import duration_s
 
         durations = [duration_s(icon, self.rig) for icon in icons]
         end = run_end_s(durations)

@@ -174,7 +174,7 @@ def frontier(
     >>> [len(point.icons) for point in found.points]
     [2, 3]
     """
-    from thermicon.circuit import duration_s, simulate_all
+    from thermicon.circuit.solver.simulate import duration_s, simulate_all
 
     members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
     if most < 2:
@@ -232,7 +232,7 @@ def _fit_for(
     request: SearchRequest, members: Sequence[Icon], pool: UsableIcons, rig: Rig, model: ObserverModel
 ) -> UsableIcons:
     """The pool without icons that miss what a goal asks of single icons; the same as in a search."""
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     able = [members[k] for k in pool.places]
     felt = sense(able, rig, end_of([duration_s(icon, rig) for icon in able]), model.nominal)

@@ -44,7 +44,7 @@ class Sensed:
 
 def sense(icons: Sequence[Icon], rig: Rig, end_s: float, observer: Observer | None = None) -> Sensed:
     """Play icons on the rig until `end_s` and feel them."""
-    from thermicon.circuit import simulate_all
+    from thermicon.circuit.solver.simulate import simulate_all
 
     person = Observer.load() if observer is None else observer
     padded = [*icons, *[icons[-1]] * (BLOCK - len(icons))]

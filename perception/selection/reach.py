@@ -180,7 +180,7 @@ def missing(each: GoalPartResult) -> float:
 
 
 def _rigs(rig: Rig) -> list[tuple[str, str, Rig, Goal | None]]:
-    from thermicon.circuit import RigError
+    from thermicon.circuit.rig.rigfile import RigError
 
     made: list[tuple[str, str, Rig, Goal | None]] = []
     most = _most_of_the_module(rig)

@@ -120,7 +120,7 @@ def usable_icons(asked: Selection, icons: Sequence[Icon], traces: Sequence[Trace
         raise ChoiceError(
             _too_few(asked.count, len(icons), len(places), [i.name for i in icons if i.name in excluded], excluded)
         )
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     durations = np.array([duration_s(icons[k], rig) for k in places])
     energies = np.array([energy_J(traces[k], d) for k, d in zip(places, durations.tolist(), strict=True)])
@@ -147,8 +147,8 @@ def energy_J(trace: Trace, until_s: float) -> float:
 
 def shape_of(icon: Icon, rig: Rig) -> object:
     """What two icons share that play alike: control and corner points."""
-    from thermicon.circuit import steady_state
     from thermicon.circuit.solver.inverse import baseline_C
+    from thermicon.circuit.solver.steady import steady_state
 
     base = baseline_C(icon, rig)
     start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
@@ -158,7 +158,7 @@ def shape_of(icon: Icon, rig: Rig) -> object:
 
 def objection(trace: Trace) -> str | None:
     """Why an icon cannot be played: it is not safe, or the rig does not reach it; None where it can be played."""
-    from thermicon.circuit import judge_safety
+    from thermicon.circuit.safety.limits import judge_safety
 
     verdict = judge_safety(trace)
     if not verdict.safe:

@@ -164,7 +164,7 @@ def best_set_probability(
     `worst` is the d′ of the worst pair for the person, the others as in `Selection`. Icons that sets share are played
     once. Raises `ChoiceError` for fewer than two sets, a set of one icon, and no draws.
     """
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     if objective not in OBJECTIVES:
         raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")

@@ -142,7 +142,8 @@ class Bench:
 
     def play(self, courses: Sequence[str], end_s: float) -> Stimulus:
         """Play courses, each the body of an icon, from rest until `end_s`; at baseline, or held, after their end."""
-        from thermicon.circuit import duration_s, simulate
+        from thermicon.circuit import simulate
+        from thermicon.circuit.solver.simulate import duration_s
         from thermicon.icons import parse
 
         head = f"cue 1\nset bench {{\n  control {self.surface}\n  baseline {self.baseline_C:.9g} °C\n}}\n"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from thermicon.circuit import Rig, steady_state
+from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import steady_state
 
 from ..observer.channels import Channel
 from ..observer.variants import receptor_column

@@ -10,7 +10,8 @@ pytestmark = pytest.mark.benchmark
 
 PROGRAM = """
 import itertools, resource, sys, time
-from thermicon.circuit import Rig, simulate_stream
+from thermicon.circuit import Rig
+from thermicon.circuit.solver.batch import simulate_stream
 from thermicon.icons import parse
 count = int(sys.argv[1])
 def cues():

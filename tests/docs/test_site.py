@@ -114,7 +114,7 @@ def test_every_public_name_has_its_entry(builder: dict[str, ModuleType]) -> None
 
 @pytest.mark.slow
 def test_a_gallery_without_predictions_shows_every_set(builder: dict[str, ModuleType]) -> None:
-    from thermicon.icons import library_names
+    from thermicon.icons.files.shipped import library_names
 
     written: dict[str, bytes] = {}
     page = builder["gallery"].Gallery(None, written.__setitem__).markdown()

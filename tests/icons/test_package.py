@@ -7,7 +7,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 import thermicon.icons
-from thermicon.icons import Context, Icon, load_library
+from thermicon.icons import Icon, load_library
+from thermicon.icons.model.context import Context
 from thermicon.icons.model.statements import Hold
 from thermicon.icons.pictures.curve_style import COOL, STAY, WARM
 from thermicon.icons.pictures.draw import plot_icon

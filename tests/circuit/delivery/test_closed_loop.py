@@ -8,17 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import (
-    Drive,
-    Rig,
-    RigError,
-    Trace,
-    netlist,
-    simulate,
-    simulate_current,
-    simulate_many,
-    steady_state,
-)
+from thermicon.circuit import Drive, Rig, Trace, netlist, simulate, simulate_current, simulate_many
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon, parse
 
 GAINS = {"lag_s": 0.1, "kp_A_per_K": 2.0, "ki_A_per_Ks": 1.0, "kd_As_per_K": 0.15}

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Device, DeviceError, device_names
+from thermicon.circuit import Device
+from thermicon.circuit.delivery.device import device_names
+from thermicon.circuit.delivery.devicefile import DeviceError
 
 GOOD = """
 format = 1

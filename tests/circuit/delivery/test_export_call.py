@@ -4,8 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Device, ExportError, InputError, Rig, export, pack, prepare
+from thermicon.circuit import Device, InputError, Rig, export
+from thermicon.circuit.delivery.export import ExportError
 from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.prepare import prepare
 from thermicon.icons import load_library, parse
 
 WARM = load_library("six-icons")["warming-step"]

@@ -19,13 +19,15 @@ import pytest
 
 from tests.circuit.delivery.adversarial import some_cue, some_device, some_rig
 from tests.circuit.delivery.faulted import faulted
-from thermicon.circuit import Device, Rig, RigError
+from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.prepare import Prepared, prepare_set
 from thermicon.circuit.rig.rig import rig_names
-from thermicon.icons import CueErrors, library_names, load_library
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.icons import CueErrors, load_library
+from thermicon.icons.files.shipped import library_names
 
 EXPORTS, WORLDS = int(os.environ.get("THERMICON_FAULTS", "20")), 3
 OF_A_SET = 12

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, netlist
+from thermicon.circuit import Drive, Rig, netlist
 from thermicon.circuit.delivery.netlist_drive import points
 from thermicon.circuit.delivery.subcircuit import subcircuits
+from thermicon.circuit.rig.rigfile import RigError
 
 Tool = Callable[[str], str]
 DRIVE = Drive([0, 1, 2, 5, 9, 12], [0.1, 0.1, 1.2, 1.2, -0.8, 0.3])

@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Drive, Prepared, Rig, deliver, gate, judge_safety, prepare, simulate_current
+from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
 from thermicon.circuit.delivery.controlled import samples_of
+from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.following_module import FollowingModule
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.prepare import Prepared, prepare
 from thermicon.circuit.delivery.temperatures import follow_samples
 from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
@@ -23,6 +25,7 @@ from thermicon.circuit.safety.checks import more_and_cure, worst_of
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import Gate, gate_set
+from thermicon.circuit.safety.limits import judge_safety
 from thermicon.circuit.safety.single import Single, checks_of_lanes
 from thermicon.icons import load_library, parse
 

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigFit, fit, simulate
+from thermicon.circuit import Rig, fit, simulate
 from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
+from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.icons import load_library
 
 from .conftest import TRUTH

@@ -7,10 +7,11 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Rig, RigFit, fit
+from thermicon.circuit import Rig, fit
 from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
 from thermicon.circuit.fitting.log import Log
+from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.program import own_version
 from thermicon.circuit.safety.corners import corners_of
 

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names
-from thermicon.circuit.rig.rigfile import rig_keys
+from thermicon.circuit import Rig
+from thermicon.circuit.rig.rig import rig_names
+from thermicon.circuit.rig.rigfile import RigError, rig_keys
 
 THENAR = Rig.load("thenar")
 

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Rig, RigError
+from thermicon.circuit import Rig
 from thermicon.circuit.rig.datasheet import Datasheet, at_mean_C
 from thermicon.circuit.rig.modules import build_of, load_module, module_names
+from thermicon.circuit.rig.rigfile import RigError
 
 THENAR = Rig.load("thenar")
 TEC = {"i_max_A": 6.4, "v_max_V": 14.4, "dt_max_K": 66, "t_hot_C": 25, "q_max_W": 50}

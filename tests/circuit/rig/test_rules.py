@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Drive, Limits, Rig, RigError, gate, judge_safety, simulate_current
-from thermicon.circuit.rig.rigfile import SafetyTable
+from thermicon.circuit import Drive, Limits, Rig, gate, simulate_current
+from thermicon.circuit.rig.rigfile import RigError, SafetyTable
 from thermicon.circuit.rig.rules import limit_table, safety_keys
+from thermicon.circuit.safety.limits import judge_safety
 
 THENAR = Rig.load("thenar")
 REASON = "heat-pain study 12/2025, approved by the ethics board"

@@ -4,8 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names
+from thermicon.circuit import Rig
 from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.rig.rig import rig_names
+from thermicon.circuit.rig.rigfile import RigError
 
 THENAR = Rig.load("thenar")
 

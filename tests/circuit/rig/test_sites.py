@@ -6,8 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigError, rig_names, simulate
+from thermicon.circuit import Rig, simulate
 from thermicon.circuit.delivery.refusal import needed_A
+from thermicon.circuit.rig.rig import rig_names
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.rig.skin import Layer, Skin, column_of
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current

@@ -6,20 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import (
-    Drive,
-    Rig,
-    RigError,
-    check_static,
-    design,
-    netlist,
-    simulate,
-    simulate_current,
-    simulate_many,
-    summarise,
-    write_trace,
-)
-from thermicon.circuit.rig.rigfile import read_table
+from thermicon.circuit import Drive, Rig, design, netlist, simulate, simulate_current, simulate_many
+from thermicon.circuit.rig.rigfile import RigError, read_table
+from thermicon.circuit.safety.summary import summarise
+from thermicon.circuit.solver.static import check_static
+from thermicon.circuit.solver.trace import write_trace
 from thermicon.icons import Icon, load_library, parse
 
 RIG = Rig.load("tcs2")

@@ -5,7 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Drive, Limits, Rig, deliver, gate
+from thermicon.circuit import Device, Drive, Limits, Rig, gate
+from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety import playmap

@@ -9,23 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import (
-    Limits,
-    Rig,
-    RigError,
-    SessionError,
-    SessionPlan,
-    cem43_min,
-    duration_s,
-    henriques,
-    judge_safety,
-    play_session,
-    simulate,
-    simulate_current,
-    summarise,
-)
+from thermicon.circuit import Limits, Rig, SessionPlan, play_session, simulate, simulate_current
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.safety.exposure import cem43_min, henriques
+from thermicon.circuit.safety.limits import judge_safety
 from thermicon.circuit.safety.sessiondrive import drive_of
-from thermicon.circuit.safety.sessionplan import LONGEST_S, MOST_PLAYS, order_text, read_order
+from thermicon.circuit.safety.sessionplan import LONGEST_S, MOST_PLAYS, SessionError, order_text, read_order
+from thermicon.circuit.safety.summary import summarise
+from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, IconSet, parse, read_cue
 
 WARM = """cue 1

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, simulate, simulate_current, summarise
-from thermicon.circuit.safety.summary import energy_J
+from thermicon.circuit import Drive, Rig, simulate, simulate_current
+from thermicon.circuit.safety.summary import energy_J, summarise
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar")

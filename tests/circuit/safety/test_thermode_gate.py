@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Limits, Rig, deliver
+from thermicon.circuit import Device, Limits, Rig
 from thermicon.circuit.arrays import Array
+from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.worstcase import ways_of, worst_case, worst_cases
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.tally import WATCHED

@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, DriveError, Rig, RigError, read_drive, simulate_current
+from thermicon.circuit import Drive, Rig, read_drive, simulate_current
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.drive import DriveError
 
 
 def test_a_drive_reads_between_its_rows() -> None:

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, simulate, simulate_current, simulate_many
+from thermicon.circuit import Drive, Rig, simulate, simulate_current, simulate_many
 from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
 from thermicon.icons import load_library

@@ -9,7 +9,8 @@ import pytest
 from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import splu
 
-from thermicon.circuit import Drive, Rig, RigError, simulate, simulate_current
+from thermicon.circuit import Drive, Rig, simulate, simulate_current
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigError, Trace, simulate
+from thermicon.circuit import Rig, Trace, simulate
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon, parse
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, simulate, simulate_current, simulate_many
+from thermicon.circuit import Drive, Rig, simulate, simulate_current, simulate_many
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.landing import landing_state, start_under
 from thermicon.circuit.solver.network import network_of

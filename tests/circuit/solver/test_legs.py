@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, simulate, simulate_current, simulate_many, steady_state
+from thermicon.circuit import Drive, Rig, simulate, simulate_current, simulate_many
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import load_library
 
 from .dense import Dense

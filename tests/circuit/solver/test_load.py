@@ -8,23 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.circuit import (
-    Device,
-    Drive,
-    Rig,
-    RigError,
-    design,
-    fit,
-    gate,
-    judge_safety,
-    netlist,
-    simulate,
-    simulate_current,
-)
+from thermicon.circuit import Device, Drive, Rig, design, fit, gate, netlist, simulate, simulate_current
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.fitting.keys import FitError, fittable
 from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.rig.load import AIR_J_PER_M2K
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.safety.limits import judge_safety
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, design, simulate, simulate_current, simulate_many, simulate_stream
+from thermicon.circuit import Drive, Rig, design, simulate, simulate_current, simulate_many
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.batch import simulate_stream
 from thermicon.circuit.solver.inverse import design_many
 from thermicon.icons import Icon, load_library
 

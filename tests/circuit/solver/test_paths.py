@@ -9,27 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import (
-    Device,
-    Drive,
-    Rig,
-    RigError,
-    design,
-    gate,
-    play_session,
-    simulate,
-    simulate_current,
-    simulate_many,
-    steady_state,
-)
+from thermicon.circuit import Device, Drive, Rig, design, gate, play_session, simulate, simulate_current, simulate_many
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.subcircuit import subcircuits
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.sessionplan import SessionPlan
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.simulate import simulate_all
-from thermicon.circuit.solver.steady import state_under_current
+from thermicon.circuit.solver.steady import state_under_current, steady_state
 from thermicon.icons import Icon, load_library, parse
 
 CIRCUIT = Path(__file__).resolve().parents[3] / "circuit"

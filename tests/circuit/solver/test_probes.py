@@ -6,10 +6,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Drive, Rig, RigError, Trace, simulate, simulate_current, write_trace
+from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
 from thermicon.circuit.rig.probes import insulation_records
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.kernel_modes import lagged
-from thermicon.circuit.solver.trace import COLUMNS
+from thermicon.circuit.solver.trace import COLUMNS, write_trace
 from thermicon.icons import load_library
 
 STEP = load_library("six-icons")["cooling-step"]

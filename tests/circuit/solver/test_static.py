@@ -2,7 +2,8 @@
 
 import pytest
 
-from thermicon.circuit import Rig, check_static, simulate
+from thermicon.circuit import Rig, simulate
+from thermicon.circuit.solver.static import check_static
 from thermicon.icons import Icon, load_library, parse
 
 THENAR = Rig.load("thenar")

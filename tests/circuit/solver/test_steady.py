@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, RigError, steady_state
+from thermicon.circuit import Rig
 from thermicon.circuit.rig.module import ZERO_C_IN_K
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import RECORDED, network_of
-from thermicon.circuit.solver.steady import state_under_current
+from thermicon.circuit.solver.steady import state_under_current, steady_state
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, check_static, nearest_reachable, simulate
+from thermicon.circuit import Rig, nearest_reachable, simulate
+from thermicon.circuit.solver.static import check_static
 from thermicon.circuit.solver.trace import judge
 from thermicon.icons import Icon, parse
 

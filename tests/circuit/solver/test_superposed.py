@@ -6,10 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, duration_s, simulate_many
+from thermicon.circuit import Rig, simulate_many
 from thermicon.circuit.solver import batch
+from thermicon.circuit.solver.simulate import duration_s
 from thermicon.circuit.solver.superposed import MOST_CORNERS, PROBES, Superposed, corners_of, is_linear, superposed
-from thermicon.icons import Icon, library_names, load_library, parse
+from thermicon.icons import Icon, load_library, parse
+from thermicon.icons.files.shipped import library_names
 
 LARGEST_K = 0.5e-3
 THENAR = Rig.load("thenar")

@@ -7,7 +7,9 @@ import pytest
 
 from source_paper.meshstudy import SHIPPED, WAYS, Mesh, MeshStudy, mesh_study
 from source_paper.paper import cooling_step
-from thermicon.circuit import Drive, Rig, RigError, steady_state
+from thermicon.circuit import Drive, Rig
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import parse
 
 THENAR, PAPER = Rig.load("thenar"), Rig.load("shani2021")

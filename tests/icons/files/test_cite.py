@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.icons import IconSet, library_names, load_library, parse
+from thermicon.icons import IconSet, load_library, parse
 from thermicon.icons.files.bibtex import AUTHORS, LICENCE, TITLE, bibtex, escaped
 from thermicon.icons.files.methods import course, methods
 from thermicon.icons.files.references import (
@@ -16,6 +16,7 @@ from thermicon.icons.files.references import (
     read_references,
     references,
 )
+from thermicon.icons.files.shipped import library_names
 
 ROOT = Path(__file__).parents[3]
 # Every DOI that a page was seen to show; one that is added to the bibliography is added here with the page.

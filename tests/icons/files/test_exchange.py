@@ -10,18 +10,10 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from tests.properties import for_any
-from thermicon.icons import (
-    Context,
-    CueErrors,
-    Family,
-    Icon,
-    IconSet,
-    Metadata,
-    library_names,
-    load_library,
-    parse,
-)
+from thermicon.icons import CueErrors, Family, Icon, IconSet, load_library, parse
 from thermicon.icons.files.exchange import to_json
+from thermicon.icons.files.shipped import library_names
+from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.parameter import Parameter
 from thermicon.icons.model.shapes import Pulse, Step, Wave
 from thermicon.icons.model.slots import Slot

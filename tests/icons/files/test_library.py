@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.icons import CueErrors, format_text, library_names, load_library, parse, read_cue
+from thermicon.icons import CueErrors, format_text, load_library, parse, read_cue
+from thermicon.icons.files.shipped import library_names
 
 SIX = load_library("six-icons")
 NAMES = (

@@ -12,8 +12,8 @@ from concurrent.futures import ProcessPoolExecutor
 
 import pytest
 
-from thermicon.icons import CueErrors, IconSet, library_names, load_library, parse
-from thermicon.icons.files.shipped import _folder
+from thermicon.icons import CueErrors, IconSet, load_library, parse
+from thermicon.icons.files.shipped import _folder, library_names
 
 EVERYTHING = """cue 1  # the version
 set everything "All of it" {

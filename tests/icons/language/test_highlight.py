@@ -8,7 +8,7 @@ import pytest
 from pygments.lexers import get_lexer_by_name, guess_lexer_for_filename
 from pygments.token import Error, Keyword, Name, Number, String, Token
 
-from thermicon.icons import library_names
+from thermicon.icons.files.shipped import library_names
 from thermicon.icons.language.highlight import KEYWORDS, NAME, NUMBER, SPELLINGS, CueLexer
 
 PACKAGE = resources.files("thermicon.icons")

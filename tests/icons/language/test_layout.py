@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 import thermicon.icons
 from tests.icons.model.test_roundtrip import families, icons, sets
 from tests.properties import for_any
-from thermicon.icons import CueErrors, Family, Icon, IconSet, format_text, library_names, parse
+from thermicon.icons import CueErrors, Family, Icon, IconSet, format_text, parse
+from thermicon.icons.files.shipped import library_names
 from thermicon.icons.language.layout import tidy_number
 
 COMMENTS = ["# one", "#", '# a "text" { } ; (', "#two  ", "# °C −5 °", "##"]

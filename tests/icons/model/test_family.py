@@ -7,7 +7,8 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from thermicon.icons import Context, CueErrors, Family, Icon, IconSet, Metadata, back, cool, parse, pulse, repeat, step
+from thermicon.icons import CueErrors, Family, Icon, IconSet, back, cool, parse, pulse, repeat, step
+from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.parameter import Parameter
 from thermicon.icons.model.slots import Slot
 from thermicon.icons.model.statements import Hold

@@ -8,7 +8,8 @@ from dataclasses import FrozenInstanceError, fields
 
 import pytest
 
-from thermicon.icons import Context, CueErrors, Icon, IconSet, Metadata, load_library, parse
+from thermicon.icons import CueErrors, Icon, IconSet, load_library, parse
+from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.shapes import Pulse, Step, Wave
 from thermicon.icons.model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Total
 

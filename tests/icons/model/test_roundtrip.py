@@ -9,7 +9,8 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from tests.properties import for_any
-from thermicon.icons import Context, CueErrors, Family, Icon, IconSet, Metadata, parse
+from thermicon.icons import CueErrors, Family, Icon, IconSet, parse
+from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.parameter import Parameter
 from thermicon.icons.model.shapes import Pulse, Shape, Step, Wave
 from thermicon.icons.model.slots import Slot

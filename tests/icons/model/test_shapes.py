@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from thermicon.icons import Context, Icon, parse, pulse, sine, square, step
+from thermicon.icons import Icon, parse, pulse, step, wave
+from thermicon.icons.model.context import Context
 from thermicon.icons.model.corners import STEP_S, Corners
 from thermicon.icons.model.shapes import Shape, Wave
 from thermicon.icons.model.statements import Statement
@@ -97,7 +98,7 @@ def test_where_a_cut_sine_stops() -> None:
 @pytest.mark.parametrize("size", [0.01, 0.5, 3, 10])
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-3, 0.02])
 def test_a_sine_lies_within_its_tolerance(size: float, tolerance: float) -> None:
-    icon = Icon("x", [sine(by=size, every=4, duration=8, starting="cool")])
+    icon = Icon("x", [wave("sine", by=size, every=4, duration=8, starting="cool")])
     corners = icon.corners(tolerance=tolerance)
     time = np.linspace(0, 8, 200_001)
     error = np.abs(corners.at(time) - (32 - size * np.sin(2 * np.pi * time / 4)))
@@ -108,7 +109,7 @@ def test_a_sine_lies_within_its_tolerance(size: float, tolerance: float) -> None
 
 
 def test_the_default_tolerance_is_a_millikelvin() -> None:
-    icon = Icon("x", [sine(by=3, every=4, duration=12)])
+    icon = Icon("x", [wave("sine", by=3, every=4, duration=12)])
     assert icon.corners() == icon.corners(tolerance=1e-3)
     assert len(icon.corners()) < 300
     with pytest.raises(ValueError, match="tolerance = 0 must lie above 0 and below 10"):
@@ -143,9 +144,9 @@ def test_pieces_shorter_than_a_step_keep_their_order(body: str) -> None:
 
 @pytest.mark.parametrize("shape", [*UNIT, "sine"])
 def test_durations_add_up_exactly(shape: Shape) -> None:
-    wave = Wave(shape, by_K=1, period_s=0.1, duration_s=0.7)
-    body: list[Statement] = [pulse(by=1, duration=0.1), wave, step(by=1)]
-    icon = Icon("x", [*body * 10, square(by=1, every=0.3, duration=0.9)])
+    short = Wave(shape, by_K=1, period_s=0.1, duration_s=0.7)
+    body: list[Statement] = [pulse(by=1, duration=0.1), short, step(by=1)]
+    icon = Icon("x", [*body * 10, wave("square", by=1, every=0.3, duration=0.9)])
     assert icon.corners().duration_s == 8.9
 
 
@@ -155,7 +156,7 @@ def test_currents() -> None:
     )
     assert corners.quantity == "current_A"
     assert nominal(corners) == [(0, 0), (0, 0.5), (1, 0.5), (1.25, 1), (1.75, 0), (2, 0.5), (2.5, 0)]
-    icon = Icon("x", [sine(by_A=0.5, every=1, duration=1)], Context("current"))
+    icon = Icon("x", [wave("sine", by_A=0.5, every=1, duration=1)], Context("current"))
     error = np.abs(icon.corners().at(np.linspace(0, 1, 9999)) - 0.5 * np.sin(2 * np.pi * np.linspace(0, 1, 9999)))
     assert error.max() <= 1.001e-3
 

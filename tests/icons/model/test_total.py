@@ -7,7 +7,8 @@ import pytest
 from hypothesis import strategies as st
 
 from tests.properties import for_any
-from thermicon.icons import CueErrors, IconSet, library_names, load_library, parse
+from thermicon.icons import CueErrors, IconSet, load_library, parse
+from thermicon.icons.files.shipped import library_names
 
 TEXT = """cue 1 icon set { } ; " cool warm by to 6 °C K s ms at over return hold for repeat rest 3 -1 1e999 0 @ # means
 tags site control baseline skin current A A/s on sine ( a-b a_b \\ BROKEN é

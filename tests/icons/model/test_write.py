@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from thermicon.icons import (
-    Context,
     Icon,
     back,
     cool,
@@ -18,14 +17,12 @@ from thermicon.icons import (
     ramp,
     repeat,
     rest,
-    sawtooth,
-    sine,
-    square,
     step,
     total,
-    triangle,
     warm,
+    wave,
 )
+from thermicon.icons.model.context import Context
 from thermicon.icons.model.statements import Statement
 
 
@@ -47,10 +44,10 @@ def read(line: str, settings: str = "") -> Statement:
         (step(by=-6), "step by -6 °C"),
         (step(to=26), "step to 26 °C"),
         (pulse(by=-3, duration=0.5), "pulse by -3 °C for 500 ms"),
-        (sine(by=3, every=4, duration=12, starting="cool"), "sine by 3 °C every 4 s for 12 s starting cool"),
-        (square(by=3, every=4, duration=10, cut=True), "square by 3 °C every 4 s for 10 s cut"),
-        (triangle(by=3, every=4, duration=8), "triangle by 3 °C every 4 s for 8 s"),
-        (sawtooth(by=3, every=4, duration=8, starting="warm"), "sawtooth by 3 °C every 4 s for 8 s"),
+        (wave("sine", by=3, every=4, duration=12, starting="cool"), "sine by 3 °C every 4 s for 12 s starting cool"),
+        (wave("square", by=3, every=4, duration=10, cut=True), "square by 3 °C every 4 s for 10 s cut"),
+        (wave("triangle", by=3, every=4, duration=8), "triangle by 3 °C every 4 s for 8 s"),
+        (wave("sawtooth", by=3, every=4, duration=8, starting="warm"), "sawtooth by 3 °C every 4 s for 8 s"),
         (repeat(3, hold(1), pulse(by=2, duration=1)), "repeat 3 { hold for 1 s; pulse by 2 °C for 1 s }"),
     ],
     ids=repr,
@@ -67,7 +64,7 @@ def test_a_builder_gives_what_the_text_gives(made: Statement, line: str) -> None
         (step(by_A=-0.5), "step by -0.5 A"),
         (step(to_A=0.5), "step to 0.5 A"),
         (pulse(by_A=0.5, duration=2), "pulse by 0.5 A for 2 s"),
-        (sine(by_A=0.5, every=1, duration=3, starting="down"), "sine by 0.5 A every 1 s for 3 s starting down"),
+        (wave("sine", by_A=0.5, every=1, duration=3, starting="down"), "sine by 0.5 A every 1 s for 3 s starting down"),
     ],
     ids=repr,
 )
@@ -119,12 +116,22 @@ def test_numbers_of_any_kind_become_floats() -> None:
         (lambda: step(by_A=0), r"step\(by_A=0\): a change must not be zero"),
         (lambda: pulse(by=1, by_A=1, duration=1), r"pulse\(\) takes only one of by and by_A"),
         (lambda: pulse(by=1, duration=0), r"pulse\(duration=0\): a time is positive"),
-        (lambda: sine(by=-3, every=4, duration=4), r"sine\(by=-3\): a change has a positive size"),
-        (lambda: sine(by_A=-3, every=4, duration=4), r'sine\(by_A=-3\): an amplitude is positive; .*starting="down"'),
-        (lambda: square(by=3, every=4, duration=4, starting="up"), r"square\(starting='up'\): \"warm\" or \"cool\""),
-        (lambda: sawtooth(by_A=3, every=4, duration=4, starting="cool"), r"starting='cool'\): \"up\" or \"down\""),
-        (lambda: triangle(by=3, every=4, duration=4, cut=1), r"triangle\(cut=1\): True or False is needed"),
-        (lambda: triangle(by=3, every=0, duration=4), r"triangle\(every=0\): a time is positive"),
+        (lambda: wave("sine", by=-3, every=4, duration=4), r"wave\(by=-3\): a change has a positive size"),
+        (
+            lambda: wave("sine", by_A=-3, every=4, duration=4),
+            r'by_A=-3\): an amplitude is positive; .*starting="down"',
+        ),
+        (
+            lambda: wave("square", by=3, every=4, duration=4, starting="up"),
+            r"starting='up'\): \"warm\" or \"cool\"",
+        ),
+        (
+            lambda: wave("sawtooth", by_A=3, every=4, duration=4, starting="cool"),
+            r"='cool'\): \"up\" or \"down\"",
+        ),
+        (lambda: wave("triangle", by=3, every=4, duration=4, cut=1), r"wave\(cut=1\): True or False is needed"),
+        (lambda: wave("triangle", by=3, every=0, duration=4), r"wave\(every=0\): a time is positive"),
+        (lambda: wave("saw", by=3, every=4, duration=4), r"wave\('saw'\): \"sine\", \"square\""),  # type: ignore[arg-type]
         (lambda: repeat(3), r"repeat\(\) needs statements after the count"),
         (lambda: repeat(2.5, hold(1)), r"repeat\(count=2.5\): 2.5 is not a positive whole number"),
         (lambda: repeat("3", hold(1)), r"repeat\(count='3'\): a number is needed$"),

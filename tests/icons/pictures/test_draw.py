@@ -9,7 +9,8 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from thermicon.icons import Context, Icon, IconSet, Metadata, library, load_library, parse
+from thermicon.icons import Icon, IconSet, library, load_library, parse
+from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.corners import Corners
 from thermicon.icons.model.statements import Hold
 from thermicon.icons.pictures.curve_style import COOL, STAY, WARM, chosen, directions, envelope, evenly, ticks

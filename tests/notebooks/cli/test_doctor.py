@@ -135,15 +135,16 @@ def broken_run(missing: str, *words: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_it_runs_where_the_command_line_cannot_be_imported() -> None:
-    run = broken_run("typer", "doctor", "--json")
+@pytest.mark.parametrize(("missing", "cache"), [("typer", "ok"), ("lazy_loader", "fault")])
+def test_it_runs_where_the_command_line_cannot_be_imported(missing: str, cache: str) -> None:
+    run = broken_run(missing, "doctor", "--json")
     assert (run.returncode, run.stderr) == (1, "")
     first, *others = json.loads(run.stdout)["findings"]
     assert (first["check"], first["state"]) == ("commands", "fault")
-    assert "typer" in first["text"]
+    assert missing in first["text"]
     findings = {each["check"]: each for each in others}
     assert findings["Python"]["state"] == "ok"
-    assert findings["cache"]["state"] != "fault"
+    assert (findings["cache"]["state"] == "fault") == (cache == "fault"), "whether our own packages can be imported"
 
 
 def test_other_commands_name_the_missing_library_and_the_doctor() -> None:

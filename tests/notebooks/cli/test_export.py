@@ -15,7 +15,8 @@ import pandas as pd
 import pytest
 
 from tests.circuit.surerig import SURE
-from thermicon.circuit import Device, Rig, deliver
+from thermicon.circuit import Device, Rig
+from thermicon.circuit.delivery.deliver import deliver
 from thermicon.icons import read_cue
 from thermicon.notebooks.cli import export as exporting
 

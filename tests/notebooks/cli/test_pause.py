@@ -12,7 +12,8 @@ from typing import Any
 import pytest
 
 from tests.circuit.surerig import SURE, sure_rig
-from thermicon.circuit import Gate, Rig, pack
+from thermicon.circuit import Gate, Rig
+from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.files.exporting import PreparedExport, prepare_icons
 from thermicon.notebooks.report.gate_words import gate_words

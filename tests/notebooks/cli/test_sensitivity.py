@@ -80,7 +80,7 @@ def test_a_wrong_ending_is_told_before_work_begins(cli: Cli, two: Path, tmp_path
 
 def test_nothing_that_moves() -> None:
     from thermicon.notebooks.cli.sensitivity import sentences
-    from thermicon.perception import Sensitivity
+    from thermicon.perception.ranking.sensitivity import Sensitivity
 
     still = Sensitivity("thenar", (), 1, 0, "naming", 64, "shipped", 1.0, 1.0, (1.0, 1.0), (), ())
     assert sentences(still)[0] == "No measurement would narrow the prediction noticeably."

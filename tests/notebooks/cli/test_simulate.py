@@ -11,7 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Rig, nearest_reachable, steady_state
+from thermicon.circuit import Rig, nearest_reachable
+from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import read_cue
 
 Cli = Callable[..., Any]

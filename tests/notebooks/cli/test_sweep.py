@@ -10,11 +10,14 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from thermicon.circuit import Rig, RigError, simulate, summarise
+from thermicon.circuit import Rig, simulate
+from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.safety.summary import summarise
 from thermicon.icons import read_cue
-from thermicon.notebooks import sweep, sweep_figure
+from thermicon.notebooks import sweep
 from thermicon.notebooks.figures.figure_look import Look
 from thermicon.notebooks.figures.print_figure import restyle
+from thermicon.notebooks.figures.sweep_figure import sweep_figure
 from thermicon.perception.sensation.features import attack_K_per_s, delay_s, peak_change_K
 
 Cli = Callable[..., Any]

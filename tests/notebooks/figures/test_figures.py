@@ -14,11 +14,11 @@ from thermicon.circuit.fitting.fit_figure import fit_figure
 from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
-from thermicon.notebooks import overview, set_figure
+from thermicon.notebooks import overview
 from thermicon.notebooks.figures import sweep_figure as sweepfigure
 from thermicon.notebooks.figures.figure_look import Look
 from thermicon.notebooks.figures.measure_figure import measure_figure
-from thermicon.notebooks.figures.overview import COOL, WARM
+from thermicon.notebooks.figures.overview import COOL, WARM, set_figure
 from thermicon.notebooks.figures.print_figure import COLORBAR, restyle
 from thermicon.notebooks.figures.set_figures import write_figures
 from thermicon.notebooks.figures.sweep_map import sweep_map

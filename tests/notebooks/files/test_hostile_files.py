@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from thermicon.circuit import Device, Drive, Rig, deliver
+from thermicon.circuit import Device, Drive, Rig
+from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, c_array, load_format
 from thermicon.circuit.delivery.formats.form import check_name

@@ -3,7 +3,8 @@ from typing import Any
 
 import pytest
 
-from thermicon.icons import library_names, load_library
+from thermicon.icons import load_library
+from thermicon.icons.files.shipped import library_names
 from thermicon.notebooks.report.choices import choice_lines
 
 

@@ -8,7 +8,8 @@ from collections import Counter
 import pytest
 from rich.table import Table
 
-from thermicon.icons import library_names, load_library
+from thermicon.icons import load_library
+from thermicon.icons.files.shipped import library_names
 from thermicon.notebooks.report.tables import rendered, table
 
 NAMES = ("icon", "most confused with")

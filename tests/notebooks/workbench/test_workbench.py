@@ -12,7 +12,8 @@ from typing import Any
 import nbformat
 import pytest
 
-from thermicon.circuit import Rig, RigError
+from thermicon.circuit import Rig
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import CueErrors, load_library, parse
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.workbench.design_model import DesignModel

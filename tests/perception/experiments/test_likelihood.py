@@ -11,24 +11,19 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError, Table
-from thermicon.perception import (
-    Bench,
-    Observer,
-    cooling_after_pulse,
-    draw_people,
-    magnitude_rating,
-    psychometric_function,
-    repeated_limits,
-    thermode_lag,
-)
+from thermicon.perception import Observer, draw_people
 from thermicon.perception.evidence import experiments
 from thermicon.perception.evidence.results import load_constants
 from thermicon.perception.evidence.statistics import load_evidence
 from thermicon.perception.experiments.laboratory import Laboratory
-from thermicon.perception.experiments.psychometric import PsychometricFunction
+from thermicon.perception.experiments.prepulse import cooling_after_pulse
+from thermicon.perception.experiments.psychometric import PsychometricFunction, psychometric_function
 from thermicon.perception.experiments.published import PEAKS_C, STRIP_CM2, TWO_STRIPS_CM2, Predictions
-from thermicon.perception.experiments.repeated_limits import RepeatedLimits
+from thermicon.perception.experiments.rating import magnitude_rating
+from thermicon.perception.experiments.repeated_limits import RepeatedLimits, repeated_limits
+from thermicon.perception.experiments.thermode_lag import thermode_lag
 from thermicon.perception.observer.observer import variant_records
+from thermicon.perception.sensation.bench import Bench
 
 CHANNELS = ("cold", "warm")
 NOBODY_DIFFERS = (

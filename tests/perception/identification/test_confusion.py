@@ -4,8 +4,9 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from thermicon.perception import confuse, proportion_correct
+from thermicon.perception import confuse
 from thermicon.perception.identification.confusion import SAMPLES, embed, sampling_error
+from thermicon.perception.identification.measures import proportion_correct
 
 
 def equal_proportion_correct(d: float, icons: int) -> float:

@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.perception import information_bits, proportion_correct
-from thermicon.perception.identification.measures import plugin_bits
+from thermicon.perception import information_bits
+from thermicon.perception.identification.measures import plugin_bits, proportion_correct
 
 
 def spread(correct: float, icons: int = 6) -> np.ndarray:

@@ -7,8 +7,7 @@ from dataclasses import replace
 import pytest
 
 from thermicon.circuit import Drive, Rig, Trace, simulate_current
-from thermicon.perception import PerceivedChange, judge_delivered
-from thermicon.perception.identification.delivered import DeliveredChange
+from thermicon.perception.identification.delivered import DeliveredChange, PerceivedChange, judge_delivered
 
 RIG = Rig.load("thenar")
 REST_A = 0.0824

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import CHANNELS, Observer, draw_people
-from thermicon.perception.observer.observer import observer_records
+from thermicon.perception import Observer, draw_people
+from thermicon.perception.observer.observer import CHANNELS, observer_records
 from thermicon.perception.observer.people import People, age_factor, people_records
 
 

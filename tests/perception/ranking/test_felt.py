@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Rig, deliver, duration_s, simulate, simulate_all, simulate_many
-from thermicon.circuit.delivery.deliver import traces_until
+from thermicon.circuit import Device, Rig, simulate, simulate_many
+from thermicon.circuit.delivery.deliver import deliver, traces_until
+from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import parse
 from thermicon.perception import Observer, Ranking, draw_people, perceive, rank
 from thermicon.perception.identification.delivered_people import detected_as_delivered

@@ -3,11 +3,12 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
-from thermicon.perception import Sensitivity, draw_people, sensitivity
+from thermicon.perception import draw_people
 from thermicon.perception.observer.channels import NORMS
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.ranking.measurements import MEASUREMENTS, base_name
 from thermicon.perception.ranking.rig_doubt import NODES, UncertainRig, _parabola
+from thermicon.perception.ranking.sensitivity import Sensitivity, sensitivity
 from thermicon.perception.sensation.memory_parameters import memory_parameters
 
 TWO = """cue 1

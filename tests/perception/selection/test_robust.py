@@ -1,13 +1,15 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, duration_s
+from thermicon.circuit import Rig
+from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, load_library, parse
-from thermicon.perception import ChoiceError, Observer, compare_sets, draw_people
+from thermicon.perception import Observer, draw_people
 from thermicon.perception.identification.measures import proportion_correct
 from thermicon.perception.identification.naming import name_directly
 from thermicon.perception.selection.appraise import population_dprime, population_response
-from thermicon.perception.selection.robust import best_set_probability, drawn_rigs
+from thermicon.perception.selection.request import ChoiceError
+from thermicon.perception.selection.robust import best_set_probability, compare_sets, drawn_rigs
 
 
 @pytest.fixture(scope="module")

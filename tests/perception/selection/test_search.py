@@ -3,13 +3,16 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, judge_safety, simulate
+from thermicon.circuit import Rig, simulate
+from thermicon.circuit.safety.limits import judge_safety
 from thermicon.icons import Icon, IconSet, load_library, parse
-from thermicon.perception import ChoiceError, SearchResult, frontier, rank, search
+from thermicon.perception import frontier, rank, search
 from thermicon.perception.selection.appraise import Appraisal, appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
 from thermicon.perception.selection.finalists import FinalJudge
 from thermicon.perception.selection.goal import GoalError
+from thermicon.perception.selection.request import ChoiceError
+from thermicon.perception.selection.search import SearchResult
 
 SMALL = (
     "cue 1\nset small { site thenar; control display; baseline 32 °C }\n"
@@ -119,7 +122,7 @@ def test_what_cannot_be_searched(small: IconSet, rig: Rig) -> None:
 
 @pytest.mark.slow
 def test_totals_and_a_goal_are_kept(small: IconSet, rig: Rig) -> None:
-    from thermicon.circuit import duration_s
+    from thermicon.circuit.solver.simulate import duration_s
 
     free = search(small, rig, count=3, evaluations=60, people=6)
     most = 0.7 * sum(duration_s(icon, rig) for icon in free.found)

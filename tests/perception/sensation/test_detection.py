@@ -5,7 +5,8 @@ from statistics import NormalDist
 import numpy as np
 import pytest
 
-from thermicon.perception import CHANNELS, Observer
+from thermicon.perception import Observer
+from thermicon.perception.observer.observer import CHANNELS
 from thermicon.perception.sensation.detection import (
     channel_name,
     criterion_of,

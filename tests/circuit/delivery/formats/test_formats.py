@@ -15,10 +15,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.circuit import DeliveredDrive, Device, DriveError, Rig, deliver, read_drive, simulate_current
+from thermicon.circuit import Device, Rig, read_drive, simulate_current
+from thermicon.circuit.delivery.deliver import deliver
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, format_names, load_format
 from thermicon.circuit.delivery.formats.c_array import identifier
 from thermicon.circuit.delivery.samples import Samples
+from thermicon.circuit.solver.drive import DriveError
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")

@@ -1,0 +1,1 @@
+../../thermicon/__init__.pyi

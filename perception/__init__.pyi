@@ -1,0 +1,19 @@
+# The names of this package in the order of the flow; each is imported when it is first asked for.
+from .observer.observer import Observer as Observer
+from .observer.people import draw_people as draw_people
+from .sensation.percept import perceive as perceive, Percept as Percept
+from .identification.from_memory import dprime_from_memory as dprime_from_memory
+from .identification.confusion import confuse as confuse, Confusion as Confusion
+from .identification.measures import information_bits as information_bits
+from .identification.task import Task as Task
+from .ranking.rank import rank as rank
+from .ranking.ranking import Ranking as Ranking
+from .selection.goal import Goal as Goal
+from .selection.choose import choose as choose
+from .selection.edit import cheapest_edit as cheapest_edit
+from .selection.frontier import frontier as frontier
+from .selection.search import search as search
+from .pilot.plan import plan as plan
+from .pilot.observed import observed as observed
+from .evidence.validate import validate as validate
+from .plots.plot import plot as plot

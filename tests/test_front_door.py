@@ -1,0 +1,52 @@
+"""Front doors load a room when one of its names is asked for, and list each name once, for people and type checkers."""
+
+import ast
+import subprocess
+import sys
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+DOORS = ("thermicon", "thermicon.icons", "thermicon.circuit", "thermicon.perception", "thermicon.notebooks")
+HEAVY = ("lark", "numpy", "pandas", "numba", "matplotlib", "IPython")
+
+
+def listed(package: str) -> dict[str, str]:
+    """Names and the modules that they come from, as type checkers read them."""
+    tree = ast.parse((ROOT / package.rpartition(".")[2] / "__init__.pyi").read_text(encoding="ascii"))
+    return {
+        alias.name: f"{package}.{node.module or ''}".rstrip(".")
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for alias in node.names
+        if alias.name == alias.asname  # else it is not for others
+    }
+
+
+@pytest.mark.parametrize("package", DOORS)
+def test_every_name_is_the_one_that_type_checkers_see(package: str) -> None:
+    door = import_module(package)
+    names = listed(package)
+    assert set(door.__all__) == set(names)
+    for name, module in names.items():
+        assert getattr(door, name) is getattr(import_module(module), name)
+    assert set(door.__all__) <= set(dir(door))
+
+
+@pytest.mark.parametrize("package", DOORS)
+def test_an_unknown_name_is_an_error_of_its_own(package: str) -> None:
+    with pytest.raises(AttributeError, match=f"{package}.*nothing_like_it"):
+        import_module(package).nothing_like_it  # noqa: B018
+
+
+@pytest.mark.parametrize("start", [".", ".."], ids=["the checkout", "elsewhere"])
+def test_the_short_names_are_there_wherever_python_starts_and_load_nothing_heavy(start: str) -> None:
+    code = (
+        f"import sys, thermicon, thermicon.icons\nprint([name for name in {HEAVY} if name in sys.modules])\n"
+        "from thermicon import circuit, parse\n"
+        "print(parse is thermicon.icons.parse, circuit.Rig is thermicon.Rig)"
+    )
+    run = subprocess.run([sys.executable, "-c", code], cwd=ROOT / start, capture_output=True, text=True, check=True)
+    assert run.stdout.splitlines() == ["[]", "True True"]
