@@ -35,7 +35,7 @@ def _rooms(folders: tuple[str, ...]) -> dict[str, tuple[int, int]]:
     return {room: (lines[room], modules[room]) for room in sorted(lines)}
 
 
-ROOMS = _rooms(PACKAGES)
+ROOMS = _rooms(("thermicon", *PACKAGES))
 
 
 def _judge(what: str, number: int, most: int) -> None:

@@ -12,9 +12,9 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError, Table
 from thermicon.perception import Observer, draw_people
-from thermicon.perception.evidence import experiments
 from thermicon.perception.evidence.results import load_constants
 from thermicon.perception.evidence.statistics import load_evidence
+from thermicon.perception.experiments import published as experiments
 from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.prepulse import cooling_after_pulse
 from thermicon.perception.experiments.psychometric import PsychometricFunction, psychometric_function
