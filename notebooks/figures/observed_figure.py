@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from thermicon.perception.pilot.data import Answered, Measured
-    from thermicon.perception.pilot.fit import Fit
-    from thermicon.perception.pilot.measurement_fit import MeasurementFit
+    from thermicon.perception.pilot.fit import Fit, MeasurementFit
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Three
 

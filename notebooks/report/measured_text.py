@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from thermicon.perception.pilot.data import Measured
-    from thermicon.perception.pilot.measurement_fit import MeasurementFit
+    from thermicon.perception.pilot.fit import MeasurementFit
     from thermicon.perception.pilot.observed import Observed
 
 LEAST_VALUES = 6

@@ -15,9 +15,8 @@ import numpy as np
 from ..arrays import Array
 from .answers import AnswerScore, score_person, score_pooled
 from .conditioning import Step
-from .fit import Fit, compare
+from .fit import Fit, MeasurementFit, compare, compare_measurements
 from .likelihood import log_likelihoods, person_log_likelihoods
-from .measurement_fit import MeasurementFit, compare_measurements
 from .measurement_likelihood import Emulated, log_likelihood
 from .measurements import Measurements
 from .playing import Confusions, Stage

@@ -16,15 +16,13 @@ from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
 from ..progress import Progress, step_counter
-from .changes import ChangedConstant, changed
 from .conditioning import Conditioned, condition
 from .data import Answered, Measured
-from .fit import Fit
+from .fit import Fit, MeasurementFit
 from .laboratory_file import laboratory_draws, laboratory_texts
-from .measurement_fit import MeasurementFit
 from .measurements import Measurements
 from .playing import Confusions, Stage, laboratories_for, stage
-from .prediction import ChangedPrediction, Three
+from .prediction import ChangedConstant, ChangedPrediction, Three, changed
 from .simulated_measurements import Setting
 from .states import LaboratoryPrior
 from .trials import Trials
