@@ -131,25 +131,25 @@ class MeasurementFit:
         return {"p": self.p, "conditions": [each.to_dict() for each in self.conditions]}
 
 
-def simulated_counts(played: Confusions, presented: Array, rng: np.random.Generator, experiments: int) -> Array:
+def simulated_counts(played: Confusions, presented: Array, rng: np.random.Generator) -> Array:
     """Answers (experiments, participants, icons, icons) to given presentations (participants, icons).
 
     Each experiment is in another laboratory, with participants drawn from its people.
     """
     laboratories, people, icons = played.probability.shape[:3]
-    found = np.zeros((experiments, len(presented), icons, icons))
+    found = np.zeros((EXPERIMENTS, len(presented), icons, icons))
     shown = presented.astype(np.int64)
-    for k in range(experiments):
+    for k in range(EXPERIMENTS):
         invited = rng.integers(people, size=len(presented))
         chances = played.probability[k % laboratories, invited].astype(np.float64)
         found[k] = rng.multinomial(shown, chances / chances.sum(axis=-1, keepdims=True))
     return found
 
 
-def compare(trials: Trials, played: Confusions, *, seed: int = 0, experiments: int = EXPERIMENTS) -> Fit:
+def compare(trials: Trials, played: Confusions, *, seed: int = 0) -> Fit:
     """Compare observed answers with experiments simulated in the laboratories of a prediction."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 13]))
-    each = simulated_counts(played, trials.presented, rng, experiments)
+    each = simulated_counts(played, trials.presented, rng)
     pooled, seen = each.sum(axis=1), trials.pooled
     expected = seen.sum(axis=1)[:, None] * played.pooled.mean(axis=0)
     shown = expected > 0.0
@@ -188,14 +188,12 @@ def _pairs(trials: Trials, seen: Array, pooled: Array) -> list[PairFit]:
     return found
 
 
-def compare_measurements(
-    measured: Measurements, each: Predicted, *, seed: int = 0, experiments: int = EXPERIMENTS
-) -> MeasurementFit:
+def compare_measurements(measured: Measurements, each: Predicted, *, seed: int = 0) -> MeasurementFit:
     """Compare measurements with the same ones simulated in the laboratories of a prediction."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 32]))
     there, shared = measured.given, np.linalg.cholesky(shared_covariance(measured))
-    means = np.empty((experiments, len(measured.conditions)))
-    for row in range(experiments):
+    means = np.empty((EXPERIMENTS, len(measured.conditions)))
+    for row in range(EXPERIMENTS):
         k = row % len(each.mean)
         root = np.linalg.cholesky(person_covariance(measured, each.between[k]))
         people = rng.standard_normal(there.shape) @ root.T

@@ -15,7 +15,7 @@ from thermicon.icons.near_words import nearest_words
 
 from ..observer.channels import CHANNELS, Channel
 from .measurements import ADAPTIVE, METHODS, UNITS, Condition, Kind, Measurements
-from .trials_file import Cells, TrialsError, check_labels, digest_of, label, read_cells, read_header
+from .trials_file import Cells, TrialsError, check_labels, label, read_cells, read_header
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -128,7 +128,7 @@ def read_measurements(path: str | Path, rig: Rig) -> Measurements:
     for row in rows:
         place = people.index(row.participant), conditions.index(row.condition)
         values[place], errors[place], trials[place] = row.value, row.error, row.trials
-    return Measurements(tuple(conditions), tuple(people), values, errors, trials, file.name, digest_of(file))
+    return Measurements(tuple(conditions), tuple(people), values, errors, trials, file.name, cells.digest)
 
 
 def _check_columns(file: Path, cells: Cells) -> None:
