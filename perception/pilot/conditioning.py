@@ -104,10 +104,17 @@ def condition(
     if size >= min(LEAST_EFFECTIVE, LEAST_SHARE * len(before)):
         after, found = _resampled(data, before.place, simulated, weights, kept, rng, step)
         return Conditioned(before, simulated, size, after, found, size, 0)
-    place, every, start = before.place, simulated, before.place
-    short = np.zeros(len(place)) if data.by_people else logs.max() - logs
+    after, found, left, rounds = _refreshed(data, before.place, simulated, logs, kept, rng, step)
+    return Conditioned(before, simulated, size, after, found, left, rounds)
+
+
+def _refreshed(
+    data: Data[S], place: Array, simulated: S, logs: Array, kept: int, rng: np.random.Generator, step: Step | None
+) -> tuple[Laboratories, S, float, int]:
+    """Fresh laboratories, what is simulated there, how many are effective, and the rounds that it took."""
+    start, short = place, np.zeros(len(place)) if data.by_people else logs.max() - logs
     for rounds in range(1, data.rounds + 1):
-        target = data.polynomial(place, every, short)
+        target = data.polynomial(place, simulated, short)
         moved = walk(start[rng.integers(len(start), size=kept)], target, rng)
         people = rng.integers(SEEDS, size=kept) if data.by_people else np.zeros(kept, np.int64)
         fresh = Laboratories(moved, people)
@@ -119,7 +126,7 @@ def condition(
                 break
         if rounds == data.rounds:
             break
-        place, every, start = np.vstack([place, moved]), every.joined(found), moved
+        place, simulated, start = np.vstack([place, moved]), simulated.joined(found), moved
         if data.by_people:
             likely = target(place)
             short = np.maximum(np.median(likely[-kept:]) - likely, 0.0)
@@ -127,10 +134,10 @@ def condition(
             logs = np.concatenate([logs, own])
             short = logs.max() - logs
     if data.by_people:
-        return Conditioned(before, simulated, size, fresh, found, float(kept), rounds)
+        return fresh, found, float(kept), rounds
     share = _tempered(missed, LEAST_SHARE * kept)
     after, found = _resampled(data, moved, found, share, kept, rng, step)
-    return Conditioned(before, simulated, size, after, found, effective(share), rounds)
+    return after, found, effective(share), rounds
 
 
 def _resampled(
