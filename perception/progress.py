@@ -9,7 +9,7 @@ Progress = Callable[[int, int], None]
 
 
 def step_counter(progress: Progress | None, total: int) -> Callable[[], None]:
-    """What is called after each of `total` steps.
+    """What is called after each of `total` steps; where there are more after all, the total grows.
 
     >>> step = step_counter(lambda done, total: print(f"{done} of {total}"), 2)
     >>> step(); step()
@@ -22,6 +22,6 @@ def step_counter(progress: Progress | None, total: int) -> Callable[[], None]:
         nonlocal done
         done += 1
         if progress is not None:
-            progress(done, total)
+            progress(done, max(done, total))
 
     return step

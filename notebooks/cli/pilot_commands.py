@@ -27,8 +27,9 @@ from ..report.options import (
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception.pilot.measured import MeasuredPilot
+    from thermicon.perception.pilot.measurements import Measurements
     from thermicon.perception.pilot.observed import Observed
+    from thermicon.perception.pilot.trials import Trials
 
     from .ranking import Request
 
@@ -109,33 +110,37 @@ def observed_command(
     check_separate([trials, file, *(other or []), *([observer] if observer else [])], [json, figure, keep, drawn])
     if keep is not None and drawn is not None:
         check_free([keep, drawn], replace=force)
-    from thermicon.perception.pilot.measured import condition_on_measurements
     from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
-    from thermicon.perception.pilot.observed import Observed, observed
+    from thermicon.perception.pilot.observed import observed
     from thermicon.perception.pilot.trials_file import read_trials
 
-    from ..report.measured_text import show_measured
     from ..report.observed_text import show_observed
     from .cues import read_set, warn_of_frames
 
     icons, where = read_set([file]), load_rig(rig, changes or [])
     model = load_observer(observer, where, "laboratories are drawn from draws of a posterior")
-    by_measurements = is_measurements(trials)
-    values = read_measurements(trials, where) if by_measurements else None
-    answers = None if by_measurements else read_trials(trials, [icon.name for icon in icons])
-    for warning in () if answers is None else answers.warnings:
-        note(f"warning: {warning}")
+    data: Trials | Measurements
+    if is_measurements(trials):
+        data = read_measurements(trials, where)
+    else:
+        data = read_trials(trials, [icon.name for icon in icons])
+        for warning in data.warnings:
+            note(f"warning: {warning}")
     others = [read_set([name]) for name in other or []]
     warn_of_frames([file], icons, where)
-    found: Observed | MeasuredPilot
     with progress_bar("simulating laboratories") as progress:
-        how: Any = {"others": others, "draws": draws, "seed": seed, "norm": norm, "tracking": tracking}
-        how |= {"observer": model, "progress": progress}
-        if values is not None:
-            found = condition_on_measurements(values, icons, where, **how)
-        else:
-            assert answers is not None
-            found = observed(answers, icons, where, **how)
+        found = observed(
+            data,
+            icons,
+            where,
+            others=others,
+            draws=draws,
+            seed=seed,
+            norm=norm,
+            tracking=tracking,
+            observer=model,
+            progress=progress,
+        )
     _write(found, json, figure, keep, look)
     if json == STDOUT:
         typer.echo(found.to_json())
@@ -145,10 +150,7 @@ def observed_command(
         from .ranking import Request
 
         last = _rank_lines(file, icons, where, Request(tracking=tracking, norm=norm, observer=drawn, rig=rig))
-    if isinstance(found, Observed):
-        show_observed(found, files, last)
-    else:
-        show_measured(found, files, last)
+    show_observed(found, files, last)
 
 
 def _rank_lines(file: str, icons: IconSet, rig: Rig, request: Request) -> list[str]:
@@ -179,26 +181,17 @@ def check_numbers(draws: int, seed: int, norm: str) -> None:
     check_norm_option(norm)
 
 
-def _write(
-    found: Observed | MeasuredPilot, json: Path | None, figure: Path | None, keep: Path | None, look: Look
-) -> None:
+def _write(found: Observed[Any, Any], json: Path | None, figure: Path | None, keep: Path | None, look: Look) -> None:
     """Write the outputs that were asked for, each complete or absent."""
     if json is not None and json != STDOUT:
         with complete_or_absent(json) as draft:
             draft.write_text(found.to_json() + "\n", encoding="utf-8")
         note(f"wrote {json}")
     if figure is not None:
-        from thermicon.perception.pilot.observed import Observed
-
-        from ..figures.measured_figure import measured_figure
         from ..figures.observed_figure import observed_figure
-
-        drawn_figure = (
-            observed_figure(found, stacked=look.narrow) if isinstance(found, Observed) else measured_figure(found)
-        )
         from ..figures.print_figure import write_figure
 
-        write_figure(drawn_figure, figure, look)
+        write_figure(observed_figure(found, stacked=look.narrow), figure, look)
         note(f"wrote {figure}")
     if keep is not None:
         drawn = keep.with_suffix(".csv")

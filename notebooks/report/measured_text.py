@@ -1,46 +1,29 @@
-"""What ``thermicon observed`` prints of thresholds, reaction times and ratings."""
+"""What ``thermicon observed`` prints of thresholds, reaction times and ratings, and how they fit the prediction."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .observed_text import constant_lines, few_lines, misfit, p_text, sets_table
-from .tables import show, table
+from .answers_text import misfit, p_text
+from .tables import table
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from thermicon.perception.pilot.measured import MeasuredPilot
+    from thermicon.perception.pilot.data import Measured
+    from thermicon.perception.pilot.fit import MeasurementFit
+    from thermicon.perception.pilot.observed import Observed
 
-LEAST_CARRIED = 30
-"""Laboratories below which an interval is rough."""
 LEAST_VALUES = 6
 """Values below which a test of fit judges nobody."""
 
 
-def show_measured(found: MeasuredPilot, files: Sequence[str], last: Sequence[str] = ()) -> None:
-    """Print what was measured, how it fits, what the predictions of all sets become, and some last lines."""
-    title = found.predictions[0].before.title
-    show(
-        *([title, ""] if title else []),
-        conditions_table(found),
-        "",
-        *fit_sentences(found),
-        "",
-        sets_table(found, files),
-        "",
-        *draws_sentences(found),
-        *(["", *last] if last else []),
-    )
-
-
-def conditions_table(found: MeasuredPilot) -> Table:
+def conditions_table(found: Observed[Measured, MeasurementFit]) -> Table:
     """One row per condition: geometric mean of the participants, and the predicted one before and after."""
     made = table(
         "condition", "people", "measured", "predicted", "95 %", "after", "95 %", numbers=("people", "measured")
     )
-    for before, after in found.conditions:
+    for before, after in zip(found.fit.conditions, found.fit_after.conditions, strict=True):
         unit = before.condition.unit
         made.add_row(
             before.condition.label,
@@ -54,15 +37,15 @@ def conditions_table(found: MeasuredPilot) -> Table:
     return made
 
 
-def fit_sentences(found: MeasuredPilot) -> list[str]:
+def fit_sentences(found: Observed[Measured, MeasurementFit]) -> list[str]:
     """The test of fit, what the stars mean, and errors that were assumed."""
-    values = found.measurements
+    values = found.data.measurements
     lines = [
         "Geometric means over participants; the predicted ones are for as many participants, with 95 % of laboratories."
     ]
-    missed = sum(before.missed for before, _ in found.conditions)
+    missed = sum(each.missed for each in found.fit.conditions)
     if missed:
-        lines.append(f"* lies outside its predicted 95 % ({missed} of {len(found.conditions)}).")
+        lines.append(f"* lies outside its predicted 95 % ({missed} of {len(found.fit.conditions)}).")
     before, after = found.fit.p, found.fit_after.p
     verdict = misfit(before, after, "values", len(found.conditioned.after))
     if values.total < LEAST_VALUES:
@@ -84,23 +67,3 @@ def fit_sentences(found: MeasuredPilot) -> list[str]:
             "factor of 2."
         )
     return lines
-
-
-def draws_sentences(found: MeasuredPilot) -> list[str]:
-    """How many draws carry the result, and which constants moved."""
-    own, people = found.conditioned, found.predictions[0].after.people
-    carried = f"effective sample size {own.effective:.0f} of {len(own.before)} draws"
-    if own.rounds:
-        rounds = "1 round" if own.rounds == 1 else f"{own.rounds} rounds"
-        carried += (
-            f", too few to be weighted: {len(own.after)} fresh laboratories were sampled in {rounds}, of which "
-            f"{own.effective_after:.0f} are effective"
-        )
-    lines = [
-        f"Before and after are for {people} people of this laboratory who did not take part, with 95 % of "
-        "laboratories.",
-        f"The values weigh the draws: {carried}.",
-    ]
-    if own.effective_after < LEAST_CARRIED:
-        lines.append("So few carry rough intervals only: use more --draws.")
-    return lines + few_lines(found) + constant_lines(found)

@@ -1,44 +1,40 @@
-"""What ``thermicon observed`` prints: answers beside their prediction, and the prediction before and after."""
+"""What ``thermicon observed`` prints: the data beside their prediction, and the prediction before and after."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import percent, percent_span, seconds, signed
+from thermicon.icons.number_text import percent, percent_span, signed
 
+from . import measured_text
+from .answers_text import LEAST_LABORATORIES, fit_sentences, observed_sentences, people_table
 from .tables import show, table
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from thermicon.perception.pilot.answers import AnswerScore
-    from thermicon.perception.pilot.fit import Fit
-    from thermicon.perception.pilot.measured import MeasuredPilot
     from thermicon.perception.pilot.observed import Observed
 
-MOST_PEOPLE, MOST_PAIRS, MOST_CONSTANTS = 20, 8, 8
-POOR, DOUBTFUL = 0.05, 0.1
-LEAST_TRIALS = 20
-"""Answers below which a test of fit judges nobody: a single slip decides it."""
-USEFUL_PEOPLE = 5
-"""Participants from which on Student's interval is below three standard errors to either side (of two: 12.7)."""
-LEAST_LABORATORIES = 100
-"""Laboratories below which widths of intervals scatter by over 15 %, and other constants are hardly tried."""
+MOST_CONSTANTS = 8
+LEAST_CARRIED = 30
+"""Laboratories of measurements below which an interval is rough."""
 
 
-def show_observed(found: Observed, files: Sequence[str], last: Sequence[str] = ()) -> None:
+def show_observed(found: Observed[Any, Any], files: Sequence[str], last: Sequence[str] = ()) -> None:
     """Print what was observed, how it fits, what the predictions of all sets become, and some last lines."""
+    from thermicon.perception.pilot.data import Answered
+
     title = found.predictions[0].before.title
+    told: list[Table | str]
+    if isinstance(found.data, Answered):
+        told = [people_table(found.data, found.own), "", *observed_sentences(found.data), "", *fit_sentences(found)]
+    else:
+        told = [measured_text.conditions_table(found), "", *measured_text.fit_sentences(found)]
     show(
         *([title, ""] if title else []),
-        people_table(found),
-        "",
-        *observed_sentences(found),
-        "",
-        *fit_sentences(found),
+        *told,
         "",
         sets_table(found, files),
         "",
@@ -47,142 +43,7 @@ def show_observed(found: Observed, files: Sequence[str], last: Sequence[str] = (
     )
 
 
-def people_table(found: Observed) -> Table:
-    """One row per participant and one for all: trials, per cent correct, bits, median time."""
-    timed = not math.isnan(found.pooled.time_s)
-    columns = ["", "trials", "correct", "95 %", "bits", "95 %", "further trials"] + ["time"] * timed
-    made = table(*columns, numbers=("trials", "correct", "bits", "time"))
-    for score, own in list(zip(found.each, found.own, strict=True))[:MOST_PEOPLE]:
-        made.add_row(*_row(score, timed, f"{percent(own[0])} ({percent_span(own[1], own[2])})"))
-    if (more := len(found.each) - MOST_PEOPLE) > 0:
-        made.add_row(f"and {more} more", *[""] * (len(columns) - 1))
-    made.add_row(*_row(found.pooled, timed, ""))
-    return made
-
-
-def _row(score: AnswerScore, timed: bool, own: str) -> list[str]:
-    low, high = score.bits_interval
-    time = seconds(None if math.isnan(score.time_s) else score.time_s)
-    cells = [score.who, str(score.trials), percent(score.proportion_correct), percent_span(*score.proportion_interval)]
-    cells += [f"{score.bits:.2f}", f"{low:.2f}–{high:.2f}", own]
-    return cells + [time] * timed
-
-
-def observed_sentences(found: Observed) -> list[str]:
-    """Bias of the bits, how little two participants say of others, and what the answers do not cover."""
-    pooled, trials = found.pooled, found.trials
-    lines = [
-        f"Bits are corrected for bias (Miller–Madow): the plug-in estimate of the pooled answers is "
-        f"{pooled.bits_plugin:.2f} bits, {pooled.bits_bias:.2f} too many by that formula; "
-        "with few trials some bias is left. Further trials: predicted for the same participant."
-    ]
-    if len(found.each) == 2:
-        lines.append(
-            "Two participants allow hardly any interval of all (with one degree of freedom, 12.7 standard errors to "
-            f"either side); from {USEFUL_PEOPLE} participants on it becomes useful."
-        )
-    mean = sum(score.proportion_correct for score in found.each) / len(found.each)
-    uneven = len({score.trials for score in found.each}) > 1
-    if uneven and percent(mean) != percent(pooled.proportion_correct):
-        lines.append(
-            f"In the row of all, every answer counts alike, so participants with more trials count more; the mean of "
-            f"the participants is {percent(mean)} correct."
-        )
-    if trials.never_presented:
-        lines.append(
-            f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "
-            "per cent correct is that of the others."
-        )
-    if trials.single_trial:
-        lines.append(f"One trial only: {', '.join(trials.single_trial)}; it counts, but shows no spread.")
-    return lines
-
-
-def fit_sentences(found: Observed) -> list[str]:
-    """The test of fit before and after, and the pairs that were missed."""
-    fit, pooled = found.fit, found.pooled
-    middle, low, high = fit.proportion_correct
-    bits, least, most = fit.bits_plugin
-    lines = [
-        f"Predicted for this experiment: {percent(middle)} correct ({percent_span(low, high)}), {bits:.2f} plug-in "
-        f"bits ({least:.2f}–{most:.2f}). Observed: {percent(pooled.proportion_correct)}, {pooled.bits_plugin:.2f} "
-        "bits. This prediction is the median of experiments with as many participants and trials; that of the set, "
-        "below, is the mean over people and laboratories, so the two may differ.",
-        f"Test of fit (posterior predictive): p = {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "
-        f"answers were used{_verdict(found)}",
-    ]
-    if fit.p_people is not None:
-        lines.append(f"Participants differ as much or more in {percent(fit.p_people)} of simulated experiments.")
-    return lines + pair_lines(fit)
-
-
-def pair_lines(fit: Fit) -> list[str]:
-    """The missed pairs as a list, and how many are expected by chance."""
-    missed, chance = fit.missed, 0.05 * len(fit.pairs)
-    if not missed:
-        return [f"No pair was missed: all {len(fit.pairs)} lie within their predicted 95 %."]
-    lines = [f"Pairs outside their predicted 95 % ({len(missed)} of {len(fit.pairs)}; about {chance:.1f} by chance):"]
-    for pair in missed[:MOST_PAIRS]:
-        more = "more" if pair.observed > pair.predicted else "less"
-        lines.append(
-            f"  - {pair.a} and {pair.b}: confused {more} than predicted, in {percent(pair.observed)} of {pair.trials} "
-            f"trials; predicted {percent(pair.predicted)} ({percent_span(*pair.interval)})"
-        )
-    return lines + [f"  - and {len(missed) - MOST_PAIRS} more"] * (len(missed) > MOST_PAIRS)
-
-
-def p_text(p: float) -> str:
-    """A p as people write it."""
-    return "under 0.01" if p < 0.01 else f"{p:.2f}"
-
-
-def _verdict(found: Observed) -> str:
-    if (total := found.trials.total) < LEAST_TRIALS:
-        few = "1 answer is too little" if total == 1 else f"{total} answers are too few"
-        return f": {few} to judge the model by; {LEAST_TRIALS} or more can"
-    why = misfit(found.fit.p, found.fit_after.p, "answers", len(found.conditioned.after))
-    if why:
-        return f": {why}"
-    missed, pairs = len(found.fit.missed), len(found.fit.pairs)
-    if more_than_chance(missed, pairs):
-        return (
-            f": as a whole the answers do not contradict the prediction, but it missed {missed} of {pairs} pairs, more "
-            "than chance does"
-        )
-    if found.fit.p < DOUBTFUL:
-        return ": the answers are near the limit of what the prediction allows"
-    return ": the answers are what the prediction allows"
-
-
-def misfit(before: float, after: float, what: str, laboratories: int) -> str:
-    """What a small p says of the model; empty where neither is small.
-
-    >>> misfit(0.02, 0.3, "answers", 500)
-    'the prediction missed, but laboratories that the evidence allows explain the answers'
-    """
-    if after < POOR and laboratories < LEAST_LABORATORIES:
-        return (
-            f"the {what} are unlikely, but {laboratories} laboratories are too few to say that no constants explain "
-            f"them: use --draws {2 * LEAST_LABORATORIES} or more"
-        )
-    if after < POOR:
-        return f"the model cannot explain these {what}, not even with other constants"
-    if before < POOR:
-        return f"the prediction missed, but laboratories that the evidence allows explain the {what}"
-    return ""
-
-
-def more_than_chance(missed: int, pairs: int) -> bool:
-    """Whether more pairs lie outside their 95 % than chance makes likely (5 %).
-
-    >>> more_than_chance(3, 15), more_than_chance(2, 15)
-    (True, False)
-    """
-    fewer = sum(math.comb(pairs, k) * 0.05**k * 0.95 ** (pairs - k) for k in range(missed))
-    return 1.0 - fewer < POOR
-
-
-def sets_table(found: Observed | MeasuredPilot, files: Sequence[str]) -> Table:
+def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Table:
     """Each set before and after: per cent correct and bits of people who did not take part."""
     enough = len(found.conditioned.after) >= LEAST_LABORATORIES
     columns = ["set", "", "correct", "95 %", "bits", "95 %"] + ["narrower"] * enough
@@ -202,24 +63,25 @@ def sets_table(found: Observed | MeasuredPilot, files: Sequence[str]) -> Table:
     return made
 
 
-def draws_sentences(found: Observed) -> list[str]:
+def draws_sentences(found: Observed[Any, Any]) -> list[str]:
     """How many draws carry the result, and which constants moved."""
-    conditioned = found.conditioned
-    people = found.predictions[0].after.people
+    own, people, answered = found.conditioned, found.predictions[0].after.people, bool(found.own)
+    carried = f"effective sample size {own.effective:.0f} of {len(own.before)} draws"
+    if own.rounds:
+        rounds = "1 round" if own.rounds == 1 else f"{own.rounds} rounds"
+        how = " by their pooled answers" if answered else f", of which {own.effective_after:.0f} are effective"
+        carried += f", too few to be weighted: {len(own.after)} fresh laboratories were sampled in {rounds}{how}"
     lines = [
-        f"Before and after are for {people} people of this laboratory who did not take part, with 95 % of laboratories."
+        f"Before and after are for {people} people of this laboratory who did not take part, with 95 % of "
+        "laboratories.",
+        f"The {'answers' if answered else 'values'} weigh the draws: {carried}.",
     ]
-    carried = f"effective sample size {conditioned.effective:.0f} of {len(conditioned.before)} draws"
-    if conditioned.rounds:
-        carried += (
-            f", too few to be weighted: {len(conditioned.after)} fresh laboratories were sampled in "
-            f"{conditioned.rounds} rounds by their pooled answers"
-        )
-    lines.append(f"The answers weigh the draws: {carried}.")
+    if not answered and own.effective_after < LEAST_CARRIED:
+        lines.append("So few carry rough intervals only: use more --draws.")
     return lines + few_lines(found) + constant_lines(found)
 
 
-def few_lines(found: Observed | MeasuredPilot) -> list[str]:
+def few_lines(found: Observed[Any, Any]) -> list[str]:
     """That the intervals after are too rough to compare their widths, where few laboratories make them."""
     if (count := len(found.conditioned.after)) >= LEAST_LABORATORIES:
         return []
@@ -229,7 +91,7 @@ def few_lines(found: Observed | MeasuredPilot) -> list[str]:
     ]
 
 
-def constant_lines(found: Observed | MeasuredPilot) -> list[str]:
+def constant_lines(found: Observed[Any, Any]) -> list[str]:
     """The constants that moved, with units; offsets of the laboratories of the evidence are left out."""
     header = found.prior.draws.header
     moved = [each for each in found.constants if not header.is_offset(each.name)]

@@ -1,9 +1,9 @@
-"""Laboratories conditioned on answers: weights where enough draws carry them, fresh laboratories where too few do.
+"""Laboratories conditioned on data: weights where enough draws carry them, fresh laboratories where too few do.
 
-1. Every draw is given memory, an offset and people; its answers are scored (see `likelihood`) and weigh it.
-2. With at least `LEAST_EFFECTIVE` draws behind the answers, laboratories are resampled by these weights.
-3. Otherwise fresh laboratories are sampled from the prior times the likelihood of the pooled answers
-   (`pooled_answers`), simulated, and sampled once more with the likelihood fitted to them.
+1. What was answered or measured is simulated in every draw of the prior; its likelihood weighs the draw.
+2. With at least `LEAST_EFFECTIVE` draws behind the data, laboratories are resampled by these weights.
+3. Otherwise fresh laboratories are sampled from the prior times a likelihood that is a polynomial of the coordinates,
+   fitted to those simulated so far, and simulated. Those of measurements are weighed by what the polynomial missed.
 
 Either way the result is a sample of laboratories with people who did not take part.
 """
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar, Generic, Protocol, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +20,8 @@ from numpy.typing import NDArray
 from thermicon.circuit.cores import quiet_blas
 
 from ..arrays import Array
-from .likelihood import effective, log_likelihoods, normalised_weights
-from .playing import Confusions, Stage
-from .pooled_answers import PooledLikelihood, walk
+from .likelihood import effective, normalised_weights
+from .pooled_answers import walk
 from .states import SEEDS, Laboratories
 
 LEAST_EFFECTIVE, LEAST_SHARE = 60.0, 0.25
@@ -29,74 +29,133 @@ LEAST_EFFECTIVE, LEAST_SHARE = 60.0, 0.25
 
 With few participants, of whom one is unusual, weights of little effect still err less than the pooled likelihood.
 """
-ROUNDS = 2
-"""Rounds of fresh laboratories: the second is fitted to those of the first as well, which are near the answers."""
-NEAR = 2.0
-"""A laboratory whose ln L is so much lower than usual near the answers counts half in the second fit."""
+Step = Callable[[], None]
+
+
+class Simulated(Protocol):
+    """What is simulated of data in some laboratories."""
+
+    def of(self, which: NDArray[np.int64]) -> Self:
+        """What is simulated in some of them."""
+
+    def joined(self, other: Self) -> Self:
+        """What is simulated here and in further laboratories."""
+
+
+S = TypeVar("S", bound=Simulated)
+
+
+class Data(Protocol[S]):
+    """What a laboratory found out of its people, and how likely that is in others.
+
+    `by_people` says that the simulated depends on who the people of a laboratory are: people who are kept must then be
+    others, and the likelihood of fresh laboratories is too much a matter of chance to weigh them. `rounds` of fresh
+    laboratories are simulated at most; `stream` keeps their chance apart from that of other data.
+    """
+
+    stream: ClassVar[int]
+    rounds: ClassVar[int]
+    by_people: ClassVar[bool]
+
+    def simulate(self, some: Laboratories, step: Step | None = None) -> S:
+        """Simulate the data in laboratories; `step` is called after each."""
+
+    def log_likelihood(self, simulated: S) -> Array:
+        """Ln likelihood (laboratories,) of the data, up to a constant."""
+
+    def polynomial(self, place: Array, simulated: S, short: Array) -> Callable[[Array], Array]:
+        """Ln likelihood of coordinates, fitted to laboratories whose own is so much lower than near the data."""
 
 
 @dataclass(frozen=True, slots=True)
-class Conditioned:
-    """What answers make of the laboratories.
+class Conditioned(Generic[S]):
+    """What data make of the laboratories.
 
-    `before` are the laboratories that were weighed and `confusions_before` theirs; `after` is a sample of equal
-    weights, with `confusions_after`. `effective` is the effective sample size of the weights of `before`, `rounds` how
-    often fresh laboratories were simulated (0: the weights sufficed).
+    `before` are the laboratories that were weighed, with what was `simulated` in them; `after` is a sample of equal
+    weights, with `simulated_after`. `effective` is the effective sample size of the weights of `before`,
+    `effective_after` how many independent draws stand behind `after`, `rounds` how often fresh laboratories were
+    simulated (0: the weights sufficed).
     """
 
     before: Laboratories
-    confusions_before: Confusions
-    log_likelihood: Array
+    simulated: S
     effective: float
     after: Laboratories
-    confusions_after: Confusions
+    simulated_after: S
+    effective_after: float
     rounds: int
-
-    @property
-    def effective_after(self) -> float:
-        """How many independent draws stand behind `after`."""
-        return float(len(self.after)) if self.rounds else self.effective
 
     def __repr__(self) -> str:
         how = "reweighted" if not self.rounds else f"refreshed in {self.rounds} rounds"
         return f"Conditioned({len(self.before)} laboratories, ESS {self.effective:.0f}; {len(self.after)} {how})"
 
 
+@quiet_blas()
 def condition(
-    stage: Stage,
-    counts: Array,
-    before: Laboratories,
-    *,
-    seed: int = 0,
-    sample: int | None = None,
-    step: Callable[[], None] | None = None,
-) -> Conditioned:
-    """Condition laboratories on answers (participants, icons, icons); `sample` is how many are kept (None: half)."""
-    played = stage.confusions(before, step)
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 12]))
-    kept = max(2, len(before) // 2) if sample is None else sample
-    each = log_likelihoods(played.probability, counts)
-    total = each.sum(axis=1)
-    weights = normalised_weights(total)
+    data: Data[S], before: Laboratories, *, seed: int = 0, kept: int | None = None, step: Step | None = None
+) -> Conditioned[S]:
+    """Condition laboratories on data; `kept` is how many are sampled (None: half)."""
+    rng = np.random.default_rng(np.random.SeedSequence([seed, data.stream]))
+    kept = max(2, len(before) // 2) if kept is None else kept
+    simulated = data.simulate(before, step)
+    logs = data.log_likelihood(simulated)
+    weights = normalised_weights(logs)
     size = effective(weights)
     if size >= min(LEAST_EFFECTIVE, LEAST_SHARE * len(before)):
-        chosen = systematic(weights, kept, rng)
-        after = Laboratories(before.place[chosen], rng.integers(SEEDS, size=kept))
-        return Conditioned(before, played, total, size, after, stage.confusions(after, step), 0)
-    places, simulated = before.place, played
-    weight, start = np.ones(len(before)), before.place
-    for rounds in range(1, ROUNDS + 1):
-        with quiet_blas():
-            fitted = PooledLikelihood.fit(places, simulated, counts, weight)
-            some = walk(start[rng.integers(len(start), size=kept)], fitted, rng)
-        after = Laboratories(some, rng.integers(SEEDS, size=kept))
-        found = stage.confusions(after, step)
-        if rounds < ROUNDS:
-            places, simulated, start = np.vstack([places, some]), simulated.joined(found), some
-            short = np.maximum(np.median(fitted(some)) - fitted(places), 0.0)
-            # Laboratories far from the answers keep the polynomial from bending there, and count for little else.
-            weight = 1.0 / (1.0 + np.square(short / NEAR))
-    return Conditioned(before, played, total, size, after, found, ROUNDS)
+        after, found = _resampled(data, before.place, simulated, weights, kept, rng, step)
+        return Conditioned(before, simulated, size, after, found, size, 0)
+    after, found, left, rounds = _refreshed(data, before.place, simulated, logs, kept, rng, step)
+    return Conditioned(before, simulated, size, after, found, left, rounds)
+
+
+def _refreshed(
+    data: Data[S], place: Array, simulated: S, logs: Array, kept: int, rng: np.random.Generator, step: Step | None
+) -> tuple[Laboratories, S, float, int]:
+    """Fresh laboratories, what is simulated there, how many are effective, and the rounds that it took."""
+    start, short = place, np.zeros(len(place)) if data.by_people else logs.max() - logs
+    for rounds in range(1, data.rounds + 1):
+        target = data.polynomial(place, simulated, short)
+        moved = walk(start[rng.integers(len(start), size=kept)], target, rng)
+        people = rng.integers(SEEDS, size=kept) if data.by_people else np.zeros(kept, np.int64)
+        fresh = Laboratories(moved, people)
+        found = data.simulate(fresh, step)
+        if not data.by_people:
+            own = data.log_likelihood(found)
+            missed = own - target(moved)
+            if effective(normalised_weights(missed)) >= LEAST_SHARE * kept:
+                break
+        if rounds == data.rounds:
+            break
+        place, simulated, start = np.vstack([place, moved]), simulated.joined(found), moved
+        if data.by_people:
+            likely = target(place)
+            short = np.maximum(np.median(likely[-kept:]) - likely, 0.0)
+        else:
+            logs = np.concatenate([logs, own])
+            short = logs.max() - logs
+    if data.by_people:
+        return fresh, found, float(kept), rounds
+    share = _tempered(missed, LEAST_SHARE * kept)
+    after, found = _resampled(data, moved, found, share, kept, rng, step)
+    return after, found, effective(share), rounds
+
+
+def _resampled(
+    data: Data[S], place: Array, simulated: S, weights: Array, kept: int, rng: np.random.Generator, step: Step | None
+) -> tuple[Laboratories, S]:
+    """A sample of equal weights, with people who did not take part, and what is simulated there."""
+    chosen = systematic(weights, kept, rng)
+    after = Laboratories(place[chosen], rng.integers(SEEDS, size=kept))
+    return after, data.simulate(after, step) if data.by_people else simulated.of(chosen)
+
+
+def _tempered(logs: Array, least: float) -> Array:
+    """Weights, of the highest power up to 1 of which so many are effective."""
+    for power in np.linspace(1.0, 0.0, 21).tolist():
+        weights = normalised_weights(power * logs)
+        if effective(weights) >= least:
+            break
+    return weights
 
 
 def systematic(weights: Array, n: int, rng: np.random.Generator) -> NDArray[np.int64]:

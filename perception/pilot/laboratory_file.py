@@ -9,7 +9,8 @@ its thresholds there, so that the spread between laboratories is next to nothing
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -21,10 +22,9 @@ from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from ..observer.draws_file import as_written, to_text
 from ..observer.memory_constants import NOISE
 from .conditioning import Conditioned
-from .measurement_conditioning import Reweighted
 from .nominal import middle_of
 from .playing import Stage
-from .states import OFFSETS, Laboratories, LaboratoryPrior
+from .states import OFFSETS, LaboratoryPrior
 
 NO_SPREAD = 1e-6
 """Spread between laboratories (ln) in the draws of one: nothing, but for the logarithm that is taken of it."""
@@ -33,34 +33,21 @@ DATA_LINES = 3
 OF_SOURCE = "R-hat, converged and likelihoods: those of the draws that were resampled"
 
 
-@dataclass(frozen=True, slots=True)
-class Resampling:
-    """Where the draws of a laboratory come from: a `note` on the data, `how` they were resampled, and the `rig`.
-
-    `effective` is how many independent draws stand behind them.
-    """
-
-    note: str
-    how: str
-    rig: str
-    effective: float
-
-    @classmethod
-    def of(cls, found: Conditioned | Reweighted, provenance: Sequence[str], rig: str) -> Resampling:
-        """The resampling of conditioned laboratories; of the provenance, the lines on the data are noted."""
-        how = how_resampled(len(found.before), found.effective, found.rounds)
-        return cls("; ".join(provenance[:DATA_LINES]), how, rig, found.effective_after)
-
-
 def laboratory_draws(
-    prior: LaboratoryPrior, some: Laboratories, predicted: Array, played: Stage, resampling: Resampling
+    prior: LaboratoryPrior,
+    found: Conditioned[Any],
+    predicted: Array,
+    played: Stage,
+    provenance: Sequence[str],
+    rig: str,
 ) -> PosteriorDraws:
     """Draws of one laboratory, its offset in the thresholds, its memory beside the constants; to the figures of a file.
 
     The first is the one in the middle, by its constants and by what each `predicted` (laboratories, numbers) of a set
-    that was `played` and of what was measured; a single constant of it may lie off its own median.
+    that was `played` and of what was measured; a single constant of it may lie off its own median. Of the provenance,
+    the lines on the data are noted.
     """
-    values = prior.values(some)
+    some, values = found.after, prior.values(found.after)
     names, own = prior.draws.names, values[:, : len(prior.draws.names)].copy()
     for channel, offset in zip(CHANNELS, OFFSETS, strict=True):
         own[:, names.index(f"{channel} threshold drive")] *= np.exp(-values[:, prior.names.index(offset)])
@@ -73,12 +60,13 @@ def laboratory_draws(
     first = middle_of(some, counted, predicted, played)
     order = [first, *(k for k in range(len(own)) if k != first)]
     distinct = len(np.unique(np.hstack([own, memory]), axis=0))
+    how = how_resampled(len(found.before), found.effective, found.rounds)
     stated = replace(
         header,
-        sampler=f"{header.sampler}; {resampling.note}",
-        ess=min(header.ess, resampling.effective),
-        resampled=f"{resampling.how}, {distinct} distinct rows of {len(own)}",
-        rig=resampling.rig,
+        sampler="; ".join((header.sampler, *provenance[:DATA_LINES])),
+        ess=min(header.ess, found.effective_after),
+        resampled=f"{how}, {distinct} distinct rows of {len(own)}",
+        rig=rig,
     )
     return PosteriorDraws(stated, names, as_written(own[order]), remembered, as_written(memory[order]))
 

@@ -5,12 +5,14 @@ Logs of the values of participant j are normal, and participants share what the 
     y_j = μ(ℓ) + b_j + e_j + δ,   b_j ~ N(0, Σ(ℓ)),   e_j ~ N(0, errors²),   δ ~ N(0, D)
 
 μ and Σ are means and covariances of simulated people (`simulated_measurements`). Participants measured under the same
-conditions with the same errors enter by their mean and scatter.
+conditions with the same errors enter by their mean and scatter. Where no people were simulated, polynomials of the
+coordinates take the place of μ and Σ.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +20,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..experiments.task_constants import DISCREPANCY, UNSTATED
 from .measurements import Measurements
+from .pooled_answers import features_of, ridge, smooth_features
 from .simulated_measurements import Predicted
 
 RATING_SCALE = 0.7
@@ -110,3 +113,42 @@ def _errors(stated: Array, trials: Array, within: Array) -> Array:
 
 def _rated(measured: Measurements) -> Array:
     return np.array([float(each.kind == "rating") for each in measured.conditions])
+
+
+@dataclass(frozen=True, slots=True)
+class Emulated:
+    """Ln likelihood at coordinates (n, d), from polynomials for mean, covariance and scatter of trials."""
+
+    measured: Measurements
+    groups: tuple[Group, ...]
+    coefficients: Array
+    pairs: tuple[tuple[int, int], ...]
+
+    @classmethod
+    def fit(cls, measured: Measurements, place: Array, each: Predicted, weight: Array) -> Emulated:
+        """Fit to simulated laboratories, each of which counts by its `weight` (n,)."""
+        targets, own = _flat(each), weight / weight.mean()
+        features, pairs, _ = smooth_features(place, targets / targets.std(axis=0).clip(1e-9), own)
+        return cls(measured, groups_of(measured, alike=True), ridge(features, targets, own)[0], pairs)
+
+    def __call__(self, place: Array) -> Array:
+        """Ln likelihood (n,), up to a constant."""
+        each = _predicted(features_of(place, self.pairs) @ self.coefficients, len(self.measured.conditions))
+        return log_likelihood(self.measured, each, self.groups)
+
+
+def _flat(each: Predicted) -> Array:
+    """Means, logs of scatter, and the logarithmic Cholesky factor of Σ: numbers without bounds."""
+    root = np.linalg.cholesky(each.between + NUGGET * np.eye(each.mean.shape[1]))
+    rows, columns = np.tril_indices(each.mean.shape[1], -1)
+    diagonal = np.log(np.diagonal(root, axis1=1, axis2=2))
+    return np.hstack([each.mean, np.log(each.within), diagonal, root[:, rows, columns]])
+
+
+def _predicted(flat: Array, count: int) -> Predicted:
+    rows, columns = np.tril_indices(count, -1)
+    mean, within, diagonal, below = (flat[:, a:b] for a, b in pairwise((0, count, 2 * count, 3 * count, flat.shape[1])))
+    root = np.zeros((len(flat), count, count))
+    root[:, range(count), range(count)] = np.exp(np.clip(diagonal, -8.0, 3.0))
+    root[:, rows, columns] = below
+    return Predicted(mean, root @ np.swapaxes(root, 1, 2), np.exp(np.clip(within, -8.0, 3.0)))

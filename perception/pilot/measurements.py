@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..observer.channels import CHANNELS, Channel
 
 Kind = Literal["threshold", "reaction_time", "rating"]
@@ -111,15 +111,13 @@ class Measurements:
     digest: str = ""
 
     def __post_init__(self) -> None:
+        own_arrays(self, "values", "errors", "trials")
         wanted = (len(self.participants), len(self.conditions))
-        for name in ("values", "errors", "trials"):
-            own = np.array(getattr(self, name), dtype=np.float64)
+        for name, own in (("values", self.values), ("errors", self.errors), ("trials", self.trials)):
             if own.shape != wanted or 0 in wanted:
                 raise ValueError(f"{name} of measurements must have shape {wanted}, with at least one row and column")
             if (own[~np.isnan(own)] <= 0.0).any() or np.isinf(own).any():
                 raise ValueError(f"{name} of measurements must be above 0 and finite")
-            own.setflags(write=False)
-            object.__setattr__(self, name, own)
         there = self.given
         if not there.any(axis=0).all() or not there.any(axis=1).all():
             raise ValueError("every participant and every condition needs at least one value")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast, overload
 
@@ -15,7 +14,7 @@ from thermicon.icons.near_words import nearest_words
 
 from ..observer.channels import CHANNELS, Channel
 from .measurements import ADAPTIVE, METHODS, UNITS, Condition, Kind, Measurements
-from .trials_file import Cells, TrialsError, check_labels, digest_of, label, read_cells, read_header
+from .trials_file import Cells, TrialsError, check_labels, label, read_cells, read_header
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -55,17 +54,6 @@ NUMBERS = {
     "trials": (1.0, 10_000.0, ""),
 }
 LONGEST_RAMP_S = 120.0
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """One row of the table: who, under which condition, and what was found."""
-
-    participant: str
-    condition: Condition
-    value: float
-    error: float
-    trials: float
 
 
 def is_measurements(path: str | Path) -> bool:
@@ -109,26 +97,25 @@ def read_measurements(path: str | Path, rig: Rig) -> Measurements:
     file = Path(path)
     cells = read_cells(file, COLUMNS, OPTIONAL, EXAMPLE, WHAT)
     _check_columns(file, cells)
-    rows = [_row(row, f"{file}:{line}", rig) for row, line in zip(cells.rows, cells.lines, strict=True)]
+    found: dict[tuple[str, Condition], tuple[float, float, float]] = {}
     first: dict[tuple[str, Condition], int] = {}
-    for row, line in zip(rows, cells.lines, strict=True):
-        key = (row.participant, row.condition)
-        if key in first:
+    for row, line in zip(cells.rows, cells.lines, strict=True):
+        key, numbers = _row(row, f"{file}:{line}", rig)
+        if key in found:
+            person, condition = key
             raise TrialsError(
-                f"{file}:{line}: participant {quoted(row.participant)} has {row.condition.label} twice, also in line "
-                f"{first[key]}; give one row with the mean, its standard_error and the number of trials"
+                f"{file}:{line}: participant {quoted(person)} has {condition.label} twice, also in line {first[key]}; "
+                "give one row with the mean, its standard_error and the number of trials"
             )
-        first[key] = line
-    people = list(dict.fromkeys(row.participant for row in rows))
+        found[key], first[key] = numbers, line
+    people, conditions = (tuple(dict.fromkeys(each)) for each in zip(*found, strict=True))
     check_labels(file, people)
-    conditions = list(dict.fromkeys(row.condition for row in rows))
     if len(conditions) > MOST_CONDITIONS:
         raise TrialsError(f"{file}: {len(conditions)} conditions; at most {MOST_CONDITIONS} are taken at once")
-    values, errors, trials = (np.full((len(people), len(conditions)), np.nan) for _ in range(3))
-    for row in rows:
-        place = people.index(row.participant), conditions.index(row.condition)
-        values[place], errors[place], trials[place] = row.value, row.error, row.trials
-    return Measurements(tuple(conditions), tuple(people), values, errors, trials, file.name, digest_of(file))
+    table = np.full((3, len(people), len(conditions)), np.nan)
+    for (person, condition), numbers in found.items():
+        table[:, people.index(person), conditions.index(condition)] = numbers
+    return Measurements(conditions, people, table[0], table[1], table[2], file.name, cells.digest)
 
 
 def _check_columns(file: Path, cells: Cells) -> None:
@@ -141,7 +128,8 @@ def _check_columns(file: Path, cells: Cells) -> None:
             )
 
 
-def _row(cells: Mapping[str, str], where: str, rig: Rig) -> Row:
+def _row(cells: Mapping[str, str], where: str, rig: Rig) -> tuple[tuple[str, Condition], tuple[float, float, float]]:
+    """Who and under which condition, and what was found: value, standard error, trials."""
     kind = cast("Kind", _one_of(cells["kind"], "kind", tuple(METHODS), where))
     channel = cast("Channel", _one_of(cells["channel"], "channel", CHANNELS, where))
     methods = METHODS[kind]
@@ -177,7 +165,7 @@ def _row(cells: Mapping[str, str], where: str, rig: Rig) -> Row:
     trials = _within(cells, "trials", math.nan, where)
     if trials != trials // 1 and not math.isnan(trials):
         raise TrialsError(f"{where}: trials is {quoted(cells['trials'])}, not a whole number")
-    return Row(label(cells["participant"], "participant", where), condition, value, error, trials)
+    return (label(cells["participant"], "participant", where), condition), (value, error, trials)
 
 
 def _condition(cells: Mapping[str, str], kind: Kind, method: str, channel: Channel, where: str, rig: Rig) -> Condition:

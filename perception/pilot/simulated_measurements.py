@@ -158,18 +158,13 @@ class Predicted:
         return Predicted(*(np.concatenate(pair) for pair in pairs))
 
 
-def constants_of(prior: LaboratoryPrior, row: Array) -> dict[str, float]:
-    """Constants by name from a row of `LaboratoryPrior.values`, with the laboratory's own offset in SDs."""
+def measuring(prior: LaboratoryPrior, row: Array, setting: Setting, people: int, seed: int) -> MeasuringLaboratory:
+    """A laboratory by a row of `LaboratoryPrior.values`, which measures in a setting; its offset is its own, in SDs."""
     named: dict[str, float] = dict(zip(prior.names, row.tolist(), strict=True))
     for channel, offset in zip(CHANNELS, OFFSETS, strict=True):
         named[f"{OWN} {channel}"] = named[offset] / named[BETWEEN_LABORATORIES]
-    return named
-
-
-def measuring(prior: LaboratoryPrior, row: Array, setting: Setting, people: int, seed: int) -> MeasuringLaboratory:
-    """A laboratory by a row of values, which measures in a setting."""
-    values = {**constants_of(prior, row), "contact resistance of a thermode": setting.contact_m2K_per_W}
-    return MeasuringLaboratory(values, prior.draws.variable, people=people, seed=seed)
+    named["contact resistance of a thermode"] = setting.contact_m2K_per_W
+    return MeasuringLaboratory(named, prior.draws.variable, people=people, seed=seed)
 
 
 def predicted(

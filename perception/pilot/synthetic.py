@@ -1,21 +1,24 @@
 """Made-up laboratories whose truth is known: participants drawn from the model itself, to try an analysis on.
 
-Their answers are no measurement. The laboratory is one draw of the posterior with memory, an offset and people of its
-own; a seed gives the same laboratory for every set.
+Neither their answers nor their thresholds were measured. The laboratory is one draw of the posterior with memory, an
+offset and people of its own; a seed gives the same laboratory for every set.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..observer.channels import USUAL_NORM, check_norm
+from ..observer.channels import CHANNELS, USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
-from .playing import Confusions, Stage, stage
-from .states import Laboratories, LaboratoryPrior
+from .measurements import ADAPTIVE, Condition, Measurements
+from .playing import Confusions, stage
+from .simulated_measurements import Setting, measuring
+from .states import OFFSETS, SEEDS, Laboratories, LaboratoryPrior
 from .trials import Trials
 
 if TYPE_CHECKING:
@@ -24,6 +27,13 @@ if TYPE_CHECKING:
 
 STREAM = 1000
 """Seeds of made-up laboratories begin here, away from those that predictions are made with."""
+CROWD = 256
+"""People of a made-up laboratory, of whom participants are drawn."""
+USUAL = tuple(
+    [Condition("threshold", "limits", channel, 32.0, 12.0, 1.0, 0.0) for channel in CHANNELS]
+    + [Condition("reaction_time", "choice", channel, 32.0, 6.0, 5.0, 0.0) for channel in CHANNELS]
+)
+"""Limits at 1 K/s and choice reaction times to 6 K at 5 K/s."""
 
 
 def synthetic_trials(
@@ -48,8 +58,7 @@ def synthetic_trials(
         For fewer than one participant or trial.
 
     """
-    if participants < 1 or trials < 1:
-        raise ValueError(f"at least one participant and one trial are needed, not {participants} and {trials}")
+    _check(participants, trials)
     played = synthetic_laboratory(icons, rig, seed=seed, norm=norm)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 15]))
     invited = rng.integers(played.probability.shape[1], size=participants)
@@ -60,14 +69,18 @@ def synthetic_trials(
 def synthetic_laboratory(icons: IconSet, rig: Rig, *, seed: int = 0, norm: str = USUAL_NORM) -> Confusions:
     """Confusions of all people of one made-up laboratory: its truth."""
     prior = LaboratoryPrior(PosteriorDraws.load(), check_norm(norm))
-    return laboratory_at(stage(icons, rig, prior, seed=STREAM + seed), prior, seed)
+    return stage(icons, rig, prior, seed=STREAM + seed).confusions(_made_up(prior, seed))
 
 
-def laboratory_at(played: Stage, prior: LaboratoryPrior, seed: int) -> Confusions:
-    """Confusions of the people of the made-up laboratory of a seed, on a set that is played."""
-    place = int(np.random.default_rng(np.random.SeedSequence([seed, 16])).integers(len(prior.draws)))
-    every = prior.first(len(prior.draws), STREAM + seed)
-    return played.confusions(Laboratories(every.place[[place]], every.seed[[place]]))
+def _made_up(prior: LaboratoryPrior, seed: int) -> Laboratories:
+    """The made-up laboratory of a seed."""
+    place = np.random.default_rng(np.random.SeedSequence([seed, 16])).integers(len(prior.draws), size=1)
+    return prior.first(len(prior.draws), STREAM + seed).of(place)
+
+
+def _check(participants: int, trials: int) -> None:
+    if participants < 1 or trials < 1:
+        raise ValueError(f"at least one participant and one trial are needed, not {participants} and {trials}")
 
 
 def spread(trials: int, icons: int, rng: np.random.Generator) -> Array:
@@ -102,3 +115,73 @@ def trials_text(trials: Trials, seed: int = 0) -> str:
         for number, k in enumerate(rng.permutation(len(cells)), 1):
             lines.append(f"{name},{number},{trials.icons[cells[k][0]]},{trials.icons[cells[k][1]]}")
     return "\n".join(lines) + "\n"
+
+
+def synthetic_measurements(
+    rig: Rig,
+    *,
+    participants: int = 8,
+    trials: int = 10,
+    seed: int = 0,
+    norm: str = USUAL_NORM,
+    conditions: Sequence[Condition] = USUAL,
+    numb: float = 1.0,
+) -> Measurements:
+    """Measurements in a made-up laboratory.
+
+    Parameters
+    ----------
+    rig
+        The rig they were measured on.
+    participants, trials
+        Participants, and trials of each under every condition.
+    seed
+        Which laboratory, and all chance.
+    norm
+        As in `observed`.
+    conditions
+        What is measured.
+    numb
+        Factor of all thresholds: above 1, a laboratory of numb people.
+
+    Raises
+    ------
+    ValueError
+        For fewer than one participant or trial.
+
+    """
+    _check(participants, trials)
+    prior = LaboratoryPrior(PosteriorDraws.load(), check_norm(norm))
+    row = prior.values(_made_up(prior, seed))[0]
+    for offset in OFFSETS:
+        row[prior.names.index(offset)] -= np.log(numb)
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 33]))
+    return measurements_of(prior, row, Setting.of(rig), conditions, participants, trials, rng)
+
+
+def measurements_of(
+    prior: LaboratoryPrior,
+    row: Array,
+    setting: Setting,
+    conditions: Sequence[Condition],
+    participants: int,
+    trials: int,
+    rng: np.random.Generator,
+) -> Measurements:
+    """Measurements in the laboratory of a row of values."""
+    place = measuring(prior, row, setting, CROWD, int(rng.integers(SEEDS)))
+    invited = rng.integers(CROWD, size=participants)
+    values = np.empty((participants, len(conditions)))
+    for k, condition in enumerate(conditions):
+        logs, within = place.measure(setting, condition)
+        # What has no trials of its own, such as a staircase, has the error that is assumed of it.
+        error = within if condition.method in ADAPTIVE else within / np.sqrt(trials)
+        values[:, k] = np.exp(logs[invited] + error * rng.standard_normal(participants))
+    by_trial = [condition.method not in ADAPTIVE for condition in conditions]
+    return Measurements(
+        tuple(conditions),
+        tuple(f"P{k + 1}" for k in range(participants)),
+        values,
+        np.full(values.shape, np.nan),
+        np.where(by_trial, float(trials), np.nan) * np.ones(values.shape),
+    )

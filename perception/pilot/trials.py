@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +49,8 @@ class Trials:
     warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        counts = np.array(self.counts, dtype=np.float64)
+        own_arrays(self, "counts")
+        counts = self.counts
         wanted = (len(self.participants), len(self.icons), len(self.icons))
         if counts.shape != wanted or not self.participants:
             raise ValueError(f"counts of answers must have shape {wanted} with at least one participant")
@@ -57,8 +58,6 @@ class Trials:
             raise ValueError("counts of answers must be whole numbers of 0 or more")
         if (counts.sum(axis=(1, 2)) == 0.0).any():
             raise ValueError("every participant needs at least one answer")
-        counts.setflags(write=False)
-        object.__setattr__(self, "counts", counts)
 
     @property
     def pooled(self) -> Array:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import LIKE_MILLISECONDS, InputError, line_fault, quoted, read_bytes, read_text
+from thermicon.circuit.inputs import LIKE_MILLISECONDS, InputError, line_fault, quoted, read_bytes, read_text, text_of
 from thermicon.icons.near_words import did_you_mean
 
 from .trials import Trials
@@ -43,11 +43,15 @@ class TrialsError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Cells:
-    """Rows of a table with a header: `rows` hold cells by column, `lines` where each stands in the file."""
+    """Rows of a table with a header: `rows` hold cells by column, `lines` where each stands in the file.
+
+    `digest` has the first 16 digits of the SHA-256 of the file, by which a result names what it was made from.
+    """
 
     header: tuple[str, ...]
     rows: tuple[dict[str, str], ...]
     lines: tuple[int, ...]
+    digest: str
 
 
 def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
@@ -116,7 +120,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
         for number in range(len(participants))
     )
     doubts = (*_unread_times(file, cells.header), *_pauses(file, timed))
-    return Trials(names, tuple(participants), counts, medians, file.name, digest_of(file), doubts)
+    return Trials(names, tuple(participants), counts, medians, file.name, cells.digest, doubts)
 
 
 def _unread_times(file: Path, header: Sequence[str]) -> list[str]:
@@ -183,11 +187,6 @@ def is_milliseconds(times: Sequence[float]) -> bool:
     return middle > SLOWEST_S or (middle > SLOW_S and whole)
 
 
-def digest_of(path: Path) -> str:
-    """First 16 digits of the SHA-256 of a file, by which a result names what it was made from."""
-    return hashlib.sha256(read_bytes(path, WHAT, MOST_MB, TrialsError)).hexdigest()[:16]
-
-
 def read_header(path: Path) -> tuple[str, ...]:
     """Names of the columns of a CSV file, as they stand in its first line; empty where there is none."""
     text = read_text(path, WHAT, MOST_MB, TrialsError)
@@ -204,7 +203,8 @@ def _first_line(text: str) -> str:
 
 def read_cells(path: Path, needed: Sequence[str], optional: Sequence[str], example: str, what: str) -> Cells:
     """Rows of a CSV file that has the needed columns; a TrialsError lists what is missing and what was found."""
-    text = read_text(path, what, MOST_MB, TrialsError)
+    data = read_bytes(path, what, MOST_MB, TrialsError)
+    text = text_of(data, path, what, TrialsError)
     head = _first_line(text)
     mark = max(MARKS, key=head.count)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
@@ -233,7 +233,7 @@ def read_cells(path: Path, needed: Sequence[str], optional: Sequence[str], examp
         raise TrialsError(f"{path}:{reader.line_num}: this row cannot be read ({problem}); save it as CSV") from None
     if not rows:
         raise TrialsError(f"{path}: no row below the names of the columns; write one row per trial")
-    return Cells(header, tuple(rows), tuple(lines))
+    return Cells(header, tuple(rows), tuple(lines), hashlib.sha256(data).hexdigest()[:16])
 
 
 def _check_header(

@@ -10,6 +10,7 @@ import pytest
 
 from tests.weights import weighted_quantile
 from thermicon.perception.pilot.conditioning import condition, systematic
+from thermicon.perception.pilot.data import Answered
 from thermicon.perception.pilot.fit import compare
 from thermicon.perception.pilot.likelihood import effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.playing import Confusions
@@ -52,6 +53,11 @@ def answers(place: float, participants: int, times: int, seed: int) -> np.ndarra
     return counts
 
 
+def answered(counts: np.ndarray) -> Answered:
+    people = tuple(f"P{k}" for k in range(len(counts)))
+    return Answered(Trials(("a", "b", "c"), people, counts), Toy())  # type: ignore[arg-type]
+
+
 def exact(counts: np.ndarray) -> tuple[float, float]:
     """Mean and SD of the first coordinate by integration over laboratories and people."""
     place, person = np.linspace(-4, 4, 161), np.linspace(-4, 4, 161)
@@ -68,7 +74,7 @@ def exact(counts: np.ndarray) -> tuple[float, float]:
 @pytest.mark.parametrize(("participants", "times", "rounds"), [(2, 5, 0), (80, 40, 2)])
 def test_both_ways_agree_with_integration(participants: int, times: int, rounds: int) -> None:
     counts = answers(0.8, participants, times, seed=4)
-    found = condition(Toy(), counts, laboratories(1000, 1), seed=2)  # type: ignore[arg-type]
+    found = condition(answered(counts), laboratories(1000, 1), seed=2)
     mean, sd = exact(counts)
     sample = found.after.place[:, 0]
     assert found.rounds == rounds
@@ -80,9 +86,9 @@ def test_both_ways_agree_with_integration(participants: int, times: int, rounds:
 
 def test_the_same_seed_gives_the_same_laboratories() -> None:
     counts = answers(0.0, 3, 4, seed=1)
-    first, second = (condition(Toy(), counts, laboratories(200, 1), seed=5) for _ in range(2))  # type: ignore[arg-type]
+    first, second = (condition(answered(counts), laboratories(200, 1), seed=5) for _ in range(2))
     assert (first.after.place == second.after.place).all()
-    assert (first.confusions_after.probability == second.confusions_after.probability).all()
+    assert (first.simulated_after.probability == second.simulated_after.probability).all()
 
 
 def test_a_participant_is_a_mixture_over_people() -> None:

@@ -12,6 +12,8 @@ from thermicon.icons import IconSet, read_cue
 from thermicon.perception import rank
 from thermicon.perception.identification.laboratory import DRAWS
 from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.pilot.data import Answered
+from thermicon.perception.pilot.fit import Fit
 from thermicon.perception.pilot.nominal import middle_of, off_middle
 from thermicon.perception.pilot.observed import Observed, observed
 from thermicon.perception.pilot.synthetic import synthetic_trials
@@ -28,17 +30,17 @@ def rig() -> Rig:
     return Rig.load("thenar")
 
 
-def pilot(icons: IconSet, rig: Rig, participants: int, trials: int, draws: int, seed: int) -> Observed:
+def pilot(icons: IconSet, rig: Rig, participants: int, trials: int, draws: int, seed: int) -> Observed[Answered, Fit]:
     answers = synthetic_trials(icons, rig, participants=participants, trials=trials, seed=seed)
     return observed(answers, icons, rig, draws=draws)
 
 
-def kept(found: Observed, folder: Path) -> ObserverModel:
+def kept(found: Observed[Answered, Fit], folder: Path) -> ObserverModel:
     (folder / "lab.csv").write_text(found.files()[1], encoding="utf-8")
     return ObserverModel.load(folder / "lab.csv")
 
 
-def compared(found: Observed, icons: IconSet, rig: Rig, folder: Path) -> tuple[float, float]:
+def compared(found: Observed[Answered, Fit], icons: IconSet, rig: Rig, folder: Path) -> tuple[float, float]:
     """By how much `rank` differs from `observed` (0–1), and the shared part of the shorter of their intervals."""
     model = kept(found, folder)
     assert model.posterior is not None
@@ -86,7 +88,7 @@ def test_draws_judge_with_their_own_memory(icons: IconSet, rig: Rig, tmp_path: P
 @pytest.mark.slow
 def test_the_laboratory_in_the_middle_predicts_the_mean(icons: IconSet, rig: Rig) -> None:
     found = pilot(icons, rig, 2, 12, 60, 4)
-    some, played = found.conditioned.after, found.conditioned.confusions_after
+    some, played = found.conditioned.after, found.confusions_after
     number = middle_of(some, found.prior.values(some), played.correct[:, None], found.played)
     assert number == middle_of(some, found.prior.values(some), played.correct[:, None], found.played)
     assert abs(played.correct[number] - played.correct.mean()) < 1.2 * played.correct.std()

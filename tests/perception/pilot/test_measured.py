@@ -12,9 +12,9 @@ from thermicon.icons import read_cue
 from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
+from thermicon.perception.pilot.conditioning import Conditioned, condition
+from thermicon.perception.pilot.data import Measured
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
-from thermicon.perception.pilot.measured import condition_on_measurements
-from thermicon.perception.pilot.measurement_conditioning import Reweighted, reweight
 from thermicon.perception.pilot.measurement_likelihood import (
     groups_of,
     log_errors,
@@ -23,9 +23,10 @@ from thermicon.perception.pilot.measurement_likelihood import (
     shared_covariance,
 )
 from thermicon.perception.pilot.measurements import Condition, Measurements
+from thermicon.perception.pilot.observed import observed
 from thermicon.perception.pilot.simulated_measurements import MeasuringLaboratory, Predicted, Setting, predicted
-from thermicon.perception.pilot.states import OFFSETS, Laboratories, LaboratoryPrior
-from thermicon.perception.pilot.synthetic_measurements import USUAL, synthetic_measurements
+from thermicon.perception.pilot.states import OFFSETS, LaboratoryPrior
+from thermicon.perception.pilot.synthetic import USUAL, synthetic_measurements
 
 RIG = Rig.load("thenar")
 CHOICE = Condition("threshold", "forced_choice", "cold", 32.0, None, 1.0, 3.0)
@@ -100,14 +101,10 @@ def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
         assert sign * (high - low) > 0.08
 
 
-def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measurements, Reweighted]:
+def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measurements, Conditioned[Predicted]]:
     """Measurements that so few draws do not carry, and the laboratories conditioned on them."""
     some = synthetic_measurements(RIG, participants=12, trials=60, seed=1, conditions=SHARP)
-
-    def simulate(laboratories: Laboratories) -> Predicted:
-        return predicted(prior, laboratories, Setting.of(RIG), SHARP)
-
-    return some, reweight(some, prior.first(draws, 2), simulate, seed=0, kept=kept)
+    return some, condition(Measured(some, prior, Setting.of(RIG)), prior.first(draws, 2), kept=kept)
 
 
 @pytest.mark.slow
@@ -116,7 +113,7 @@ def test_too_few_draws_are_refreshed(prior: LaboratoryPrior) -> None:
     assert found.effective < 20.0
     assert 1 <= found.rounds <= 3
     assert found.effective_after >= 10.0
-    assert len(found.after) == len(found.predicted_after.mean) == 40
+    assert len(found.after) == len(found.simulated_after.mean) == 40
 
 
 @pytest.mark.slow
@@ -128,8 +125,8 @@ def test_refreshed_laboratories_agree_with_many_weighed_draws(prior: LaboratoryP
     assert effective(weights) > 100.0
     expected = weights @ many.mean
     spread = np.sqrt(weights @ np.square(many.mean - expected))
-    np.testing.assert_array_less(np.abs(found.predicted_after.mean.mean(axis=0) - expected), 0.5 * spread)
-    ratio = found.predicted_after.mean.std(axis=0) / spread
+    np.testing.assert_array_less(np.abs(found.simulated_after.mean.mean(axis=0) - expected), 0.5 * spread)
+    ratio = found.simulated_after.mean.std(axis=0) / spread
     assert ((ratio > 0.7) & (ratio < 1.4)).all()
 
 
@@ -152,7 +149,7 @@ def test_ratings_count_by_their_ratios_alone(prior: LaboratoryPrior) -> None:
 def test_what_was_measured_is_kept_as_an_observer(tmp_path: Path) -> None:
     some = synthetic_measurements(RIG, participants=4, seed=2)
     calls: list[tuple[int, int]] = []
-    found = condition_on_measurements(
+    found = observed(
         some, read_cue("six-icons"), RIG, draws=40, progress=lambda done, total: calls.append((done, total))
     )
     toml, drawn = found.files()

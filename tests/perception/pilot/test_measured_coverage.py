@@ -15,7 +15,7 @@ from thermicon.perception.pilot.measurement_likelihood import log_likelihood
 from thermicon.perception.pilot.playing import stage
 from thermicon.perception.pilot.simulated_measurements import Setting, predicted
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
-from thermicon.perception.pilot.synthetic_measurements import USUAL, measurements_of
+from thermicon.perception.pilot.synthetic import USUAL, measurements_of
 
 ENDS = (0.025, 0.975)
 

@@ -10,7 +10,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.perception.pilot.measurements import Measurements
 from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
-from thermicon.perception.pilot.synthetic_measurements import synthetic_measurements
+from thermicon.perception.pilot.synthetic import synthetic_measurements
 from thermicon.perception.pilot.trials_file import TrialsError
 
 HEAD = "participant,kind,method,channel,size_K,value,unit,standard_error,trials,baseline_C\n"

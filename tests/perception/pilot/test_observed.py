@@ -14,6 +14,8 @@ from thermicon.icons import IconSet, read_cue
 from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.pilot.data import Answered
+from thermicon.perception.pilot.fit import Fit
 from thermicon.perception.pilot.observed import Observed, observed
 from thermicon.perception.pilot.states import LaboratoryPrior
 from thermicon.perception.pilot.synthetic import synthetic_trials, trials_text
@@ -37,7 +39,7 @@ def answers(icons: IconSet, rig: Rig) -> Trials:
 
 
 @pytest.fixture(scope="module")
-def found(icons: IconSet, rig: Rig, answers: Trials) -> Observed:
+def found(icons: IconSet, rig: Rig, answers: Trials) -> Observed[Answered, Fit]:
     return observed(answers, icons, rig, others=[icons], draws=40, seed=1)
 
 
@@ -69,7 +71,7 @@ def test_made_up_answers_are_read_back_and_depend_on_the_seed(
 
 
 @pytest.mark.slow
-def test_the_result_holds_what_was_asked(found: Observed, answers: Trials) -> None:
+def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers: Trials) -> None:
     own = found.to_dict()
     assert json.loads(found.to_json()) == own
     assert own["trials"] == answers.total == 54
@@ -84,14 +86,14 @@ def test_the_result_holds_what_was_asked(found: Observed, answers: Trials) -> No
         assert len(each.pairs) == 15
 
 
-def test_participants_own_predictions_follow_their_answers(found: Observed) -> None:
-    seen = [score.proportion_correct for score in found.each]
+def test_participants_own_predictions_follow_their_answers(found: Observed[Answered, Fit]) -> None:
+    seen = [score.proportion_correct for score in found.data.each]
     predicted = [own[0] for own in found.own]
     assert np.argmax(seen) == np.argmax(predicted)
     assert max(predicted) - min(predicted) < max(seen) - min(seen)  # shrunk towards the others
 
 
-def test_files_are_read_by_observer_and_draws(found: Observed, tmp_path: Path) -> None:
+def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], tmp_path: Path) -> None:
     observer, table = found.files()
     (tmp_path / "lab.toml").write_text(observer, encoding="utf-8")
     (tmp_path / "lab.csv").write_text(table, encoding="utf-8")
@@ -118,7 +120,7 @@ def test_files_are_read_by_observer_and_draws(found: Observed, tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_memory_stands_beside_the_constants_of_each_draw(found: Observed, tmp_path: Path) -> None:
+def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Answered, Fit], tmp_path: Path) -> None:
     (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
     draws = PosteriorDraws.load(tmp_path / "lab.csv")
     assert draws.memory_names == ("share of the scatter of ratings", "bar of an episode", "memory noise (episodes)")
@@ -133,7 +135,7 @@ def test_memory_stands_beside_the_constants_of_each_draw(found: Observed, tmp_pa
     assert draws.table(3).one("bar of an episode").central == draws.memory[3, 1]
 
 
-def test_memory_that_cannot_be_is_refused(found: Observed, tmp_path: Path) -> None:
+def test_memory_that_cannot_be_is_refused(found: Observed[Answered, Fit], tmp_path: Path) -> None:
     path, lines = tmp_path / "lab.csv", found.files()[1].splitlines()
     lines = [line for line in lines if not line.startswith("# sha256")]
     first = next(k for k, line in enumerate(lines) if not line.startswith("#")) + 1
@@ -151,7 +153,7 @@ def test_memory_that_cannot_be_is_refused(found: Observed, tmp_path: Path) -> No
         PosteriorDraws.load(path)
 
 
-def test_the_prior_of_a_kept_laboratory_has_its_memory(found: Observed, tmp_path: Path) -> None:
+def test_the_prior_of_a_kept_laboratory_has_its_memory(found: Observed[Answered, Fit], tmp_path: Path) -> None:
     (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
     draws = PosteriorDraws.load(tmp_path / "lab.csv")
     prior = LaboratoryPrior(draws, "episodes")
@@ -166,7 +168,7 @@ def test_the_prior_of_a_kept_laboratory_has_its_memory(found: Observed, tmp_path
     assert np.allclose(column, draws.memory[:, draws.memory_names.index("memory noise (episodes)")], rtol=1e-4)
 
 
-def test_a_kept_laboratory_is_the_prior_of_the_next_prediction(found: Observed, tmp_path: Path) -> None:
+def test_a_kept_laboratory_is_the_prior_of_the_next_prediction(found: Observed[Answered, Fit], tmp_path: Path) -> None:
     observer, table = found.files()
     (tmp_path / "lab.csv").write_text(table, encoding="utf-8")
     (tmp_path / "lab.toml").write_text(observer, encoding="utf-8")
@@ -177,7 +179,7 @@ def test_a_kept_laboratory_is_the_prior_of_the_next_prediction(found: Observed, 
         LaboratoryPrior.of(tmp_path / "lab.toml", "episodes")
 
 
-def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed) -> None:
+def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Answered, Fit]) -> None:
     values, draws = found.prior.values(found.conditioned.after), found.draws()
     names = found.prior.names
     drive = values[:, names.index("warm threshold drive")]
@@ -185,13 +187,13 @@ def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed) -> None:
     assert np.allclose(sorted(draws.values("warm threshold drive")), sorted(drive * np.exp(-offset)))
 
 
-def test_the_first_draw_predicts_what_is_usual_in_this_laboratory(found: Observed) -> None:
+def test_the_first_draw_predicts_what_is_usual_in_this_laboratory(found: Observed[Answered, Fit]) -> None:
     drive = found.draws().values("cold threshold drive")[0]
     values, names = found.prior.values(found.conditioned.after), found.prior.names
     own = values[:, names.index("cold threshold drive")] * np.exp(
         -values[:, names.index("sensitivity of the laboratory, cold")]
     )
-    correct = found.conditioned.confusions_after.correct
+    correct = found.confusions_after.correct
     first = int(np.abs(own - drive).argmin())
     assert abs(correct[first] - np.median(correct)) < correct.std()
 
