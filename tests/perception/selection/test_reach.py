@@ -3,7 +3,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse
 from thermicon.perception import Goal, search
-from thermicon.perception.ranking import reach
+from thermicon.perception.selection import reach
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
 TEXT = (
