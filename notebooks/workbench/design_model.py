@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..editing.cue_check import mended
-from ..editing.history import Edited, History
+from ..files.document import Document
+from ..files.history import History
 from ..timeline.dragging import drag
 from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
 from ..timeline.measured import Measured, aligned
@@ -36,7 +37,7 @@ class _Drag:
 
 
 class DesignModel:
-    """Text, icon, knobs and history of one workbench, and the scene that they make.
+    """The document, icon and knobs of one workbench, and the scene that they make.
 
     ``receive`` takes a message of the page and ``turn`` a knob; both return the frame to draw and raise nothing.
     ``model`` is the observer that predicts; None: the shipped one.
@@ -49,7 +50,10 @@ class DesignModel:
     'cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }'
     """
 
-    def __init__(self, text: str, rig: Rig, icon: str | None = None, model: ObserverModel | None = None) -> None:
+    def __init__(
+        self, text: str | Document, rig: Rig, icon: str | None = None, model: ObserverModel | None = None
+    ) -> None:
+        self.document = text if isinstance(text, Document) else Document(text)
         self.nominal = rig
         self.model = model
         self.values: dict[str, float | str] = {}
@@ -57,14 +61,23 @@ class DesignModel:
         self._applied = apply(rig, {}, self._young)
         self._drag: _Drag | None = None
         self._moving = False
-        self.scene: Scene = scene(text, rig, icon, self._applied.observer)
-        self.history = History(Edited(text, self.scene.icon))
+        self.scene: Scene = scene(self.text, rig, icon, self._applied.observer)
+        self.history = self.history.chosen(self.scene.icon)
         self._tell: list[Callable[[], None]] = []
 
     @property
     def text(self) -> str:
         """The text as it stands in the editor."""
-        return self.history.now.text
+        return self.document.text
+
+    @property
+    def history(self) -> History:
+        """The steps before and after the text; setting it changes the document."""
+        return self.document.history
+
+    @history.setter
+    def history(self, history: History) -> None:
+        self.document.history = history
 
     @property
     def rig(self) -> Rig:
@@ -102,15 +115,15 @@ class DesignModel:
         """Put another text in the editor, as one step that can be undone."""
         return self._answer(lambda: self._replace(text, icon))
 
-    def open_text(self, text: str) -> CanvasFrame:
-        """Put the text of another file in the editor, which begins a history of its own."""
+    def open(self, document: Document) -> CanvasFrame:
+        """Put another document in the editor, with a history of its own."""
 
         def act() -> str:
-            self._drag = None
-            self.scene = scene(text, self.rig, None, self._applied.observer, notes=self._applied.notes)
-            self.history = History(Edited(text, self.scene.icon))
+            self._drag, self.document = None, document
+            self.scene = scene(self.text, self.rig, None, self._applied.observer, notes=self._applied.notes)
+            self.history = self.history.chosen(self.scene.icon)
             self._align()
-            return text
+            return self.text
 
         return self._answer(act)
 
@@ -164,6 +177,7 @@ class DesignModel:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
         if (self.text, self.rig, self.scene.icon) != before:
+            self.document.changed()
             for tell in self._tell:
                 tell()
         took_ms = 1e3 * (time.perf_counter() - began)
