@@ -114,6 +114,11 @@ class Document:
         self.versions.keep(made)
         return made
 
+    def left(self, text: str) -> None:
+        """Take what an editor that is gone left elsewhere as a version, unless it is known."""
+        if text not in (self.text, *(each.text for each in self.versions.others)):
+            self.versions.keep(Version(text, time.time(), None, "page"))
+
     @property
     def offer(self) -> Version | None:
         """The newest text that another editor of the file left unsaved after the file was written; None for none."""

@@ -48,7 +48,7 @@ class DesignView:
         self.sliders: dict[str, Any] = {}
         self._labels: dict[str, widgets.HTML] = {}
         self._quiet = False
-        self.on_page: dict[str, Callable[[], None]] = {}
+        self.on_page: dict[str, Callable[[Mapping[str, Any]], None]] = {}
         self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
         self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
         self.reset.on_click(lambda _: self._reset())
@@ -91,7 +91,7 @@ class DesignView:
 
     def _receive(self, message: Mapping[str, Any]) -> None:
         if (act := self.on_page.get(str(message.get("type")))) is not None:
-            act()
+            act(message)
             self._send(self.design.receive({"type": "hello", "seq": message.get("seq", 0)}))
             return
         self._send(self.design.receive(message))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -112,21 +112,22 @@ class DocumentBar:
         for name in ("Undo", "Redo"):
             self.buttons[name].layout.display = "none" if design else ""
 
-    def saved_by_key(self) -> None:
+    def saved_by_key(self, message: Mapping[str, Any]) -> None:
         """Ctrl+S in text or time line: where there is no file, the notebook's own saving is enough."""
         if self.document.path is not None:
             self._safely(self.save)
 
-    def hide_offer(self) -> None:
-        """The page itself offers a newer text."""
-        self.offer.layout.display = "none"
+    def take_left(self, message: Mapping[str, Any]) -> None:
+        """Offer what the page kept of a kernel that is gone."""
+        self.document.left(str(message["text"]))
+        self._show_offer()
 
     def discard(self) -> None:
-        """Drop the text that is offered, or older than what the page offered; others stand among the versions."""
+        """Drop the text that is offered; others stand among the versions."""
         if self.offered_text is not None:
             self.document.versions.drop(self.offered_text)
         self.offered_text = None
-        self.hide_offer()
+        self.offer.layout.display = "none"
 
     def take_rig(self, name: str) -> None:
         """Show the icons on a rig that was shown before, or load it by name or path."""

@@ -233,7 +233,7 @@ class Workbench:
         self.bar = bar = DocumentBar(design)
         self.versions_view = versions = VersionsView(self._design, design.show_text)
         ranked.goal.text.value = self._goal
-        design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.discard}
+        design.on_page = {"save": bar.saved_by_key, "left": bar.take_left}
         views = [design.box, ranked.box, export.box, versions.box]
         tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))
 

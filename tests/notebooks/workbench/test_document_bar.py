@@ -177,16 +177,29 @@ def test_what_is_downloaded_is_the_text_the_rig_and_pictures(path: Path) -> None
     assert b64decode(found["a-on-thenar.png"])[1:4] == b"PNG"
 
 
-def test_ctrl_s_in_the_text_saves_and_the_page_decides_on_what_it_kept(path: Path) -> None:
+def test_ctrl_s_in_the_text_saves(path: Path) -> None:
+    bench, _ = opened(path)
+    assert bench.design_view is not None
+    canvas = bench.design_view.canvas
+    canvas._receive(canvas, {"type": "text", "seq": 7, "text": TYPED}, [])
+    canvas._receive(canvas, {"type": "save", "seq": 8}, [])
+    assert path.read_text(encoding="utf-8") == TYPED
+    assert canvas._newest is not None
+    assert canvas._newest[0]["seq"] == 8
+
+
+def test_what_the_page_kept_is_offered_before_what_the_kernel_wrote(path: Path) -> None:
     first, _ = opened(path)
     first.text = TYPED
     bench, bar = opened(path)
     assert bench.design_view is not None
     canvas = bench.design_view.canvas
-    canvas._receive(canvas, {"type": "kept", "seq": 0}, [])
+    for text in (TYPED, TEXT):
+        canvas._receive(canvas, {"type": "left", "seq": 0, "text": text}, [])
+    assert [each.text for each in bench.document.versions.others] == [TYPED]
+    canvas._receive(canvas, {"type": "left", "seq": 0, "text": TYPED + "# in the page\n"}, [])
+    assert bar.offer.layout.display == ""
+    bar._safely(bar._restore)
+    assert bench.text == TYPED + "# in the page\n"
     assert bar.offer.layout.display == "none"
-    canvas._receive(canvas, {"type": "text", "seq": 7, "text": TYPED + "# more\n"}, [])
-    canvas._receive(canvas, {"type": "save", "seq": 8}, [])
-    assert path.read_text(encoding="utf-8") == TYPED + "# more\n"
-    assert canvas._newest is not None
-    assert canvas._newest[0]["seq"] == 8
+    assert [each.text for each in bench.document.versions.others] == [TYPED]
