@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from ..editing.cue_check import mended
 from ..files.document import Document
-from ..files.history import History
 from ..timeline.dragging import drag
 from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
 from ..timeline.measured import Measured, aligned
@@ -62,22 +61,13 @@ class DesignModel:
         self._drag: _Drag | None = None
         self._moving = False
         self.scene: Scene = scene(self.text, rig, icon, self._applied.observer)
-        self.history = self.history.chosen(self.scene.icon)
+        self.document.history = self.document.history.chosen(self.scene.icon)
         self._tell: list[Callable[[], None]] = []
 
     @property
     def text(self) -> str:
         """The text as it stands in the editor."""
         return self.document.text
-
-    @property
-    def history(self) -> History:
-        """The steps before and after the text; setting it changes the document."""
-        return self.document.history
-
-    @history.setter
-    def history(self, history: History) -> None:
-        self.document.history = history
 
     @property
     def rig(self) -> Rig:
@@ -121,18 +111,18 @@ class DesignModel:
         def act() -> str:
             self._drag, self.document = None, document
             self.scene = scene(self.text, self.rig, None, self._applied.observer, notes=self._applied.notes)
-            self.history = self.history.chosen(self.scene.icon)
+            self.document.history = self.document.history.chosen(self.scene.icon)
             self._align()
             return self.text
 
         return self._answer(act)
 
-    def take_rig(self, rig: Rig, values: Mapping[str, float | str] | None = None) -> CanvasFrame:
-        """Show the icons on another rig, with its own values or with knobs set."""
+    def take_rig(self, rig: Rig) -> CanvasFrame:
+        """Show the icons on another rig, with its own values."""
 
         def act() -> None:
             self.nominal = rig
-            self._set(values or {})
+            self._set({})
 
         return self._answer(act)
 
@@ -181,7 +171,7 @@ class DesignModel:
             for tell in self._tell:
                 tell()
         took_ms = 1e3 * (time.perf_counter() - began)
-        return made.numbered(seq, took_ms, shown, self.history.can_undo, self.history.can_redo)
+        return made.numbered(seq, took_ms, shown, self.document.history.can_undo, self.document.history.can_redo)
 
     def _act(self, message: Message) -> str | None:
         """Do what a message asks; returns the text where the editor is to take it."""
@@ -204,7 +194,7 @@ class DesignModel:
                 self._turned({str(message.get("key")): self._knob_value(message)})
                 return None
             case "undo" | "redo":
-                return self._step(self.history.undo() if kind == "undo" else self.history.redo(), kind)
+                return self._step(kind)
             case "apply":
                 return self._mend(message.get("line"))
         raise ValueError(f"the page sent an unknown message: {kind}")
@@ -212,11 +202,11 @@ class DesignModel:
     def _typed(self, text: object) -> None:
         if not isinstance(text, str) or len(text) > MOST_LETTERS:
             raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it was not changed")
-        self.history = self.history.typed(text, time.monotonic())
+        self.document.history = self.document.history.typed(text, time.monotonic())
         self._draw()
 
     def _choose(self, name: str) -> None:
-        self.history = self.history.chosen(name)
+        self.document.history = self.document.history.chosen(name)
         self._draw(name)
 
     def _dragged(self, message: Message) -> str:
@@ -230,19 +220,21 @@ class DesignModel:
         self._moving = not end
         moved = drag(base, self.scene.icon or "", handle, time_s, level, start)
         if moved.refused is None:
-            self.history = self.history.dragged(moved.text, end)
+            self.document.history = self.document.history.dragged(moved.text, end)
         elif end:
-            self.history = self.history.dragged(self.text, True)
+            self.document.history = self.document.history.dragged(self.text, True)
         if end:
             self._drag = None
         self._draw(notes=() if moved.refused is None else (f"not moved: {moved.refused}",))
         return self.text
 
-    def _step(self, history: History, kind: str) -> str:
-        if history is self.history:
+    def _step(self, kind: str) -> str:
+        before = self.document.history
+        history = before.undo() if kind == "undo" else before.redo()
+        if history is before:
             self.scene = with_notes(self.scene, f"there is nothing to {kind}")
             return self.text
-        self.history = history
+        self.document.history = history
         self._draw(history.now.icon)
         return self.text
 
@@ -251,13 +243,13 @@ class DesignModel:
         if new is None:
             self.scene = with_notes(self.scene, f"line {line} has no suggestion to apply")
             return self.text
-        self.history = self.history.changed(new)
+        self.document.history = self.document.history.changed(new)
         self._draw()
         return new
 
     def _replace(self, text: str, icon: str | None) -> str:
         self._drag = None
-        self.history = self.history.changed(text)
+        self.document.history = self.document.history.changed(text)
         self._draw(icon)
         return text
 
@@ -288,9 +280,9 @@ class DesignModel:
         rig, observer, told = self._applied
         shown = self.scene.icon
         self.scene = scene(self.text, rig, icon, observer, self.scene, (*notes, *told))
-        if self.scene.icon != self.history.now.icon:
+        if self.scene.icon != (history := self.document.history).now.icon:
             # The icon that is shown is no step of its own; typing over its name goes on as one step.
-            self.history = replace(self.history, now=replace(self.history.now, icon=self.scene.icon))
+            self.document.history = replace(history, now=replace(history.now, icon=self.scene.icon))
         if shown != self.scene.icon:
             self._align()
 

@@ -70,9 +70,9 @@ class DesignView:
         """Undo or redo, from wherever it is asked for."""
         self._send(self.design.receive({"type": kind}))
 
-    def take_rig(self, rig: Rig, values: Mapping[str, float | str] | None = None) -> None:
-        """Show the icons on another rig, with knobs of its own, at their values or others."""
-        self._send(self.design.take_rig(rig, values))
+    def take_rig(self, rig: Rig) -> None:
+        """Show the icons on another rig, with knobs of its own."""
+        self._send(self.design.take_rig(rig))
         self._make_knobs()
 
     def take_log(self, log: Log | None) -> None:
@@ -102,7 +102,7 @@ class DesignView:
     def _knob(self, knob: Knob) -> widgets.VBox:
         label = widgets.HTML()
         self._labels[knob.key] = label
-        self.sliders[knob.key] = made = _control(knob, self.design.values.get(knob.key, knob.value))
+        self.sliders[knob.key] = made = _control(knob)
         made.tooltip = f"{knob.what} ({knob.source})"
         made.observe(lambda change: self._turned(knob.key, change["new"]), "value")
         self._tell(knob)
@@ -135,14 +135,14 @@ class DesignView:
             self._labels[knob.key].value = text
 
 
-def _control(knob: Knob, value: float | str) -> Any:
+def _control(knob: Knob) -> Any:
     """A slider for a range, a list for a choice."""
     layout = widgets.Layout(width="auto")
     if knob.options:
-        return widgets.Dropdown(options=knob.options, value=value, layout=layout)
+        return widgets.Dropdown(options=knob.options, value=knob.value, layout=layout)
     digits = len(f"{knob.step:g}".partition(".")[2])
     return widgets.FloatSlider(
-        value=float(value),
+        value=float(knob.value),
         min=knob.low,
         max=knob.high,
         step=knob.step,

@@ -129,31 +129,27 @@ class DocumentBar:
         self.offered_text = None
         self.offer.layout.display = "none"
 
-    def take_rig(self, name: str) -> None:
+    def _take_rig(self, name: str) -> None:
         """Show the icons on a rig that was shown before, or load it by name or path."""
         from thermicon.circuit import Rig
 
-        rig = self._rigs.get(name)
-        self.view.take_rig(Rig.load(name) if rig is None else rig)
+        if self._quiet:
+            return
+        try:
+            path = str(self.document.folder / name) if name.endswith(".toml") else name
+            self.view.take_rig(self._rigs.get(name) or Rig.load(path))
+        except Exception:
+            self._show_rig()  # the list goes back to the rig that is still used
+            raise
+        self.say("")
 
-    def show_rig(self) -> None:
-        """Show which rig is used, after something else than this bar chose it."""
+    def _show_rig(self) -> None:
+        """Show which rig is used, and which rigs there are."""
         self._quiet = True
         try:
             self._offer_rigs()
         finally:
             self._quiet = False
-
-    def _take_rig(self, name: str) -> None:
-        if self._quiet:
-            return
-        path = self.document.folder / name
-        try:
-            self.take_rig(str(path) if name.endswith(".toml") else name)
-        except Exception:
-            self.show_rig()  # the list goes back to the rig that is still used
-            raise
-        self.say("")
 
     def _offer_rigs(self) -> None:
         from thermicon.circuit import rig_names
@@ -237,7 +233,7 @@ class DocumentBar:
         else:
             self.design.open(Document.open(self.document.place(source), self.document.keeps))
         self.path.value = self.name.value = ""
-        self.show_rig()
+        self._show_rig()
         self._show_offer()
         self._after("")
 
