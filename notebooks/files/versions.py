@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 from pathlib import Path
 from threading import RLock, Timer
+from typing import Annotated
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
@@ -20,7 +21,8 @@ EVERY_S = 0.5
 """Shortest time between two writings of unsaved text, in s; a killed process loses what was typed for this long."""
 MOST, MOST_LETTERS = 50, 4_000_000
 """Versions of one text, and letters of all of them; the oldest are dropped."""
-MOST_BYTES = 64_000_000
+MOST_BYTES, LATEST_S = 64_000_000, 1e10
+"""Of a file that is believed: its size, and a time that a calendar can show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +33,7 @@ class Version:
     """
 
     text: str
-    at_s: float
+    at_s: Annotated[float, Field(ge=0, le=LATEST_S)]
     icon: str | None = None
     editor: str = field(default="")
 

@@ -26,6 +26,7 @@ def test_a_file_keeps_its_line_ends_and_its_name(tmp_path: Path) -> None:
     path.write_bytes(b"\xef\xbb\xbfcue 1\r\n# \xc2\xb0\r\n")
     document = Document.open(path, keeps=True)
     assert document.text == "cue 1\n# °\n"
+    assert document.title == "a.cue"
     typed(document, "cue 1\n# mine\n").save()
     assert path.read_bytes() == b"cue 1\r\n# mine\r\n"
     assert document.warning() == ""
@@ -136,7 +137,7 @@ def test_the_oldest_versions_make_room(tmp_path: Path) -> None:
     assert [each.text[:2] for each in kept.others] == ["xx"]
 
 
-@pytest.mark.parametrize("held", ["typed by hand", '[{"text": 1}]', "[1"])
+@pytest.mark.parametrize("held", ["typed by hand", '[{"text": 1}]', "[1", '[{"text": "a", "at_s": 1e300}]'])
 def test_a_file_of_another_form_is_offered_as_it_is(tmp_path: Path, held: str) -> None:
     (tmp_path / ".a.cue.unsaved").write_text(held, encoding="utf-8")
     (found,) = Versions(tmp_path / "a.cue").others

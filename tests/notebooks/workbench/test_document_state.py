@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
+from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said
 from thermicon.circuit import Rig
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.outputs import OutputError
@@ -52,17 +52,6 @@ def test_a_site_of_a_rig_file_is_shown_as_text(path: Path) -> None:
     assert bench.design_view is not None
     bench.design_view.sliders["site"].value = "thenar"
     assert "site · rig &lt;b&gt;palm&lt;/b&gt;" in bench.design_view._labels["site"].value
-
-
-def test_a_file_with_the_line_ends_of_windows_is_as_saved(path: Path) -> None:
-    data = TEXT.replace("\n", "\r\n").encode()
-    path.write_bytes(data)
-    bench, bar = opened(path)
-    assert bench.text == TEXT
-    assert title(bar) == "alerts.cue"
-    bench.text = TYPED
-    bar.buttons["Save"].click()
-    assert path.read_bytes() == data.replace(b"3 K", b"4 K")
 
 
 def test_a_file_that_was_removed_is_said_with_what_to_do(path: Path) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.notebooks.workbench.openbench import said
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse
@@ -40,10 +41,6 @@ def opened() -> tuple[Workbench, DocumentBar, LogPanel]:
     assert bench.bar is not None
     bench.bar.buttons["Log"].click()
     return bench, bench.bar, bench.bar.log
-
-
-def said(bar: DocumentBar) -> str:
-    return re.sub(r"<[^>]*>", "", bar.said.value)
 
 
 def test_a_log_is_aligned_and_drawn_over_display_and_skin_with_its_misses(log: Path) -> None:
