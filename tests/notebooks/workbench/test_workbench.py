@@ -97,6 +97,12 @@ def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send)
     assert bench.percept.channel == "cold"
 
 
+def test_a_page_that_is_opened_later_gets_the_text_as_it_is(bench: Workbench, send: Send) -> None:
+    typed = DIP.replace("4 °C", "5 °C")
+    send(type="text", text=typed)
+    assert send(type="hello")["text"] == typed
+
+
 def test_an_error_is_named_under_its_line_and_the_drawing_stays(bench: Workbench, send: Send) -> None:
     answer = send(type="text", text=DIP.replace("by 4 °C", "by 4"))
     assert answer["stale"]
