@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
-from thermicon.icons import library_names
+from thermicon.icons.files.shipped import library_names
 
 from ..editing.icon_edits import with_copy, with_name, with_new, without
 from ..files.document import Document

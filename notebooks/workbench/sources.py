@@ -5,7 +5,8 @@ from __future__ import annotations
 from importlib.resources import files
 from pathlib import Path
 
-from thermicon.icons import Icon, IconSet, library_names, load_library, read_cue
+from thermicon.icons import Icon, IconSet, load_library, read_cue
+from thermicon.icons.files.shipped import library_names
 
 from ..files.document import Document
 
