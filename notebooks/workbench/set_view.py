@@ -135,9 +135,6 @@ class SetView(LiveView[SetRequest]):
         if self.made is not None:
             self._say(f"{self.made.ranking.people} people")
 
-    def _has_result(self) -> bool:
-        return self.made is not None
-
     def _stale_parts(self) -> tuple[widgets.Widget, ...]:
         return self.body, self.said["scores"]
 

@@ -48,9 +48,6 @@ class Lengths(LiveView[str]):
     def _request(self) -> str:
         return self.design.text
 
-    def _has_result(self) -> bool:
-        return self.shown_text is not None
-
     def _obstacle(self, request: str) -> str | None:
         return "refused" if "# refuse" in request else None
 
