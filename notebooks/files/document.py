@@ -140,7 +140,7 @@ class Document:
                 f"{self.name} {gone} since it was opened here: save your text under another name, or press Save again "
                 "to write it over the file"
             )
-        return self._write(self.path)
+        return self._write(self.path, self._crlf)
 
     def save_as(self, path: Path, overwrite: bool = False) -> Path:
         """Save to another file, which is that of the text from now on; versions kept by hand go along."""
@@ -148,22 +148,21 @@ class Document:
         if path.exists() and not overwrite:
             raise OutputError(f"{path} already exists and was kept: give another name, or tick overwrite")
         before = self.versions
-        self._crlf = False
-        self._write(path)
-        if before.path != self.versions.path:
+        self._write(path, crlf=False)
+        if before is not self.versions:
             before.typed(None, None)
             if by_hand := tuple(each for each in before.others if not each.editor):
                 self.versions.keep(*by_hand)
         return path
 
-    def _write(self, path: Path) -> Path:
+    def _write(self, path: Path, crlf: bool) -> Path:
         check_output(path, (), "cue text")
         text = self.text
-        data = (text.replace("\n", "\r\n") if self._crlf else text).encode("utf-8")
+        data = (text.replace("\n", "\r\n") if crlf else text).encode("utf-8")
         with complete_or_absent(path) as draft:
             draft.write_bytes(data)
         moved = path != self.path
-        self.path, self.name, self.saved, self._stamp = path, path.name, text, _stamp(data)
+        self.path, self.name, self.saved, self._stamp, self._crlf = path, path.name, text, _stamp(data), crlf
         if moved:
             self.versions = self._versions()
         self.changed()

@@ -27,6 +27,8 @@ def test_a_file_keeps_its_line_ends_and_its_name(tmp_path: Path) -> None:
     document = Document.open(path, keeps=True)
     assert document.text == "cue 1\n# °\n"
     assert document.title == "a.cue"
+    with pytest.raises(OutputError, match="does not exist"):
+        document.save_as(tmp_path / "gone" / "b.cue")
     typed(document, "cue 1\n# mine\n").save()
     assert path.read_bytes() == b"cue 1\r\n# mine\r\n"
     assert document.warning() == ""
@@ -155,10 +157,13 @@ def test_a_folder_that_takes_nothing_is_told_and_versions_stay_in_memory(tmp_pat
     assert [each.text for each in kept.others] == ["kept"]
 
 
-def test_what_is_not_kept_on_disk_is_kept_in_memory() -> None:
+def test_what_is_not_kept_on_disk_is_kept_in_memory(tmp_path: Path) -> None:
     document = Document("cue 1")
     made = document.keep()
     with pytest.raises(OutputError, match=r"icons .not saved to a file.: save it first, or undo the changes"):
         typed(document, "cue 2").leave()
     assert document.versions.others == (made,)
     assert document.offer is None
+    document.save_as(tmp_path / "a.cue")
+    assert document.versions.others == (made,)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.cue"]
