@@ -12,8 +12,8 @@ const TEXT_LAGS_MS = 100; // behind a pulled corner
 class DesignView {
   /** `id` tells one model of the kernel from another. */
   constructor(root, flow, say, id) {
-    Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {}, onForget: () => {} });
-    this.unsaved = new UnsavedText(id, (text) => this.takeBack(text), () => this.forget(), say, (type) => flow.tell({ type }));
+    Object.assign(this, { root, flow, say, editSeq: 0, notes: "", onLocalText: () => {} });
+    this.unsaved = new UnsavedText(id, (text) => this.tellLeft(text));
     this.editor = new Editor(root, {
       onText: (text) => this.edited(text),
       onCommand: (type) => flow.post({ type }),
@@ -38,7 +38,7 @@ class DesignView {
     const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.badge.element);
     this.measured = make("p", { class: "tm-measured", hidden: true });
     const split = make("div", { class: "tm-split" }, this.editor.element, this.timeline.element);
-    return make("div", { class: "tm-design" }, bar, this.unsaved.element, this.measured, split, this.noteList);
+    return make("div", { class: "tm-design" }, bar, this.measured, split, this.noteList);
   }
 
   edited(text) {
@@ -47,19 +47,11 @@ class DesignView {
     this.onLocalText(text);
   }
 
-  /** Puts the text of an earlier bench into this one, as an edit that can be undone. */
-  takeBack(text) {
-    this.editor.replace(text);
-    this.edited(text);
-    this.editor.focus();
-    this.say("The earlier text is back in the editor.");
-  }
-
-  forget() {
-    this.unsaved.forget();
-    this.onForget();
-    this.editor.focus();
-    this.say("The earlier text was discarded.");
+  /** The kernel offers what an earlier bench left, above the editor. */
+  tellLeft(text) {
+    this.flow.tell({ type: "left", text });
+    const said = "An earlier text was saved. Buttons above the editor restore or discard it.";
+    setTimeout(() => this.say(said), 0); // after what the first frame says
   }
 
   get textPending() {

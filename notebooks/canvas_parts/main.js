@@ -96,7 +96,6 @@ class Workbench {
     this.root.dataset.view = kind;
     this.view = new VIEWS[kind].make(this.root, this.flow, this.say, typeof this.key === "string" ? this.key : uniqueId("model"));
     this.view.onLocalText = (text) => this.tellSiblings((view) => view.takeText?.(text));
-    this.view.onForget = () => this.tellSiblings((view) => view.unsaved?.close());
     if (kind === "design" && Line.possible) this.flow.tell({ type: "line" });
   }
 

@@ -1,5 +1,6 @@
 // The newest text, kept in the page's session for the bench that is made anew after a restart of the kernel or, under
-// Voila, a reload. A bench finds what belongs to it by the text that it begins with.
+// Voila, a reload: what was typed when no kernel was there, which offers it with what kernels before it wrote. A bench
+// finds what belongs to it by the text that it begins with.
 
 const KEPT = "thermicon kept";
 
@@ -12,11 +13,10 @@ function recall(name) {
   }
 }
 
-/** Keeps a note for this session (null: drops it); false where that is forbidden. */
+/** Keeps a note for this session; false where that is forbidden. */
 function retain(name, text) {
   try {
-    if (text === null) sessionStorage.removeItem(`${KEPT} ${name}`);
-    else sessionStorage.setItem(`${KEPT} ${name}`, text);
+    sessionStorage.setItem(`${KEPT} ${name}`, text);
     return true;
   } catch {
     return false;
@@ -31,55 +31,28 @@ function markOf(text) {
 }
 
 class UnsavedText {
-  /** `id` tells one model of the kernel from another; `onTake(text)` and `onForget()` do what the buttons say, `tell` the kernel. */
-  constructor(id, onTake, onForget, say, tell) {
-    Object.assign(this, { model: `model ${id}`, place: null, newest: null, offered: null, works: true, say, tell });
-    const button = (name, act) => make("button", { type: "button", class: "tm-button", onclick: act }, name);
-    this.element = make(
-      "div", { class: "tm-unsaved", role: "group", "aria-label": "Earlier text", hidden: true },
-      make("span", {}, "An earlier text was saved:"),
-      button("Restore it", () => onTake(this.offered)), button("Discard", onForget),
-    );
+  /** `id` tells one model of the kernel from another; `onLeft(text)` takes what an earlier one left. */
+  constructor(id, onLeft) {
+    Object.assign(this, { model: `model ${id}`, place: null, newest: null, works: true, onLeft });
   }
 
   /** Takes note of the text that stands in the editor; the first says where in the session its successors are kept. */
   note(text) {
     if (this.place === null) this.begin(text);
-    else if (text !== this.newest) {
-      this.newest = text;
-      this.close();
-      this.works = retain(this.place, text) && retain(this.model, this.place);
-    }
+    else if (text !== this.newest) this.works = retain(this.place, text) && retain(this.model, this.place);
+    this.newest = text;
   }
 
-  /** A model that this session knows goes on with its own text; another one may take back what was kept. */
+  /** A model that this session knows goes on in its own place; another one finds what was kept there. */
   begin(text) {
     const known = recall(this.model);
-    this.newest = text;
     this.place = known ?? `text ${location.pathname} ${markOf(text)}`;
     const before = known === null ? recall(this.place) : null;
-    if (before === null || before === text) this.works = retain(this.model, this.place); // undecided, it asks again
-    else this.offer(before);
-  }
-
-  offer(text) {
-    this.offered = text;
-    this.element.hidden = false;
-    this.tell("kept"); // the kernel may offer what it kept itself, which is older
-    const said = "An earlier text was saved. Buttons above the editor restore or discard it.";
-    setTimeout(() => this.offered !== null && this.say(said), 0); // after what the first frame says
-  }
-
-  forget() {
-    retain(this.place, null);
-    retain(this.model, this.place);
-    this.close();
-  }
-
-  close() {
-    if (this.offered !== null) this.tell("decided");
-    this.offered = null;
-    this.element.hidden = true;
+    if (before !== null && before !== text) {
+      this.onLeft(before);
+      retain(this.place, text); // from now on the kernel has it
+    }
+    this.works = retain(this.model, this.place);
   }
 }
 

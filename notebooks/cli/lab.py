@@ -20,7 +20,7 @@ import typer
 
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
-from ..files.cue_document import open_document
+from ..files.document import Document
 from ..files.outputs import check_folder, complete_or_absent, stopped_cleanly
 from ..files.start_folder import FILE, OBSERVER, RIG, VARIABLE
 from ..messages import check_bounds, fail, interrupted, load_observer, load_rig, note, usage
@@ -138,7 +138,7 @@ def page_environment(place: Path, file: Path | None, rig: str | None, observer: 
     """
     told = {VARIABLE: str((place if file is None else place.parent).resolve())}
     if file is not None:
-        open_document(file)
+        Document.open(file)
         told[FILE] = str(file.resolve())
     # The page says beside its curves what is doubtful about the module.
     used = load_rig(rig, [], module_matters=False) if rig is not None or observer is not None else None

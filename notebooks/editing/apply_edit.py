@@ -10,23 +10,19 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.model.statements import Repeat, Total
 
 from .cue_check import read_text
+from .icon_edits import CannotEdit, block_of
 from .number_literals import keyword_of, kind_of, offset_of, replaced, written
 
 if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 _COUNT = re.compile(r"repeat\s+([0-9]+)")
-_PIECE = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\r\n]*|[{}]')
-
-
-class CannotApply(ValueError):
-    """An edit that does not fit the text; the sentence says what to do by hand."""
 
 
 def with_edit(text: str, edited: Icon, old: str, new: str) -> str:
     """Return the text in which an icon is as edited; comments, and all that is not edited, stay as they are written.
 
-    ``old`` and ``new`` are the lines that show the edit. Raises CannotApply where the text has changed since, where a
+    ``old`` and ``new`` are the lines that show the edit. Raises CannotEdit where the text has changed since, where a
     family writes the icon, or where the edit is more than one number or repeat.
 
     >>> from thermicon.icons import parse
@@ -40,15 +36,15 @@ def with_edit(text: str, edited: Icon, old: str, new: str) -> str:
     reading = read_text(text)
     icon = reading.find(edited.name)
     if icon is None:
-        raise CannotApply(f"no icon is called {edited.name} now; {by_hand}")
+        raise CannotEdit(f"no icon is called {edited.name} now; {by_hand}")
     family = reading.family_of(edited.name)
     if family is not None:
-        raise CannotApply(f"{edited.name} is written by the family {family.name}, all of which would change; {by_hand}")
+        raise CannotEdit(f"{edited.name} is written by the family {family.name}, all of which would change; {by_hand}")
     for tried in _candidates(text, icon, edited):
         found = read_text(tried).find(edited.name)
         if found is not None and found.statements == edited.statements:
             return tried
-    raise CannotApply(f"the text has changed, or the edit does not fit it; {by_hand}")
+    raise CannotEdit(f"the text has changed, or the edit does not fit it; {by_hand}")
 
 
 def _candidates(text: str, icon: Icon, edited: Icon) -> Iterator[str]:
@@ -93,9 +89,7 @@ def _repeated(text: str, icon: Icon, count: int) -> str | None:
         return None
     begin = offset_of(text, parts[0].span)  # type: ignore[arg-type]
     checks = [part for part in icon.statements if isinstance(part, Total) and part.span is not None]
-    stop = offset_of(text, checks[0].span) if checks else _closing(text, begin)  # type: ignore[arg-type]
-    if stop is None:
-        return None
+    stop = offset_of(text, checks[0].span) if checks else block_of(text, icon.name).brace  # type: ignore[arg-type]
     head, body, tail = text[:begin], text[begin:stop], text[stop:]
     if "\n" not in body:
         return f"{head}repeat {count} {{ {body.strip().rstrip(';')} }}{'; ' if checks else ' '}{tail}"
@@ -104,13 +98,3 @@ def _repeated(text: str, icon: Icon, count: int) -> str | None:
     inner = "".join([f"{indent}  {lines[0]}", *(f"  {line}" if line.strip() else line for line in lines[1:])])
     between = body[len(body.rstrip()) :]
     return f"{head}repeat {count} {{\n{inner}\n{indent}}}{between}{tail}"
-
-
-def _closing(text: str, begin: int) -> int | None:
-    """Offset of the brace that closes the block in which a place lies."""
-    depth = 1
-    for piece in _PIECE.finditer(text, begin):
-        depth += {"{": 1, "}": -1}.get(piece[0], 0)
-        if depth == 0:
-            return piece.start()
-    return None

@@ -15,17 +15,18 @@ NEW_CURRENT = "icon {name} {{\n  to 0.3 A at 1 A/s\n  hold for 2 s\n  return at 
 
 
 class CannotEdit(ValueError):
-    """An icon cannot be added, renamed or removed; the sentence says why."""
+    """An edit does not fit the text; the sentence says why, or what to do by hand."""
 
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Where an icon or a family stands in a text: from its comments to the end of its line, and its name in between."""
+    """Where an icon or a family stands in a text: from its comments to the end of its line, name and brace between."""
 
     name: str
     begin: int
     start: int
     name_at: int
+    brace: int
     end: int
 
 
@@ -45,14 +46,15 @@ def blocks_of(text: str) -> list[Block]:
         elif word == "}":
             depth = max(0, depth - 1)
             if depth == 0 and start >= 0 and name_at >= 0:
-                found.append(Block(name, _with_comments(text, start), start, name_at, _line_end(text, piece.end())))
+                end = _line_end(text, piece.end())
+                found.append(Block(name, _with_comments(text, start), start, name_at, piece.start(), end))
                 start, name_at = -1, -1
         elif depth == 0 and word == "icon" and start < 0:
             start = piece.start()
         elif depth == 0 and start >= 0 and name_at < 0 and _NAME.fullmatch(word):
             name, name_at = word, piece.start()
     if start >= 0 and name_at >= 0:
-        found.append(Block(name, _with_comments(text, start), start, name_at, len(text)))
+        found.append(Block(name, _with_comments(text, start), start, name_at, len(text), len(text)))
     return found
 
 
@@ -68,7 +70,7 @@ def with_new(text: str) -> tuple[str, str]:
 
 def with_copy(text: str, icon: str) -> tuple[str, str]:
     """A text with a copy of an icon behind it, and the name of the copy."""
-    block = _block(text, icon)
+    block = block_of(text, icon)
     name = _free(text, f"{block.name}-copy")
     shift = block.name_at - block.start
     body = text[block.start : block.end].rstrip()
@@ -78,7 +80,7 @@ def with_copy(text: str, icon: str) -> tuple[str, str]:
 
 def with_name(text: str, icon: str, name: str) -> str:
     """A text in which an icon has another name, in each ``play`` of it too."""
-    block = _block(text, icon)
+    block = block_of(text, icon)
     wanted = name.strip()
     if not _NAME.fullmatch(wanted):
         raise CannotEdit(f"{name!r} is not a name: letters, digits and hyphens, beginning with a letter")
@@ -92,7 +94,7 @@ def with_name(text: str, icon: str, name: str) -> str:
 
 def without(text: str, *icons: str) -> str:
     """A text without some icons, with the comments right above them gone too."""
-    gone = [_block(text, icon) for icon in icons]
+    gone = [block_of(text, icon) for icon in icons]
     rest = text
     for block in sorted(gone, key=lambda each: -each.begin):
         rest = f"{rest[: block.begin].rstrip()}\n{_gap(rest[block.end :])}"
@@ -125,7 +127,8 @@ def only(text: str, chosen: tuple[str, ...]) -> str:
         raise CannotEdit(f"the chosen icons cannot stand alone: {wrong}") from None
 
 
-def _block(text: str, icon: str) -> Block:
+def block_of(text: str, icon: str) -> Block:
+    """Where an icon, or the family that writes it, stands; raises CannotEdit where it does not."""
     blocks = blocks_of(text)
     for block in blocks:
         if block.name == icon:

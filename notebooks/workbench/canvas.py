@@ -115,7 +115,6 @@ class Canvas(anywidget.AnyWidget):
         self._line = DirectLine(self._answer)  # first, since a widget that fails to begin is closed
         super().__init__(view=view, key=uuid4().hex)
         self._newest: tuple[Message, list[bytes]] | None = None
-        self._text: str | None = None
         self._handlers: list[Callable[[Message], None]] = []
         self._by_line = False
         self._sliders: dict[str, str] = {}
@@ -128,20 +127,19 @@ class Canvas(anywidget.AnyWidget):
         """
         whole = {"type": "frame", "view": self.view, **meta}
         buffers = [numpy.ascontiguousarray(array, dtype="<f4").tobytes() for array in arrays]
-        if whole.get("text") is not None:
-            self._text = whole["text"]
         self._newest = (whole, buffers)
         if not self._by_line:
             self.send(whole, buffers=buffers)
 
     def on_message(self, handler: Callable[[Message], None]) -> None:
-        """Call `handler` with each message from the page but greetings and requests for the direct line."""
+        """Call `handler` with each message from the page but requests for the direct line.
+
+        The newest frame answers a greeting too, except to a design view, whose text may be newer.
+        """
         self._handlers.append(handler)
 
     def _receive(self, widget: Canvas, content: Message, buffers: Sequence[Any]) -> None:
-        if content.get("type") == "text":
-            self._text = content.get("text")
-        if content.get("type") == "hello":
+        if content.get("type") == "hello" and (self._newest is None or self.view != "design"):
             self._greet()
             return
         if content.get("type") == "line":
@@ -156,7 +154,7 @@ class Canvas(anywidget.AnyWidget):
             self.send({"type": "alive"})
             return
         meta, arrays = self._newest
-        self.send({**meta, "text": self._text} if "text" in meta else meta, buffers=arrays)
+        self.send(meta, buffers=arrays)
 
     def follow(self, sliders: Mapping[str, str]) -> None:
         """Take steps of sliders from the page's direct line too: their keys, and the ids of their models."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ..editing.cue_check import mended
-from ..editing.history import Edited, History
+from ..files.document import Document
 from ..timeline.dragging import drag
 from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
 from ..timeline.measured import Measured, aligned
@@ -36,7 +36,7 @@ class _Drag:
 
 
 class DesignModel:
-    """Text, icon, knobs and history of one workbench, and the scene that they make.
+    """The document, icon and knobs of one workbench, and the scene that they make.
 
     ``receive`` takes a message of the page and ``turn`` a knob; both return the frame to draw and raise nothing.
     ``model`` is the observer that predicts; None: the shipped one.
@@ -49,7 +49,10 @@ class DesignModel:
     'cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }'
     """
 
-    def __init__(self, text: str, rig: Rig, icon: str | None = None, model: ObserverModel | None = None) -> None:
+    def __init__(
+        self, text: str | Document, rig: Rig, icon: str | None = None, model: ObserverModel | None = None
+    ) -> None:
+        self.document = text if isinstance(text, Document) else Document(text)
         self.nominal = rig
         self.model = model
         self.values: dict[str, float | str] = {}
@@ -57,14 +60,14 @@ class DesignModel:
         self._applied = apply(rig, {}, self._young)
         self._drag: _Drag | None = None
         self._moving = False
-        self.scene: Scene = scene(text, rig, icon, self._applied.observer)
-        self.history = History(Edited(text, self.scene.icon))
+        self.scene: Scene = scene(self.text, rig, icon, self._applied.observer)
+        self.document.history = self.document.history.chosen(self.scene.icon)
         self._tell: list[Callable[[], None]] = []
 
     @property
     def text(self) -> str:
         """The text as it stands in the editor."""
-        return self.history.now.text
+        return self.document.text
 
     @property
     def rig(self) -> Rig:
@@ -102,24 +105,24 @@ class DesignModel:
         """Put another text in the editor, as one step that can be undone."""
         return self._answer(lambda: self._replace(text, icon))
 
-    def open_text(self, text: str) -> CanvasFrame:
-        """Put the text of another file in the editor, which begins a history of its own."""
+    def open(self, document: Document) -> CanvasFrame:
+        """Put another document in the editor, with a history of its own."""
 
         def act() -> str:
-            self._drag = None
-            self.scene = scene(text, self.rig, None, self._applied.observer, notes=self._applied.notes)
-            self.history = History(Edited(text, self.scene.icon))
+            self._drag, self.document = None, document
+            self.scene = scene(self.text, self.rig, None, self._applied.observer, notes=self._applied.notes)
+            self.document.history = self.document.history.chosen(self.scene.icon)
             self._align()
-            return text
+            return self.text
 
         return self._answer(act)
 
-    def take_rig(self, rig: Rig, values: Mapping[str, float | str] | None = None) -> CanvasFrame:
-        """Show the icons on another rig, with its own values or with knobs set."""
+    def take_rig(self, rig: Rig) -> CanvasFrame:
+        """Show the icons on another rig, with its own values."""
 
         def act() -> None:
             self.nominal = rig
-            self._set(values or {})
+            self._set({})
 
         return self._answer(act)
 
@@ -164,10 +167,11 @@ class DesignModel:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
         if (self.text, self.rig, self.scene.icon) != before:
+            self.document.changed()
             for tell in self._tell:
                 tell()
         took_ms = 1e3 * (time.perf_counter() - began)
-        return made.numbered(seq, took_ms, shown, self.history.can_undo, self.history.can_redo)
+        return made.numbered(seq, took_ms, shown, self.document.history.can_undo, self.document.history.can_redo)
 
     def _act(self, message: Message) -> str | None:
         """Do what a message asks; returns the text where the editor is to take it."""
@@ -190,7 +194,7 @@ class DesignModel:
                 self._turned({str(message.get("key")): self._knob_value(message)})
                 return None
             case "undo" | "redo":
-                return self._step(self.history.undo() if kind == "undo" else self.history.redo(), kind)
+                return self._step(kind)
             case "apply":
                 return self._mend(message.get("line"))
         raise ValueError(f"the page sent an unknown message: {kind}")
@@ -198,11 +202,11 @@ class DesignModel:
     def _typed(self, text: object) -> None:
         if not isinstance(text, str) or len(text) > MOST_LETTERS:
             raise ValueError(f"the text is longer than {MOST_LETTERS:,} letters, so it was not changed")
-        self.history = self.history.typed(text, time.monotonic())
+        self.document.history = self.document.history.typed(text, time.monotonic())
         self._draw()
 
     def _choose(self, name: str) -> None:
-        self.history = self.history.chosen(name)
+        self.document.history = self.document.history.chosen(name)
         self._draw(name)
 
     def _dragged(self, message: Message) -> str:
@@ -216,19 +220,21 @@ class DesignModel:
         self._moving = not end
         moved = drag(base, self.scene.icon or "", handle, time_s, level, start)
         if moved.refused is None:
-            self.history = self.history.dragged(moved.text, end)
+            self.document.history = self.document.history.dragged(moved.text, end)
         elif end:
-            self.history = self.history.dragged(self.text, True)
+            self.document.history = self.document.history.dragged(self.text, True)
         if end:
             self._drag = None
         self._draw(notes=() if moved.refused is None else (f"not moved: {moved.refused}",))
         return self.text
 
-    def _step(self, history: History, kind: str) -> str:
-        if history is self.history:
+    def _step(self, kind: str) -> str:
+        before = self.document.history
+        history = before.undo() if kind == "undo" else before.redo()
+        if history is before:
             self.scene = with_notes(self.scene, f"there is nothing to {kind}")
             return self.text
-        self.history = history
+        self.document.history = history
         self._draw(history.now.icon)
         return self.text
 
@@ -237,13 +243,13 @@ class DesignModel:
         if new is None:
             self.scene = with_notes(self.scene, f"line {line} has no suggestion to apply")
             return self.text
-        self.history = self.history.changed(new)
+        self.document.history = self.document.history.changed(new)
         self._draw()
         return new
 
     def _replace(self, text: str, icon: str | None) -> str:
         self._drag = None
-        self.history = self.history.changed(text)
+        self.document.history = self.document.history.changed(text)
         self._draw(icon)
         return text
 
@@ -274,9 +280,9 @@ class DesignModel:
         rig, observer, told = self._applied
         shown = self.scene.icon
         self.scene = scene(self.text, rig, icon, observer, self.scene, (*notes, *told))
-        if self.scene.icon != self.history.now.icon:
+        if self.scene.icon != (history := self.document.history).now.icon:
             # The icon that is shown is no step of its own; typing over its name goes on as one step.
-            self.history = replace(self.history, now=replace(self.history.now, icon=self.scene.icon))
+            self.document.history = replace(history, now=replace(history.now, icon=self.scene.icon))
         if shown != self.scene.icon:
             self._align()
 

@@ -48,7 +48,7 @@ class DesignView:
         self.sliders: dict[str, Any] = {}
         self._labels: dict[str, widgets.HTML] = {}
         self._quiet = False
-        self.on_page: dict[str, Callable[[], None]] = {}
+        self.on_page: dict[str, Callable[[Mapping[str, Any]], None]] = {}
         self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
         self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
         self.reset.on_click(lambda _: self._reset())
@@ -70,9 +70,9 @@ class DesignView:
         """Undo or redo, from wherever it is asked for."""
         self._send(self.design.receive({"type": kind}))
 
-    def take_rig(self, rig: Rig, values: Mapping[str, float | str] | None = None) -> None:
-        """Show the icons on another rig, with knobs of its own, at their values or others."""
-        self._send(self.design.take_rig(rig, values))
+    def take_rig(self, rig: Rig) -> None:
+        """Show the icons on another rig, with knobs of its own."""
+        self._send(self.design.take_rig(rig))
         self._make_knobs()
 
     def take_log(self, log: Log | None) -> None:
@@ -91,7 +91,7 @@ class DesignView:
 
     def _receive(self, message: Mapping[str, Any]) -> None:
         if (act := self.on_page.get(str(message.get("type")))) is not None:
-            act()
+            act(message)
             self._send(self.design.receive({"type": "hello", "seq": message.get("seq", 0)}))
             return
         self._send(self.design.receive(message))
@@ -102,7 +102,7 @@ class DesignView:
     def _knob(self, knob: Knob) -> widgets.VBox:
         label = widgets.HTML()
         self._labels[knob.key] = label
-        self.sliders[knob.key] = made = _control(knob, self.design.values.get(knob.key, knob.value))
+        self.sliders[knob.key] = made = _control(knob)
         made.tooltip = f"{knob.what} ({knob.source})"
         made.observe(lambda change: self._turned(knob.key, change["new"]), "value")
         self._tell(knob)
@@ -135,14 +135,14 @@ class DesignView:
             self._labels[knob.key].value = text
 
 
-def _control(knob: Knob, value: float | str) -> Any:
+def _control(knob: Knob) -> Any:
     """A slider for a range, a list for a choice."""
     layout = widgets.Layout(width="auto")
     if knob.options:
-        return widgets.Dropdown(options=knob.options, value=value, layout=layout)
+        return widgets.Dropdown(options=knob.options, value=knob.value, layout=layout)
     digits = len(f"{knob.step:g}".partition(".")[2])
     return widgets.FloatSlider(
-        value=float(value),
+        value=float(knob.value),
         min=knob.low,
         max=knob.high,
         step=knob.step,

@@ -105,9 +105,6 @@ class ExportView(LiveView[ExportRequest]):
     def _show_finished(self) -> None:
         self._allow()
 
-    def _has_result(self) -> bool:
-        return self.ready is not None
-
     def _stale_parts(self) -> tuple[widgets.Widget, ...]:
         return (self.body,)
 

@@ -36,8 +36,8 @@ SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
     (
         "Versions",
         (
-            "Keep this as A, go on editing: both versions, their curves, results and changed lines",
-            "Swap A and B brings A back into the text; Undo takes it out again",
+            "Keep this version, go on editing: the list shows each version with the lines that were changed since",
+            "Restore brings a version back into the text; Undo takes it out again",
         ),
     ),
     ("Log", ("lay a measured log over the curves; shift moves it in time, Align finds the shift",)),

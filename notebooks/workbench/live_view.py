@@ -51,7 +51,7 @@ class LiveView(ABC, Generic[Request]):
             self._mark_outdated(request)
             self._show_failure()
             return
-        if request == self._finished and self._has_result():
+        if request == self._finished:
             self._stop()
             self._mark(False)
             self._show_finished()
@@ -70,10 +70,6 @@ class LiveView(ABC, Generic[Request]):
         """What is to be computed now."""
 
     @abstractmethod
-    def _has_result(self) -> bool:
-        """Whether there is a result to show."""
-
-    @abstractmethod
     def _obstacle(self, request: Request) -> str | None:
         """Why a request cannot be computed; None where it can."""
 
@@ -90,7 +86,7 @@ class LiveView(ABC, Generic[Request]):
         """Widgets that are marked while their content is out of date."""
 
     def _mark_outdated(self, request: Request) -> None:
-        self._mark(self._has_result())
+        self._mark(self._finished is not None)
 
     def _stop(self) -> None:
         self.worker.forget()

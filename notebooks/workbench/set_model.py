@@ -13,7 +13,6 @@ from ..cli.cues import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
 from ..figures.map_drawing import distinct
 from ..timeline.frames import CanvasFrame, traces_of
-from ..timeline.overlaid import STYLES, series_of, values_on
 from ..timeline.terms import terms_of
 
 if TYPE_CHECKING:
@@ -30,6 +29,8 @@ if TYPE_CHECKING:
 QUICK, WELL = (6, 0), (200, 128)
 """How many people, and how many draws of the parameters: at once, and when there is time."""
 MOST_RANKED = 60
+STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
+"""Dashes and width of the first curve and the second, which are told apart by them in grey too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,10 +168,12 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
     for key, title, height in PANELS:
         series = []
         for part, name, style in zip(parts, names, STYLES, strict=False):
-            values = values_on(part, "temperature" if key == "skin" else "sensation", key, clock)
+            values = _values_on(part, "temperature" if key == "skin" else "sensation", key, clock)
             if values is not None:
                 role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
-                series.append(series_of(f"{key} {name}", name, values, role, style, buffers))
+                about = {"key": f"{key} {name}", "label": name, "buffer": len(buffers), "role": role}
+                series.append({**about, "dash": style[0], "width": style[1], "step": False})
+                buffers.append(values)
         felt = key != "skin"
         about = {"digits": 1 if felt else 2, "terms": terms_of("d′", "sensation ψ") if felt else []}
         panels.append({"key": key, "label": title, "height": height, "series": series, **about})
@@ -206,3 +209,13 @@ def _traces(made: RankedSet, name: str) -> CanvasFrame:
     icon = next(icon for icon in made.icons if icon.name == name)
     nominal = Observer.load() if made.observer is None else made.observer.nominal
     return traces_of(draw(icon, made.rig, nominal, read_text(made.text)))
+
+
+def _values_on(part: CanvasFrame, panel: str, key: str, clock: Any) -> Any:
+    """The values of a curve of the design view on another clock; NaN behind its end, None where there is no such."""
+    for each in part.meta["panels"]:
+        for series in each["series"]:
+            if each["key"] == panel and series["key"] == key:
+                own = part.meta["time"]["dt"] * np.arange(part.meta["time"]["n"])
+                return np.interp(clock, own, part.buffers[series["buffer"]], right=np.nan).astype(np.float32)
+    return None

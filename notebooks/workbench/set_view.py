@@ -9,6 +9,7 @@ import ipywidgets as widgets
 
 from ..editing.apply_edit import with_edit
 from ..editing.cue_check import read_text
+from ..editing.icon_edits import only
 from ..figures.map_drawing import map_svg
 from ..report.blocks import fragment
 from ..report.choices import NAMES
@@ -91,7 +92,6 @@ class SetView(LiveView[SetRequest]):
             control.observe(lambda _: self._safely(lambda: self.renew(0.0)), "value")
         self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
         self.apply.on_click(lambda _: self._safely(self.apply_edit))
-        self.keep: Callable[[tuple[str, ...]], None] | None = None
         self.take = widgets.Button(description="Keep these", layout={"width": "100px", "display": "none"})
         self.take.tooltip = "take the other icons out of the text, as one step that can be undone"
         self.take.on_click(lambda _: self._safely(self.keep_chosen))
@@ -136,9 +136,6 @@ class SetView(LiveView[SetRequest]):
         if self.made is not None:
             self._say(f"{self.made.ranking.people} people")
 
-    def _has_result(self) -> bool:
-        return self.made is not None
-
     def _stale_parts(self) -> tuple[widgets.Widget, ...]:
         return self.body, self.said["scores"]
 
@@ -178,12 +175,11 @@ class SetView(LiveView[SetRequest]):
     def keep_chosen(self) -> None:
         """Take the icons that were not chosen out of the text, as one step that can be undone."""
         chosen = None if self.made is None else self.made.ranking.chosen
-        if chosen is None or self.keep is None:
+        if chosen is None:
             raise ValueError("no icons are chosen yet: say above how many")
-        self.keep(tuple(chosen.icons))
+        self._show_text(only(self.design.text, tuple(chosen.icons)))
         self.take.layout.display = "none"
         self.count.value = 0
-        self._show_text(self.design.text)
 
     def _rank(self, job: Job, request: SetRequest, quick: bool) -> None:
         """The background job: a quick ranking with a few people, then one with enough for the final numbers."""

@@ -1,177 +1,123 @@
-"""The versions view: a version kept as A beside what is in the editor, B, with what differs between them."""
+"""The versions view: texts that were kept, each with its difference from what is in the editor."""
 
 from __future__ import annotations
 
+import difflib
+import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
 from ..report.blocks import fragment
-from .background import Job
-from .design_view import SideCanvas
 from .downloads import link
-from .live_view import LiveView
-from .versions_model import RankedVersions, Version, both_frame, changed_lines, rank_versions
-from .versions_tables import changes_html, results_html
 
 if TYPE_CHECKING:
-    from thermicon.perception.selection.goal import Goal
-
-    from ..timeline.frames import CanvasFrame
+    from ..files.versions import Version
     from .design_model import DesignModel
 
-Request = tuple[Version, Version, "Goal | None"]
-NOTHING = (
-    "Keep the set as it is now as version A, and go on editing: the editor holds version B, and both are shown here."
-)
-SHARES = 10
+NOTHING = "Keep the set as it is now as a version, and go on editing: here it can be compared with, and brought back."
+ABOUT = "− only in the version, + only in the editor"
+MOST_LINES = 200
 
 
-class VersionsView(LiveView[Request]):
-    """Versions of one ``DesignModel``, compared while the tab is ``shown``; ``box`` holds the widgets.
+class VersionsView:
+    """Versions of the document of one ``DesignModel``, read while the tab is ``shown``; ``box`` holds the widgets.
 
-    ``take`` puts a version into the editor, with its rig; ``goal`` says which goal both are judged by; ``keeps`` gets
-    every new version A, None for none, so that it outlives the kernel.
+    ``show_text`` puts a text into the editor, as a step that can be undone, and shows an icon.
     """
 
-    settles_s = 0.25
-
-    def __init__(
-        self,
-        design: DesignModel,
-        take: Callable[[Version], None],
-        goal: Callable[[], Goal | None],
-        keeps: Callable[[Version | None], None] = lambda version: None,
-    ) -> None:
-        super().__init__(design)
-        self._take, self._goal, self._keeps = take, goal, keeps
-        self.kept: Version | None = None
-        self._known: dict[Any, Any] = {}
-        self._result = False
-        self._people = ""
-        self._build()
-
-    def _build(self) -> None:
-        self.said = {name: widgets.HTML() for name in ("status", "about", "results", "changes", "download")}
-        self.keep = self._button("Keep this as A", "what is in the editor becomes version A", self.keep_now)
-        self.swap = self._button("Swap A and B", "A goes into the editor, and what is there becomes A", self.swap_both)
-        self.discard = self._button("Discard A", "drop version A", self.drop)
-        self.curves = SideCanvas("traces")
+    def __init__(self, design: DesignModel, show_text: Callable[[str, str | None], None]) -> None:
+        self.design, self._show_text = design, show_text
+        self.shown = False
+        self.said = {name: widgets.HTML() for name in ("status", "about", "changes", "download")}
+        self.keep = self._button("Keep this version", "what is in the editor", self.keep_now)
+        self.back = self._button("Restore", "into the editor, as a step that can be undone", self.restore)
+        self.discard = self._button("Discard", "drop the version that is selected", self.drop)
+        self.list = widgets.Select(options=[], rows=12, description="kept", layout={"width": "330px"})
+        self.list.style.description_width = "36px"
+        self.list.observe(lambda _: self._show(), "value")
         said = self.said
-        top = widgets.Box([self.keep, self.swap, self.discard, said["download"], said["status"]])
-        side = {"flex": "3 1 430px", "min_width": "0"}
-        changed = widgets.VBox([widgets.HTML(fragment("block", "changed lines", "th-head")), said["changes"]])
-        drawn = widgets.VBox([self.curves, changed], layout=side)
-        results = widgets.VBox([said["results"]], layout=side)
-        self.body = widgets.Box([drawn, results]).add_class("thermicon-row")
-        self.box = widgets.VBox([top.add_class("thermicon-row"), said["about"], self.body])
-        self.box.add_class("thermicon-versions")
-        self._show_kept()
+        top = widgets.Box([self.keep, self.back, self.discard, said["download"], said["status"]])
+        right = widgets.VBox([said["about"], said["changes"]], layout={"flex": "1 1 430px", "min_width": "0"})
+        body = widgets.Box([self.list, right]).add_class("thermicon-row")
+        self.box = widgets.VBox([top.add_class("thermicon-row"), body]).add_class("thermicon-versions")
+        self._show()
 
     @property
-    def now(self) -> Version:
-        """What is in the editor."""
-        design = self.design
-        values, model = dict(design.values), design.model
-        return Version(design.text, design.scene.icon, design.nominal, design.rig, design.observer, values, model)
+    def picked(self) -> Version | None:
+        """The version that is selected; None where there is none."""
+        picked: Version | None = self.list.value
+        return picked
+
+    def renew(self, after_s: float | None = None) -> None:
+        """Show the versions as they are, if the tab is shown; ``after_s`` is that of other views."""
+        if not self.shown:
+            return
+        held, picked = self.design.document.versions.others[::-1], self.picked
+        self.list.options = [(_title(each), each) for each in held]
+        self.list.value = picked if picked in held else next(iter(held), None)
+        self._show()
 
     def keep_now(self) -> None:
-        """Keep what is in the editor as version A."""
-        self.restore(self.now)
+        """Keep what is in the editor."""
+        made = self.design.document.keep()
+        self.renew()
+        self.list.value = made
+        self._say(self.design.document.warning() or "kept")
 
-    def restore(self, version: Version) -> None:
-        """Take a version as version A."""
-        self.kept = version
-        self._keeps(version)
-        self._show_kept()
-        self.renew(0.0)
-
-    def swap_both(self) -> None:
-        """Put version A into the editor, as a step that can be undone; what is there becomes A."""
-        if self.kept is None:
-            raise ValueError("there is no version A yet: keep one first")
-        before, self.kept = self.kept, self.now
-        self._keeps(self.kept)
-        self._take(before)
-        self._show_kept()
-        self.renew(0.0)
+    def restore(self) -> None:
+        """Put the version that is selected into the editor, as a step that can be undone."""
+        if (picked := self.picked) is not None:
+            self._show_text(picked.text, picked.icon)
+            self._say("the version is in the editor; Undo takes it back out")
 
     def drop(self) -> None:
-        """Drop version A."""
-        self.kept = None
-        self._keeps(None)
-        self._stop()
-        self._known.clear()
-        self._show_kept()
+        """Drop the version that is selected."""
+        if (picked := self.picked) is not None:
+            self.design.document.versions.drop(picked)
+            self.renew()
+            self._say("dropped")
 
-    def _show_kept(self) -> None:
-        kept = self.kept
-        self.swap.disabled = self.discard.disabled = kept is None
-        self.body.layout.display = "none" if kept is None else ""
-        self._finished, self._result = None, False
-        if kept is None:
+    def _show(self) -> None:
+        """How the version that is selected differs from what is in the editor."""
+        picked = self.picked
+        self.back.disabled = self.discard.disabled = picked is None
+        self._say("")
+        if picked is None:
             self.said["about"].value = fragment("block", NOTHING, "th-soft")
-            self.said["download"].value = ""
-            self._say("")
+            self.said["changes"].value = self.said["download"].value = ""
             return
-        name = f"{Path(kept.icon or 'icons').stem}-version-A.cue"
-        self.said["download"].value = link(name, kept.text.encode())
-        about = f"A (solid): {kept.rig_words} · B (dashed): what is in the editor"
-        self.said["about"].value = fragment("block", about, "th-soft")
+        name = f"{Path(self.design.document.name).stem}-{time.strftime('%d-%H%M%S', time.localtime(picked.at_s))}.cue"
+        self.said["download"].value = link(name, picked.text.encode())
+        rows = changed_lines(picked.text, self.design.text)
+        self.said["about"].value = fragment("block", ABOUT if rows else "as in the editor", "th-soft")
+        self.said["changes"].value = fragment("changes", rows) if rows else ""
 
-    def _request(self) -> Request:
-        now = self.now
-        return (now if self.kept is None else self.kept), now, self._goal()
-
-    def _has_result(self) -> bool:
-        return self._result
-
-    def _obstacle(self, request: Request) -> str | None:
-        return "" if self.kept is None else None
-
-    def _job(self, request: Request) -> Callable[[Job], None]:
-        self._say("comparing …")
-        return lambda job: self._compare(job, request)
-
-    def _show_finished(self) -> None:
-        self._say(self._people)
-
-    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
-        return (self.body,)
-
-    def _compare(self, job: Job, request: Request) -> None:
-        """The background job: curves and changed lines at once, then both rankings."""
-        a, b, goal = request
-        frame, changes = both_frame(a, b), changed_lines(a, b)
-        job.on_page(lambda: self._show_curves(frame, changes))
-        reported = [-1]
-
-        def progress(done: int, total: int) -> None:
-            job.go_on()
-            share = SHARES * done // max(total, 1)
-            if share != reported[0]:
-                reported[0] = share
-                job.on_page(lambda: self._say(f"ranking … {100 * share // SHARES} %"))
-
-        both = rank_versions(a, b, goal, self._known, progress)
-        job.on_page(lambda: self._show(both, request))
-
-    def _show_curves(self, frame: CanvasFrame, changes: list[tuple[str, str]]) -> None:
-        self._finished = None  # the results on the page are those of an earlier request
-        self.curves.frame(frame.meta, frame.buffers)
-        self.said["changes"].value = changes_html(changes)
-
-    def _show(self, both: RankedVersions, request: Request) -> None:
-        self._running, self._finished, self._failed_request, self._result = None, request, None, True
-        self._mark(False)
-        self.said["results"].value = results_html(both)
-        people = [each.people for each in (both.a, both.b) if each is not None]
-        self._people = f"predicted for the same {people[0]} people" if people else ""
-        self._say(self._people)
+    def _say(self, text: str) -> None:
+        self.said["status"].value = fragment("marked", text, "th-status")
 
     def _button(self, name: str, hint: str, act: Callable[[], None]) -> widgets.Button:
         made = widgets.Button(description=name, tooltip=hint, layout={"width": "auto"})
-        made.on_click(lambda _: self._safely(act))
+        made.on_click(lambda _: act())
         return made
+
+
+def changed_lines(before: str, now: str) -> list[tuple[str, str]]:
+    """Lines that only one of two texts has, each with ``−`` or ``+``, and the lines around them, with a blank.
+
+    >>> changed_lines("cue 1\\nicon a { hold for 1 s }", "cue 1\\nicon a { hold for 2 s }")
+    [('', 'cue 1'), ('−', 'icon a { hold for 1 s }'), ('+', 'icon a { hold for 2 s }')]
+    """
+    found = list(difflib.unified_diff(before.splitlines(), now.splitlines(), lineterm="", n=1))[2:]
+    signs = {"-": "−", "+": "+"}
+    rows = [("…", "") if line.startswith("@@") else (signs.get(line[0], ""), line[1:]) for line in found][1:]
+    more = len(rows) - MOST_LINES
+    return rows if more <= 1 else [*rows[:MOST_LINES], ("…", f"and {more} more lines")]
+
+
+def _title(version: Version) -> str:
+    """When a version was written, and whether by hand."""
+    when = time.strftime("%d %b %H:%M:%S", time.localtime(version.at_s))
+    return f"{when}{', unsaved text' if version.editor else ''}{f', {version.icon}' if version.icon else ''}"

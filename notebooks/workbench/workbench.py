@@ -6,15 +6,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from thermicon.icons import CueErrors, Icon, IconSet, load_library, parse, read_cue
-from thermicon.icons.files.shipped import library_names
+from thermicon.icons import CueErrors, Icon, IconSet, parse
 
-from ..files.cue_document import CueDocument, open_document
 from ..files.outputs import OutputError
 from ..files.start_folder import started_observer, started_rig, started_with
 from ..timeline.measured import read_measured
 from .design_model import DesignModel
-from .project import Project
+from .sources import document_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,17 +22,16 @@ if TYPE_CHECKING:
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.goal import Goal
 
+    from ..files.document import Document
     from ..timeline.scene import Scene
     from .design_view import DesignView
+    from .document_bar import DocumentBar
     from .export_view import ExportView
-    from .project_bar import ProjectBar
     from .set_view import SetView
-    from .versions_model import Version
     from .versions_view import VersionsView
 
 View = Literal["design", "set", "export"]
 VIEWS: tuple[View, ...] = ("design", "set", "export")
-FIRST = "six-icons"
 
 
 class Workbench:
@@ -94,14 +91,14 @@ class Workbench:
         source = text if text is not None else started_with()
         chosen = rig if rig is not None else started_rig()
         loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
-        document = _document_of(source)
-        written = text_of(source) if document is None else document.text
-        self._design = DesignModel(written, loaded, icon, _observer_of(observer))
+        try:
+            document = document_of(source, keeps=has_kernel())
+        except OutputError as wrong:
+            raise ValueError(str(wrong)) from None
+        self._design = DesignModel(document, loaded, icon, _observer_of(observer))
         self._check_icon(icon)
         if measured is not None:
             self._design.take_log(read_measured(Path(measured)))
-        name = document.path.name if document is not None else _name_of(source)
-        self.project = Project(self._design, document, name, autosaves=has_kernel())
         self._folder = Path(folder)
         self._goal = _goal_text(goal)
         self._ranked: tuple[object, Ranking] | None = None
@@ -110,7 +107,7 @@ class Workbench:
         self.set_view: SetView | None = None
         self.export_view: ExportView | None = None
         self.versions_view: VersionsView | None = None
-        self.bar: ProjectBar | None = None
+        self.bar: DocumentBar | None = None
 
     def _check_icon(self, icon: str | None) -> None:
         """A name that is asked for must be there; while people write, another icon may take its place."""
@@ -132,6 +129,11 @@ class Workbench:
         self._design.show_text(text)
         if self.design_view is not None:
             self.design_view.refresh()
+
+    @property
+    def document(self) -> Document:
+        """The text with its file, undo, versions, and what is unsaved of it."""
+        return self._design.document
 
     @property
     def icons(self) -> IconSet:
@@ -219,27 +221,19 @@ class Workbench:
         import ipywidgets as widgets
 
         from .design_view import DesignView
+        from .document_bar import DocumentBar
         from .export_view import ExportView
-        from .project_bar import ProjectBar
         from .set_view import SetView
-        from .versions_model import Version
         from .versions_view import VersionsView
 
         style = widgets.HTML(f"<style>{style_text()}</style>").add_class("thermicon-style")
         self.design_view = design = DesignView(self._design)
         self.set_view = ranked = SetView(self._design, design.show_text)
         self.export_view = export = ExportView(self._design, self._folder)
-        self.bar = bar = ProjectBar(self.project, design)
-        self.versions_view = versions = VersionsView(
-            self._design,
-            self._take_version,
-            lambda: ranked.goal.goal,
-            lambda version: self.project.keep_version(None if version is None else version.to_kept()),
-        )
-        bar.take_version = lambda kept: versions.restore(Version.of_kept(kept, self._design.model))
-        ranked.keep = self.project.keep_only
+        self.bar = bar = DocumentBar(design)
+        self.versions_view = versions = VersionsView(self._design, design.show_text)
         ranked.goal.text.value = self._goal
-        design.on_page = {"save": lambda: bar.saved_by_key(), "kept": bar.hide_offer, "decided": bar.decided}
+        design.on_page = {"save": bar.saved_by_key, "left": bar.take_left}
         views = [design.box, ranked.box, export.box, versions.box]
         tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))
 
@@ -262,15 +256,6 @@ class Workbench:
         self.tabs = tabs
         return widgets.VBox([style, bar.box, tabs]).add_class("thermicon")
 
-    def _take_version(self, version: Version) -> None:
-        """Put a version into the editor, as a step that can be undone, and show it on its rig."""
-        assert self.design_view is not None
-        assert self.bar is not None
-        if (version.nominal, dict(version.values)) != (self._design.nominal, self._design.values):
-            self.design_view.take_rig(version.nominal, version.values)
-            self.bar.show_rig()
-        self.design_view.show_text(version.text, version.icon)
-
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any]:
         """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""
         light: dict[str, Any] = {"text/plain": repr(self)}
@@ -286,23 +271,6 @@ class Workbench:
 
     def __repr__(self) -> str:
         return f"Workbench{repr(self.scene).removeprefix('Scene')}"
-
-
-def text_of(source: str | Path | Icon | IconSet | None) -> str:
-    """Return the cue text of a set, an icon, a cue file, a shipped set by name, or text itself.
-
-    >>> text_of("cue 1; icon dip { hold for 1 s }")
-    'cue 1; icon dip { hold for 1 s }'
-    >>> text_of("wave-shapes").splitlines()[0]
-    'cue 1'
-    """
-    if isinstance(source, Icon | IconSet):
-        return str(source)
-    if source is None or (isinstance(source, str) and source in library_names() and not Path(source).is_file()):
-        return _shipped(source or FIRST)
-    if isinstance(source, str) and ("{" in source or "\n" in source or not source.strip()):
-        return source
-    return str(read_cue(source))  # or the reason why there is no such file
 
 
 def _goal_text(goal: Goal | str | None) -> str:
@@ -322,35 +290,6 @@ def _observer_of(file: str | Path | None) -> ObserverModel | None:
     from thermicon.perception.observer.observer_model import ObserverModel
 
     return ObserverModel.load(chosen)
-
-
-def _document_of(source: object) -> CueDocument | None:
-    """The cue file of a source, opened for editing; raises ValueError where it cannot be."""
-    path = file_of(source)
-    try:
-        return None if path is None else open_document(path)
-    except OutputError as wrong:
-        raise ValueError(str(wrong)) from None
-
-
-def file_of(source: object) -> Path | None:
-    """The cue file that a workbench is made of; None for text, icons and shipped sets."""
-    if not isinstance(source, str | Path) or (isinstance(source, str) and ("{" in source or "\n" in source)):
-        return None
-    path = Path(source)
-    return path if path.is_file() else None
-
-
-def _name_of(source: object) -> str:
-    if isinstance(source, Icon | IconSet):
-        return source.name or "icons"
-    return source if isinstance(source, str) and source in library_names() else FIRST if source is None else "icons"
-
-
-def _shipped(name: str) -> str:
-    """A shipped set as it is written, with its comments."""
-    place = files("thermicon.icons") / "library" / f"{name}.cue"
-    return place.read_text(encoding="utf-8") if place.is_file() else str(load_library(name))
 
 
 def style_text() -> str:

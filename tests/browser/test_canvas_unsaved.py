@@ -1,4 +1,4 @@
-"""Text outlives its kernel: what a bench that is made anew offers, in a static page."""
+"""Text outlives its kernel: what a bench that is made anew hands to the next one, in a static page."""
 
 from __future__ import annotations
 
@@ -29,84 +29,48 @@ def append(bench: Bench, text: str) -> None:
     bench.page.keyboard.type(text)
 
 
-def offered(bench: Bench) -> bool:
-    return bool(bench.page.locator(".tm-unsaved").is_visible())
+def left(bench: Bench) -> list[str]:
+    """What the page handed to the kernel that was there before it."""
+    return [message["text"] for message in bench.sent("left")]
 
 
-def text_of(bench: Bench) -> str:
-    return bench.text
-
-
-def test_a_new_model_offers_the_text_and_takes_it_back(edited: Bench) -> None:
-    assert not offered(edited)
+def test_a_new_model_is_told_the_text_and_that_is_said(edited: Bench) -> None:
+    assert left(edited) == []
     edited.again("two")
-    assert offered(edited)
-    assert edited.page.locator(".tm-unsaved span").inner_text() == "An earlier text was saved:"
+    assert left(edited) == [TEXT + "# mine"]
     edited.said(OFFER)
-    assert text_of(edited) == TEXT
+    assert edited.text == TEXT
     assert edited.sent("text") == []
-    edited.page.locator(".tm-badge-button").focus()
-    edited.page.keyboard.press("Tab")
-    edited.page.keyboard.press("Enter")
-    assert [message["text"] for message in edited.sent("text")] == [TEXT + "# mine"]
-    assert text_of(edited) == TEXT + "# mine"
-    assert not offered(edited)
-    assert "cm-content" in edited.page.evaluate("document.activeElement.className")
-    edited.said("The earlier text is back in the editor.")
+    edited.again("three")
+    assert left(edited) == [], "the kernel has it"
 
 
-def test_the_same_model_offers_nothing_and_goes_on_in_its_place(edited: Bench) -> None:
+def test_the_same_model_is_told_nothing_and_goes_on_in_its_place(edited: Bench) -> None:
     edited.again("one", text=TEXT + "# mine")
-    assert not offered(edited)
+    assert left(edited) == []
     append(edited, "!")
     edited.again("one", text=TEXT)
-    assert not offered(edited), "the kernel knows better"
+    assert left(edited) == [], "the kernel knows better"
     edited.again("two")
-    edited.page.get_by_role("button", name="Restore it").click()
-    assert text_of(edited) == TEXT + "# mine!"
-
-
-def test_what_is_forgotten_is_not_offered_again(edited: Bench) -> None:
-    edited.again("two")
-    edited.again("two")
-    assert offered(edited), "as long as nothing is decided"
-    edited.page.get_by_role("button", name="Discard").click()
-    assert not offered(edited)
-    assert text_of(edited) == TEXT
-    edited.said("The earlier text was discarded.")
-    edited.again("three")
-    assert not offered(edited)
+    assert left(edited) == [TEXT + "# mine!"]
 
 
 def test_a_newer_edit_takes_the_place_of_the_kept_text(edited: Bench) -> None:
     edited.again("two")
     append(edited, "# newer")
-    assert not offered(edited)
     edited.again("three")
-    edited.page.get_by_role("button", name="Restore it").click()
-    assert text_of(edited) == TEXT + "# newer"
+    assert left(edited) == [TEXT + "# newer"]
 
 
 def test_texts_of_the_kernel_are_kept_and_another_source_finds_nothing(edited: Bench) -> None:
     edited.answer()
     edited.frame(design(seq=edited.sent()[-1]["seq"], text=TEXT + "# dragged"))
     edited.again("two", text="cue 1\n")
-    assert not offered(edited)
+    assert left(edited) == []
     edited.again("three", text=TEXT + "# dragged")
-    assert not offered(edited)
+    assert left(edited) == []
     edited.again("four")
-    edited.page.get_by_role("button", name="Restore it").click()
-    assert text_of(edited) == TEXT + "# dragged"
-
-
-def test_two_views_of_one_model_decide_once(edited: Bench) -> None:
-    edited.again("two")
-    edited.show(key="two")
-    edited.frame(design())
-    bars = edited.page.locator(".tm-unsaved:visible")
-    assert bars.count() == 2
-    bars.nth(1).get_by_role("button", name="Discard").click()
-    assert bars.count() == 0
+    assert left(edited) == [TEXT + "# dragged"]
 
 
 def test_the_text_can_be_copied_while_there_is_no_answer(edited: Bench) -> None:
@@ -118,7 +82,7 @@ def test_the_text_can_be_copied_while_there_is_no_answer(edited: Bench) -> None:
     edited.said("Text copied")
     page.locator(".cm-content").press("Control+a")
     page.keyboard.press("Control+v")
-    assert text_of(edited) == TEXT + "# mine"
+    assert edited.text == TEXT + "# mine"
     edited.answer()
     assert page.locator(".tm-banner").is_hidden()
 

@@ -23,7 +23,7 @@ from thermicon.circuit.safety.sessionplan import read_order
 from thermicon.circuit.solver.drive import DriveError, read_drive
 from thermicon.icons import CueErrors, load_library, parse, read_cue
 from thermicon.icons.recordings.readings import read_readings
-from thermicon.notebooks.files.cue_document import open_document
+from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.files.trace_files import read_curves
 from thermicon.notebooks.study.study_file import study_text
 from thermicon.perception.observer.observer import Observer
@@ -124,7 +124,7 @@ VALUES = "participant,kind,method,channel,value,unit\nP1,threshold,limits,cold,1
 CUE = "cue 1 # a comment\nicon dip { cool by 3 °C at 2 °C/s # another\n  hold for 1 s }\n"
 READERS: dict[str, tuple[str, str, Callable[[Path], object]]] = {
     "cue": ("a.cue", CUE, read_cue),
-    "cue in an editor": ("a.cue", CUE, lambda path: parse(open_document(path).text, "a.cue")),
+    "cue in an editor": ("a.cue", CUE, lambda path: parse(Document.open(path).text, "a.cue")),
     "rig": ("a.toml", shipped("thermicon.circuit", "rigs/thenar.toml"), Rig.load),
     "device": ("a.toml", shipped("thermicon.circuit", "devices/dac-12.toml"), Device.load),
     "observer": ("a.toml", shipped("thermicon.perception", "data/observer.toml"), Observer.load),

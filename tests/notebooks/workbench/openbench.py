@@ -6,22 +6,22 @@ import re
 from pathlib import Path
 
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.workbench.project_bar import ProjectBar
+from thermicon.notebooks.workbench.document_bar import DocumentBar
 
 TEXT = "cue 1\n\nicon a { cool by 3 K at 2 K/s; return at 2 K/s }\n\nicon b { hold for 1 s }\n"
 TYPED = TEXT.replace("3 K", "4 K")
 
 
-def opened(path: Path | str | None) -> tuple[Workbench, ProjectBar]:
+def opened(path: Path | str | None) -> tuple[Workbench, DocumentBar]:
     bench = Workbench(path)
     assert bench.page is not None
     assert bench.bar is not None
     return bench, bench.bar
 
 
-def said(bar: ProjectBar) -> str:
+def said(bar: DocumentBar) -> str:
     return re.sub(r"<[^>]*>", "", bar.said.value)
 
 
-def title(bar: ProjectBar) -> str:
+def title(bar: DocumentBar) -> str:
     return re.sub(r"<[^>]*>", "", bar.title.value)

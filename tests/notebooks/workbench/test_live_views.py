@@ -1,25 +1,20 @@
-"""Views through undo, errors, and rigs that cannot be judged: they show what was asked for last."""
+"""Views through undo and errors: they show what was asked for last."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from html import unescape
 from pathlib import Path
 from threading import Event
-from typing import Any
 
 import ipywidgets as widgets
 import pytest
 
 from thermicon.circuit import Rig
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.workbench import versions_view
 from thermicon.notebooks.workbench.background import Job
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import LiveView
-from thermicon.notebooks.workbench.versions_model import Version
-from thermicon.notebooks.workbench.versions_view import VersionsView
 from thermicon.perception.observer.observer import DATA
 
 TEXT = (
@@ -27,14 +22,12 @@ TEXT = (
     "icon near { warm by 4 °C at 2 °C/s; return at 2 °C/s }\n"
     "icon far { cool by 4 °C at 2 °C/s; return at 2 °C/s }\n"
 )
-EDITED = TEXT.replace("cool by 4", "cool by 3")
 
 
 @pytest.fixture(autouse=True)
 def few_people(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
     """Numbers are not what is tested here, so a few people do."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("thermicon.notebooks.workbench.versions_model.PEOPLE", 6)
     monkeypatch.setattr("thermicon.notebooks.workbench.set_view.WELL", (6, 0))
     yield
 
@@ -54,9 +47,6 @@ class Lengths(LiveView[str]):
 
     def _request(self) -> str:
         return self.design.text
-
-    def _has_result(self) -> bool:
-        return self.shown_text is not None
 
     def _obstacle(self, request: str) -> str | None:
         return "refused" if "# refuse" in request else None
@@ -112,68 +102,11 @@ def test_undo_to_a_request_that_failed_ends_the_work_on_the_one_after_it() -> No
     assert view.shown_text is None
 
 
-def opened(text: str = TEXT, **more: Any) -> tuple[Workbench, VersionsView]:
-    bench = Workbench(text, **more)
-    assert bench.page is not None
-    assert bench.versions_view is not None
-    bench.tabs.selected_index = 3
-    return bench, bench.versions_view
-
-
-def said(view: Any, name: str) -> str:
-    return re.sub(r"\s+", " ", unescape(re.sub(r"<[^>]*>", " ", str(view.said[name].value)))).strip()
-
-
-def test_versions_undone_before_they_are_ranked_leave_no_curves_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    bench, view = opened()
-    view.keep.click()
-    assert view.worker.wait()
-    assert said(view, "changes") == "A and B are the same"
-    drawn, go, rank = Event(), Event(), versions_view.rank_versions
-
-    def late(*given: Any) -> Any:
-        drawn.set()
-        assert go.wait(20)
-        return rank(*given)
-
-    monkeypatch.setattr(versions_view, "rank_versions", late)
-    bench.text = EDITED
-    assert drawn.wait(20)
-    assert "cool by 3" in said(view, "changes")
-    assert bench.bar is not None
-    bench.bar.buttons["Undo"].click()
-    go.set()
-    assert view.worker.wait()
-    assert said(view, "changes") == "A and B are the same"
-    assert said(view, "status") == "predicted for the same 6 people"
-    view.renew()
-    assert said(view, "status") == "predicted for the same 6 people"
-
-
-def test_a_version_on_a_rig_that_cannot_be_judged_is_said_and_the_other_is_shown() -> None:
-    bench, view = opened()
-    view.keep.click()
-    assert bench.design_view is not None
-    bench.design_view.take_rig(Rig.load("thenar").with_(**{"load.film_W_per_m2K": 10.0}))
-    assert view.worker.wait()
-    assert "B is not ranked: rig thenar: the display touches air in place of skin" in said(view, "results")
-    assert view.curves._newest is not None
-    meta = view.curves._newest[0]
-    assert [series["label"] for series in meta["panels"][0]["series"]] == ["A"]
-    assert meta["notes"][0].startswith("B is not drawn: rig thenar: the display touches air")
-
-
-def test_a_version_of_another_release_says_which_knob_is_unknown() -> None:
-    _, view = opened()
-    kept = view.now.to_kept().model_copy(update={"values": {"humidity": 0.5}})
-    with pytest.raises(ValueError, match=r"^version A cannot be restored: no knob is called humidity; there are"):
-        Version.of_kept(kept)
-
-
 def test_a_goal_that_an_observer_cannot_judge_says_what_it_needs(tmp_path: Path) -> None:
     file = tmp_path / "lab.toml"
     file.write_bytes((DATA / "observer.toml").read_bytes())
-    bench, _ = opened(observer=file, goal="correct >= 50 % for 95 % of people")
+    bench = Workbench(TEXT, observer=file, goal="correct >= 50 % for 95 % of people")
+    assert bench.page is not None
     view = bench.set_view
     assert view is not None
     bench.tabs.selected_index = 1
@@ -186,7 +119,8 @@ def test_a_goal_that_an_observer_cannot_judge_says_what_it_needs(tmp_path: Path)
 
 
 def test_chosen_icons_that_cannot_be_kept_can_still_be_kept_after_a_mend() -> None:
-    bench, _ = opened(TEXT + "icon third { warm by 2 °C at 2 °C/s; return at 2 °C/s }\n")
+    bench = Workbench(TEXT + "icon third { warm by 2 °C at 2 °C/s; return at 2 °C/s }\n")
+    assert bench.page is not None
     view = bench.set_view
     assert view is not None
     bench.tabs.selected_index = 1
@@ -196,5 +130,5 @@ def test_chosen_icons_that_cannot_be_kept_can_still_be_kept_after_a_mend() -> No
     assert view.take.layout.display == ""
     bench.text += "icon"
     view.take.click()
-    assert "the text has errors: mend them first" in said(view, "status")
+    assert "the text has errors: mend them first" in view.said["status"].value
     assert view.take.layout.display == ""

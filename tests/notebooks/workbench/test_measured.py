@@ -9,14 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.notebooks.workbench.openbench import said
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
+from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.files.start_folder import VARIABLE
 from thermicon.notebooks.timeline.measured import read_measured, read_uploaded
+from thermicon.notebooks.workbench.document_bar import DocumentBar
 from thermicon.notebooks.workbench.log_panel import LogPanel
-from thermicon.notebooks.workbench.project_bar import ProjectBar
 
 TEXT = "cue 1\nicon dip { cool by 4 K at 2 K/s; hold for 2 s; return at 2 K/s }\nicon none { hold for 9 s }\n"
 LATE_S, HIGHER_K = 1.5, 0.2
@@ -33,16 +35,12 @@ def log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
-def opened() -> tuple[Workbench, ProjectBar, LogPanel]:
+def opened() -> tuple[Workbench, DocumentBar, LogPanel]:
     bench = Workbench(TEXT)
     assert bench.page is not None
     assert bench.bar is not None
     bench.bar.buttons["Log"].click()
     return bench, bench.bar, bench.bar.log
-
-
-def said(bar: ProjectBar) -> str:
-    return re.sub(r"<[^>]*>", "", bar.said.value)
 
 
 def test_a_log_is_aligned_and_drawn_over_display_and_skin_with_its_misses(log: Path) -> None:
@@ -143,7 +141,7 @@ def test_another_file_aligns_the_log_anew_and_one_that_does_not_fit_is_said(log:
     bench, _, panel = opened()
     panel.path.value = log.name
     panel.load.click()
-    bench._design.open_text(TEXT.replace("icon dip {", "icon dip { hold for 1 s;"))
+    bench._design.open(Document(TEXT.replace("icon dip {", "icon dip { hold for 1 s;")))
     assert panel.shift.value == pytest.approx(LATE_S + 1.0, abs=0.02)
     columns = np.loadtxt(log, delimiter=",", skiprows=1)
     current = log.with_name("current.csv")

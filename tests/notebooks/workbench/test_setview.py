@@ -11,8 +11,8 @@ import pytest
 from tests.owndraws import few_draws
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.notebooks.editing.apply_edit import CannotApply, with_edit
-from thermicon.notebooks.editing.icon_edits import only
+from thermicon.notebooks.editing.apply_edit import with_edit
+from thermicon.notebooks.editing.icon_edits import CannotEdit, only
 from thermicon.notebooks.report.rank_text import number_lines
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
@@ -299,13 +299,13 @@ def test_a_repeat_is_put_around_what_moves(name: str) -> None:
 def test_an_edit_that_does_not_fit_is_refused_with_what_to_do() -> None:
     icon = parse(TWO)["near"]
     edited = with_number(icon, numbers_of(icon, 32.0)[0], 4.3)
-    with pytest.raises(CannotApply, match="no icon is called near now; change it by hand: in near, old → new"):
+    with pytest.raises(CannotEdit, match="no icon is called near now; change it by hand: in near, old → new"):
         with_edit(TWO.replace("near {", "other {", 1), edited, "old", "new")
-    with pytest.raises(CannotApply, match="the text has changed"):
+    with pytest.raises(CannotEdit, match="the text has changed"):
         with_edit(TWO.replace("hold for 2 s", "hold for 3 s"), edited, "old", "new")
     family = "cue 1; icon r(a in [3, 4] °C) { cool by a at 2 °C/s; return at 2 °C/s }"
     member = next(iter(parse(family)))
-    with pytest.raises(CannotApply, match="written by the family r"):
+    with pytest.raises(CannotEdit, match="written by the family r"):
         with_edit(family, member, "old", "new")
 
 

@@ -16,8 +16,9 @@ from thermicon.circuit import Rig
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import CueErrors, load_library, parse
 from thermicon.notebooks import Workbench
+from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.workbench.design_model import DesignModel
-from thermicon.notebooks.workbench.workbench import text_of
+from thermicon.notebooks.workbench.sources import document_of
 
 DIP = """cue 1
 
@@ -97,6 +98,12 @@ def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send)
     assert bench.percept.channel == "cold"
 
 
+def test_a_page_that_is_opened_later_gets_the_text_as_it_is(bench: Workbench, send: Send) -> None:
+    typed = DIP.replace("4 °C", "5 °C")
+    send(type="text", text=typed)
+    assert send(type="hello")["text"] == typed
+
+
 def test_an_error_is_named_under_its_line_and_the_drawing_stays(bench: Workbench, send: Send) -> None:
     answer = send(type="text", text=DIP.replace("by 4 °C", "by 4"))
     assert answer["stale"]
@@ -133,7 +140,7 @@ def test_a_drag_that_cannot_be_says_why_and_leaves_the_text(bench: Workbench, se
 def test_a_drag_that_was_cut_off_does_not_bring_the_text_of_another_file_back() -> None:
     model = DesignModel(DIP, Rig.load("thenar"))
     model.receive({"type": "drag", "handle": 0, "t": 2.0, "y": 28.0})
-    model.open_text(DIP.replace("# deep", "# of another file"))
+    model.open(Document(DIP.replace("# deep", "# of another file")))
     model.receive({"type": "drag", "handle": 0, "t": 2.0, "y": 28.0, "end": True})
     assert "# of another file" in model.text
 
@@ -211,7 +218,7 @@ def test_python_sets_the_text_as_one_step(bench: Workbench, send: Send) -> None:
 
 
 def test_nothing_in_the_kernel_takes_long_for_a_frame() -> None:
-    design = DesignModel(text_of(None), Rig.load("thenar"))
+    design = DesignModel(document_of(None).text, Rig.load("thenar"))
     spent = []
     for step in range(60):
         text = design.text.replace("cool by 6 °C at 1", f"cool by {5 + step / 60:.3f} °C at 1")

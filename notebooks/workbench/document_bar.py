@@ -2,34 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
+from thermicon.icons.files.shipped import library_names
+
+from ..editing.icon_edits import with_copy, with_name, with_new, without
+from ..files.document import Document
 from ..files.outputs import OutputError
 from ..report.blocks import fragment
 from .help_sheet import help_html
 from .log_panel import LogPanel
-from .project import SHIPPED, Project
+from .sources import document_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
-    from ..files.kept_draft import KeptVersion
+    from ..files.versions import Version
     from .design_view import DesignView
 
-MOST_RIGS = 50
+MOST_FILES, MOST_RIGS = 200, 50
+SHIPPED = "shipped: "
+"""What stands before the name of a shipped set in the list of what can be opened."""
 ICON_VERBS = ("New icon", "Duplicate", "Rename", "Delete")
 
 
-class ProjectBar:
-    """Widgets of one ``Project``: ``box`` is the bar with the panel that its buttons open below it."""
+class DocumentBar:
+    """What can be done with the document of a design view; ``box`` is the bar with the panel that its buttons open."""
 
-    def __init__(self, project: Project, view: DesignView) -> None:
-        self.project, self.view = project, view
-        self.take_version: Callable[[KeptVersion], None] = lambda kept: None
+    def __init__(self, view: DesignView) -> None:
+        self.view, self.design = view, view.design
         self._quiet = False
         self._rigs: dict[str, Rig] = {}
         self.title, self.said = widgets.HTML(), widgets.HTML()
@@ -52,37 +57,43 @@ class ProjectBar:
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
         self._panels = {"open": self._open_panel(), "save": self._save_panel(), "icon": self._icon_panel()}
-        self.log = LogPanel(view, project.place, self._safely, self.say)
+        self.log = LogPanel(view, lambda name: self.document.place(name), self._safely, self.say)
         self._panels["log"] = self.log.box
         self.links = widgets.HTML()
         self._panels["download"] = self.links
         self._panels["help"] = widgets.VBox([widgets.HTML(help_html())])
         self.panel = widgets.VBox([]).add_class("thermicon-panel")
         self.shown: str | None = None
+        self.offered_text: Version | None = None
         self.offer = self._offer_panel()
         buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Icon", "Log")]
         rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
         self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
-        project.design.on_change(self.renew)
+        self.design.on_change(self.renew)
         self.renew()
         self.beside(design=True)
         self._show_offer()
 
+    @property
+    def document(self) -> Document:
+        """What is in the editor."""
+        return self.design.document
+
     def renew(self) -> None:
-        """Say anew what the project is, and what may cost somebody their text."""
-        project, history = self.project, self.project.design.history
+        """Say anew what the document is, and what may cost somebody their text."""
+        document, history = self.document, self.document.history
         if self.shown == "download":
             self._open(None)  # its links hold the text, the rig and the picture as they were
         elif self.shown == "icon":
             self._about()
         elif self.shown == "log":
             self.log.renew()
-        kind = "th-caution" if project.dirty else ""
-        self._set(self.title, fragment("marked", project.title, f"thermicon-file {kind}".strip()))
+        kind = "th-caution" if document.dirty else ""
+        self._set(self.title, fragment("marked", document.title, f"thermicon-file {kind}".strip()))
         self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.can_undo, not history.can_redo
-        self.buttons["Save"].disabled = not project.dirty and project.document is not None
-        self.say(project.warning(), "th-caution")
+        self.buttons["Save"].disabled = not document.dirty and document.path is not None
+        self.say(document.warning(), "th-caution")
 
     def say(self, text: str, kind: str = "th-good") -> None:
         """Show a sentence below the bar; none hides the line."""
@@ -91,64 +102,62 @@ class ProjectBar:
 
     def save(self) -> None:
         """Save to the file, or ask for a name where there is none."""
-        if self.project.document is None:
+        if self.document.path is None:
             self._open("save")
             return
-        path = self.project.save()
-        self._after(f"saved {path.name}")
+        self._after(f"saved {self.document.save().name}")
 
     def beside(self, design: bool) -> None:
         """Show undo and redo here where the design view, which has its own, is not shown."""
         for name in ("Undo", "Redo"):
             self.buttons[name].layout.display = "none" if design else ""
 
-    def saved_by_key(self) -> None:
+    def saved_by_key(self, message: Mapping[str, Any]) -> None:
         """Ctrl+S in text or time line: where there is no file, the notebook's own saving is enough."""
-        if self.project.document is not None:
+        if self.document.path is not None:
             self._safely(self.save)
 
-    def hide_offer(self) -> None:
-        """The page itself offers a newer text."""
-        self.offer.layout.display = "none"
-
-    def decided(self) -> None:
-        """The page's own offer was decided on; the text that the kernel kept is older."""
-        self.project.discard_texts()
+    def take_left(self, message: Mapping[str, Any]) -> None:
+        """Offer what the page kept of a kernel that is gone."""
+        self.document.left(str(message["text"]))
         self._show_offer()
 
-    def take_rig(self, name: str) -> None:
+    def discard(self) -> None:
+        """Drop the text that is offered; others stand among the versions."""
+        if self.offered_text is not None:
+            self.document.versions.drop(self.offered_text)
+        self.offered_text = None
+        self.offer.layout.display = "none"
+
+    def _take_rig(self, name: str) -> None:
         """Show the icons on a rig that was shown before, or load it by name or path."""
         from thermicon.circuit import Rig
 
-        rig = self._rigs.get(name)
-        self.view.take_rig(Rig.load(name) if rig is None else rig)
+        if self._quiet:
+            return
+        try:
+            path = str(self.document.folder / name) if name.endswith(".toml") else name
+            self.view.take_rig(self._rigs.get(name) or Rig.load(path))
+        except Exception:
+            self._show_rig()  # the list goes back to the rig that is still used
+            raise
+        self.say("")
 
-    def show_rig(self) -> None:
-        """Show which rig is used, after something else than this bar chose it."""
+    def _show_rig(self) -> None:
+        """Show which rig is used, and which rigs there are."""
         self._quiet = True
         try:
             self._offer_rigs()
         finally:
             self._quiet = False
 
-    def _take_rig(self, name: str) -> None:
-        if self._quiet:
-            return
-        path = self.project.folder / name
-        try:
-            self.take_rig(str(path) if name.endswith(".toml") else name)
-        except Exception:
-            self.show_rig()  # the list goes back to the rig that is still used
-            raise
-        self.say("")
-
     def _offer_rigs(self) -> None:
         from thermicon.circuit.rig.rig import rig_names
 
-        nominal = self.project.design.nominal
+        nominal = self.design.nominal
         if nominal.name not in rig_names():
             self._rigs[nominal.name] = nominal  # it may lie in another folder, so it is not loaded by its name
-        files = self.project.files("*.toml")[:MOST_RIGS]
+        files = self._files("*.toml")[:MOST_RIGS]
         self.rig.options = list(dict.fromkeys([nominal.name, *self._rigs, *rig_names(), *files]))
         self.rig.value = nominal.name
 
@@ -182,47 +191,28 @@ class ProjectBar:
     def _offer_panel(self) -> widgets.Box:
         self.offered = widgets.HTML()
         yes = self._button("Restore it", "as a step that can be undone", self._restore)
-        no = self._button("Discard", "drop what was not saved", self._discard)
+        no = self._button("Discard", "drop what was not saved", self.discard)
         return widgets.Box([self.offered, yes, no]).add_class("thermicon-offer")
 
     def _show_offer(self) -> None:
-        offers = self.project.offers
-        self.offer.layout.display = "" if offers else "none"
-        if offers:
-            who = " in another workbench that is still open" if offers[0].alive else ""
-            self._set(self.offered, fragment("marked", f"{self._offered_words()} {offers[0].age}{who}:", ""))
-
-    def _offered_words(self) -> str:
-        """What is offered, and that it was typed or kept."""
-        offers, name = self.project.offers, self.project.name
-        text = any(each.text is not None for each in offers)
-        if not any(each.version for each in offers):
-            return f"Unsaved text of {name} was typed"
-        return f"Unsaved text of {name} and a version A were kept" if text else f"A version A of {name} was kept"
+        self.offered_text = found = self.document.offer
+        self.offer.layout.display = "none" if found is None else ""
+        if found is not None:
+            words = f"Unsaved text of {self.document.name} was typed {found.age}:"
+            self._set(self.offered, fragment("marked", words, ""))
 
     def _restore(self) -> None:
-        text = any(each.text is not None for each in self.project.offers)
-        version = self.project.restore()
-        self._show_offer()
-        said = ["the unsaved text is in the editor; Undo takes it back out"] * text
-        if version is not None:
-            try:
-                self.take_version(version)
-                said.append("version A is in the Versions view again")
-            except ValueError as wrong:
-                said.append(str(wrong))
-        self._after("; ".join(said))
-
-    def _discard(self) -> None:
-        self.project.discard()
-        self._show_offer()
+        if (found := self.offered_text) is not None:
+            self.design.show_text(found.text, found.icon)
+            self.discard()
+            self._after("the unsaved text is in the editor; Undo takes it back out")
 
     def _preview(self, name: str | None) -> None:
         """What a shipped set holds, or where a file is."""
         if not name:
             return
         if not name.startswith(SHIPPED):
-            self._set(self.preview, fragment("block", str(self.project.folder / name), "th-soft"))
+            self._set(self.preview, fragment("block", str(self.document.folder / name), "th-soft"))
             return
         from thermicon.icons import load_library
 
@@ -237,29 +227,36 @@ class ProjectBar:
         source = self.path.value.strip() or self.files.value
         if not source:
             raise OutputError("select what is to be opened, or type its path")
-        self.project.open(source)
+        self.document.leave()
+        if source.startswith(SHIPPED):
+            self.design.open(document_of(source.removeprefix(SHIPPED), self.document.keeps))
+        else:
+            self.design.open(Document.open(self.document.place(source), self.document.keeps))
         self.path.value = self.name.value = ""
-        self.show_rig()
+        self._show_rig()
         self._show_offer()
         self._after("")
 
     def _save_as(self) -> None:
-        path = self.project.save_as(self.name.value, self.overwrite.value)
+        if not (wanted := self.name.value.strip()):
+            raise OutputError("give the name of a file, such as alerts.cue")
+        place = self.document.place(wanted if Path(wanted).suffix else f"{wanted}.cue")
+        path = self.document.save_as(place, self.overwrite.value)
         self.overwrite.value = False
         self._after(f"saved {path}")
 
     def _icon(self, verb: str) -> None:
-        project, shown = self.project, self.project.design.scene.icon
+        text, shown, show = self.design.text, self.design.scene.icon, self.design.show_text
         if verb == "New icon":
-            project.new_icon()
+            show(*with_new(text))
         elif shown is None:
             raise ValueError("there is no icon to change yet")
         elif verb == "Duplicate":
-            project.duplicate(shown)
+            show(*with_copy(text, shown))
         elif verb == "Delete":
-            project.delete(shown)
+            show(without(text, shown))
         else:
-            project.rename(shown, self.icon_name.value)
+            show(with_name(text, shown, self.icon_name.value), self.icon_name.value.strip())
         self.view.refresh()
         self.renew()
         self._about()
@@ -273,7 +270,7 @@ class ProjectBar:
         self._open(None)
         self.view.refresh()
         self.renew()
-        if said and not self.project.warning():
+        if said and not self.document.warning():
             self.say(said)
 
     def _toggle(self, name: str) -> None:
@@ -282,10 +279,10 @@ class ProjectBar:
     def _open(self, name: str | None) -> None:
         self.shown = name
         if name == "open":
-            self.files.options = self.project.openable()
+            self.files.options = [*self._files("*.cue")[:MOST_FILES], *(f"{SHIPPED}{name}" for name in library_names())]
             self._preview(self.files.value)
         elif name == "save" and not self.name.value:
-            self.name.value = self.project.name if self.project.name.endswith(".cue") else f"{self.project.name}.cue"
+            self.name.value = f"{self.document.name.removesuffix('.cue')}.cue"
         elif name == "icon":
             self._about()
         elif name == "log":
@@ -299,16 +296,23 @@ class ProjectBar:
         from .downloads import figure_files, link, rig_text
         from .scene_plot import scene_figure
 
-        design = self.project.design
-        stem = Path(self.project.name).stem
+        design = self.design
+        stem = Path(self.document.name).stem
         files = {f"{stem}.cue": design.text.encode(), f"{design.rig.name}.toml": rig_text(design.rig).encode()}
         if design.scene.drawing is not None:
             files |= figure_files(f"{design.scene.icon}-on-{design.rig.name}", scene_figure(design.scene))
         self._set(self.links, " · ".join(link(name, data) for name, data in files.items()))
 
     def _about(self) -> None:
-        icon = self.project.design.scene.icon
+        icon = self.design.scene.icon
         self._set(self.about, fragment("marked", icon or "no icon", "th-head"))
+
+    def _files(self, pattern: str) -> list[str]:
+        """Names of files of the folder, without hidden ones; none of a folder that a page may not look into."""
+        try:
+            return sorted(path.name for path in self.document.folder.glob(pattern) if not path.name.startswith("."))
+        except (OSError, OutputError):
+            return []
 
     def _button(self, name: str, hint: str, act: Callable[[], None]) -> widgets.Button:
         made = widgets.Button(description=name, tooltip=hint, layout={"width": "auto"})

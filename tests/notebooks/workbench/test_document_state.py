@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import re
-import time
 from base64 import b64decode
 from pathlib import Path
 
 import pytest
 
-from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
+from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said
 from thermicon.circuit import Rig
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.outputs import OutputError
@@ -56,17 +54,6 @@ def test_a_site_of_a_rig_file_is_shown_as_text(path: Path) -> None:
     assert "site · rig &lt;b&gt;palm&lt;/b&gt;" in bench.design_view._labels["site"].value
 
 
-def test_a_file_with_the_line_ends_of_windows_is_as_saved(path: Path) -> None:
-    data = TEXT.replace("\n", "\r\n").encode()
-    path.write_bytes(data)
-    bench, bar = opened(path)
-    assert bench.text == TEXT
-    assert title(bar) == "alerts.cue"
-    bench.text = TYPED
-    bar.buttons["Save"].click()
-    assert path.read_bytes() == data.replace(b"3 K", b"4 K")
-
-
 def test_a_file_that_was_removed_is_said_with_what_to_do(path: Path) -> None:
     bench, bar = opened(path)
     path.unlink()
@@ -83,7 +70,7 @@ def test_only_a_refusal_that_was_read_lets_save_write_over_a_changed_file(
     bench, bar = opened(path)
     bench.text = TYPED
     with monkeypatch.context() as full:
-        full.setattr("thermicon.notebooks.files.cue_document._written", refuse)
+        full.setattr("thermicon.notebooks.files.document.Document._write", refuse)
         bar.buttons["Save"].click()
     assert said(bar) == "the disk is full"
     path.write_text("cue 1 # of another window\n", encoding="utf-8")
@@ -128,27 +115,30 @@ def test_open_panels_follow_the_text_and_the_icon_that_is_shown(path: Path) -> N
     assert b64decode(data[1]).decode() == TYPED
 
 
-def test_restoring_leaves_another_text_of_a_running_editor_with_it(path: Path) -> None:
-    drafts = [path.with_name(f".alerts.cue.{os.getppid()}-{k}.unsaved") for k in range(2)]  # a process that runs
-    for age_s, draft, text in zip((0, 60), drafts, (TYPED, TEXT + "# other\n"), strict=True):
-        first, _ = opened(path)
-        first.text = text
-        next(path.parent.glob(f".alerts.cue.{os.getpid()}-*")).rename(draft)
-        os.utime(draft, (time.time() - age_s,) * 2)
-    second, bar = opened(path)
-    assert "in another workbench that is still open" in bar.offered.value
+def test_restoring_leaves_another_text_that_is_unsaved_among_the_versions(path: Path) -> None:
+    first, second = opened(path)[0], opened(path)[0]
+    second.text = TEXT + "# other\n"
+    first.text = TYPED
+    third, bar = opened(path)
     bar._safely(bar._restore)
-    assert second.text == TYPED
-    assert [draft.exists() for draft in drafts] == [False, True]
+    assert third.text == TYPED
+    assert [each.text for each in third.document.versions.others] == [TEXT + "# other\n"]
+    assert bar.offer.layout.display == "none"
+    assert "# other" in opened(path)[0].document.versions.others[0].text
 
 
-def test_version_a_stays_kept_when_its_file_is_opened_again(path: Path) -> None:
+def test_opening_another_file_leaves_unsaved_text_and_versions_with_the_one_before(path: Path) -> None:
     bench, bar = opened(path)
-    assert bench.versions_view is not None
-    bench.versions_view.keep_now()
+    kept = bench.document.keep()
+    bench.text = TYPED
+    bar.path.value = "shipped: six-icons"
+    bar._safely(bar._open_selected)
+    assert bench.document.versions.others == ()
     bar.path.value = "alerts.cue"
     bar._safely(bar._open_selected)
-    assert len(list(path.parent.glob(".alerts.cue.*"))) == 1
+    assert bench.text == TEXT
+    assert bar.offer.layout.display == ""
+    assert kept in bench.document.versions.others
 
 
 def test_a_page_whose_file_is_a_link_out_of_its_folder_still_starts(

@@ -1,9 +1,8 @@
-"""The life of a project in the workbench, without a browser: files, icons, rigs, unsaved text, and what goes wrong."""
+"""The life of a document in the workbench, without a browser: files, icons, rigs, unsaved text, and what goes wrong."""
 
 from __future__ import annotations
 
 import re
-import time
 from base64 import b64decode
 from pathlib import Path
 
@@ -11,11 +10,7 @@ import pytest
 
 from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.circuit import Rig
-from thermicon.notebooks import Workbench
-from thermicon.notebooks.files.autosave import EVERY_S
 from thermicon.notebooks.files.start_folder import FILE, RIG, VARIABLE
-from thermicon.notebooks.workbench.versions_model import Version
-from thermicon.perception.observer.observer import DATA
 
 
 def test_text_goes_back_to_the_file_it_came_from(path: Path) -> None:
@@ -111,6 +106,7 @@ def test_unsaved_text_is_offered_when_the_file_is_opened_again(path: Path) -> No
     bar._safely(bar._restore)
     assert second.text == TYPED
     assert bar.offer.layout.display == "none"
+    assert "the unsaved text is in the editor" in said(bar)
     bar.buttons["Undo"].click()
     assert second.text == TEXT
 
@@ -121,7 +117,7 @@ def test_unsaved_text_is_dropped_only_on_request(path: Path) -> None:
     for _ in range(2):
         _, bar = opened(path)
         assert bar.offer.layout.display == ""
-    bar._safely(bar._discard)
+    bar._safely(bar.discard)
     assert opened(path)[1].offer.layout.display == "none"
 
 
@@ -171,81 +167,6 @@ def test_a_page_opens_and_saves_only_below_its_folder(path: Path, monkeypatch: p
     assert "is outside the folder of this page" in said(bar)
 
 
-def test_version_a_is_offered_with_unsaved_text_its_rig_and_knobs(path: Path) -> None:
-    first, _ = opened(path)
-    assert first.versions_view is not None
-    assert first.design_view is not None
-    first.design_view.take_rig(Rig.load("fingertip").with_(**{"contact.area_cm2": 1.2}))
-    first.design_view._turned("age", 65.0)
-    first.versions_view.keep.click()
-    kept = first.versions_view.kept
-    first.design_view.take_rig(Rig.load("thenar"))
-    first.text = TYPED
-    time.sleep(EVERY_S + 0.3)
-    second, bar = opened(path)
-    assert second.versions_view is not None
-    assert "Unsaved text of alerts.cue and a version A were kept a moment ago" in bar.offered.value
-    bar._safely(bar._restore)
-    assert second.text == TYPED
-    assert second.rig.name == "thenar"
-    assert second.versions_view.kept == kept
-    assert kept is not None
-    assert (kept.text, kept.rig.name, kept.values) == (TEXT, "fingertip", {"age": 65.0})
-    assert second.versions_view.kept.rig_words == "fingertip, contact.area_cm2=1.2"
-    assert "version A is in the Versions view again" in said(bar)
-    assert not second.versions_view.swap.disabled
-
-
-def test_a_restored_version_is_predicted_by_the_observer_of_its_workbench(path: Path) -> None:
-    file = path.with_name("lab.toml")
-    file.write_text((DATA / "observer.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    bench = Workbench(path, observer=file)
-    assert bench.page is not None
-    assert bench.versions_view is not None
-    kept = bench.versions_view.now.to_kept()
-    restored = Version.of_kept(kept, bench.versions_view.now.model)
-    assert restored == bench.versions_view.now
-    assert restored.model is not None
-    assert restored.model.name == "lab.toml"
-
-
-def test_version_a_alone_is_offered_until_it_is_dropped(path: Path) -> None:
-    first, bar = opened(path)
-    assert first.versions_view is not None
-    first.versions_view.keep_now()
-    first.text = TYPED
-    bar.save()
-    again, bar = opened(path)
-    assert again.text == TYPED
-    assert "A version A of alerts.cue was kept a moment ago" in bar.offered.value
-    canvas = again.design_view.canvas if again.design_view is not None else None
-    assert canvas is not None
-    canvas._receive(canvas, {"type": "decided", "seq": 0}, [])
-    assert bar.offer.layout.display == ""
-    bar._safely(bar._restore)
-    assert again.text == TYPED
-    assert again.versions_view is not None
-    assert again.versions_view.kept is not None
-    assert again.versions_view.kept.text == TEXT
-    again.versions_view.discard.click()
-    first.versions_view.discard.click()
-    assert [each.name for each in path.parent.iterdir()] == ["alerts.cue"]
-
-
-def test_a_version_a_that_is_no_longer_understood_is_said(path: Path) -> None:
-    first, _ = opened(path)
-    assert first.versions_view is not None
-    first.versions_view.keep_now()
-    (draft,) = path.parent.glob(".alerts.cue.*.unsaved")
-    draft.write_text(draft.read_text(encoding="utf-8").replace("area_cm2", "area_cm3"), encoding="utf-8")
-    bench, bar = opened(path)
-    bar._safely(bar._restore)
-    assert "version A cannot be restored: " in said(bar)
-    assert "area_cm3" in said(bar)
-    assert bench.versions_view is not None
-    assert bench.versions_view.kept is None
-
-
 @pytest.mark.slow
 def test_what_is_downloaded_is_the_text_the_rig_and_pictures(path: Path) -> None:
     _, bar = opened(path)
@@ -256,16 +177,29 @@ def test_what_is_downloaded_is_the_text_the_rig_and_pictures(path: Path) -> None
     assert b64decode(found["a-on-thenar.png"])[1:4] == b"PNG"
 
 
-def test_ctrl_s_in_the_text_saves_and_the_page_decides_on_what_it_kept(path: Path) -> None:
+def test_ctrl_s_in_the_text_saves(path: Path) -> None:
+    bench, _ = opened(path)
+    assert bench.design_view is not None
+    canvas = bench.design_view.canvas
+    canvas._receive(canvas, {"type": "text", "seq": 7, "text": TYPED}, [])
+    canvas._receive(canvas, {"type": "save", "seq": 8}, [])
+    assert path.read_text(encoding="utf-8") == TYPED
+    assert canvas._newest is not None
+    assert canvas._newest[0]["seq"] == 8
+
+
+def test_what_the_page_kept_is_offered_before_what_the_kernel_wrote(path: Path) -> None:
     first, _ = opened(path)
     first.text = TYPED
     bench, bar = opened(path)
     assert bench.design_view is not None
     canvas = bench.design_view.canvas
-    canvas._receive(canvas, {"type": "kept", "seq": 0}, [])
+    for text in (TYPED, TEXT):
+        canvas._receive(canvas, {"type": "left", "seq": 0, "text": text}, [])
+    assert [each.text for each in bench.document.versions.others] == [TYPED]
+    canvas._receive(canvas, {"type": "left", "seq": 0, "text": TYPED + "# in the page\n"}, [])
+    assert bar.offer.layout.display == ""
+    bar._safely(bar._restore)
+    assert bench.text == TYPED + "# in the page\n"
     assert bar.offer.layout.display == "none"
-    canvas._receive(canvas, {"type": "text", "seq": 7, "text": TYPED + "# more\n"}, [])
-    canvas._receive(canvas, {"type": "save", "seq": 8}, [])
-    assert path.read_text(encoding="utf-8") == TYPED + "# more\n"
-    assert canvas._newest is not None
-    assert canvas._newest[0]["seq"] == 8
+    assert [each.text for each in bench.document.versions.others] == [TYPED]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from thermicon.notebooks.editing.history import MOST_STEPS, Edited, History
+from thermicon.notebooks.files.history import MOST_STEPS, Edited, History
 
 
 def test_typing_without_pause_is_one_step() -> None:

@@ -1,0 +1,194 @@
+"""A cue text that is edited: its file, what was saved there, undo, versions, and what is unsaved of it."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from pathlib import Path
+
+from thermicon.circuit.inputs import read_bytes
+from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
+
+from .history import Edited, History
+from .outputs import OutputError, check_output, complete_or_absent
+from .start_folder import below_start
+from .versions import Version, Versions
+
+MOST_BYTES = 4_000_000
+"""Bytes of a file that is opened for editing; the editor takes a million letters."""
+CHANGED_CURE = "open it again to see it, or save your text under another name"
+
+
+class Document:
+    """A text and all that is known of it; verbs raise OutputError with a sentence.
+
+    ``path`` is its file, None where it has none yet; ``saved`` is the text there; ``history`` holds the text as it is
+    now with the steps before and after it; ``versions`` holds texts that were kept. ``keeps`` says whether these, and
+    unsaved text, are kept beside the file: where a kernel serves a page.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     first = Document("cue 1")
+    ...     path = first.save_as(Path(folder) / "a.cue")
+    ...     second = Document.open(path)
+    ...     first.history = first.history.changed("cue 1 # mine")
+    ...     _ = first.save()
+    ...     second.warning().partition(":")[0]
+    'a.cue has changed on disk since it was opened here'
+    """
+
+    def __init__(self, text: str, name: str = "icons", keeps: bool = False, path: Path | None = None) -> None:
+        self.path = path
+        self.name = name if path is None else path.name
+        self.saved = text
+        self.history = History(Edited(text))
+        self.keeps = keeps
+        self._overwrites = self._crlf = False
+        self._stamp: str | None = None
+        self._seen: tuple[object, bool] | None = None
+        self.versions = self._versions()
+
+    @classmethod
+    def open(cls, path: Path, keeps: bool = False) -> Document:
+        """Read a cue file; raises OutputError for what is not a text file of an editor's size."""
+        data = read_bytes(path, "cue file", MOST_BYTES / 1e6, OutputError)
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            raise OutputError(f"cannot open {path}: it is not UTF-8 text; convert it first") from None
+        made = cls(text.replace("\r\n", "\n"), keeps=keeps, path=path)
+        made._stamp, made._crlf = _stamp(data), "\r\n" in text
+        return made
+
+    @property
+    def text(self) -> str:
+        """The text as it is now."""
+        return self.history.now.text
+
+    @property
+    def dirty(self) -> bool:
+        """Whether the text differs from what was opened or saved last."""
+        return self.text != self.saved
+
+    @property
+    def folder(self) -> Path:
+        """Where files are looked for and new ones are written."""
+        return below_start(Path() if self.path is None else self.path.parent)
+
+    def place(self, name: str) -> Path:
+        """The path of a name in the folder of the text, or of a path; OutputError outside the folder of a page."""
+        path = Path(name).expanduser()
+        whole = path if path.is_absolute() else self.folder / path
+        return below_start(whole.parent) / whole.name
+
+    @property
+    def title(self) -> str:
+        """The name of the file or the shipped set, and what is to be known of it."""
+        unsaved = ", unsaved changes" if self.path is not None else " (not saved to a file)"
+        return f"{self.name}{unsaved if self.dirty else ''}"
+
+    def warning(self) -> str:
+        """What may cost somebody their text, in one sentence; empty where nothing does."""
+        if self._changed_on_disk():
+            gone = self.path is not None and not self.path.exists()
+            happened = "was removed" if gone else "has changed"
+            cure = "Save as writes your text to a file again" if gone else CHANGED_CURE
+            return f"{self.name} {happened} on disk since it was opened here: {cure}"
+        return "" if self.versions.failed is None else f"unsaved text is not kept: {self.versions.failed}"
+
+    def changed(self) -> None:
+        """Keep the text as it is now until it is saved; called after each change of it."""
+        self._overwrites = False
+        self.versions.typed(self.text if self.dirty else None, self.history.now.icon)
+
+    def leave(self) -> None:
+        """Write what is unsaved, before another document takes its place; OutputError where it would be lost."""
+        if self.dirty:
+            self.versions.keep()
+            if self.versions.path is None or self.versions.failed is not None:
+                raise OutputError(f"{self.title}: save it first, or undo the changes; nothing was opened")
+
+    def keep(self) -> Version:
+        """Keep the text as it is now as a version."""
+        made = Version(self.text, time.time(), self.history.now.icon)
+        self.versions.keep(made)
+        return made
+
+    def left(self, text: str) -> None:
+        """Take what an editor that is gone left elsewhere as a version, unless it is known."""
+        if text not in (self.text, *(each.text for each in self.versions.others)):
+            self.versions.keep(Version(text, time.time(), None, "page"))
+
+    @property
+    def offer(self) -> Version | None:
+        """The newest text that another editor of the file left unsaved after the file was written; None for none."""
+        try:
+            saved_s = 0.0 if self.path is None else self.path.stat().st_mtime
+        except OSError:
+            saved_s = 0.0
+        left = [each for each in self.versions.others if each.editor and each.text != self.text]
+        return left[-1] if left and left[-1].at_s > saved_s else None
+
+    def save(self) -> Path:
+        """Save to the file it came from; pressed twice, over a file that has changed in between too."""
+        if self.path is None:
+            raise OutputError("this set has no file yet: save it under a name")
+        if not self._overwrites and self._changed_on_disk():
+            self._overwrites = True
+            gone = "has changed on disk" if self.path.exists() else "was removed"
+            raise OutputError(
+                f"{self.name} {gone} since it was opened here: save your text under another name, or press Save again "
+                "to write it over the file"
+            )
+        return self._write(self.path, self._crlf)
+
+    def save_as(self, path: Path, overwrite: bool = False) -> Path:
+        """Save to another file, which is that of the text from now on; versions kept by hand go along."""
+        check_output(path, (".cue",), "cue text")
+        if path.exists() and not overwrite:
+            raise OutputError(f"{path} already exists and was kept: give another name, or tick overwrite")
+        before = self.versions
+        self._write(path, crlf=False)
+        if before is not self.versions:
+            before.typed(None, None)
+            if by_hand := tuple(each for each in before.others if not each.editor):
+                self.versions.keep(*by_hand)
+        return path
+
+    def _write(self, path: Path, crlf: bool) -> Path:
+        check_output(path, (), "cue text")
+        text = self.text
+        data = (text.replace("\n", "\r\n") if crlf else text).encode("utf-8")
+        with complete_or_absent(path) as draft:
+            draft.write_bytes(data)
+        moved = path != self.path
+        self.path, self.name, self.saved, self._stamp, self._crlf = path, path.name, text, _stamp(data), crlf
+        if moved:
+            self.versions = self._versions()
+        self.changed()
+        return path
+
+    def _versions(self) -> Versions:
+        if not self.keeps:
+            return Versions(None)
+        try:
+            return Versions(self.path or self.folder / f"{Path(self.name).stem}.cue")
+        except OutputError:
+            return Versions(None)
+
+    def _changed_on_disk(self) -> bool:
+        """Whether the file is another now: read again only when its time, size or place differ, as every frame asks."""
+        if self.path is None:
+            return False
+        try:
+            status = self.path.stat()
+            seen = (self._stamp, status.st_ino, status.st_size, status.st_mtime_ns)
+            if self._seen is None or self._seen[0] != seen:
+                self._seen = (seen, _stamp(read_limited(self.path, MOST_BYTES)) != self._stamp)
+        except (OSError, NotRegular, TooLarge):
+            return True
+        return self._seen[1]
+
+
+def _stamp(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()

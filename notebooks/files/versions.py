@@ -1,0 +1,155 @@
+"""Versions of a text in one hidden file beside it: those that were kept by hand, and what editors have not saved."""
+
+from __future__ import annotations
+
+import os
+import secrets
+import time
+from dataclasses import dataclass, field
+from itertools import accumulate
+from pathlib import Path
+from threading import RLock, Timer
+from typing import Annotated
+
+from pydantic import Field, TypeAdapter, ValidationError
+
+from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
+
+from .outputs import OutputError, complete_or_absent
+
+EVERY_S = 0.5
+"""Shortest time between two writings of unsaved text, in s; a killed process loses what was typed for this long."""
+MOST, MOST_LETTERS = 50, 4_000_000
+"""Versions of one text, and letters of all of them; the oldest are dropped."""
+MOST_BYTES, LATEST_S = 64_000_000, 1e10
+"""Of a file that is believed: its size, and a time that a calendar can show."""
+
+
+@dataclass(frozen=True, slots=True)
+class Version:
+    """A text, when it was written (s since 1970), the icon that was shown, and the ``editor`` that has not saved it.
+
+    ``editor`` is empty for a version that was kept by hand.
+    """
+
+    text: str
+    at_s: Annotated[float, Field(ge=0, le=LATEST_S)]
+    icon: str | None = None
+    editor: str = field(default="")
+
+    @property
+    def age(self) -> str:
+        """How long ago it was written, in words."""
+        minutes = max(0.0, time.time() - self.at_s) / 60
+        if minutes < 1.5:
+            return "a moment ago"
+        if minutes < 90:
+            return f"{minutes:.0f} minutes ago"
+        return time.strftime("on %d %B at %H:%M", time.localtime(self.at_s))
+
+
+_FILE = TypeAdapter(tuple[Version, ...])
+
+
+class Versions:
+    """The versions of one text, as an editor of it sees them; what other editors of the file write is seen too.
+
+    ``path`` is the file that holds them, None where they are only held in memory; ``failed`` says why the newest could
+    not be written, None while they are.
+
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     place = Path(folder) / "a.cue"
+    ...     Versions(place).typed("cue 1 # typed", None)
+    ...     [each.text for each in Versions(place).others]
+    ['cue 1 # typed']
+    """
+
+    def __init__(self, place: Path | None) -> None:
+        self.path = None if place is None else place.with_name(f".{place.name}.unsaved")
+        self.failed: str | None = None
+        self._editor = secrets.token_hex(4)
+        self._own: Version | None = None
+        self._held: tuple[Version, ...] = ()
+        self._seen: tuple[int, ...] | None = None
+        self._timer: Timer | None = None
+        self._last_s = -EVERY_S
+        self._lock = RLock()
+
+    @property
+    def others(self) -> tuple[Version, ...]:
+        """All versions but the unsaved text of this editor, the oldest first."""
+        with self._lock:
+            return tuple(each for each in self._read() if each.editor != self._editor)
+
+    def typed(self, text: str | None, icon: str | None) -> None:
+        """Keep the text of this editor, at once or within half a second; None: there is nothing unsaved."""
+        with self._lock:
+            before = self._own
+            self._own = None if text is None else Version(text, time.time(), icon, self._editor)
+            if text is None and before is not None:
+                self._write()
+            elif text is not None and self.path is not None and self._timer is None:
+                wait_s = self._last_s + EVERY_S - time.monotonic()
+                if wait_s <= 0:
+                    self._write()
+                    return
+                self._timer = Timer(wait_s, self._write)
+                self._timer.daemon = True
+                self._timer.start()
+
+    def keep(self, *versions: Version) -> None:
+        """Add versions, and write what is unsaved now."""
+        with self._lock:
+            self._write(add=versions)
+
+    def drop(self, version: Version) -> None:
+        """Remove a version."""
+        with self._lock:
+            self._write(drop=version)
+
+    def _write(self, add: tuple[Version, ...] = (), drop: Version | None = None) -> None:
+        with self._lock:
+            if self._timer is not None:
+                self._timer.cancel()
+                self._timer = None
+            own = () if self._own is None else (self._own,)
+            newest = sorted({*self.others, *add, *own} - {drop}, key=lambda each: -each.at_s)[:MOST]
+            letters = accumulate(len(each.text) for each in newest)
+            fits = sum(1 for total in letters if total <= MOST_LETTERS)
+            self._held = tuple(reversed(newest[: max(fits, 1)]))
+            if self.path is None:
+                return
+            try:
+                if self._held:
+                    with complete_or_absent(self.path) as draft:
+                        draft.write_bytes(_FILE.dump_json(self._held))
+                else:
+                    self.path.unlink(missing_ok=True)
+                self.failed = None
+            except (OutputError, OSError, ValueError) as wrong:
+                self.failed = str(wrong)
+            self._seen, self._last_s = self._status(), time.monotonic()
+
+    def _read(self) -> tuple[Version, ...]:
+        """What the file holds, read again only when it is another."""
+        if self.path is not None and (seen := self._status()) != self._seen:
+            self._seen, self._held = seen, _versions_in(self.path)
+        return self._held
+
+    def _status(self) -> tuple[int, ...] | None:
+        try:
+            found = os.lstat(self.path or "")
+        except OSError:
+            return None
+        return found.st_ino, found.st_size, found.st_mtime_ns
+
+
+def _versions_in(path: Path) -> tuple[Version, ...]:
+    try:
+        data = read_limited(path, MOST_BYTES)
+        return _FILE.validate_json(data)
+    except ValidationError:  # a file of another form is offered as it is: it may hold somebody's text
+        return (Version(data.decode("utf-8", "replace"), path.stat().st_mtime, None, "unknown"),)
+    except (OSError, NotRegular, TooLarge):
+        return ()

@@ -1,0 +1,169 @@
+"""Documents: cue files that are edited, and versions and unsaved text beside them."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from thermicon.notebooks.files.document import Document
+from thermicon.notebooks.files.outputs import OutputError
+from thermicon.notebooks.files.versions import EVERY_S, MOST, MOST_LETTERS, Version, Versions
+
+
+def typed(document: Document, text: str) -> Document:
+    document.history = document.history.changed(text)
+    document.changed()
+    return document
+
+
+def test_a_file_keeps_its_line_ends_and_its_name(tmp_path: Path) -> None:
+    path = tmp_path / "a.cue"
+    path.write_bytes(b"\xef\xbb\xbfcue 1\r\n# \xc2\xb0\r\n")
+    document = Document.open(path, keeps=True)
+    assert document.text == "cue 1\n# °\n"
+    assert document.title == "a.cue"
+    with pytest.raises(OutputError, match="does not exist"):
+        document.save_as(tmp_path / "gone" / "b.cue")
+    typed(document, "cue 1\n# mine\n").save()
+    assert path.read_bytes() == b"cue 1\r\n# mine\r\n"
+    assert document.warning() == ""
+    assert [each.name for each in tmp_path.iterdir()] == ["a.cue"]
+
+
+def test_what_came_in_between_is_not_overwritten_unless_asked_for(tmp_path: Path) -> None:
+    first = Document("cue 1")
+    path = first.save_as(tmp_path / "a.cue")
+    second = typed(Document.open(path), "cue 1 # second")
+    typed(first, "cue 1 # first").save()
+    with pytest.raises(OutputError, match=r"a\.cue has changed on disk since it was opened here: save your text under"):
+        second.save()
+    assert path.read_text() == "cue 1 # first"
+    second.save()
+    assert path.read_text() == "cue 1 # second"
+    path.unlink()
+    with pytest.raises(OutputError, match=r"a\.cue was removed"):
+        second.save()
+
+
+def test_files_that_cannot_be_are_told(tmp_path: Path) -> None:
+    (tmp_path / "bytes.cue").write_bytes(b"\xff\xfe\x00")
+    (tmp_path / "folder.cue").mkdir()
+    with pytest.raises(OutputError, match=r"bytes\.cue: it is not UTF-8 text"):
+        Document.open(tmp_path / "bytes.cue")
+    with pytest.raises(OutputError, match=r"folder\.cue: this is a directory, not a cue file"):
+        Document.open(tmp_path / "folder.cue")
+    with pytest.raises(OutputError, match=r"none\.cue: no such cue file"):
+        Document.open(tmp_path / "none.cue")
+    document = Document("cue 1")
+    with pytest.raises(OutputError, match=r"this set has no file yet"):
+        document.save()
+    document.save_as(tmp_path / "a.cue")
+    with pytest.raises(OutputError, match=r"a\.cue already exists and was kept"):
+        document.save_as(tmp_path / "a.cue")
+    with pytest.raises(OutputError, match=r"cue text is written as \.cue, not \.txt"):
+        document.save_as(tmp_path / "a.txt")
+
+
+def test_unsaved_text_is_kept_at_once_then_twice_a_second(tmp_path: Path) -> None:
+    kept, seen = Versions(tmp_path / "a.cue"), Versions(tmp_path / "a.cue")
+    kept.typed("one", "dip")
+    assert [(each.text, each.icon) for each in seen.others] == [("one", "dip")]
+    assert kept.others == ()
+    kept.typed("two", None)
+    kept.typed("three", None)
+    assert [each.text for each in seen.others] == ["one"]
+    time.sleep(EVERY_S + 0.3)
+    assert [each.text for each in seen.others] == ["three"]
+    kept.typed("four", None)
+    kept.typed(None, None)
+    time.sleep(EVERY_S + 0.3)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_text_of_a_killed_process_is_offered_as_long_as_it_is_newer(tmp_path: Path) -> None:
+    path = tmp_path / "a.cue"
+    path.write_text("cue 1", encoding="utf-8")
+    code = (
+        "import os, sys; from pathlib import Path; from thermicon.notebooks.files.document import Document\n"
+        "made = Document.open(Path(sys.argv[1]), keeps=True)\n"
+        "made.history = made.history.changed('cue 1 # typed'); made.changed(); os.kill(os.getpid(), 9)"
+    )
+    subprocess.run([sys.executable, "-c", code, str(path)], check=False)
+    document = Document.open(path, keeps=True)
+    assert document.offer is not None
+    assert (document.offer.text, document.offer.age) == ("cue 1 # typed", "a moment ago")
+    assert document.text == "cue 1"
+    os.utime(path, (time.time() + 60,) * 2)
+    assert document.offer is None
+    assert [each.text for each in document.versions.others] == ["cue 1 # typed"]
+
+
+def test_two_editors_of_one_file_keep_their_texts_side_by_side(tmp_path: Path) -> None:
+    path = Document("cue 1").save_as(tmp_path / "a.cue")
+    first, second = Document.open(path, keeps=True), Document.open(path, keeps=True)
+    typed(first, "cue 1 # first")
+    typed(second, "cue 1 # second")
+    second.keep()
+    time.sleep(EVERY_S + 0.1)
+    typed(first, "cue 1 # first, again")
+    third = Document.open(path, keeps=True)
+    assert sorted((each.text, bool(each.editor)) for each in third.versions.others) == [
+        ("cue 1 # first, again", True), ("cue 1 # second", False), ("cue 1 # second", True),
+    ]  # fmt: skip
+    first.save()
+    assert [each.text for each in third.versions.others] == ["cue 1 # second"] * 2
+
+
+def test_versions_kept_by_hand_stay_until_they_are_dropped_and_go_along(tmp_path: Path) -> None:
+    document = Document.open(Document("cue 1").save_as(tmp_path / "a.cue"), keeps=True)
+    made = document.keep()
+    typed(document, "cue 1 # more").save()
+    assert Document.open(tmp_path / "a.cue", keeps=True).versions.others == (made,)
+    assert document.offer is None
+    document.save_as(tmp_path / "b.cue")
+    assert document.versions.others == (made,)
+    document.versions.drop(made)
+    assert sorted(each.name for each in tmp_path.iterdir()) == [".a.cue.unsaved", "a.cue", "b.cue"]
+
+
+def test_the_oldest_versions_make_room(tmp_path: Path) -> None:
+    kept = Versions(tmp_path / "a.cue")
+    kept.keep(*(Version(str(k), float(k)) for k in range(MOST + 5)))
+    assert [each.text for each in kept.others] == [str(k) for k in range(5, MOST + 5)]
+    kept.keep(Version("x" * (MOST_LETTERS - 1), 1e9))
+    assert [each.text[:2] for each in kept.others] == ["xx"]
+
+
+@pytest.mark.parametrize("held", ["typed by hand", '[{"text": 1}]', "[1", '[{"text": "a", "at_s": 1e300}]'])
+def test_a_file_of_another_form_is_offered_as_it_is(tmp_path: Path, held: str) -> None:
+    (tmp_path / ".a.cue.unsaved").write_text(held, encoding="utf-8")
+    (found,) = Versions(tmp_path / "a.cue").others
+    assert found.text == held
+    (tmp_path / ".a.cue.unsaved").write_text('[{"text": "B", "at_s": 1.0, "theme": "dark"}]', encoding="utf-8")
+    assert Versions(tmp_path / "a.cue").others == (Version("B", 1.0),)
+
+
+def test_a_folder_that_takes_nothing_is_told_and_versions_stay_in_memory(tmp_path: Path) -> None:
+    kept = Versions(tmp_path / "gone" / "a.cue")
+    kept.typed("text", None)
+    assert kept.failed is not None
+    assert "cannot write" in kept.failed
+    kept.keep(Version("kept", 1.0))
+    assert [each.text for each in kept.others] == ["kept"]
+
+
+def test_what_is_not_kept_on_disk_is_kept_in_memory(tmp_path: Path) -> None:
+    document = Document("cue 1")
+    made = document.keep()
+    with pytest.raises(OutputError, match=r"icons .not saved to a file.: save it first, or undo the changes"):
+        typed(document, "cue 2").leave()
+    assert document.versions.others == (made,)
+    assert document.offer is None
+    document.save_as(tmp_path / "a.cue")
+    assert document.versions.others == (made,)
+    assert [each.name for each in tmp_path.iterdir()] == ["a.cue"]
