@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from itertools import chain
+from json import dumps
 
 from .finding import Finding, first_line
 from .packages import PROGRAM, installed_version
@@ -78,7 +78,7 @@ def doctor(as_json: bool = False, cannot_start: BaseException | None = None) -> 
             "ok": not count["fault"],
             "findings": [each.to_dict() for each in findings],
         }
-        sys.stdout.write(json.dumps(data, indent=1) + "\n")
+        sys.stdout.write(dumps(data, indent=1) + "\n")
     else:
         sys.stdout.write(f"\n{summary(count['fault'], count['note'])}\n")
     return FAULTY if count["fault"] else 0

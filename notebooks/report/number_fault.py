@@ -8,6 +8,7 @@ from typing import Any
 UNITS = {"S": "s", "HZ": "Hz", "J": "J", "K": "K", "POINTS": "percentage points", "PERCENT": "%"}
 """Units by the metavar of an option; others have none."""
 WHOLE, DECIMAL = "int", "float"
+BOUNDS = ("greater_than_equal", "less_than_equal")
 DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
@@ -38,7 +39,7 @@ def number_fault(text: str, kind: str, unit: str = "") -> str:
 
 
 def reworded(error: Any) -> None:
-    """Put such a sentence in the place of the parser's own words, where an option could not be read as a number.
+    """Put such a sentence in the place of the parser's own words, where the value of an option cannot be.
 
     `error` is a bad parameter of the command line; others stay as they are.
     """
@@ -49,3 +50,7 @@ def reworded(error: Any) -> None:
     kind, text = fault["type"].partition("_")[0], str(fault["input"])
     if kind in (WHOLE, DECIMAL):
         error.message = number_fault(text, kind, UNITS.get(param.metavar or "", ""))
+    elif fault["type"] in BOUNDS:
+        error.message = f"{fault['input']:g} is outside {param.min:g} to {param.max:g}"
+    else:
+        error.message = error.message.removeprefix("Value error, ").removesuffix(".")
