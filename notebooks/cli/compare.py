@@ -73,15 +73,15 @@ def compare_command(
         return
     check_separate([first, second], [figure.figure])
     made = {"rig": _rigs, "icon": _icons, "set": _sets, "table": _tables}[kind](first, second, request)
-    for place, each in enumerate(made):
-        if place:
-            show("")
-        show_comparison(each)
     if figure.figure is not None:
         from ..figures.compare_figure import compare_figure
 
         pairs = [(each.title, each.both) for each in made]
         figure.write(compare_figure(pairs, across=figure.look.across(3)))
+    for place, each in enumerate(made):
+        if place:
+            show("")
+        show_comparison(each)
 
 
 def show_comparison(made: Comparison) -> None:

@@ -67,8 +67,7 @@ def convert_command(
     if icon is not None:
         icons = only_icon(icons, icon)
     text = to_json(icons) if output.suffix.lower() == ".json" else str(icons)
-    write_text(text, output)
-    note(f"{output}: {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
+    write_text(text, output, f": {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
     if has_comments(file):
         note(f"comments in {Path(file).name} were dropped")
 

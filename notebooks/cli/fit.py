@@ -108,13 +108,13 @@ def fit_command(
         check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
     fitted = fit(list(logs), where, free=keys, held=hold, fit_start=fit_start, offset_K=offset, fixed_skin=fixed_skin)
-    show_fit(fitted, where)
+    if output is not None:
+        write_text(fitted.rig_text(name or output.stem[:LONGEST_NAME]), output)
     if figure.figure is not None:
         from thermicon.circuit.fitting.fit_figure import fit_figure
 
         figure.write(fit_figure(fitted, 1 if figure.look.narrow else 2))
-    if output is not None:
-        write_text(fitted.rig_text(name or output.stem[:LONGEST_NAME]), output)
+    show_fit(fitted, where)
 
 
 def show_fit(fitted: RigFit, before: Rig) -> None:

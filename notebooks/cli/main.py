@@ -8,41 +8,39 @@ from __future__ import annotations
 
 import gc
 import sys
-from typing import Annotated
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Annotated, Any
 
 import typer
 
 from ..messages import be_quiet, interrupted
 from ..startup import is_command, print_anywhere, warn_if_hidden
-from .app import Commands, with_command
-from .check import check_command
-from .compare import compare_command
-from .convert import convert_command
-from .export import export_command
-from .fit import fit_command
-from .improve import improve_command
-from .lab import lab_command
-from .listing import list_command
+from .app import Commands
 from .options import flat
-from .pilot import pilot_command
-from .ranking import rank_command
-from .simulate import simulate_command
-from .study import study_command
-from .sweep import sweep_command
-from .validation import validate_command
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
 PLAY, NOTEBOOKS, INSTALLATION = "Play on hardware", "Notebooks", "Installation"
 """Jobs, as the headings of ``thermicon --help``."""
 
-app = typer.Typer(
-    name="thermicon",
-    cls=Commands,
-    help="Design thermal icons, simulate them on display and skin, and predict which ones people confuse.",
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    no_args_is_help=True,
-)
+COMMANDS = {
+    "check": ("check", WRITE),
+    "convert": ("convert", WRITE),
+    "list": ("listing", WRITE),
+    "simulate": ("simulate", SIMULATE),
+    "sweep": ("sweep", SIMULATE),
+    "compare": ("compare", SIMULATE),
+    "fit": ("fit", SIMULATE),
+    "rank": ("ranking", PREDICT),
+    "improve": ("improve", PREDICT),
+    "pilot": ("pilot", PREDICT),
+    "validate": ("validation", PREDICT),
+    "export": ("export", PLAY),
+    "study": ("study", PLAY),
+    "lab": ("lab", NOTEBOOKS),
+    "doctor": ("main", INSTALLATION),
+}
+"""Each command with its module of this room, whose function NAME_command it is, and its job."""
 
 
 def _print_version(wanted: bool) -> None:
@@ -53,7 +51,6 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def thermicon(
     quiet: Annotated[
         bool, typer.Option("-q", "--quiet", help="No progress, notes or warnings: results and errors only.")
@@ -79,24 +76,34 @@ def doctor_command(
     raise typer.Exit(doctor(json))
 
 
-for _name, _command, _job in (
-    ("check", check_command, WRITE),
-    ("convert", convert_command, WRITE),
-    ("list", list_command, WRITE),
-    ("simulate", simulate_command, SIMULATE),
-    ("sweep", sweep_command, SIMULATE),
-    ("compare", compare_command, SIMULATE),
-    ("fit", fit_command, SIMULATE),
-    ("rank", rank_command, PREDICT),
-    ("improve", improve_command, PREDICT),
-    ("pilot", pilot_command, PREDICT),
-    ("validate", validate_command, PREDICT),
-    ("export", export_command, PLAY),
-    ("study", study_command, PLAY),
-    ("lab", lab_command, NOTEBOOKS),
-    ("doctor", doctor_command, INSTALLATION),
-):
-    app.command(_name, rich_help_panel=_job)(flat(_command))
+def program(words: Sequence[str] = ()) -> typer.Typer:
+    """The program with the one command that a command line begins with, otherwise with all.
+
+    Importing all of them, and reading their options, takes longer than checking a file.
+
+    >>> [command.name for command in program(["check"]).registered_commands]
+    ['check']
+    """
+    made = typer.Typer(
+        name="thermicon",
+        cls=Commands,
+        callback=thermicon,
+        rich_markup_mode=None,
+        pretty_exceptions_enable=False,
+        no_args_is_help=True,
+    )
+    for name in words[:1] if words and words[0] in COMMANDS else COMMANDS:
+        module, job = COMMANDS[name]
+        command = getattr(import_module(f".{module}", __package__), f"{name}_command")
+        made.command(name, rich_help_panel=job)(flat(command))
+    return made
+
+
+def __getattr__(name: str) -> Any:
+    """`app`, the program with all commands."""
+    if name == "app":
+        return program()
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def main() -> None:
@@ -107,7 +114,7 @@ def main() -> None:
         if is_command():
             warn_if_hidden()
         print_anywhere()
-        with_command(app, sys.argv[1:2])(prog_name="thermicon")
+        program(sys.argv[1:])(prog_name="thermicon")
     except KeyboardInterrupt:
         sys.exit(interrupted().exit_code)
     finally:

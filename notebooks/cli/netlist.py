@@ -23,8 +23,8 @@ def subcircuit_file(rig: Rig, output: Path) -> None:
 
     check_output(output, SUBCIRCUIT_SUFFIXES, "a library of subcircuits")
     text = subcircuits(rig)
-    write_text(text, output, "ascii")
-    note(f"{output}: thermicon_module and thermicon_skin; in a schematic, .include {output.name}")
+    more = f": thermicon_module and thermicon_skin; in a schematic, .include {output.name}"
+    write_text(text, output, more, "ascii")
 
 
 def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path) -> None:
@@ -45,11 +45,10 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"
     text = netlist(rig, plan.drive, rest_A=plan.rest_A, lead_A=plan.lead_A, title=title, out_file=record)
-    write_text(text, output, "ascii")
     note(headline(trace))
     if rig.contact.lands_s is not None:
         note(f"the netlist's clock begins when the hand lands; the cue begins at {lead_s(rig):g} s")
+    how = f"open it in LTspice, or run ngspice -b -r {output.stem}.raw {output.name}"
     if record is not None:
-        note(f"ngspice -b {output.name} writes the probes into {record}")
-    else:
-        note(f"open it in LTspice, or run ngspice -b -r {output.stem}.raw {output.name}")
+        how = f"ngspice -b {output.name} writes the probes into {record}"
+    write_text(text, output, f"; {how}", "ascii")

@@ -64,7 +64,7 @@ Tail = Annotated[
 Json = Annotated[Path | None, out("OUT", "Write every number as JSON; - prints it.", "--json")]
 Table = Annotated[Path | None, out("OUT", "Write the table to .csv or .parquet; - prints it.", "-o", "--output")]
 People = Annotated[int, typer.Option(metavar="N", min=1, max=MOST_PEOPLE, help="Number of virtual people.")]
-Seed = Annotated[int, typer.Option(metavar="S", min=0, max=LARGEST_SEED, help="Seed of everything that is drawn.")]
+Seed = Annotated[int, typer.Option(metavar="SEED", min=0, max=LARGEST_SEED, help="Seed of everything that is drawn.")]
 Intervals = Annotated[
     int | None,
     typer.Option(
@@ -232,14 +232,14 @@ class FigureOptions(Options):
             note(f"wrote {self.figure}")
 
 
-def write_text(text: str, output: Path, encoding: str = "utf-8") -> None:
-    """Write text to a file, complete or not at all, and say so; - is stdout."""
+def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8") -> None:
+    """Write text to a file, complete or not at all, and say so, with what `more` there is to say; - is stdout."""
     if output == STDOUT:
         typer.echo(text, nl=False)
         return
     with complete_or_absent(output) as draft:
         draft.write_text(text, encoding=encoding, newline="\n")
-    note(f"wrote {output}")
+    note(f"wrote {output}{more}")
 
 
 def flat(function: Callable[..., None]) -> Callable[..., None]:

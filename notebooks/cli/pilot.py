@@ -172,9 +172,9 @@ def condition(
 ) -> None:
     """Sharpen the prediction for the sets of a laboratory by its answers or measurements; show and keep it."""
     drawn = None if keep is None else keep.with_suffix(".csv")
+    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, figure.figure, keep, drawn])
     if keep is not None and drawn is not None:
         _check_kept(keep, drawn)
-    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, figure.figure, keep, drawn])
     from thermicon.perception.pilot.measured import condition_on_measurements
     from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
     from thermicon.perception.pilot.observed import Observed, observed

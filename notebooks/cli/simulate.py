@@ -65,7 +65,7 @@ def simulate_command(
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(metavar="S", min=0, max=LARGEST_SEED, help="Seed of --random.  [default: 0]")
+        int | None, typer.Option(metavar="SEED", min=0, max=LARGEST_SEED, help="Seed of --random.  [default: 0]")
     ] = None,
     tracking: Annotated[
         Literal["replay", "display"] | None,

@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` prints before there are answers: sizes of experiments and what each gives, and the icons to pilot."""
+"""What ``thermicon pilot`` prints of a plan: sizes of experiments, what each gives, and the icons to pilot."""
 
 from __future__ import annotations
 

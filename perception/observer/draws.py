@@ -1,8 +1,8 @@
 """Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
 
-The shipped tables are written by `python -m thermicon.perception.evidence` and read by `draws_file`. Constants of one draw belong together:
-where the evidence does not separate two of them, they trade off from draw to draw. Memory is not part of the inference
-and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of memory.
+The shipped tables are written by `thermicon.perception.evidence` and read by `draws_file`. Constants of one draw belong
+together: where the evidence does not separate two of them, they trade off from draw to draw. Memory is not part of the
+inference and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of it.
 """
 
 from __future__ import annotations

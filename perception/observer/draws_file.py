@@ -1,6 +1,7 @@
 """The table of posterior draws as a file: header lines that say what it was made from, then one row a draw.
 
-It is written by `python -m thermicon.perception.evidence`. Reading needs numpy alone and refuses a table of other evidence or another form.
+It is written by `python -m thermicon.perception.evidence`. Reading needs numpy alone and refuses a table of other
+evidence or another form.
 """
 
 from __future__ import annotations

@@ -157,7 +157,7 @@ def test_a_drive_that_may_not_be_read_is_bad_input(cli: Cli, tmp_path: Path, mon
 USAGE = [
     ((), "Usage"),
     (("chek",), "Did you mean 'check'"),
-    (("check",), "Missing argument"),
+    (("check",), "Missing argument 'FILE...'"),
     (("check", "two.cue", "--rgi", "x"), "--rgi"),
     (("check", "two.cue", "--set", "contact.area_cm2"), "KEY=VALUE"),
     (("simulate",), "either a cue FILE or --current"),
@@ -170,9 +170,11 @@ USAGE = [
     (("rank", "six-icons", "--people", "0"), "--people"),
     (("rank", "six-icons", "--people", "1.5"), "'1.5' is not a whole number; write one, such as 12"),
     (("rank", "six-icons", "--seed", "9" * 5000), "has too many digits to be read"),
-    (("plan", "six-icons", "--width", "wide"), "'wide' is not a number in percentage points; write it in digits"),
+    (("pilot", "six-icons", "--wanted", "wide"), "'wide' is not a number in %; write it in digits"),
     (("rank", "six-icons", "--people", "100001"), "1 to 100000"),
-    (("rank", "six-icons", "--trials", "1000000000000"), "--trials"),
+    (("rank", "six-icons", "--task", "trials=1000000000000"), "1e+12 is outside 1 to 1e+06"),
+    (("rank", "six-icons", "--task", "gap=far"), "'gap=far': 'far' is not a number"),
+    (("rank", "six-icons", "--task", "pace=2"), "'pace=2' is not one of trials=VALUE, gap=VALUE"),
     (("rank", "six-icons", "--tracking", "repaly"), "replay, display, ideal"),
     (("rank", "six-icons", "--norm", "max"), "'max' is not one of episodes, naming"),
 ]
@@ -189,11 +191,9 @@ def test_a_command_line_that_makes_no_sense(cli: Cli, arguments: tuple[str, ...]
 @pytest.mark.parametrize(
     ("words", "output"),
     [
-        (("session", "FILE", "--random", "--repeats", 1, "--json"), None),
-        (("session", "FILE", "--random", "--repeats", 1, "--order-out"), None),
         (("rank", "FILE", "--people", 2, "--json"), None),
-        (("search", "FILE", "-o"), None),
-        (("session", "FILE", "--random", "--repeats", 1, "--json", "both.png", "--figure"), "both.png"),
+        (("improve", "FILE", "--evaluations", 40, "-o"), None),
+        (("rank", "FILE", "--json", "both.png", "--figure"), "both.png"),
     ],
 )
 def test_no_output_takes_the_place_of_an_input_or_of_another_output(

@@ -191,7 +191,7 @@ def test_the_choice_is_told(rig: Rig, three: IconSet) -> None:
 @pytest.mark.slow
 def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "report.html"
-    options = ("--people", 3, "--parameters", 0, "--set", "contact.area_cm2=4")
+    options = ("--people", 3, "--intervals", 0, "--set", "contact.area_cm2=4")
     said = cli("rank", two, *options, "--report", out, "--json", tmp_path / "a.json")
     assert said.exit_code == 0, said.stderr
     assert f"wrote {out}" in said.stderr
