@@ -152,7 +152,7 @@ def choose_icons(
             parameters=crowd.draws(model),
             choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
             goal=goal,
-            edits="all" if edits or count is None else "none",
+            edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
             observer=model,
             warnings=tuple(rig.warnings),
             progress=progress,

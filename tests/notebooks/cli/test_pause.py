@@ -77,7 +77,7 @@ class TestCommand:
     def test_a_pause_that_cannot_be_is_a_usage_error(self, cli: Cli, two: Path, tmp_path: Path, pause: str) -> None:
         said = cli("export", two, "--to", "csv", "-o", tmp_path / "out", "--pause", pause)
         assert (said.exit_code, said.stdout) == (2, "")
-        assert "is not a time between plays of 0 to 600 s" in " ".join(said.stderr.split())
+        assert "is outside 0 to 600 s" in " ".join(said.stderr.split())
         assert not (tmp_path / "out").exists()
 
     @pytest.mark.parametrize(
