@@ -33,7 +33,7 @@ PROGRAMS = (
     Program(
         "ngspice",
         ("ngspice",),
-        "running what netlist writes",
+        "running the netlists that simulate writes",
         {
             "linux": "sudo apt install ngspice, or the package of that name of your system",
             "darwin": "brew install ngspice",
