@@ -20,7 +20,7 @@ def list_command(
     rig: RigOptions,
     what: Annotated[
         Literal["icons", "rigs", "devices", "formats"] | None,
-        typer.Argument(show_default=False, help="What to list.  [default: all]"),
+        typer.Argument(metavar="icons|rigs|devices|formats", show_default=False, help="What to list.  [default: all]"),
     ] = None,
     cite: Annotated[
         str | None,

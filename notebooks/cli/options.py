@@ -83,7 +83,7 @@ class Options:
         """What repeats the group on a command line: options other than the default; paths as given, or names alone.
 
         >>> CrowdOptions(people=20, observer=Path("a/lab.csv")).words()
-        ['--people', '20', '--observer', 'lab.csv']
+        ['--observer', 'lab.csv', '--people', '20']
         """
         own: tuple[Field[Any], ...] = fields(self)  # type: ignore[arg-type]
         given = ((field.name, getattr(self, field.name)) for field in own if getattr(self, field.name) != field.default)
@@ -243,32 +243,26 @@ def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8")
 
 
 def flat(function: Callable[..., None]) -> Callable[..., None]:
-    """Return a command whose arguments are the fields of its groups, with the defaults of the group that it names."""
+    """Return a command whose arguments are its own and, after them, the fields of its groups."""
     hints = get_type_hints(function, include_extras=True)
     groups: dict[str, Any] = {name: kind for name, kind in hints.items() if is_dataclass(kind)}
-    laid_out: list[inspect.Parameter] = []
-    for name, parameter in inspect.signature(function).parameters.items():
-        if name not in groups:
-            laid_out.append(parameter.replace(annotation=hints[name], kind=inspect.Parameter.KEYWORD_ONLY))
-            continue
-        inside = get_type_hints(groups[name], include_extras=True)
-        usual = parameter.default if parameter.default is not inspect.Parameter.empty else groups[name]()
-        laid_out += [
-            inspect.Parameter(
-                field.name,
-                inspect.Parameter.KEYWORD_ONLY,
-                default=getattr(usual, field.name),
-                annotation=inside[field.name],
-            )
-            for field in fields(groups[name])
-        ]
+    own = [
+        each.replace(annotation=hints[name], kind=inspect.Parameter.KEYWORD_ONLY)
+        for name, each in inspect.signature(function).parameters.items()
+        if name not in groups
+    ]
+    of_groups = [
+        each.replace(annotation=get_type_hints(kind, include_extras=True)[name], kind=inspect.Parameter.KEYWORD_ONLY)
+        for kind in groups.values()
+        for name, each in inspect.signature(kind).parameters.items()
+    ]
 
     def run(**given: Any) -> None:
         made = {
-            name: kind(**{field.name: given.pop(field.name) for field in fields(kind)}) for name, kind in groups.items()
+            name: kind(**{each.name: given.pop(each.name) for each in fields(kind)}) for name, kind in groups.items()
         }
         function(**given, **made)
 
     run.__doc__, run.__name__ = function.__doc__, function.__name__
-    run.__signature__ = inspect.Signature(laid_out)  # type: ignore[attr-defined]
+    run.__signature__ = inspect.Signature([*own, *of_groups])  # type: ignore[attr-defined]
     return run

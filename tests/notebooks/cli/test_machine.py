@@ -23,7 +23,7 @@ def test_programs_that_are_missing_are_notes_with_their_purpose(monkeypatch: pyt
         ("Chromium", "note"),
     ]
     first = next(programs.check_programs())
-    assert first.text == "not installed; only needed for running what netlist writes"
+    assert first.text == "not installed; only needed for running the netlists that simulate writes"
     assert first.cure == "sudo apt install ngspice, or the package of that name of your system"
 
 
