@@ -17,12 +17,12 @@ CHECKS = (
     ("files", "machine", "check_data"),
     ("packages", "packages", "check_required"),
     ("extras", "packages", "check_extras"),
-    ("outside programs", "programs", "check_programs"),
+    ("outside programs", "packages", "check_programs"),
     ("cache", "machine", "check_cache"),
     ("threads", "machine", "check_threads"),
     ("fonts", "machine", "check_fonts"),
-    ("widgets", "jupyter", "check_widgets"),
-    ("kernel", "jupyter", "check_kernel"),
+    ("widgets", "machine", "check_widgets"),
+    ("kernel", "machine", "check_kernel"),
     ("self-test", "self_test", "check_self_test"),
 )
 """What is checked, the module of this room that does it, and its function: the slowest last."""
