@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
-from ..messages import note, progress_bar, usage
+from ..messages import progress_bar, usage
 from ..report.rank_text import show_ranking
 from .cues import read_set, warn_of_frames
 from .frontier import show_frontier
-from .options import CrowdOptions, FileNames, RigOptions, out, write_text
+from .options import CrowdOptions, FigureOptions, FileNames, RigOptions, out, write_text
 from .ranking import cures
 from .search_result import FoundSet
 from .sweep import write_frame
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal
-    from thermicon.perception.observer.observer_model import ObserverModel
 
 USUAL_EVALUATIONS, MOST_CHOSEN = 2000, 64
 Objective = Literal["worst", "correct", "bits", "bits-per-s"]
@@ -33,11 +32,11 @@ def improve_command(
     crowd: CrowdOptions,
     rig: RigOptions,
     choose: Annotated[
-        int | None, typer.Option(metavar="K", min=2, max=MOST_CHOSEN, help="Choose the best K icons.")
+        int | None, typer.Option(metavar="N", min=2, max=MOST_CHOSEN, help="Choose the best N icons.")
     ] = None,
     up_to: Annotated[
         int | None,
-        typer.Option(metavar="K", min=2, max=MOST_CHOSEN, help="Choose the best 2, 3, … K icons, as a table."),
+        typer.Option(metavar="N", min=2, max=MOST_CHOSEN, help="Choose the best 2, 3, … N icons, as a table."),
     ] = None,
     goal: Annotated[
         str | None,
@@ -111,13 +110,15 @@ def improve_command(
     where = rig.load()
     model = crowd.load(where)
     warn_of_frames(files, icons, where)
+    how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
+    what = objective or ("correct" if up_to is not None else _objective(wanted))
     if up_to is not None:
-        tabulate(icons, where, model, crowd, up_to, objective or "correct", wanted, outputs)
+        tabulate(icons, where, up_to, what, how, outputs)
     elif searched:
         tried = USUAL_EVALUATIONS if evaluations is None else evaluations
-        search_set(icons, where, model, crowd, choose, objective or _objective(wanted), must, tried, wanted, outputs)
+        search_set(icons, where, choose, what, must, tried, how, outputs)
     else:
-        choose_icons(icons, where, model, crowd, choose, objective or _objective(wanted), must, edits, wanted, outputs)
+        choose_icons(icons, where, choose, what, must, edits, how, outputs)
 
 
 def _objective(goal: Goal | None) -> Objective:
@@ -129,13 +130,11 @@ def _objective(goal: Goal | None) -> Objective:
 def choose_icons(
     icons: IconSet,
     rig: Rig,
-    model: ObserverModel,
-    crowd: CrowdOptions,
     count: int | None,
     objective: Objective,
     must: Sequence[str] | None,
     edits: bool,
-    goal: Goal | None,
+    how: Mapping[str, Any],
     outputs: Sequence[Path],
 ) -> None:
     """Choose the best few icons as they are, or edit them; judge them by a goal."""
@@ -143,19 +142,17 @@ def choose_icons(
     from thermicon.perception.ranking.rank_file import ranking_file
     from thermicon.perception.selection.request import Selection
 
+    goal: Goal | None = how["goal"]
     limits = (None, None) if goal is None else (goal.of("time"), goal.of("energy"))
     with progress_bar("choosing" if count else "ranking") as progress:
         ranking = rank(
             icons,
             rig,
-            **crowd.asked,
-            parameters=crowd.draws(model),
             choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
-            goal=goal,
             edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
-            observer=model,
             warnings=tuple(rig.warnings),
             progress=progress,
+            **how,
         )
     for path in outputs:
         write_text(ranking.to_json() + "\n", path)
@@ -165,37 +162,16 @@ def choose_icons(
 
 
 def tabulate(
-    icons: IconSet,
-    rig: Rig,
-    model: ObserverModel,
-    crowd: CrowdOptions,
-    most: int,
-    objective: Objective,
-    goal: Goal | None,
-    outputs: Sequence[Path],
+    icons: IconSet, rig: Rig, most: int, objective: Objective, how: Mapping[str, Any], outputs: Sequence[Path]
 ) -> None:
     """Choose the best 2, 3, … icons, and show scores and total time of each choice."""
     from thermicon.perception import frontier
 
     with progress_bar("choosing") as progress:
-        found = frontier(
-            icons,
-            rig,
-            most=most,
-            objective=objective,
-            **crowd.asked,
-            goal=goal,
-            parameters=crowd.draws(model),
-            observer=model,
-            progress=progress,
-        )
+        found = frontier(icons, rig, most=most, objective=objective, progress=progress, **how)
     for path in outputs:
         if path.suffix.lower() in FIGURE_SUFFIXES:
-            from ..figures.print_figure import write_figure
-
-            drawn: Any = found.plot().figure
-            write_figure(drawn, path)
-            note(f"wrote {path}")
+            FigureOptions(path).write(found.plot().figure)
         else:
             write_frame(found.to_frame(), path)
     if STDOUT not in outputs:
@@ -205,19 +181,16 @@ def tabulate(
 def search_set(
     icons: IconSet,
     rig: Rig,
-    model: ObserverModel,
-    crowd: CrowdOptions,
     count: int | None,
     objective: Objective,
     must: Sequence[str] | None,
     evaluations: int,
-    goal: Goal | None,
+    how: Mapping[str, Any],
     outputs: Sequence[Path],
 ) -> None:
     """Search the families of a set for a better one, and show it beside the set that the search began with."""
     from thermicon.perception import search
 
-    draws = crowd.draws(model)
     with progress_bar("searching") as progress:
         found = search(
             icons,
@@ -225,15 +198,11 @@ def search_set(
             count=count,
             objective=objective,
             evaluations=evaluations,
-            **crowd.asked,
             must=must,
-            goal=goal,
-            parameters=draws,
-            observer=model,
             progress=progress,
+            **how,
         )
     for path in outputs:
         write_text(str(found.found), path)
     if STDOUT not in outputs:
-        made = FoundSet.ranked(found, icons, rig, model, crowd, draws, goal, must)
-        made.show(icons.title, rig.name, evaluations)
+        FoundSet.ranked(found, icons, rig, must, how).show(icons.title, rig.name, evaluations)

@@ -117,21 +117,6 @@ def pilot_command(
     if wanted is not None and not 0.0 < wanted < 100.0:
         raise usage(f"{wanted:g} is outside 0 to 100", "--wanted")
     check_separate(files, [json])
-    plan_experiment(files, crowd, rig, people, times, wanted, presentations or LENGTH, draws or USUAL_PLAN_DRAWS, json)
-
-
-def plan_experiment(
-    files: Sequence[str],
-    crowd: ObserverOptions,
-    rig: RigOptions,
-    participants: tuple[int, ...],
-    trials: tuple[int, ...],
-    wanted: float | None,
-    length: int,
-    draws: int,
-    json: Path | None,
-) -> None:
-    """Simulate experiments of each size with one set or two, and show which sizes do."""
     from thermicon.perception.pilot.plan import plan
 
     from ..report.plan_text import show_plan
@@ -145,11 +130,11 @@ def plan_experiment(
             sets[0],
             where,
             *sets[1:],
-            participants=participants,
-            trials=trials,
+            participants=people,
+            trials=times,
             wanted=None if wanted is None else wanted / 100.0,
-            length=length,
-            draws=draws,
+            length=presentations or LENGTH,
+            draws=draws or USUAL_PLAN_DRAWS,
             **crowd.asked,
             observer=model,
             progress=progress,
@@ -172,9 +157,14 @@ def condition(
 ) -> None:
     """Sharpen the prediction for the sets of a laboratory by its answers or measurements; show and keep it."""
     drawn = None if keep is None else keep.with_suffix(".csv")
-    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, figure.figure, keep, drawn])
     if keep is not None and drawn is not None:
-        _check_kept(keep, drawn)
+        check_output(keep, (".toml",), "an observer")
+        if keep == STDOUT:
+            raise usage("- is not a file; give a name such as lab.toml", "--keep")
+        check_output(drawn, (".csv",), "a table of draws")
+    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, figure.figure, keep, drawn])
+    if there := [str(path) for path in (keep, drawn) if path is not None and path.exists()]:
+        raise OutputError(f"{' and '.join(there)} already there and kept; give --keep another name, or move them away")
     from thermicon.perception.pilot.measured import condition_on_measurements
     from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
     from thermicon.perception.pilot.observed import Observed, observed
@@ -215,16 +205,6 @@ def condition(
         show_observed(found, files, last)
     else:
         show_measured(found, files, last)
-
-
-def _check_kept(keep: Path, drawn: Path) -> None:
-    """Fail where a laboratory cannot be kept, or where files of its names are there already."""
-    check_output(keep, (".toml",), "an observer")
-    if keep == STDOUT:
-        raise usage("- is not a file; give a name such as lab.toml", "--keep")
-    check_output(drawn, (".csv",), "a table of draws")
-    if there := [str(path) for path in (keep, drawn) if path.exists()]:
-        raise OutputError(f"{' and '.join(there)} already there and kept; give --keep another name, or move them away")
 
 
 def _keep(found: Observed | MeasuredPilot, keep: Path, drawn: Path) -> None:

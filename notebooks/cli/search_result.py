@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
@@ -15,11 +15,8 @@ from ..report.tables import show, table
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Goal, Ranking, SearchResult
-    from thermicon.perception.observer.observer_model import ObserverModel
+    from thermicon.perception import Ranking, SearchResult
     from thermicon.perception.selection.reach import Advice, Trial
-
-    from .options import CrowdOptions
 
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.evaluators`, repeated here to avoid its imports."""
@@ -44,34 +41,18 @@ class FoundSet:
 
     @classmethod
     def ranked(
-        cls,
-        found: SearchResult,
-        icons: IconSet,
-        rig: Rig,
-        model: ObserverModel,
-        crowd: CrowdOptions,
-        draws: int,
-        goal: Goal | None,
-        must: Sequence[str] | None,
+        cls, found: SearchResult, icons: IconSet, rig: Rig, must: Sequence[str] | None, how: Mapping[str, Any]
     ) -> FoundSet:
-        """Rank both sets and judge them by the goal; try what would help where the found one misses it."""
+        """Rank both sets as the search did; try what would help where the found one misses the goal."""
         from thermicon.icons import IconSet
         from thermicon.perception import rank
         from thermicon.perception.selection.reach import what_would_help
 
         start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
+        draws = 0 if how["observer"].posterior is None else how["parameters"]
         with progress_bar("ranking") as bar:
             before, after = (
-                rank(
-                    each,
-                    rig,
-                    **crowd.asked,
-                    parameters=0 if model.posterior is None else draws,
-                    goal=goal,
-                    observer=model,
-                    progress=bar,
-                )
-                for each in (start, found.found)
+                rank(each, rig, **{**how, "parameters": draws}, progress=bar) for each in (start, found.found)
             )
         advice: Advice | None = None
         if after.goal is not None and not after.goal.met:
@@ -84,11 +65,8 @@ class FoundSet:
                     objective=found.objective,
                     count=len(found.found),
                     must=must,
-                    seed=crowd.seed,
-                    tracking=crowd.tracking,
-                    norm=crowd.norm,
-                    observer=model,
                     step=bar,
+                    **{name: how[name] for name in ("seed", "tracking", "norm", "observer")},
                 )
         return cls(found, before, after, advice)
 
