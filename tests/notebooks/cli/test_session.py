@@ -137,23 +137,12 @@ def test_a_command_line_that_makes_no_sense_is_a_usage_error(
     assert message in " ".join(said.stderr.replace("│", " ").split())
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("cool-step\nwarmstep\n", "order.txt:2: no icon is called 'warmstep'; did you mean warm-step"),
-        ("# only a comment\n", "there is no icon in this order, only comments"),
-        ("", "the file is empty"),
-        ("cool-step\0", "this is a binary file"),
-    ],
-)
-def test_a_wrong_order_leaves_with_1_and_nothing_written(
-    cli: Cli, two: Path, tmp_path: Path, text: str, message: str
-) -> None:
+def test_a_wrong_order_leaves_with_1_and_nothing_written(cli: Cli, two: Path, tmp_path: Path) -> None:
     order, out = tmp_path / "order.txt", tmp_path / "out.json"
-    order.write_text(text, encoding="utf-8")
+    order.write_text("cool-step\nwarmstep\n", encoding="utf-8")
     said = cli("simulate", two, "--order", order, "-o", out, "--figure", tmp_path / "out.png")
     assert (said.exit_code, said.stdout) == (1, "")
-    assert message in said.stderr
+    assert "order.txt:2: no icon is called 'warmstep'; did you mean warm-step" in said.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == ["order.txt", "two.cue"]
 
 
