@@ -112,13 +112,6 @@ def usage(message: str, option: str) -> typer.BadParameter:
     return typer.BadParameter(clean_line(message), param_hint=f"'{option}'")
 
 
-def check_bounds(*bounds: tuple[str, int, int, int]) -> None:
-    """Fail with a usage error for the first (option, value, least, most) whose value is outside."""
-    for option, value, least, most in bounds:
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
-
-
 def check_changes(changes: Sequence[str]) -> None:
     """Fail with a usage error unless every ``--set`` has the form KEY=VALUE."""
     for change in changes:

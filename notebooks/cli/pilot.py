@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..files.outputs import STDOUT, OutputError, check_output, check_separate, complete_or_absent
-from ..messages import check_bounds, note, progress_bar, usage
+from ..messages import note, progress_bar, usage
 from .cues import read_set, warn_of_frames
 from .options import FigureOptions, FileNames, Json, ObserverOptions, RigOptions, out, write_text
 from .ranking import command_text
@@ -233,7 +233,8 @@ def _numbers(text: str, option: str, least: int, most: int) -> tuple[int, ...]:
         found = sorted({int(part) for part in text.split(",")})
     except ValueError:
         raise usage(f"{text!r} is not a list of whole numbers such as 8,16,32", option) from None
-    check_bounds(*((option, value, least, most) for value in found))
+    if wrong := [number for number in found if not least <= number <= most]:
+        raise usage(f"{wrong[0]} is outside {least} to {most}", option)
     if len(found) > MOST_SIZES:
         raise usage(f"{len(found)} numbers; at most {MOST_SIZES} are tried at once", option)
     return tuple(found)

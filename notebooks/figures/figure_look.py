@@ -12,7 +12,6 @@ NARROWEST_MM, WIDEST_MM = 40.0, 500.0
 """Below, labels are wider than panels; above, no printer takes it."""
 NARROW_MM, PANEL_MM = 120.0, 42.0
 """Narrower figures have their keys below the panels; a panel with labels needs about this width."""
-KINDS = ("png", "pdf", "svg")
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +21,7 @@ class Look:
     style: str = "screen"
     width_mm: float | None = None
     title: bool = True
-    kind: str = KINDS[0]
+    kind: str = "png"
 
     def across(self, panels: int) -> int:
         """How many panels fit beside one another, of those that stand so where there is room.

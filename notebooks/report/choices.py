@@ -1,17 +1,11 @@
-"""Options for choosing the best few icons of a set, and the text of the choice."""
+"""The text of a goal, and of the choice of the best few icons of a set."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
-
-if TYPE_CHECKING:
-    pass
-
-OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
-"""As in `thermicon.perception.selection.subset_identification`, repeated here to avoid its imports."""
 
 SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
 MOST_EXCLUDED = 5
