@@ -68,8 +68,8 @@ def explain_error(code: str) -> None:
 
 def format_files(files: Sequence[str]) -> None:
     """Write sound files in canonical layout, each whole or not at all; what is wrong in the others, a check says."""
-    from thermicon.icons import CueErrors, library_names
-    from thermicon.icons.files.shipped import file_bytes
+    from thermicon.icons import CueErrors
+    from thermicon.icons.files.shipped import file_bytes, library_names
 
     for file in files:
         try:
@@ -129,7 +129,7 @@ def check(files: Sequence[str], rig: Rig | None = None) -> None:
 
 def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
     """One message for everything in this set that the rig cannot do; another site is only a warning on stderr."""
-    from thermicon.circuit import check_static
+    from thermicon.circuit.solver.static import check_static
 
     warn_of_site(file, icons, rig)
     count = len(icons)

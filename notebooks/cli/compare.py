@@ -24,7 +24,7 @@ from .simulate import headline
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception import SetComparison
+    from thermicon.perception.selection.robust import SetComparison
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
 MOST_IN_A_SET = 30
@@ -211,7 +211,7 @@ def _shifted(first: Curves, second: Curves) -> tuple[Curves, str]:
 
 def compare_identification(first: IconSet, second: IconSet, rig: Rig) -> str | None:
     """Return one sentence on which set is identified better; None if one has a single icon or very many."""
-    from thermicon.perception import compare_sets
+    from thermicon.perception.selection.robust import compare_sets
 
     if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (first, second)):
         return None

@@ -76,7 +76,8 @@ def read(file: str, given: dict[str, Any]) -> IconSet:
     """Return the icons of a file, or of a recording in CSV."""
     if not file.lower().endswith(".csv"):
         return read_set([file])
-    from thermicon.icons import IconSet, Metadata
+    from thermicon.icons import IconSet
+    from thermicon.icons.model.context import Metadata
     from thermicon.icons.recordings.recorded import from_csv
 
     try:

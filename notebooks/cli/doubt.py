@@ -17,7 +17,7 @@ from .cues import read_set, warn_of_frames
 from .options import CrowdOptions, RigOptions, write_text
 
 if TYPE_CHECKING:
-    from thermicon.perception import Sensitivity
+    from thermicon.perception.ranking.sensitivity import Sensitivity
 
     from .ranking import SetFigureOptions
 
@@ -39,8 +39,7 @@ def doubt_about(
             raise usage("belongs to a ranking; leave it out, or --doubt", option)
     if figure.figure is not None and figure.picture is None:
         raise usage("with --doubt there is one figure: name a .pdf, .svg or .png file", "--figure")
-    from thermicon.perception import sensitivity
-    from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS
+    from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS, sensitivity
 
     if crowd.intervals is not None and crowd.intervals < FEWEST_DRAWS:
         raise usage(f"{crowd.intervals} draws are too few for --doubt: give {FEWEST_DRAWS} or more", "--intervals")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from itertools import chain
-from json import dumps
 
 from .finding import Finding, first_line
 from .packages import PROGRAM, installed_version
@@ -17,12 +17,12 @@ CHECKS = (
     ("files", "machine", "check_data"),
     ("packages", "packages", "check_required"),
     ("extras", "packages", "check_extras"),
-    ("outside programs", "packages", "check_programs"),
+    ("outside programs", "programs", "check_programs"),
     ("cache", "machine", "check_cache"),
     ("threads", "machine", "check_threads"),
     ("fonts", "machine", "check_fonts"),
-    ("widgets", "machine", "check_widgets"),
-    ("kernel", "machine", "check_kernel"),
+    ("widgets", "jupyter", "check_widgets"),
+    ("kernel", "jupyter", "check_kernel"),
     ("self-test", "self_test", "check_self_test"),
 )
 """What is checked, the module of this room that does it, and its function: the slowest last."""
@@ -78,7 +78,7 @@ def doctor(as_json: bool = False, cannot_start: BaseException | None = None) -> 
             "ok": not count["fault"],
             "findings": [each.to_dict() for each in findings],
         }
-        sys.stdout.write(dumps(data, indent=1) + "\n")
+        sys.stdout.write(json.dumps(data, indent=1) + "\n")
     else:
         sys.stdout.write(f"\n{summary(count['fault'], count['note'])}\n")
     return FAULTY if count["fault"] else 0

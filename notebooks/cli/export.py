@@ -20,7 +20,7 @@ from .options import IconName, NoFile, RigOptions, Tail, out
 from .verifying import verify_folder
 
 if TYPE_CHECKING:
-    from thermicon.circuit import DeliveredDrive
+    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
 
 NUMBER = re.compile(r"\d+(\.\d+)?")

@@ -14,7 +14,8 @@ from ..messages import note, usage
 from .options import FigureOptions, RigOptions, write_text
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, RigFit
+    from thermicon.circuit import Rig
+    from thermicon.circuit.fitting.rig_fit import RigFit
 
 OFFSET_K, MOST_OFFSET_K = 0.1, 10.0
 """As in `thermicon.circuit.fitting.fit`, repeated here to avoid its imports."""

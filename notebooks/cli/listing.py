@@ -55,7 +55,8 @@ def list_command(
 def cite_file(file: str, as_bibtex: bool, rig: RigOptions) -> None:
     """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
     from thermicon.circuit.rig.rig_summary import rig_for_methods
-    from thermicon.icons import bibtex, methods
+    from thermicon.icons.files.bibtex import bibtex
+    from thermicon.icons.files.methods import methods
 
     icons = read_set([file])
     if as_bibtex:
@@ -71,8 +72,9 @@ def copy_shipped(name: str, output: Path) -> None:
     """Write the file of a shipped set, rig or device under a new name; what is there already is kept."""
     from importlib import resources
 
-    from thermicon.circuit import device_names, rig_names
-    from thermicon.icons import library_names
+    from thermicon.circuit.delivery.device import device_names
+    from thermicon.circuit.rig.rig import rig_names
+    from thermicon.icons.files.shipped import library_names
     from thermicon.icons.near_words import did_you_mean
 
     kinds = (
@@ -94,7 +96,8 @@ def copy_shipped(name: str, output: Path) -> None:
 
 def show_rigs() -> None:
     """Print the shipped rigs: site, resting temperature, blood temperature and resting heat flow."""
-    from thermicon.circuit import Rig, rig_names
+    from thermicon.circuit import Rig
+    from thermicon.circuit.rig.rig import rig_names
 
     numbers = ("rest °C", "blood °C", "flux W/m²")
     made = table("name", "title", "site", *numbers, numbers=numbers)
@@ -109,7 +112,8 @@ def show_rigs() -> None:
 
 def show_icons() -> None:
     """Print the shipped icon sets: icons with their meanings, what they control, and their source."""
-    from thermicon.icons import Family, library_names, load_library
+    from thermicon.icons import Family
+    from thermicon.icons.files.shipped import library_names, load_library
 
     for position, name in enumerate(library_names()):
         icons = load_library(name)
@@ -130,7 +134,8 @@ def show_icons() -> None:
 
 def show_devices() -> None:
     """Print the shipped devices with input, range, resolution and rate, and which were tested on hardware."""
-    from thermicon.circuit import Device, device_names
+    from thermicon.circuit import Device
+    from thermicon.circuit.delivery.device import device_names
 
     made = table("device", "driven by", "range", "resolution", "rate")
     devices = [Device.load(name) for name in device_names()]

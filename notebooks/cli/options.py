@@ -27,14 +27,14 @@ LONGEST_TAIL_S = 86_400.0
 
 def rigs_like(incomplete: str) -> list[str]:
     """Shipped rigs that begin so, for the shell."""
-    from thermicon.circuit import rig_names
+    from thermicon.circuit.rig.rig import rig_names
 
     return [name for name in rig_names() if name.startswith(incomplete)]
 
 
 def sets_like(incomplete: str) -> list[str]:
     """Shipped sets that begin so, for the shell."""
-    from thermicon.icons import library_names
+    from thermicon.icons.files.shipped import library_names
 
     return [name for name in library_names() if name.startswith(incomplete)]
 

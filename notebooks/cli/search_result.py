@@ -15,8 +15,9 @@ from ..report.tables import show, table
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Ranking, SearchResult
+    from thermicon.perception import Ranking
     from thermicon.perception.selection.reach import Advice, Trial
+    from thermicon.perception.selection.search import SearchResult
 
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.evaluators`, repeated here to avoid its imports."""

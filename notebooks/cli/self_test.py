@@ -17,7 +17,7 @@ from importlib import resources
 from time import perf_counter
 
 from .finding import Finding
-from .packages import run_program
+from .programs import run_program
 
 STORED = "self-test.toml"
 WAITS_S = 600.0

@@ -186,7 +186,8 @@ def simulate_drive(
     measured: Path | None,
 ) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
-    from thermicon.circuit import read_drive, simulate_current
+    from thermicon.circuit.solver.drive import read_drive
+    from thermicon.circuit.solver.simulate import simulate_current
 
     pictures = _figure_paths(figure.figure, [""])
     _check(drive, output, pictures)
@@ -284,8 +285,8 @@ def _report(
 
 def unsafe(trace: Trace) -> list[str]:
     """Return one sentence per exceeded safety limit, or the reason why the run cannot be judged."""
-    from thermicon.circuit import judge_safety
     from thermicon.circuit.rig.load import LOAD_SITES, without_skin
+    from thermicon.circuit.safety.limits import judge_safety
 
     if trace.site in LOAD_SITES:
         return [without_skin(trace.site, "safety for people")]
@@ -295,7 +296,7 @@ def unsafe(trace: Trace) -> list[str]:
 
 def write_traces(traces: Sequence[Trace], output: Path) -> None:
     """Write all traces to one file in the format of its suffix; ``-`` is CSV on stdout."""
-    from thermicon.circuit import write_trace
+    from thermicon.circuit.solver.trace import write_trace
 
     if output == STDOUT:
         with tempfile.TemporaryDirectory() as folder:

@@ -140,7 +140,8 @@ RECEPTORS = tuple(
 def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float) -> dict[str, Any]:
     import numpy
 
-    from thermicon.circuit import InputError, simulate, summarise
+    from thermicon.circuit import InputError, simulate
+    from thermicon.circuit.safety.summary import summarise
     from thermicon.perception.ranking.swept import rig_under
 
     try:

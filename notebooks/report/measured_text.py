@@ -1,4 +1,4 @@
-"""What ``thermicon pilot --answers`` prints of thresholds, reaction times and ratings."""
+"""What ``thermicon observed`` prints of thresholds, reaction times and ratings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``thermicon pilot --answers`` prints: answers beside their prediction, and the prediction before and after."""
+"""What ``thermicon observed`` prints: answers beside their prediction, and the prediction before and after."""
 
 from __future__ import annotations
 

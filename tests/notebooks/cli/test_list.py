@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from thermicon.circuit import Device, Rig
-from thermicon.icons import load_library, read_cue
+from thermicon.icons import read_cue
+from thermicon.icons.files.shipped import load_library
 
 Cli = Callable[..., Any]
 

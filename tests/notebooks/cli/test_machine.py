@@ -11,19 +11,19 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.cli import machine, packages
+from thermicon.notebooks.cli import jupyter, machine, programs
 
 
 def test_programs_that_are_missing_are_notes_with_their_purpose(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
     monkeypatch.setattr(sys, "platform", "linux")
-    assert [(each.check, each.state) for each in packages.check_programs()] == [
+    assert [(each.check, each.state) for each in programs.check_programs()] == [
         ("ngspice", "note"),
         ("C compiler", "note"),
         ("Chromium", "note"),
     ]
-    first = next(packages.check_programs())
-    assert first.text == "not installed; only needed for running the netlists that simulate writes"
+    first = next(programs.check_programs())
+    assert first.text == "not installed; only needed for running what netlist writes"
     assert first.cure == "sudo apt install ngspice, or the package of that name of your system"
 
 
@@ -36,7 +36,7 @@ def test_a_program_states_its_version_or_nothing(tmp_path: Path, script: str, ve
     path = tmp_path / "ngspice"
     path.write_text(f"#!/bin/sh\n{script}\n", encoding="utf-8")
     path.chmod(0o755)
-    assert packages.version_of(str(path)) == version
+    assert programs.version_of(str(path)) == version
 
 
 def test_the_cache_is_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -120,21 +120,21 @@ def extension(folder: Path, name: str, version: str) -> None:
 
 def test_extensions_that_show_widgets_are_looked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     versions = {"jupyterlab_widgets": "3.0.16", "anywidget": "0.11.0"}
-    monkeypatch.setattr(machine, "installed_version", lambda name: versions.get(name, "4.6"))
+    monkeypatch.setattr(jupyter, "installed_version", lambda name: versions.get(name, "4.6"))
     monkeypatch.setattr("jupyter_core.paths.jupyter_path", lambda *_: [str(tmp_path / "none"), str(tmp_path)])
     manager = "@jupyter-widgets/jupyterlab-manager"
-    missing, also = machine.check_widgets()
+    missing, also = jupyter.check_widgets()
     assert (missing.state, missing.text) == ("fault", f"JupyterLab does not find {manager}, which shows the workbench")
     assert missing.cure is not None
     assert missing.cure.endswith("jupyterlab_widgets")
     assert "anywidget" in also.text
     extension(tmp_path, manager, "5.0.16")
     extension(tmp_path, "anywidget", "0.9.0")
-    (older,) = machine.check_widgets()
+    (older,) = jupyter.check_widgets()
     assert "finds anywidget 0.9.0" in older.text
     assert "anywidget 0.11.0 is installed" in older.text
     versions["anywidget"] = "0.9.18"
-    (fine,) = machine.check_widgets()
+    (fine,) = jupyter.check_widgets()
     assert fine.text == "jupyterlab 4.6, ipywidgets 4.6, jupyterlab_widgets 3.0.16, anywidget 0.9.18"
 
 
@@ -154,7 +154,7 @@ def test_the_kernel_is_this_python(python: str, state: str, words: str, monkeypa
         return spec
 
     monkeypatch.setattr("jupyter_client.kernelspec.KernelSpecManager.get_kernel_spec", get)
-    (finding,) = machine.check_kernel()
+    (finding,) = jupyter.check_kernel()
     assert finding.state == state
     assert words in finding.text
     assert finding.cure == (None if state == "ok" else f"{sys.executable} -m ipykernel install --sys-prefix")
