@@ -26,7 +26,7 @@ REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
 _LATE: ContextVar[list[str] | None] = ContextVar("late notes", default=None)
-MOST_DRAWS = 10_000
+_QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 
 
 def is_ours(error: BaseException) -> bool:
@@ -48,8 +48,18 @@ def fail(message: str) -> NoReturn:
     raise typer.Exit(BAD_INPUT)
 
 
-def note(message: str) -> None:
-    """Tell the person something beside the result; stderr, so that results can be piped. Nobody need be there."""
+def be_quiet(wanted: bool) -> None:
+    """From now on show neither progress nor notes; what is wrong is still said."""
+    _QUIET.set(wanted)
+
+
+def note(message: str, *, always: bool = False) -> None:
+    """Tell the person something beside the result; stderr, so that results can be piped. Nobody need be there.
+
+    ``always``: also where only results and errors are wanted, since it says why there is no result.
+    """
+    if _QUIET.get() and not always:
+        return
     try:
         typer.echo(clean(message), err=True)
     except BrokenPipeError:
@@ -100,20 +110,6 @@ class Missing(typer.BadParameter):
 def usage(message: str, option: str) -> typer.BadParameter:
     """Build the error for a command line that makes no sense; raising it exits with 2."""
     return typer.BadParameter(clean_line(message), param_hint=f"'{option}'")
-
-
-def check_bounds(*bounds: tuple[str, int, int, int]) -> None:
-    """Fail with a usage error for the first (option, value, least, most) whose value is outside."""
-    for option, value, least, most in bounds:
-        if not least <= value <= most:
-            raise usage(f"{value} is outside {least} to {most}", option)
-
-
-def check_parameters(draws: int | None) -> None:
-    """Fail with a usage error for a number of draws that makes no interval; None is the usual number."""
-    check_bounds(("--parameters", 0 if draws is None else draws, 0, MOST_DRAWS))
-    if draws == 1:
-        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--parameters")
 
 
 def check_changes(changes: Sequence[str]) -> None:
@@ -173,11 +169,11 @@ def load_observer(file: Path | None, rig: Rig | None = None, needs_draws: str = 
 
 
 def _cure_without_draws(file: Path | None) -> str:
-    """Which file of draws to give instead: the one beside the records, where `observed --keep` has written one."""
+    """Which file of draws to give instead: the one beside the records, where `pilot --keep` has written one."""
     beside = None if file is None else file.with_suffix(".csv")
     if beside is not None and beside.exists():
         return f"give {beside}, which stands beside it"
-    return "give the table of draws (.csv) that observed --keep writes beside it, or one of thermicon calibrate"
+    return "give the table of draws (.csv) that pilot --keep writes beside it"
 
 
 def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int, least: int = 2) -> int:
@@ -186,7 +182,7 @@ def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int
     Fail where more are asked for than there are, and where there are fewer than `least`.
     """
     if model.posterior is not None and (held := len(model.posterior)) < least:
-        fail(f"{model.name} has {held} draws, and {least} are needed: keep more with observed --draws {2 * least}")
+        fail(f"{model.name} has {held} draws, and {least} are needed: keep more with pilot --draws {2 * least}")
     if asked is None:
         if 0 < (draws := model.most_draws(usual)) < usual:
             note(f"note: {model.name} has {draws} draws: all of them are used ({option} is {usual} by default)")
@@ -200,7 +196,7 @@ def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int
 @contextlib.contextmanager
 def progress_bar(what: str) -> Iterator[Progress | None]:
     """Give a function of (done, total) that draws a bar, or None when stderr is not a terminal."""
-    if not sys.stderr.isatty():
+    if _QUIET.get() or not sys.stderr.isatty():
         yield None
         return
     from tqdm import tqdm

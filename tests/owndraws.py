@@ -1,4 +1,4 @@
-"""The observer file of a laboratory, as ``observed --keep`` writes one, from draws of the shipped posterior."""
+"""The observer file of a laboratory, as ``pilot --keep`` writes one, from draws of the shipped posterior."""
 
 from __future__ import annotations
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import sys
-from copy import copy
 from pickle import UnpicklingError
 from typing import Any
 
@@ -16,23 +15,6 @@ from ..report.number_fault import reworded
 
 SENTENCE = 400
 """More letters than any first sentence of a command's help has."""
-
-
-def with_command(app: typer.Typer, words: list[str]) -> typer.Typer:
-    """The program with the one command that a command line begins with, otherwise with all.
-
-    Reading the options of all of them takes as long as checking a file.
-
-    >>> app = typer.Typer()
-    >>> with_command(app, ["unknown"]) is app
-    True
-    """
-    asked = [command for command in app.registered_commands if [command.name] == words]
-    if not asked:
-        return app
-    one = copy(app)
-    one.registered_commands = asked
-    return one
 
 
 class Commands(TyperGroup):

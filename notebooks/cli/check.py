@@ -1,24 +1,105 @@
-"""``thermicon check``: every error in some cue files, or one line per file."""
+"""``thermicon check``: every error in some cue files, or one line per file; ``--fix`` formats them."""
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from thermicon.icons.number_text import number, span
 
-from ..messages import fail, note
+from ..files.outputs import OutputError, check_output, complete_or_absent
+from ..messages import Missing, fail, note, usage
 from .cues import MOST_ICONS, warn_of_site
+from .options import RigOptions, sets_like
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
+NoFiles = Annotated[
+    list[str] | None, typer.Argument(metavar="FILE", autocompletion=sets_like, help="Cue files, or shipped sets.")
+]
 START_C = 32.0
 """Initial temperature without a baseline or a rig: the resting temperature of the default rig."""
+
+
+def check_command(
+    rig: RigOptions,
+    files: NoFiles = None,
+    fix: Annotated[
+        bool,
+        typer.Option("--fix", help="Format files in canonical layout, in place; comments, numbers and units stay."),
+    ] = False,
+    explain: Annotated[
+        str | None,
+        typer.Option(metavar="CODE", help="Instead: explain an error by its code, such as E102, or its title."),
+    ] = None,
+) -> None:
+    """Check cue files and report every error in them, or one line per file when there is none.
+
+    With --rig, levels, baselines and (under display control) rates are also checked against what the rig can do.
+    simulate reports whether the rig reaches the target in time. With --fix, files without an error are formatted.
+    """
+    if explain is not None:
+        if files or fix or rig.given:
+            raise usage("stands alone: leave out FILE and the other options", "--explain")
+        explain_error(explain)
+        return
+    if not files:
+        raise Missing("argument 'FILE...'")
+    if fix:
+        format_files(files)
+    check(files, rig.load(module_matters=False) if rig.given else None)
+
+
+def explain_error(code: str) -> None:
+    """Explain an error in a cue file: its meaning, an example, and the corrected example."""
+    from thermicon.icons.files.catalogue import explain
+
+    try:
+        typer.echo(explain(code))
+    except ValueError as unknown:
+        raise usage(str(unknown), "--explain") from None
+
+
+def format_files(files: Sequence[str]) -> None:
+    """Write sound files in canonical layout, each whole or not at all; what is wrong in the others, a check says."""
+    from thermicon.icons import CueErrors
+    from thermicon.icons.files.shipped import file_bytes, library_names
+
+    for file in files:
+        try:
+            before = file_bytes(file)
+            if before is None and file in library_names():
+                raise OutputError(f"{file}: a shipped set cannot be changed; give the name of your own file")
+            after = None if before is None else canonical(before, file)
+        except CueErrors:
+            continue
+        if after is not None and after != before:
+            check_output(Path(file), (), "a cue file")
+            with complete_or_absent(Path(file)) as draft:
+                draft.write_bytes(after)
+                shutil.copymode(file, draft)
+            note(f"{file}: formatted")
+
+
+def canonical(data: bytes, file: str) -> bytes:
+    """Return a cue file in canonical layout; CueErrors when it is not sound.
+
+    Line ends are those of the first line, Windows' or not, and a byte order mark is taken away.
+
+    >>> canonical(b"\\xef\\xbb\\xbfcue 1\\r\\nicon x{ hold for 1 s }", "x.cue")
+    b'cue 1\\r\\n\\r\\nicon x {\\r\\n  hold for 1 s\\r\\n}\\r\\n'
+    """
+    from thermicon.icons import format_text
+
+    text = format_text(data, file)
+    first, newline, _ = data.partition(b"\n")
+    return (text.replace("\n", "\r\n") if newline and first.endswith(b"\r") else text).encode()
 
 
 def check(files: Sequence[str], rig: Rig | None = None) -> None:

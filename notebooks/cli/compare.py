@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from thermicon.icons.number_text import number, percent
 
 from ..figures.differences import Aligned, align, differences, quantity, with_unit
-from ..figures.figure_look import SCREEN, Look
-from ..figures.print_figure import write_figure
-from ..files.outputs import FIGURE_SUFFIXES, check_output, check_separate
+from ..files.outputs import check_separate
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..messages import DEFAULT_RIG, load_rig, note, usage
 from ..report.compare_inputs import Request, check_request, kind_of_both
 from ..report.set_matrix import FEWEST, show_matrix
 from ..report.tables import show, table
 from .cues import pick, read_set
+from .options import FigureOptions, IconName, RigOptions
 from .simulate import headline
 
 if TYPE_CHECKING:
@@ -40,28 +41,47 @@ class Comparison:
     after: str = ""
 
 
-def compare(first: str, second: str, request: Request, figure: Path | None, look: Look = SCREEN) -> None:
-    """Compare two rigs, icons, sets or tables: one table per pair on stdout, and a figure on request."""
+def compare_command(
+    first: Annotated[str, typer.Argument(metavar="A", help="A rig, FILE:ICON, a set, a trace or a log.")],
+    second: Annotated[str, typer.Argument(metavar="B", help="A second one of the same kind.")],
+    rig: RigOptions,
+    figure: FigureOptions,
+    file: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="For two rigs: the icons to play.  [default: one icon of six-icons]"),
+    ] = None,
+    icon: IconName = None,
+    align: Annotated[
+        bool, typer.Option("--align", help="For a trace and a log: shift B in time to where it is most like A.")
+    ] = False,
+    rigs: Annotated[
+        str | None, typer.Option(metavar="R,R", help="For two sets: score both on each of these rigs, as a table.")
+    ] = None,
+) -> None:
+    """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
+
+    Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
+    .csv or .parquet files with time_s and columns of a trace. Two sets without a common name of an icon are compared by
+    what is predicted for them.
+    """
+    several = tuple(name.strip() for name in (rigs or "").split(",") if name.strip())
+    request = Request(file, icon, rig.rig, tuple(rig.changes), align, several)
     kind = kind_of_both(first, second)
     check_request(kind, request)
     if kind == "set" and (request.rigs or (request.icon is None and not _common(first, second))):
-        _matrix(first, second, request, figure)
+        _matrix(first, second, request, figure.figure)
         return
-    if figure is not None:
-        check_output(figure, FIGURE_SUFFIXES, "a figure")
-        check_separate([first, second], [figure])
+    check_separate([first, second], [figure.figure])
     made = {"rig": _rigs, "icon": _icons, "set": _sets, "table": _tables}[kind](first, second, request)
-    if figure is not None:
+    if figure.figure is not None:
         from ..figures.compare_figure import compare_figure
 
         pairs = [(each.title, each.both) for each in made]
-        write_figure(compare_figure(pairs, across=look.across(3)), figure, look)
+        figure.write(compare_figure(pairs, across=figure.look.across(3)))
     for place, each in enumerate(made):
         if place:
             show("")
         show_comparison(each)
-    if figure is not None:
-        note(f"wrote {figure}")
 
 
 def show_comparison(made: Comparison) -> None:

@@ -2,37 +2,60 @@
 
 from __future__ import annotations
 
+import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
 
 from thermicon.icons.number_text import number
 
-from ..files.outputs import STDOUT, OutputError, check_output, complete_or_absent
-from ..messages import fail, note
+from ..files.outputs import STDOUT, OutputError, check_output
+from ..messages import fail, note, usage
 from .cues import pick, read_set
+from .options import IconName, out, write_text
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
 
 SUFFIXES = (".cue", ".json")
-_GIVEN = ("tolerance_K", "name", "column", "control")
 _TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#')
 
 
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """How a recording becomes an icon: tolerance in K, name, column and control; None means the default."""
+def convert_command(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A .cue or .csv file, or a shipped set.")],
+    output: Annotated[
+        Path,
+        out("OUT", "The file to write: .cue or .json.", "-o", "--output"),
+    ],
+    icon: IconName = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(
+            "--tolerance", metavar="K", help="For .csv: largest deviation of the icon from the recording, in K."
+        ),
+    ] = None,
+    name: Annotated[str | None, typer.Option("--name", metavar="NAME", help="For .csv: the name of the icon.")] = None,
+    column: Annotated[
+        str | None, typer.Option("--column", metavar="COLUMN", help="For .csv: the column of temperatures.")
+    ] = None,
+    control: Annotated[
+        Literal["skin", "display"] | None,
+        typer.Option(help="For .csv: whether skin or display temperatures were recorded."),
+    ] = None,
+) -> None:
+    """Write icons as a cue file or, for other programs, as JSON, as the ending says.
 
-    tolerance_K: float | None = None
-    name: str | None = None
-    column: str | None = None
-    control: str | None = None
-
-
-def convert_file(file: str, output: Path, icon: str | None, recording: Recording) -> None:
-    """Read icons from a file of one kind and write them, complete or not at all, as the kind that the ending names."""
+    JSON keeps everything except comments. A recording (.csv) becomes an icon of a few straight pieces.
+    """
+    recording = {"tolerance_K": tolerance, "name": name, "column": column, "control": control}
+    given = {key: value for key, value in recording.items() if value is not None}
+    if given and not file.lower().endswith(".csv"):
+        raise usage("applies only to a recording, a .csv file", f"--{next(iter(given)).removesuffix('_K')}")
+    if tolerance is not None and not (math.isfinite(tolerance) and tolerance > 0):
+        raise usage(f"{tolerance:g} is not a difference in K above 0", "--tolerance")
     if output == STDOUT:
         raise OutputError("the output format follows from the file ending: give a name such as icons.json")
     check_output(output, SUFFIXES, "a set of icons")
@@ -40,18 +63,16 @@ def convert_file(file: str, output: Path, icon: str | None, recording: Recording
         raise OutputError(f"cannot write {output}: it is the input file; give another name")
     from thermicon.icons import to_json
 
-    icons = read(file, recording)
+    icons = read(file, given)
     if icon is not None:
         icons = only_icon(icons, icon)
     text = to_json(icons) if output.suffix.lower() == ".json" else str(icons)
-    with complete_or_absent(output) as draft:
-        draft.write_text(text, encoding="utf-8", newline="\n")
-    note(f"wrote {output}: {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
+    write_text(text, output, f": {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
     if has_comments(file):
         note(f"comments in {Path(file).name} were dropped")
 
 
-def read(file: str, recording: Recording) -> IconSet:
+def read(file: str, given: dict[str, Any]) -> IconSet:
     """Return the icons of a file, or of a recording in CSV."""
     if not file.lower().endswith(".csv"):
         return read_set([file])
@@ -59,7 +80,6 @@ def read(file: str, recording: Recording) -> IconSet:
     from thermicon.icons.model.context import Metadata
     from thermicon.icons.recordings.recorded import from_csv
 
-    given = {name: value for name in _GIVEN if (value := getattr(recording, name)) is not None}
     try:
         icon = from_csv(file, **given)
     except ValueError as problem:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,53 +13,99 @@ from thermicon.icons.number_text import number
 
 from ..files.export_folder import check_export_folder
 from ..files.exporting import PreparedExport, others, prepare_icons, write
-from ..messages import REFUSED, note, progress_bar
+from ..messages import REFUSED, Missing, note, progress_bar, usage
 from ..report.gate_words import gate_words
 from .cues import pick, read_set, warn_of_site
+from .options import IconName, NoFile, RigOptions, Tail, out
+from .verifying import verify_folder
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
 
 NUMBER = re.compile(r"\d+(\.\d+)?")
+LONGEST_PAUSE_S = 600.0
+"""As in `thermicon.circuit.safety.repeated`, repeated here to avoid its imports."""
 CAUTION = (
     "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
     "works without software"
 )
 
 
-def export_file(
-    file: str,
-    to: str,
-    device: str | None,
-    icon: str | None,
-    rig: Rig,
-    tail_s: float,
-    force: bool,
-    folder: Path,
-    pause_s: float | None = None,
+def export_command(
+    rig: RigOptions,
+    file: NoFile = None,
+    to: Annotated[
+        str | None, typer.Option(metavar="FORMAT", help="File format; thermicon list formats has them.")
+    ] = None,
+    folder: Annotated[
+        Path | None,
+        out("DIR", "Folder for drives and sidecars; nothing else should be in it.", "-o", "--output"),
+    ] = None,
+    device: Annotated[
+        str | None,
+        typer.Option(metavar="DEVICE", help="A shipped device or a .toml file.  [default: by format]"),
+    ] = None,
+    icon: IconName = None,
+    tail: Tail = 0.0,
+    pause: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S", min=0.0, max=LONGEST_PAUSE_S, help="Seconds between plays.  [default: the recovery time]"
+        ),
+    ] = None,
+    force: Annotated[
+        bool,
+        typer.Option(
+            "--force",
+            help="Replace files, and export icons that are lossy or not reached; unsafe ones never.",
+        ),
+    ] = False,
+    verify: Annotated[
+        Path | None,
+        out("DIR", "Write nothing; check that drives, sidecars, rig and program in DIR belong together.", "--verify"),
+    ] = None,
 ) -> None:
-    """Write the icons of a file (or the one named) as drives for a device; exit code 3 if that is refused."""
+    """Export drive files for hardware, each with a sidecar that describes it and its predicted effects.
+
+    Every icon is simulated as the device delivers it. An icon that is unsafe, not reached, or loses too much on the
+    device is refused with the reason; then nothing is written, and the exit code is 3.
+
+    --verify DIR checks an exported folder; the exit code is 1 if its files do not belong together.
+    """
+    if verify is not None:
+        options: dict[str, object] = {"--to": to, "-o": folder, "--device": device, "--icon": icon, "--pause": pause}
+        options |= {"--rig": rig.rig, "--set": rig.set, "--force": force, "--tail": tail}
+        given = [*([f"the file {file}"] if file else []), *(name for name, value in options.items() if value)]
+        if given:
+            raise usage(f"takes no other argument; leave out {', '.join(given)}", "--verify")
+        verify_folder(verify)
+        return
+    if file is None:
+        raise Missing("argument 'FILE'")
+    if to is None:
+        raise Missing("option '--to'")
+    if folder is None:
+        raise Missing("option '-o' / '--output'")
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
 
-    form = load_format(to)
+    where, form = rig.load(), load_format(to)
     check_export_folder(folder, replace=force)
     whole = read_set([file])
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
-    warn_of_site(file, whole, rig)
+    warn_of_site(file, whole, where)
     with progress_bar("simulating") as progress:
         rest = others(whole, chosen)
-        ready = prepare_icons(chosen, rest, rig, device, to, step=progress, tail_s=tail_s, pause_s=pause_s)
+        ready = prepare_icons(chosen, rest, where, device, to, step=progress, tail_s=tail, pause_s=pause)
     for warning in ready.warnings:
         note(warning)
     if refused(ready, force):
         for line in (*map(icon_line, ready.prepared), *warning_lines(ready.prepared)):
             note(line)
         note(CAUTION)
-        note("nothing was written")
+        note("nothing was written", always=True)
         raise typer.Exit(REFUSED)
     report_icons(ready.prepared)
     written = write(ready, folder, overwrite=force, insist=force)
@@ -122,7 +168,10 @@ def refused(ready: PreparedExport, force: bool) -> bool:
     final = any(not refusal.forcible for _, refusal in found)
     for name, refusal in found:
         stops = final or not force
-        note(f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}")
+        note(
+            f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}",
+            always=True,
+        )
     forcible = any(refusal.forcible for _, refusal in found)
     if forcible and not force and not final:
         note("--force exports it nevertheless, and the sidecar records that")

@@ -23,7 +23,8 @@ from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 from ..files.document import Document
 from ..files.outputs import check_folder, complete_or_absent, stopped_cleanly
 from ..files.start_folder import FILE, OBSERVER, RIG, VARIABLE
-from ..messages import check_bounds, fail, interrupted, load_observer, load_rig, note, usage
+from ..messages import fail, interrupted, load_observer, load_rig, note, usage
+from .options import out, rigs_like
 
 FOLDER = Path("thermicon-notebooks")
 FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
@@ -74,23 +75,20 @@ def lab_command(
         typer.Option("--page", help="Serve the workbench as a web page (with Voila) instead of opening JupyterLab."),
     ] = False,
     rig: Annotated[
-        str | None, typer.Option("--rig", metavar="RIG", help="With --page: rig of the page, by name or path.")
+        str | None,
+        typer.Option(metavar="RIG", autocompletion=rigs_like, help="With --page: rig of the page, by name or path."),
     ] = None,
     observer: Annotated[
         Path | None,
-        typer.Option(
-            "--observer",
-            metavar="FILE",
-            readable=False,
-            help="With --page: predict with another observer, such as the lab.csv of observed --keep.",
-        ),
+        out("FILE", "With --page: predict with another observer, such as the lab.csv of pilot --keep.", "--observer"),
     ] = None,
     files_only: Annotated[
         bool, typer.Option("--files-only", help="Only copy the notebooks, for use in your own Jupyter.")
     ] = False,
     no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
     port: Annotated[
-        int | None, typer.Option("--port", metavar="N", help="Port on this machine.  [default: 8888; 8866 with --page]")
+        int | None,
+        typer.Option(metavar="N", min=1, max=65535, help="Port on this machine.  [default: 8888; 8866 with --page]"),
     ] = None,
     allow_root: Annotated[
         bool, typer.Option("--allow-root", help="Let JupyterLab run as root, as in a container.")
@@ -105,8 +103,6 @@ def lab_command(
     """
     if page and files_only:
         raise usage("opens nothing, so no page can be served", "--files-only")
-    if port is not None:
-        check_bounds(("--port", port, 1, 65535))
     if rig is not None and not page:
         raise usage("is for --page; in a notebook, write Workbench(rig=...)", "--rig")
     file = folder if page and folder.suffix.lower() == CUE else None

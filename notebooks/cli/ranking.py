@@ -7,149 +7,209 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..figures.figure_look import SCREEN, Look
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate, complete_or_absent
-from ..messages import check_draws, load_observer, note, progress_bar, usage
-from ..report.options import check_norm_option
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate
+from ..messages import note, progress_bar, usage
 from ..report.rank_text import show_ranking
 from .cues import MOST_ICONS, read_set, warn_of_frames
+from .options import CrowdOptions, FigureOptions, FileNames, Json, Options, RigOptions, out, write_text
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Ranking
-    from thermicon.perception.selection.request import Selection
+    from thermicon.perception import Ranking, Task
 
-PLAIN_OPTIONS = (
-    "people",
-    "seed",
-    "tracking",
-    "norm",
-    "trials",
-    "by",
-    "parameters",
-    "context",
-    "gap",
-    "bias",
-    "observer",
-    "goal",
-)
 OTHER_PICTURES = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
+TRIALS, MOST_WORKERS = 48, 1024
+TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s"), "context": (0.0, 1.0, ""), "bias": (0.0, 5.0, "")}
+"""Keys of --task with their limits, those of `thermicon.perception.Task`, repeated here to avoid its imports."""
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
-    """Options of ``rank``: people, seed, tracking (None: by the icons' control), norm, trials, and what to score by.
+@dataclass(frozen=True)
+class SetFigureOptions(FigureOptions):
+    """All figures of a set in a folder, or the one of the whole set."""
 
-    ``parameters`` is the number of draws of the posterior for the intervals of a new laboratory (None: 128, or
-    as many as there are); 0 draws none.
-    ``choosing`` selects the best few icons, ``edits`` finds the cheapest edit of the ``worst`` pair or of ``all``
-    indistinguishable pairs.
-    ``rig`` is the rig as it was asked for, a name or a file; ``observer`` a file in place of the shipped observer.
-    ``context``, ``gap`` (s) and ``bias`` describe the task, as in ``thermicon.perception.Task``. ``workers`` is the
-    number of cores, ``cluster`` the address of a scheduler to use instead, ``keep`` a folder for finished parts.
-    """
+    figure: Annotated[
+        Path | None,
+        out("DIR|OUT", "Write all figures to the folder DIR, or that of the set to a .pdf, .svg or .png file."),
+    ] = None
 
-    people: int = 200
-    seed: int = 0
-    tracking: str | None = None
-    norm: str = "episodes"
-    trials: int = 48
-    by: str = "model"
-    parameters: int | None = None
-    choosing: Selection | None = None
-    goal: str | None = None
-    edits: str = "worst"
-    context: float = 0.0
-    gap: float | None = None
-    bias: float = 0.0
-    observer: Path | None = None
-    rig: str | None = None
-    workers: int | None = None
-    cluster: str | None = None
-    keep: Path | None = None
+    def check_place(self) -> None:
+        """Fail where figures can neither go to a folder, nor one of the set to a file."""
+        place = self.figure
+        if place is None:
+            return
+        if self.picture is not None:
+            check_output(place, FIGURE_SUFFIXES, "a figure")
+            return
+        if not place.is_dir() and (place.exists() or place.suffix.lower() in OTHER_PICTURES):
+            hint = place.with_suffix("") if place.suffix else "figures"
+            raise usage(
+                f"{place} is the name of a file; give a folder, such as {hint}, for all figures, or a .pdf, .svg or "
+                ".png for that of the set",
+                "--figure",
+            )
+        check_folder(place)
+
+    @property
+    def picture(self) -> Path | None:
+        """The file of the one figure of the set, where one was asked for."""
+        single = self.figure is not None and self.figure.suffix.lower() in FIGURE_SUFFIXES
+        return self.figure if single and self.figure is not None and not self.figure.is_dir() else None
 
 
-def rank_files(
-    files: Sequence[str],
-    rig: Rig,
-    request: Request,
-    json_out: Path | None,
-    figures: Path | None,
-    report_out: Path | None = None,
-    look: Look = SCREEN,
+@dataclass(frozen=True)
+class TaskOptions(Options):
+    """The predicted experiment."""
+
+    task: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=VALUE",
+            help="The predicted experiment; may be given several times: trials=48, gap=S between icons (else until "
+            "carry-over has faded), context=SHARE of the memory noise that grows with the range of the set, 0 to 1, "
+            "bias=SD of people's response bias in log likelihood, 0 to 5.",
+        ),
+    ] = None
+
+    def __post_init__(self) -> None:
+        self.read()
+
+    @property
+    def trials(self) -> int:
+        """Number of trials."""
+        return int(self.read().get("trials", TRIALS))
+
+    def load(self) -> Task:
+        """The task, as the model takes it."""
+        from thermicon.perception import Task
+
+        given = self.read()
+        return Task(given.get("context", 0.0), given.get("gap"), given.get("bias", 0.0))
+
+    def read(self) -> dict[str, float]:
+        """The values by their keys; a usage error for what no experiment has."""
+        return dict(_read_task(text) for text in self.task or [])
+
+
+def _read_task(text: str) -> tuple[str, float]:
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not equals or key not in TASK:
+        raise usage(f"{text!r} is not one of {', '.join(f'{name}=VALUE' for name in TASK)}", "--task")
+    least, most, unit = TASK[key]
+    try:
+        number = int(value) if key == "trials" else float(value)
+    except ValueError:
+        raise usage(f"{text!r}: {value!r} is not a {'whole ' if key == 'trials' else ''}number", "--task") from None
+    if not least <= number <= most:
+        raise usage(f"{text!r}: {number:g}{unit} is outside {least:g} to {most:g}{unit}", "--task")
+    return key, number
+
+
+def rank_command(
+    files: FileNames,
+    crowd: CrowdOptions,
+    task: TaskOptions,
+    rig: RigOptions,
+    figure: SetFigureOptions,
+    json: Json = None,
+    report: Annotated[Path | None, out("OUT.html", "Write a self-contained HTML report.", "--report")] = None,
+    doubt: Annotated[
+        bool, typer.Option("--doubt", help="Instead: which constants carry the doubt, and what to measure first.")
+    ] = False,
+    workers: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N|ADDRESS",
+            help="Number of CPU cores, or a dask cluster by the address of its scheduler.  [default: all cores]",
+        ),
+    ] = None,
+    keep: Annotated[
+        Path | None, out("DIR", "Folder for finished parts, so that an interrupted run continues.", "--keep")
+    ] = None,
 ) -> None:
-    """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
-    from thermicon.perception import Task, rank
-    from thermicon.perception.identification.laboratory import DRAWS
-    from thermicon.perception.ranking.rank_file import ranking_file
-    from thermicon.perception.selection.goal import Goal
+    """Rank a set of icons: predict detection, onset times, confusions and the information that the set carries.
 
-    check_norm_option(request.norm)
-    if json_out is not None:
-        check_output(json_out, (), "JSON")
-    check_report(report_out)
-    check_separate(files, [json_out, report_out, *_picture(figures)])
-    check_figures(figures)
+    Several files are joined into one set. With --doubt, the set is predicted with many draws of the posterior (--people
+    24 is enough) as new laboratories would see it, and the table says which constants their differences come from.
+    """
+    if report is not None:
+        check_output(report, (".html", ".htm"), "a report")
+        if report == STDOUT:
+            raise usage("- is not a file; give the name of a page, such as report.html", "--report")
+    if json is not None:
+        check_output(json, (), "JSON")
+    check_separate(files, [json, report, figure.picture])
+    here, cluster = read_workers(workers)
+    if doubt:
+        from .doubt import doubt_about
+
+        given = {"--task": task.task, "--report": report, "--workers": workers, "--keep": keep}
+        doubt_about(files, crowd, rig, figure, json, {**given, "--tracking": crowd.tracking})
+        return
+    from thermicon.perception import rank
+    from thermicon.perception.ranking.rank_file import ranking_file
+
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
         what = (
             f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
         )
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
-    warnings = [*rig.warnings, *warn_of_frames(files, icons, rig)]
-    wanted = None if request.goal is None else Goal.parse(request.goal)
-    model = load_observer(request.observer, rig)
-    draws = check_draws(model, request.parameters, "--parameters", DRAWS)
-    if request.keep is not None:
-        check_folder(request.keep)
+    where = rig.load()
+    warnings = (*where.warnings, *warn_of_frames(files, icons, where))
+    model = crowd.load(where)
+    draws = crowd.draws(model)
+    if keep is not None:
+        check_folder(keep)
     _say_if_first()
     with progress_bar("ranking") as progress:
         ranking = rank(
             icons,
-            rig,
-            people=request.people,
-            seed=request.seed,
-            trials=request.trials,
-            tracking=request.tracking,
-            norm=request.norm,
-            by=request.by,
+            where,
+            **crowd.asked,
+            trials=task.trials,
             parameters=draws,
-            choosing=request.choosing,
-            goal=wanted,
-            edits=request.edits if request.by == "model" else "none",
-            task=Task(request.context, request.gap, request.bias),
+            edits="worst",
+            task=task.load(),
             observer=model,
-            warnings=tuple(warnings),
-            workers=request.workers,
-            cluster=request.cluster,
-            keep=request.keep,
+            warnings=warnings,
+            workers=here,
+            cluster=cluster,
+            keep=keep,
             progress=progress,
         )
-    if json_out is not None and json_out != STDOUT:
-        with complete_or_absent(json_out) as draft:
-            draft.write_text(ranking.to_json() + "\n", encoding="utf-8")
-        note(f"wrote {json_out}")
-    if figures is not None:
+    if json is not None and json != STDOUT:
+        write_text(ranking.to_json() + "\n", json)
+    if figure.figure is not None:
         from ..figures.set_figures import write_figures
 
-        write_figures(ranking, icons, rig, figures, look)
-    near = cures(ranking, icons, rig) if report_out is not None or json_out != STDOUT else {}
-    if report_out is not None:
-        from ..report.report import report
+        write_figures(ranking, icons, where, figure.figure, figure.look)
+    near = cures(ranking, icons, where) if report is not None or json != STDOUT else {}
+    if report is not None:
+        from ..report.report import report as page
 
-        made = report(ranking, icons, rig, command_text(files, rig, request), near)
-        with complete_or_absent(report_out) as draft:
-            draft.write_text(made, encoding="utf-8", newline="\n")
-        note(f"wrote {report_out}")
-    if json_out == STDOUT:
+        write_text(page(ranking, icons, where, command_text(files, rig, crowd, task), near), report)
+    if json == STDOUT:
         typer.echo(ranking.to_json())
     else:
         show_ranking(ranking_file(ranking, mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
+
+
+def read_workers(text: str | None) -> tuple[int | None, str | None]:
+    """Number of cores, or address of a cluster.
+
+    >>> read_workers("2"), read_workers("tcp://10.0.0.1:8786"), read_workers(None)
+    ((2, None), (None, 'tcp://10.0.0.1:8786'), (None, None))
+    """
+    if text is None or not text.lstrip("-").isdecimal():
+        return None, text
+    if not 1 <= int(text) <= MOST_WORKERS:
+        raise usage(f"{text} is outside 1 to {MOST_WORKERS}", "--workers")
+    return int(text), None
 
 
 def _say_if_first() -> None:
@@ -162,35 +222,6 @@ def _say_if_first() -> None:
         ranked.touch()
 
 
-def check_report(out: Path | None) -> None:
-    """Fail for a report that is not the name of a page."""
-    if out is not None:
-        check_output(out, (".html", ".htm"), "a report")
-        if out == STDOUT:
-            raise usage("- is not a file; give the name of a page, such as report.html", "--report")
-
-
-def _picture(place: Path | None) -> list[Path]:
-    return [] if place is None or place.suffix.lower() not in FIGURE_SUFFIXES else [place]
-
-
-def check_figures(place: Path | None) -> None:
-    """Fail where figures can neither go to a folder, nor one of the set to a file."""
-    if place is None:
-        return
-    if place.suffix.lower() in FIGURE_SUFFIXES and not place.is_dir():
-        check_output(place, FIGURE_SUFFIXES, "a figure")
-        return
-    if not place.is_dir() and (place.exists() or place.suffix.lower() in OTHER_PICTURES):
-        hint = place.with_suffix("") if place.suffix else "figures"
-        raise usage(
-            f"{place} is the name of a file; give a folder, such as {hint}, for all figures, or a .pdf, .svg or .png "
-            "for that of the set",
-            "--figure",
-        )
-    check_folder(place)
-
-
 def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
     """Return, by name, how each icon that the rig does not reach could be changed so that it is reached."""
     from thermicon.circuit import nearest_reachable
@@ -200,28 +231,13 @@ def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
     return {name: found.sentence for name, found in near.items() if found is not None}
 
 
-def command_text(files: Sequence[str], rig: Rig, request: Request, *, paths: bool = False) -> str:
+def command_text(files: Sequence[str], *groups: Options, paths: bool = False) -> str:
     """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
 
     Files are named without their folders, or, with ``paths``, as they were given.
 
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.notebooks.cli.ranking import Request
-    >>> command_text(["/home/a/two icons.cue"], Rig.load("thenar"), Request(people=20))
+    >>> command_text(["/home/a/two icons.cue"], RigOptions(), CrowdOptions(people=20))
     "thermicon rank 'two icons.cue' --people 20"
     """
     words = ["thermicon", "rank", *(name if paths else Path(name).name for name in files)]
-    defaults, values = Request(), {name: getattr(request, name) for name in PLAIN_OPTIONS}
-    # A rig from a file is named as a file, which its own name is not.
-    name = rig.name if request.rig is None else request.rig if paths else Path(request.rig).name
-    words += [] if name == "thenar" else ["--rig", name]
-    words += [word for change in rig.changes for word in ("--set", change)]
-    for name, value in values.items():
-        shown = value.name if isinstance(value, Path) and not paths else str(value)
-        words += [] if value == getattr(defaults, name) else [f"--{name}", shown]
-    if (asked := request.choosing) is not None:
-        words += ["--choose", str(asked.count), "--objective", asked.objective]
-        words += [word for icon in asked.must for word in ("--must", icon)]
-        words += [] if asked.most_s is None else ["--most-time", f"{asked.most_s:g}"]
-        words += [] if asked.most_J is None else ["--most-energy", f"{asked.most_J:g}"]
-    return shlex.join(words + ["--edits"] * (request.edits == "all"))
+    return shlex.join([*words, *(word for group in groups for word in group.words(paths=paths))])

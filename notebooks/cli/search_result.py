@@ -1,25 +1,21 @@
-"""What ``search`` says: the found set beside the initial one, the goal, and what would help where it is missed."""
+"""What ``improve`` says after a search: both sets, the goal, and what would help where it is missed."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
-from ..figures.figure_look import SCREEN, Look
-from ..files.outputs import complete_or_absent
-from ..messages import note, progress_bar
+from ..messages import progress_bar
 from ..report.choices import NAMES, goal_lines, goal_value, laboratory
 from ..report.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Goal, Ranking
-    from thermicon.perception.observer.observer_model import ObserverModel
+    from thermicon.perception import Ranking
     from thermicon.perception.selection.reach import Advice, Trial
     from thermicon.perception.selection.search import SearchResult
 
@@ -36,20 +32,6 @@ LEAST_AGAIN = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Ranked:
-    """How both sets are ranked, as in ``rank``, and what any other set of the search has to keep."""
-
-    people: int
-    seed: int
-    tracking: str | None
-    norm: str
-    parameters: int
-    must: tuple[str, ...] | None = None
-    most_s: float | None = None
-    most_J: float | None = None
-
-
-@dataclass(frozen=True, slots=True)
 class FoundSet:
     """A found set with both rankings, and changes that were tried where a goal is not met."""
 
@@ -60,30 +42,18 @@ class FoundSet:
 
     @classmethod
     def ranked(
-        cls, found: SearchResult, icons: IconSet, rig: Rig, model: ObserverModel, how: Ranked, goal: Goal | None
+        cls, found: SearchResult, icons: IconSet, rig: Rig, must: Sequence[str] | None, how: Mapping[str, Any]
     ) -> FoundSet:
-        """Rank both sets and judge them by the goal; try what would help where the found one misses it."""
+        """Rank both sets as the search did; try what would help where the found one misses the goal."""
         from thermicon.icons import IconSet
         from thermicon.perception import rank
         from thermicon.perception.selection.reach import what_would_help
 
         start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
-        draws = 0 if model.posterior is None else how.parameters
+        draws = 0 if how["observer"].posterior is None else how["parameters"]
         with progress_bar("ranking") as bar:
             before, after = (
-                rank(
-                    each,
-                    rig,
-                    people=how.people,
-                    seed=how.seed,
-                    tracking=how.tracking,
-                    norm=how.norm,
-                    parameters=draws,
-                    goal=goal,
-                    observer=model,
-                    progress=bar,
-                )
-                for each in (start, found.found)
+                rank(each, rig, **{**how, "parameters": draws}, progress=bar) for each in (start, found.found)
             )
         advice: Advice | None = None
         if after.goal is not None and not after.goal.met:
@@ -95,33 +65,11 @@ class FoundSet:
                     found.found,
                     objective=found.objective,
                     count=len(found.found),
-                    must=how.must,
-                    most_s=how.most_s,
-                    most_J=how.most_J,
-                    seed=how.seed,
-                    tracking=how.tracking,
-                    norm=how.norm,
-                    observer=model,
+                    must=must,
                     step=bar,
+                    **{name: how[name] for name in ("seed", "tracking", "norm", "observer")},
                 )
         return cls(found, before, after, advice)
-
-    def write(self, rig: Rig, report_out: Path | None, figures: Path | None, command: str, look: Look = SCREEN) -> None:
-        """Write report and figures of the found set, as ``rank`` does."""
-        from .ranking import cures
-
-        icons = self.found.found
-        if figures is not None:
-            from ..figures.set_figures import write_figures
-
-            write_figures(self.after, icons, rig, figures, look)
-        if report_out is not None:
-            from ..report.report import report
-
-            made = report(self.after, icons, rig, command, cures(self.after, icons, rig))
-            with complete_or_absent(report_out) as draft:
-                draft.write_text(made, encoding="utf-8", newline="\n")
-            note(f"wrote {report_out}")
 
     def show(self, title: str, rig: str, wanted: int) -> None:
         """Print the improved set, its scores next to those of the initial set, and the caveat.

@@ -1,26 +1,148 @@
-"""``thermicon simulate``: icons or a drive to traces, a summary, figures."""
+"""``thermicon simulate``: icons, a drive or a session, as summary, trace, figure or netlist."""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from thermicon.icons.number_text import number, signed, span
 
-from ..figures.figure_look import SCREEN, Look
 from ..figures.trace_overview import FELT_TAIL_S, draw_overview
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
+from ..files.outputs import (
+    STDOUT,
+    SUBCIRCUIT_SUFFIXES,
+    TRACE_SUFFIXES,
+    check_output,
+    check_separate,
+    complete_or_absent,
+)
 from ..messages import note, usage
 from .cues import pick, read_set, warn_of_site
+from .netlist import netlist_file, subcircuit_file
+from .options import LARGEST_SEED, LONGEST_TAIL_S, FigureOptions, IconName, NoFile, RigOptions, out
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.circuit.fitting.log import Log
     from thermicon.icons import Icon
+
+LONGEST_GAP_S, MOST_PLAYS = 3600.0, 5000
+"""Those of `thermicon.circuit.SessionPlan`, repeated here to avoid its imports."""
+
+
+def simulate_command(
+    rig: RigOptions,
+    figure: FigureOptions,
+    file: NoFile = None,
+    icon: IconName = None,
+    current: Annotated[
+        Path | None,
+        out("DRIVE.csv", "Play this drive current (columns time_s, current_A) instead of icons.", "--current"),
+    ] = None,
+    hold: Annotated[
+        bool,
+        typer.Option("--hold", help="With --current: hold each current until the next row instead of interpolating."),
+    ] = False,
+    order: Annotated[
+        Path | None,
+        out("FILE", "Play a session: icons in the order of this file, which has one name per line.", "--order"),
+    ] = None,
+    random: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=1, max=MOST_PLAYS, help="Play a session: every icon N times, in random order."),
+    ] = None,
+    gap: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=0.0,
+            max=LONGEST_GAP_S,
+            help="In a session: seconds from the end of one icon to the start of the next.  [default: 10]",
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(metavar="SEED", min=0, max=LARGEST_SEED, help="Seed of --random.  [default: 0]")
+    ] = None,
+    tracking: Annotated[
+        Literal["replay", "display"] | None,
+        typer.Option(
+            help="In a session: replay the currents open loop, or control the display temperature.  [default: replay]"
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        out(
+            "OUT",
+            "Write the trace to .csv or .parquet, or - for stdout; the circuit of one icon to .cir or .net (.sp: "
+            "ngspice then writes the probes); without FILE module and skin as subcircuits to .lib; a session also to "
+            ".json, its order to .txt.",
+            "-o",
+            "--output",
+        ),
+    ] = None,
+    rate: Annotated[float, typer.Option(metavar="HZ", min=1e-3, max=1e6, help="Samples per second.")] = 100.0,
+    tail: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=0.0,
+            max=LONGEST_TAIL_S,
+            help="Seconds simulated after the last corner.  [default: 0; 10 in figures]",
+        ),
+    ] = None,
+    measured: Annotated[
+        Path | None,
+        out(
+            "LOG",
+            "Lay a measured log beside the trace, in the figure too: rms and largest miss of every column.",
+            "--measured",
+        ),
+    ] = None,
+) -> None:
+    """Simulate icons: the current that plays them, and temperatures and heat flow down to the receptors.
+
+    With --current, a given drive current is simulated instead; with --order or --random a session, as one run with one
+    worst-case verdict (which is only reported: the exit code is 0 whatever its colour). Without -o, a short summary is
+    printed.
+    """
+    session, suffix = order is not None or random is not None, "" if output is None else output.suffix.lower()
+    circuit = suffix in SUBCIRCUIT_SUFFIXES and not session and current is None
+    needs_file = {"--icon": icon, "--tail": tail}
+    alone = {"--rate": rate != 100.0, "--measured": measured, **needs_file}
+    in_session = {"--gap": gap is not None, "--seed": seed is not None, "--tracking": tracking}
+    _refuse({"--hold": hold}, current is None, "belongs to --current, which plays a drive")
+    _refuse(in_session, not session, "belongs to a session; give --order FILE or --random N")
+    _refuse({"--seed": seed is not None}, random is None, "belongs to --random")
+    _refuse({"--figure": figure.figure, "--measured": measured}, circuit, "belongs to a trace, not to a circuit")
+    _refuse({"--current": current, "--random": random and order, **alone}, session, "does not go with a session")
+    _refuse(needs_file, current is not None, "belongs to a cue FILE; a drive has no icons and ends at its last row")
+    if circuit and file is None and output is not None:
+        _refuse(needs_file, True, "belongs to a cue FILE; without one, the circuit of the rig is written alone")
+        subcircuit_file(rig.load(), output)
+        return
+    if (file is None) == (current is None):
+        raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
+    if current is not None:
+        simulate_drive(current, hold, rig.load(), rate, output, figure, measured)
+    elif file is not None and circuit and output is not None:
+        netlist_file(file, icon, rig.load(), tail or 0.0, output)
+    elif file is not None and session:
+        from .session import session_file
+
+        session_file(file, rig.load(), order, random, 10.0 if gap is None else gap, seed or 0, tracking, output, figure)
+    elif file is not None:
+        simulate_file(file, icon, rig.load(), rate, tail, output, figure, measured)
+
+
+def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
+    """Fail with a usage error for the first option that is given where it has no meaning."""
+    for option, value in options.items():
+        if where and value is not None and value is not False:
+            raise usage(why, option)
 
 
 def simulate_file(
@@ -30,10 +152,8 @@ def simulate_file(
     rate_Hz: float,
     tail_s: float | None,
     output: Path | None,
-    figure: Path | None,
-    power: bool = False,
-    measured: Path | None = None,
-    look: Look = SCREEN,
+    figure: FigureOptions,
+    measured: Path | None,
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import simulate
@@ -43,16 +163,16 @@ def simulate_file(
     if measured is not None and len(icons) > 1:
         raise usage(f"belongs to one icon, {file} has {len(icons)}: name it with --icon", "--measured")
     log = None if measured is None else _log(measured)
-    pictures = _figure_paths(figure, [each.name for each in icons])
+    pictures = _figure_paths(figure.figure, [each.name for each in icons])
     _check(file, output, pictures)
     warn_of_site(file, whole, rig)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
-    _write(traces, output, power)
+    _write(traces, output)
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes, log, look, settled=tail_s is None)
+        draw_overview(played, picture, rig.changes, log, figure.look, settled=tail_s is None)
     cures = [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)]
-    _report(traces, rig, output, pictures, cures, power)
+    _report(traces, rig, output, pictures, cures)
     _beside(log, traces[0], output)
 
 
@@ -62,23 +182,22 @@ def simulate_drive(
     rig: Rig,
     rate_Hz: float,
     output: Path | None,
-    figure: Path | None,
-    power: bool = False,
-    measured: Path | None = None,
-    look: Look = SCREEN,
+    figure: FigureOptions,
+    measured: Path | None,
 ) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
-    from thermicon.circuit import read_drive, simulate_current
+    from thermicon.circuit.solver.drive import read_drive
+    from thermicon.circuit.solver.simulate import simulate_current
 
-    pictures = [] if figure is None else [figure]
+    pictures = _figure_paths(figure.figure, [""])
     _check(drive, output, pictures)
     log = None if measured is None else _log(measured)
     played = read_drive(drive, hold=hold)
     trace = simulate_current(played, rig, rate_Hz=rate_Hz)
-    _write([trace], output, power)
+    _write([trace], output)
     for picture in pictures:
-        draw_overview(simulate_current(played, rig), picture, rig.changes, log, look)
-    _report([trace], rig, output, pictures, [None], power)
+        draw_overview(simulate_current(played, rig), picture, rig.changes, log, figure.look)
+    _report([trace], rig, output, pictures, [None])
     _beside(log, trace, output)
 
 
@@ -131,14 +250,12 @@ def _check(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> N
     check_separate([read], [output, *pictures])
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a trace")
-    for picture in pictures:
-        check_output(picture, FIGURE_SUFFIXES, "a figure")
 
 
-def _write(traces: Sequence[Trace], output: Path | None, power: bool) -> None:
+def _write(traces: Sequence[Trace], output: Path | None) -> None:
     """Write the traces to their file before printing, since the reader of a pipe may not wait."""
     if output is not None and output != STDOUT:
-        write_traces(traces, output, power)
+        write_traces(traces, output)
 
 
 def _report(
@@ -147,7 +264,6 @@ def _report(
     output: Path | None,
     pictures: Sequence[Path],
     cures: Sequence[str | None],
-    power: bool,
 ) -> None:
     """Report warnings and written files on stderr, then print a summary or the traces on stdout."""
     for trace in traces:
@@ -164,7 +280,7 @@ def _report(
         for trace, better in zip(traces, cures, strict=True):
             typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
     elif output == STDOUT:
-        write_traces(traces, output, power)
+        write_traces(traces, output)
 
 
 def unsafe(trace: Trace) -> list[str]:
@@ -178,18 +294,18 @@ def unsafe(trace: Trace) -> list[str]:
     return [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in findings]
 
 
-def write_traces(traces: Sequence[Trace], output: Path, power: bool = False) -> None:
-    """Write all traces to one file in the format of its suffix; ``-`` is CSV on stdout. `power`: with `power_W`."""
+def write_traces(traces: Sequence[Trace], output: Path) -> None:
+    """Write all traces to one file in the format of its suffix; ``-`` is CSV on stdout."""
     from thermicon.circuit.solver.trace import write_trace
 
     if output == STDOUT:
         with tempfile.TemporaryDirectory() as folder:
             draft = Path(folder) / "trace.csv"
-            write_trace(list(traces), draft, power)
+            write_trace(list(traces), draft)
             typer.echo(draft.read_text(encoding="utf-8"), nl=False)
         return
     with complete_or_absent(output) as draft:
-        write_trace(list(traces), draft, power)
+        write_trace(list(traces), draft)
 
 
 def headline(trace: Trace) -> str:

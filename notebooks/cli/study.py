@@ -11,6 +11,7 @@ from thermicon.icons.number_text import number
 
 from ..messages import REFUSED, note, progress_bar
 from .export import CAUTION
+from .options import out
 
 if TYPE_CHECKING:
     from ..study.build import Plan
@@ -22,7 +23,7 @@ def study_command(
     file: Annotated[str, typer.Argument(metavar="STUDY.toml", help="A study file, or example for the shipped one.")],
     folder: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="DIR", readable=False, help="Folder for the files of the study."),
+        out("DIR", "Folder for the files of the study.", "-o", "--output"),
     ],
 ) -> None:
     """Prepare an experiment: orders, pauses, judged drives, a PsychoPy script, and tables of events.
@@ -45,9 +46,9 @@ def study_command(
         files = files_of(plan)
     except Refused as refused:
         for reason in refused.reasons:
-            note(f"refused: {reason}")
+            note(f"refused: {reason}", always=True)
         note(CAUTION)
-        note("nothing was written")
+        note("nothing was written", always=True)
         raise typer.Exit(REFUSED) from None
     publish(files, folder, how=KEPT)
     for line in report_lines(plan):

@@ -7,28 +7,28 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from thermicon.icons.number_text import percent, span
 
-from ..figures.figure_look import SCREEN, Look
-from ..figures.print_figure import write_figure
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
-from ..messages import Progress, fail, note, progress_bar
+from ..files.outputs import STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
+from ..messages import Progress, fail, note, progress_bar, usage
 from ..report.sweep_text import swept_table
 from ..report.tables import show
-from ..report.varied import Vary
 from .cues import pick, read_set, warn_of_site
+from .options import FigureOptions, FileName, IconName, Intervals, People, RigOptions, Seed, Table, Tail, write_text
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
+
+    from ..figures.figure_look import Look
+    from ..report.varied import Vary
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,22 +38,8 @@ class Measured:
     icons: IconSet
     what: tuple[str, ...]
     people: int = 60
-    parameters: int = 64
+    intervals: int = 64
     seed: int = 0
-
-
-Measure = tuple[tuple[str, ...], int, int, int]
-"""Names of what is measured, people, draws and seed."""
-
-
-class Study(Protocol):
-    """What has a table and a figure."""
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return its table."""
-
-    def plot(self) -> Axes:
-        """Draw it."""
 
 
 def sweep(
@@ -176,7 +162,7 @@ def _measure(
     try:
         found = measured_rows(
             measured.icons, rig, changes, measured.what,
-            people=measured.people, parameters=measured.parameters, seed=measured.seed,
+            people=measured.people, parameters=measured.intervals, seed=measured.seed,
         )  # fmt: skip
     except (InputError, ValueError, ArithmeticError) as problem:
         rows.append({"icon": ALL, **changes, "reason": "; ".join(str(problem).splitlines())})
@@ -194,58 +180,84 @@ def _receptors(trace: Trace) -> dict[str, float | None]:
     return dict(zip(RECEPTORS, seen, strict=True))
 
 
-def sweep_file(
-    file: str,
-    varied: Sequence[Vary],
-    icon: str | None,
-    rig: Rig,
-    tail_s: float,
-    output: Path | None,
-    figure: Path | None,
-    look: Look = SCREEN,
-    measure: Measure | None = None,
+def sweep_command(
+    file: FileName,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            metavar="KEY=LOW:HIGH:N",
+            help="A key of the rig, or people.age_years, and N values from LOW to HIGH, Nlog for equal ratios; or "
+            "values with commas, such as site=thenar,fingertip. Give it twice for a grid.",
+        ),
+    ],
+    rig: RigOptions,
+    figure: FigureOptions,
+    output: Table = None,
+    icon: IconName = None,
+    measure: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME,NAME",
+            help="Also predict what people perceive: correct, correct_95 (what 95 % of people reach), detected, onset, "
+            "d_prime, bits.",
+        ),
+    ] = None,
+    people: People = 60,
+    intervals: Intervals = 64,
+    seed: Seed = 0,
+    tail: Tail = 0.0,
 ) -> None:
-    """Sweep the icons of a file (or the one named); write the table, draw the figure, report each icon's outcome."""
+    """Vary one or two keys of the rig and write, for every icon, misses, extremes, receptor changes and safety.
+
+    Two keys make a grid: every combination of their values is played, and the table has one row per icon and
+    combination. Values are in the unit that the key ends with. With --measure every value is ranked as by rank, for
+    --people and with --intervals, and a last row of each is that of the whole set; intervals are those of a new
+    laboratory, 95 %.
+    """
+    from thermicon.perception.ranking.swept import AGE
+
+    from ..report.varied import read_measures, read_varied
+
+    varied = read_varied(vary)
+    what = () if measure is None else read_measures(measure, intervals or 0)
+    if not what and any(each.key == AGE for each in varied):
+        raise usage(f"{AGE} changes what people perceive only; add --measure correct", "--vary")
+    if output is None and figure.figure is None and not what:
+        raise usage("give -o OUT for the table, --figure, or --measure to print what people perceive", "-o")
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a sweep")
-    if figure is not None:
-        check_output(figure, FIGURE_SUFFIXES, "a figure")
-    check_separate([file], [output, figure])
-    icons = pick(whole := read_set([file]), icon)
-    warn_of_site(file, whole, rig)
+    check_separate([file], [output, figure.figure])
+    icons, where = pick(whole := read_set([file]), icon), rig.load()
+    warn_of_site(file, whole, where)
     first, *others = varied
-    second = (others[0].key, others[0].values) if others else None
     with progress_bar("sweep") as progress:
         frame = sweep(
             icons,
-            rig,
+            where,
             first.key,
             first.values,
-            second=second,
-            tail_s=tail_s,
-            measured=None if measure is None else Measured(whole, *measure),
+            second=(others[0].key, others[0].values) if others else None,
+            tail_s=tail,
+            measured=Measured(whole, what, people, intervals or 0, seed) if what else None,
             progress=progress,
         )
-    keys, points = [vary.key for vary in varied], "combinations" if others else "values"
+    keys, points = [each.key for each in varied], "combinations" if others else "values"
     if frame["duration_s"].isna().all():
-        count = math.prod(len(vary.values) for vary in varied)
+        count = math.prod(len(each.values) for each in varied)
         reason = frame["reason"].iloc[0]
         fail(f"--vary {' and '.join(keys)}: none of the {count} {points} can be played; the first: {reason}")
-    if output not in (None, STDOUT):
-        with complete_or_absent(output) as draft:
-            write_frame(frame, draft)
-    if figure is not None:
-        write_figure(_figure(frame, varied, look, () if measure is None else measure[0]), figure, look)
-    lines = [headline(frame[frame["icon"] == each.name], points) for each in icons]
-    for line in (*lines, *_measured_lines(frame, keys, measure), *_impossible(frame, keys)):
+    for line in (
+        *(headline(frame[frame["icon"] == each.name], points) for each in icons),
+        *_measured_lines(frame, keys, what),
+        *_impossible(frame, keys),
+    ):
         note(line)
-    for written in (output, figure):
-        if written not in (None, STDOUT):
-            note(f"wrote {written}")
-    if output == STDOUT:
-        typer.echo(frame.to_csv(index=False, float_format="%.9g"), nl=False)
-    elif output is None and measure is not None:
-        show(swept_table(frame, keys, measure[0]))
+    if figure.figure is not None:
+        figure.write(_figure(frame, varied, figure.look, what))
+    if output is not None:
+        write_frame(frame, output)
+    elif what:
+        show(swept_table(frame, keys, what))
 
 
 def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Sequence[str]) -> Figure:
@@ -274,27 +286,14 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Seque
     return sweep_map(frame, varied[0].key, varied[1].key)
 
 
-def write_study(found: Study, output: Path | None, figure: Path | None, look: Look = SCREEN) -> bool:
-    """Write table and figure of a study where asked for; whether its table went to stdout, in place of a summary."""
-    if output is not None and output != STDOUT:
-        with complete_or_absent(output) as draft:
-            write_frame(found.to_frame(), draft)
-        note(f"wrote {output}")
-    if figure is not None:
-        drawn: Any = found.plot().figure
-        write_figure(drawn, figure, look)
-        note(f"wrote {figure}")
-    if output == STDOUT:
-        typer.echo(found.to_frame().to_csv(index=False, float_format="%.9g"), nl=False)
-    return output == STDOUT
-
-
-def write_frame(frame: pd.DataFrame, path: Path) -> None:
-    """Write a table as ``.parquet`` or ``.csv``, by its suffix."""
-    if path.suffix == ".parquet":
-        frame.to_parquet(path, index=False)
-    else:
-        frame.to_csv(path, index=False, float_format="%.9g", lineterminator="\n")
+def write_frame(frame: pd.DataFrame, output: Path) -> None:
+    """Write a table as ``.parquet`` or ``.csv``, by its suffix, and say so; - prints it."""
+    if output == STDOUT or output.suffix != ".parquet":
+        write_text(frame.to_csv(index=False, float_format="%.9g", lineterminator="\n"), output)
+        return
+    with complete_or_absent(output) as draft:
+        frame.to_parquet(draft, index=False)
+    note(f"wrote {output}")
 
 
 def headline(rows: pd.DataFrame, points: str = "values") -> str:
@@ -315,13 +314,13 @@ def headline(rows: pd.DataFrame, points: str = "values") -> str:
     return f"{rows['icon'].iloc[0]}: {', '.join(parts)}"
 
 
-def _measured_lines(frame: pd.DataFrame, keys: Sequence[str], measure: Measure | None) -> list[str]:
+def _measured_lines(frame: pd.DataFrame, keys: Sequence[str], what: Sequence[str]) -> list[str]:
     """Proportion correct of the set where it is lowest and highest, and so what 95 % of people reach, if measured."""
     from thermicon.perception.ranking.swept import ALL
 
     lines = []
     for column, words in (("correct", "correct"), ("correct_95", "correct for 95 % of people")):
-        if measure is None or column not in measure[0]:
+        if column not in what:
             continue
         rows = frame[(frame["icon"] == ALL) & frame[column].notna()]
         if rows.empty:

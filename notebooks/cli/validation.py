@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from contextlib import suppress
 from importlib import resources
 from importlib.util import find_spec
+from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..files.outputs import STDOUT, check_folder, check_output, complete_or_absent
-from ..messages import check_bounds, fail, note, usage
+from ..messages import fail, note, progress_bar, usage
+from .options import Json, Seed, out, write_text
 
 if TYPE_CHECKING:
     from thermicon.perception.evidence.validate import Judged, Line, ValidationReport
@@ -30,81 +31,43 @@ NEEDED = ("nbclient", "ipykernel")
 def validate_command(
     output: Annotated[
         Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="DIR",
-            readable=False,
-            help="Write the numbers and a notebook that shows them to this folder.",
-        ),
+        out("DIR", "Write the numbers and a notebook that shows them to this folder.", "-o", "--output"),
     ] = None,
-    people: Annotated[int, typer.Option("--people", metavar="N", help="Number of virtual people.")] = 200,
+    people: Annotated[int, typer.Option(metavar="N", min=2, max=2000, help="Number of virtual people.")] = 200,
     draws: Annotated[
         int,
         typer.Option(
-            "--draws", metavar="N", help="Number of observers drawn for intervals and trade-offs; 0 for none."
+            metavar="N", min=0, max=1000, help="Number of observers drawn for intervals and trade-offs; 0 for none."
         ),
     ] = 128,
-    seed: Annotated[int, typer.Option("--seed", metavar="S", help="Seed of the virtual people and the draws.")] = 0,
-    json_out: Annotated[
-        Path | None,
-        typer.Option("--json", metavar="OUT", readable=False, help="Write every number as JSON; - prints it."),
-    ] = None,
-    leave_out: Annotated[
-        bool,
-        typer.Option(
-            "--leave-out",
-            help="Instead: infer all constants again without each experiment in turn, and predict it. Takes hours.",
-        ),
-    ] = False,
-    keep: Annotated[
-        Path | None,
-        typer.Option("--keep", metavar="DIR", readable=False, help="With --leave-out: folder of finished parts."),
-    ] = None,
+    seed: Seed = 0,
+    json: Json = None,
 ) -> None:
     """Validate the model: predict published results that it was not calibrated on, and show every miss with its size.
 
     Without -o, a table is printed. With -o, validation.json has all numbers, with predictions from temperature and from
-    heat flow side by side, and the executed notebook 07_validation.ipynb shows them in tables and figures. With
-    --leave-out, the tables of left-out experiments are made again, coverage, log scores and weights of the variants
-    included.
+    heat flow side by side, and the executed notebook 07_validation.ipynb shows them in tables and figures.
     """
-    check_bounds(("--people", people, 2, 2000), ("--draws", draws, 0, 1000), ("--seed", seed, 0, 2**32 - 1))
-    if leave_out:
-        if json_out is not None:
-            raise usage("--leave-out writes tables: give a folder with -o", "--json")
-        from .leave_out import leave_out_files
-
-        leave_out_files(output, keep, seed)
-        return
-    if keep is not None:
-        raise usage("only --leave-out keeps parts", "--keep")
     if draws == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
     if output is not None:
         check_folder(output)
         if missing := [name for name in NEEDED if find_spec(name) is None]:
             fail(f"-o executes a notebook, which needs {missing[0]}: pip install {missing[0]}, or use --json")
-    if json_out is not None:
-        check_output(json_out, (), "JSON")
+    if json is not None:
+        check_output(json, (), "JSON")
     from thermicon.perception.evidence.validate import validate
-
-    from ..messages import progress_bar
 
     with progress_bar("validating") as progress:
         report = validate(people=people, draws=draws, seed=seed, progress=progress)
-    if json_out == STDOUT:
-        typer.echo(json_text(report), nl=False)
-    elif json_out is not None:
-        with complete_or_absent(json_out) as draft:
-            draft.write_text(json_text(report), encoding="utf-8")
-        note(f"wrote {json_out}")
-    if output is None and json_out != STDOUT:
-        show_report(report)
+    if json is not None:
+        write_text(json_text(report), json)
     if output is not None:
         write_report(report, output)
         for name in (NOTEBOOK, DATA):
             note(f"wrote {output / name}")
+    elif json != STDOUT:
+        show_report(report)
 
 
 def show_report(report: ValidationReport) -> None:
@@ -194,4 +157,4 @@ def json_text(report: ValidationReport) -> str:
     """Every number of the report as JSON."""
     from thermicon.perception.evidence.validate_file import report_file
 
-    return json.dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+    return dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"

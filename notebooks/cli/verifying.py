@@ -35,7 +35,7 @@ def verify_folder(folder: Path) -> None:
             note(f"note: {_clean(str(finding))}")
     wrong = [finding for finding in found.findings if finding.kind == "wrong"]
     for finding in wrong:
-        note(f"wrong: {_clean(str(finding))}")
+        note(f"wrong: {_clean(str(finding))}", always=True)
     if wrong:
         note(f"{folder}: {len(wrong)} {'thing does' if len(wrong) == 1 else 'things do'} not belong together")
         raise typer.Exit(BAD_INPUT)

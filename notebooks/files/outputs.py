@@ -60,16 +60,6 @@ def check_separate(inputs: Sequence[str | Path], outputs: Sequence[Path | None])
         seen[place] = "is another output of this command"
 
 
-def check_free(outputs: Sequence[Path], replace: bool) -> None:
-    """Fail where outputs that belong together are there already, unless they may be replaced."""
-    there = [path for path in outputs if path.exists()]
-    if there and not replace:
-        names = [path.name for path in there]
-        raise OutputError(
-            f"{kept_text(there[0].parent, names)}; --force replaces {'it' if len(there) == 1 else 'them'}"
-        )
-
-
 def check_folder(path: Path) -> None:
     """Fail now where the folder ``path`` could neither be used nor be made."""
     if path.is_dir():

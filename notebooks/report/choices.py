@@ -1,83 +1,16 @@
-"""Options for choosing the best few icons of a set, and the text of the choice."""
+"""The text of a goal, and of the choice of the best few icons of a set."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from collections.abc import Iterator
+from typing import Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
-
-from ..messages import usage
-
-if TYPE_CHECKING:
-    from thermicon.perception.selection.request import Selection
-
-OBJECTIVES = ("worst", "correct", "bits", "bits-per-s")
-"""As in `thermicon.perception.selection.subset_identification`, repeated here to avoid its imports."""
 
 SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
 MOST_EXCLUDED = 5
 ONE_BY_ONE = 50
 """People whose own best choice is looked for, as in `thermicon.perception.selection.choose`."""
-
-ChooseCount = Annotated[int | None, typer.Option("--choose", metavar="K", help="Choose the best K icons.")]
-ObjectiveName = Annotated[
-    str | None,
-    typer.Option(
-        "--objective",
-        metavar="NAME",
-        help="Criterion of the choice: worst (pair), correct, bits or bits-per-s.  [default: worst]",
-    ),
-]
-GoalText = Annotated[
-    str | None,
-    typer.Option(
-        "--goal",
-        metavar="TEXT",
-        help='What is wanted, such as "correct >= 90 % for 95 % of people, time <= 10 s, safety green".',
-    ),
-]
-Must = Annotated[
-    list[str] | None,
-    typer.Option("--must", metavar="ICON", help="An icon that must be chosen; may be given several times."),
-]
-MostTime = Annotated[
-    float | None, typer.Option("--most-time", metavar="S", help="Longest total duration of the chosen icons, in s.")
-]
-MostEnergy = Annotated[
-    float | None,
-    typer.Option("--most-energy", metavar="J", help="Largest total electrical energy of the chosen icons, in J."),
-]
-
-
-def chosen_as(
-    count: int | None, objective: str | None, must: Sequence[str] | None, most_s: float | None, most_J: float | None
-) -> Selection | None:
-    """Check the options of a choice; None without one."""
-    others = (("--objective", objective), ("--must", must), ("--most-time", most_s), ("--most-energy", most_J))
-    if count is None:
-        for option, value in others:
-            if value:
-                raise usage("needs --choose K, which chooses the best K icons", option)
-        return None
-    if count < 2:
-        raise usage(f"a choice of {count} has no pair to compare; choose 2 icons or more", "--choose")
-    if objective is not None and objective not in OBJECTIVES:
-        raise usage(f"{objective!r} is not one of {', '.join(OBJECTIVES)}", "--objective")
-    check_totals(most_s, most_J)
-    from thermicon.perception.selection.request import Selection
-
-    return Selection(count, objective or "worst", tuple(must or ()), most_s, most_J)  # type: ignore[arg-type]
-
-
-def check_totals(most_s: float | None, most_J: float | None) -> None:
-    """Fail with a usage error for a total time or energy that is not above 0."""
-    for option, most, unit in (("--most-time", most_s, "s"), ("--most-energy", most_J, "J")):
-        if most is not None and not (math.isfinite(most) and most > 0):
-            raise usage(f"{most:g} {unit} is not above 0", option)
 
 
 def goal_lines(goal: dict[str, Any] | None, verdict: str = "") -> Iterator[str]:

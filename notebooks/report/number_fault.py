@@ -8,6 +8,8 @@ from typing import Any
 UNITS = {"S": "s", "HZ": "Hz", "J": "J", "K": "K", "POINTS": "percentage points", "PERCENT": "%"}
 """Units by the metavar of an option; others have none."""
 WHOLE, DECIMAL = "int", "float"
+ONE_OF, QUOTE = " is not one of ", "'"
+BOUNDS = ("greater_than_equal", "less_than_equal")
 DIGITS = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
@@ -38,7 +40,7 @@ def number_fault(text: str, kind: str, unit: str = "") -> str:
 
 
 def reworded(error: Any) -> None:
-    """Put such a sentence in the place of the parser's own words, where an option could not be read as a number.
+    """Put such a sentence in the place of the parser's own words, where the value of an option cannot be.
 
     `error` is a bad parameter of the command line; others stay as they are.
     """
@@ -46,6 +48,12 @@ def reworded(error: Any) -> None:
     if param is None or faults is None:
         return
     fault = faults()[0]
-    kind, text = fault["type"].partition("_")[0], str(fault["input"])
+    kind, text, unit = fault["type"].partition("_")[0], str(fault["input"]), UNITS.get(param.metavar or "", "")
     if kind in (WHOLE, DECIMAL):
-        error.message = number_fault(text, kind, UNITS.get(param.metavar or "", ""))
+        error.message = number_fault(text, kind, unit)
+    elif fault["type"] in BOUNDS:
+        unit = f" {unit}" if unit else ""
+        error.message = f"{float(text):.10g}{unit} is outside {param.min:.10g} to {param.max:.10g}{unit}"
+    else:
+        wrong, joint, choices = error.message.removeprefix("Value error, ").removesuffix(".").partition(ONE_OF)
+        error.message = f"{wrong}{joint}{choices.replace(QUOTE, '')}"

@@ -1,4 +1,4 @@
-"""What ``thermicon plan`` prints: sizes of experiments and what each gives, and the icons to pilot."""
+"""What ``thermicon pilot`` prints of a plan: sizes of experiments, what each gives, and the icons to pilot."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ def _no_interval(observer: str) -> str:
     """Why there is none: an observer without draws, or no draws asked for."""
     if observer.lower().endswith(".toml"):
         return f"{NO_INTERVAL}{observer} is one observer without draws; a table of draws (.csv) gives one"
-    return f"{NO_INTERVAL}--parameters 2 or more and an observer with draws give one"
+    return f"{NO_INTERVAL}--intervals 2 or more and an observer with draws give one"
 
 
 def _bits_range(interval: Sequence[float] | None, where: str) -> Iterator[str]:

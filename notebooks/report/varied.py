@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from thermicon.perception.ranking.swept import MEASURES, SITE
 
-from ..messages import check_bounds, check_parameters, usage
+from ..messages import usage
 
 MOST_VALUES = 10_000
 FORM = (
@@ -17,19 +17,19 @@ FORM = (
 )
 
 
-def read_measures(text: str, people: int, parameters: int, seed: int) -> tuple[tuple[str, ...], int, int, int]:
-    """Read ``--measure`` and the options that go with it; what cannot be is a usage error."""
+def read_measures(text: str, intervals: int) -> tuple[str, ...]:
+    """Read ``--measure``, beside the draws for intervals; what cannot be is a usage error."""
     names = tuple(name.strip() for name in text.split(","))
     for name in names:
         if name not in MEASURES:
             raise usage(f"{name!r} is not one of {', '.join(MEASURES)}", "--measure")
     if len(set(names)) < len(names):
         raise usage(f"{text!r}: the same quantity is given twice", "--measure")
-    check_bounds(("--people", people, 1, 10_000), ("--seed", seed, 0, 2**32 - 1))
-    check_parameters(parameters)
-    if parameters == 0 and "correct_95" in names:
-        raise usage("correct_95 is about people and model together, and needs 2 draws or more", "--parameters")
-    return names, people, parameters, seed
+    if intervals == 1:
+        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--intervals")
+    if intervals == 0 and "correct_95" in names:
+        raise usage("correct_95 is about people and model together, and needs 2 draws or more", "--intervals")
+    return names
 
 
 @dataclass(frozen=True, slots=True)

@@ -258,7 +258,7 @@ def _readme(plan: Plan) -> str:
         "Join all answers:          python run_study.py --collect",
     ]
     if study.threshold is None:
-        lines.append("Compare with predictions:  thermicon observed data/answers.csv icons.cue --rig rig.toml")
+        lines.append("Compare with predictions:  thermicon pilot icons.cue --answers data/answers.csv --rig rig.toml")
     lines += [
         "",
         "bench.py is a file of yours with the function measured_C(), which returns the temperature of the display in",

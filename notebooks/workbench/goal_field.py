@@ -25,7 +25,7 @@ SAFETY = "safety"
 FOR_DRAWS = "judged after refining: a share of people takes draws of the model too"
 WITHOUT_DRAWS = (
     "not judged: a share of people takes draws of the model too, and this observer has none; give an observer with "
-    "draws, such as the table (.csv) that observed --keep writes"
+    "draws, such as the table (.csv) that pilot --keep writes"
 )
 HELP = (
     "parts joined by commas: correct, detected, bits, d_prime, time, energy, onset or count with a comparison and a "

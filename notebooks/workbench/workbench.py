@@ -54,7 +54,7 @@ class Workbench:
         Path of a measured log that is laid over the curves of the design view, aligned with the icon.
     observer
         Observer file that predicts in place of the shipped one, as ``rank --observer`` takes it: the draws that
-        ``observed --keep lab.csv`` wrote, or one observer's records (.toml).
+        ``pilot --keep lab.csv`` wrote, or one observer's records (.toml).
 
     Raises
     ------

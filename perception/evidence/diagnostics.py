@@ -17,7 +17,7 @@ R_HAT, ESS = 1.01, 400.0
 al. 2021)."""
 K_HAT = 0.7
 """Pareto-smoothed weights with a larger shape of tail are not to be trusted (Vehtari et al. 2024)."""
-EXTRA = 'calibrate needs emcee and arviz-stats, which are not installed: pip install "thermicon[calibrate]"'
+EXTRA = 'sampling needs emcee and arviz-stats, which are not installed: pip install "thermicon[calibrate]"'
 
 
 @dataclass(frozen=True, slots=True)

@@ -96,7 +96,9 @@ def leave_each_out(
         return tuple(row for experiment in experiments for row in _kept(keep, experiment))
     learned = load_learned(keep)
     if learned is None:
-        raise ValueError(f"{keep}: there are no chains here: run thermicon calibrate --keep {keep} first")
+        raise ValueError(
+            f"{keep}: there are no chains here: run python -m thermicon.perception.evidence sample --keep {keep} first"
+        )
     reference, points, _ = learned
     vectors = load_vectors(keep, reference)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:

@@ -1,7 +1,7 @@
 """Draws of the variant that is not sampled, from the normal approximation at their maximum; marked as such.
 
 `python -m thermicon.perception.evidence.variant_draws` writes the table of the package in a minute or two.
-`thermicon calibrate --variant NAME` samples it.
+`python -m thermicon.perception.evidence sample --variant NAME` samples it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Draws from the posterior of all constants: what the evidence leaves open, one consistent set of constants a draw.
 
-The shipped tables are written by `thermicon calibrate` and read by `draws_file`. Constants of one draw belong together:
-where the evidence does not separate two of them, they trade off from draw to draw. Memory is not part of the inference
-and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of memory.
+The shipped tables are written by `thermicon.perception.evidence` and read by `draws_file`. Constants of one draw belong
+together: where the evidence does not separate two of them, they trade off from draw to draw. Memory is not part of the
+inference and stays that of the shipped observer, except in draws of one laboratory, whose answers say something of it.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class PosteriorDraws:
         Parameters
         ----------
         path
-            A table written by ``thermicon calibrate`` or kept by ``thermicon observed``; None for the shipped one.
+            A table of sampled draws, or one kept by ``thermicon pilot``; None for the shipped one.
         variable
             The variant of the shipped table; a file has its own.
 

@@ -1,6 +1,7 @@
 """The table of posterior draws as a file: header lines that say what it was made from, then one row a draw.
 
-It is written by `thermicon calibrate`. Reading needs numpy alone and refuses a table of other evidence or another form.
+It is written by `python -m thermicon.perception.evidence`. Reading needs numpy alone and refuses a table of other
+evidence or another form.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ TABLE = "sha256 of the table"
 FIRST_LINE = "# written by thermicon calibrate from inputs "
 LABORATORY_LINE = "# written by thermicon observed from inputs "
 """How the draws of one laboratory begin."""
-CURE = "write it again with thermicon calibrate -o FILE"
+CURE = "write it again with python -m thermicon.perception.evidence sample -o FILE"
 CONSTANTS = DATA / "constants.csv"
 VARIANT_NAMES: Mapping[str, Variable] = {
     "temperature": "temperature",

@@ -79,7 +79,7 @@ class ObserverModel:
         Parameters
         ----------
         path
-            Draws written by ``thermicon calibrate`` or kept by ``thermicon observed`` (.csv), or records of one
+            Draws kept by ``thermicon pilot`` (.csv), or records of one
             observer (.toml).
 
         Raises

@@ -85,7 +85,7 @@ def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
 
 def laboratory_texts(draws: PosteriorDraws, version: str, provenance: Sequence[str]) -> tuple[str, str]:
     """Texts of the parameter file (TOML) and of the table of draws (CSV) of one laboratory."""
-    head = (f"Observer of one laboratory, written by thermicon observed ({version}).", *provenance)
+    head = (f"Observer of one laboratory, written by thermicon pilot ({version}).", *provenance)
     return observer_text(draws, head), draws_text(draws, provenance)
 
 

@@ -48,7 +48,7 @@ def _client(address: str) -> Iterator[Any]:
         distributed: Any = import_module("distributed")
     except ImportError as error:
         cure = "pip install 'thermicon[cluster]'"
-        raise ClusterError(f"--cluster needs the package distributed: install it with {cure}") from error
+        raise ClusterError(f"a cluster needs the package distributed: install it with {cure}") from error
     if not ADDRESS.fullmatch(address):
         raise ClusterError(f"{address!r} is not the address of a scheduler: give one such as tcp://127.0.0.1:8786")
     with _quiet():

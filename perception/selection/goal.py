@@ -80,7 +80,7 @@ EXAMPLES: Mapping[str, str] = {
 }
 NEEDS_DRAWS = (
     "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: leave --parameters out or ask for 2 or more (parameters=128 in Python), by the model, with an observer "
+    "posterior: leave --intervals out or ask for 2 or more (parameters=128 in Python), by the model, with an observer "
     "that has draws"
 )
 SAFETY = "safety"

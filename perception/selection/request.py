@@ -100,7 +100,7 @@ def usable_icons(asked: Selection, icons: Sequence[Icon], traces: Sequence[Trace
     check_selection(asked, [icon.name for icon in icons])
     if asked.most_J is not None and rig.thermode is not None:
         raise ChoiceError(
-            f"rig {rig.name} is a thermode, which states no energy: leave out --most-energy, or energy of the goal"
+            f"rig {rig.name} is a thermode, which states no energy: leave out energy of the goal, or most_J"
         )
     shapes: dict[object, str] = {}
     excluded: dict[str, str] = {}

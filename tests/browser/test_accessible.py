@@ -89,7 +89,7 @@ def test_a_report_has_no_serious_finding(page: Page, tmp_path: Path) -> None:
     cue = tmp_path / "two.cue"
     cue.write_text("cue 1\nicon a { cool by 3 K at 2 K/s; return at 2 K/s }\nicon b { pulse warm by 3 K for 2 s }\n")
     report = tmp_path / "report.html"
-    done = CliRunner().invoke(app, ["rank", str(cue), "--people", "4", "--parameters", "0", "--report", str(report)])
+    done = CliRunner().invoke(app, ["rank", str(cue), "--people", "4", "--intervals", "0", "--report", str(report)])
     assert done.exit_code == 0, done.output
     page.goto(report.as_uri())
     found = findings(page)

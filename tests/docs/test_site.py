@@ -99,7 +99,7 @@ def test_every_option_of_every_command_is_listed(builder: dict[str, ModuleType])
         for parameter in command.params:
             if parameter.name != "help":
                 assert (parameter.opts[0] if parameter.opts[0].startswith("-") else parameter.metavar) in page
-    assert "[default: 200]" in page.replace("\\", "")
+    assert "[default: 200; 1<=x<=100000]" in page.replace("\\", "")
 
 
 def test_every_public_name_has_its_entry(builder: dict[str, ModuleType]) -> None:

@@ -72,27 +72,17 @@ def test_a_missing_file(cli: Cli, tmp_path: Path) -> None:
     refused(cli("rank", tmp_path / "absent.cue"), "absent.cue")
 
 
-RIG_CHANGES = [
-    ("thickness_mm = 0.17", "thickness_mm = -0.17", ("thickness_mm", "-0.17")),
-    ("rest_C = 32.0", "rest_C = nan", ("rest_C", "nan")),
-    ("area_cm2 = 9.0", "aera_cm2 = 9.0", ("aera_cm2", "area_cm2")),
-]
-
-
-@pytest.mark.parametrize(("old", "new", "words"), RIG_CHANGES, ids=["negative", "nan", "unknown key"])
-def test_a_rig_that_cannot_be(cli: Cli, two: Path, tmp_path: Path, old: str, new: str, words: tuple[str, ...]) -> None:
+def test_a_rig_that_cannot_be(cli: Cli, two: Path, tmp_path: Path) -> None:
     from importlib.resources import files
 
     text = (files("thermicon.circuit") / "rigs" / "thenar.toml").read_text(encoding="utf-8")
-    assert old in text
     rig = tmp_path / "odd.toml"
-    rig.write_text(text.replace(old, new), encoding="utf-8")
-    refused(cli("simulate", two, "--rig", rig), "odd.toml", *words)
+    rig.write_text(text.replace("area_cm2 = 9.0", "aera_cm2 = 9.0"), encoding="utf-8")
+    refused(cli("simulate", two, "--rig", rig), "odd.toml", "aera_cm2", "area_cm2")
 
 
-@pytest.mark.parametrize("value", ["-1", "nan", "wide"])
-def test_a_change_that_cannot_be(cli: Cli, two: Path, value: str) -> None:
-    refused(cli("check", two, "--set", f"contact.area_cm2={value}"), "area_cm2", value)
+def test_a_change_that_cannot_be(cli: Cli, two: Path) -> None:
+    refused(cli("check", two, "--set", "contact.area_cm2=wide"), "area_cm2", "wide")
 
 
 def test_two_files_with_the_same_icon(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -126,19 +116,10 @@ def test_a_figure_folder_with_the_name_of_a_picture(cli: Cli, two: Path, tmp_pat
     refused(said, "--figure", "fig.gif is the name of a file; give a folder, such as ", "fig, for all figures", code=2)
 
 
-DRIVES = [
-    ("time_s,current_A\n0,0.1\n1,nan\n", ("drive.csv", "nan")),
-    ("time_s,amps\n0,0.1\n", ("drive.csv", "current_A")),
-    ("time_s,current_A\n0,0.1\n1,x\n", ("drive.csv:3", "'x'")),
-    ("", ("drive.csv", "empty")),
-]
-
-
-@pytest.mark.parametrize(("text", "words"), DRIVES)
-def test_a_drive_that_cannot_be(cli: Cli, tmp_path: Path, text: str, words: tuple[str, ...]) -> None:
+def test_a_drive_that_cannot_be(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
-    path.write_text(text)
-    refused(cli("simulate", "--current", path), *words)
+    path.write_text("time_s,current_A\n0,0.1\n1,x\n")
+    refused(cli("simulate", "--current", path), "drive.csv:3", "'x'")
 
 
 def test_a_drive_that_may_not_be_read_is_bad_input(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -157,7 +138,7 @@ def test_a_drive_that_may_not_be_read_is_bad_input(cli: Cli, tmp_path: Path, mon
 USAGE = [
     ((), "Usage"),
     (("chek",), "Did you mean 'check'"),
-    (("check",), "Missing argument"),
+    (("check",), "Missing argument 'FILE...'"),
     (("check", "two.cue", "--rgi", "x"), "--rgi"),
     (("check", "two.cue", "--set", "contact.area_cm2"), "KEY=VALUE"),
     (("simulate",), "either a cue FILE or --current"),
@@ -170,9 +151,11 @@ USAGE = [
     (("rank", "six-icons", "--people", "0"), "--people"),
     (("rank", "six-icons", "--people", "1.5"), "'1.5' is not a whole number; write one, such as 12"),
     (("rank", "six-icons", "--seed", "9" * 5000), "has too many digits to be read"),
-    (("plan", "six-icons", "--width", "wide"), "'wide' is not a number in percentage points; write it in digits"),
+    (("pilot", "six-icons", "--wanted", "wide"), "'wide' is not a number in %; write it in digits"),
     (("rank", "six-icons", "--people", "100001"), "1 to 100000"),
-    (("rank", "six-icons", "--trials", "1000000000000"), "--trials"),
+    (("rank", "six-icons", "--task", "trials=1000000000000"), "1e+12 is outside 1 to 1e+06"),
+    (("rank", "six-icons", "--task", "gap=far"), "'gap=far': 'far' is not a number"),
+    (("rank", "six-icons", "--task", "pace=2"), "'pace=2' is not one of trials=VALUE, gap=VALUE"),
     (("rank", "six-icons", "--tracking", "repaly"), "replay, display, ideal"),
     (("rank", "six-icons", "--norm", "max"), "'max' is not one of episodes, naming"),
 ]
@@ -189,11 +172,9 @@ def test_a_command_line_that_makes_no_sense(cli: Cli, arguments: tuple[str, ...]
 @pytest.mark.parametrize(
     ("words", "output"),
     [
-        (("session", "FILE", "--random", "--repeats", 1, "--json"), None),
-        (("session", "FILE", "--random", "--repeats", 1, "--order-out"), None),
         (("rank", "FILE", "--people", 2, "--json"), None),
-        (("search", "FILE", "-o"), None),
-        (("session", "FILE", "--random", "--repeats", 1, "--json", "both.png", "--figure"), "both.png"),
+        (("improve", "FILE", "--evaluations", 40, "-o"), None),
+        (("rank", "FILE", "--json", "both.png", "--figure"), "both.png"),
     ],
 )
 def test_no_output_takes_the_place_of_an_input_or_of_another_output(

@@ -70,8 +70,8 @@ def test_a_rest_that_the_language_does_not_know(cli: Cli, tmp_path: Path) -> Non
 )
 def test_nothing_heavy_is_imported(two: Path, more: tuple[str, ...], needed: set[str]) -> None:
     program = (
-        "import sys\nfrom thermicon.notebooks.cli.main import app\n"
-        "try:\n    app(sys.argv[1:])\nexcept SystemExit as end:\n    assert not end.code\n"
+        "import sys\nfrom thermicon.notebooks.cli.main import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code\n"
         "print(*sorted({name.partition('.')[0] for name in sys.modules}))\n"
     )
     run = subprocess.run(

@@ -237,7 +237,7 @@ class TestFiles:
             1,
         ),
         (("--to", "csv", "--icon", "col-step", "-o", "out"), "did you mean cool-step?", 1),
-        (("--to", "csv", "--tail", "nan", "-o", "out"), "'--tail': nan is not a time", 2),
+        (("--to", "csv", "--tail", "nan", "-o", "out"), "'--tail': nan s is outside 0 to 86400 s", 2),
         (("--to", "csv"), "Missing option '-o'", 2),
         (("-o", "out"), "Missing option '--to'", 2),
     ],
@@ -275,7 +275,7 @@ def test_very_many_icons_are_not_compared_with_each_other(
 
 
 def test_devices_and_formats_are_listed(cli: Cli) -> None:
-    said = cli("devices")
+    said = cli("list")
     assert said.exit_code == 0
     for word in ("dac-12", "pwm-h-bridge-10", "set-points", "−10 to 10 V", "15.6 kHz", "tcs2-protocol-ini"):
         assert word in said.stdout

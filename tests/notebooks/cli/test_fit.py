@@ -84,11 +84,6 @@ def test_bad_input_is_one_sentence_and_leaves_nothing(cli: Cli, log: Path, tmp_p
     out = tmp_path / "mine.toml"
     for arguments, message in (
         ((tmp_path / "none.csv", "--free", CONTACT), "none.csv: no such log"),
-        (
-            (log, "--free", "contact.resistence"),
-            "contact.resistence: cannot be fitted; did you mean contact.resist",
-        ),
-        ((log, "--free", f"{CONTACT},{CONTACT}"), f"{CONTACT}: is given twice"),
         ((log, "--free", CONTACT, "--rig", "tcs2"), "no log has a drive"),
     ):
         said = cli("fit", *arguments, "-o", out)

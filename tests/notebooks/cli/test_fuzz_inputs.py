@@ -318,7 +318,7 @@ def test_damaged_inputs_through_the_command(process: Callable[..., Any], tmp_pat
             "read_log_file": ("simulate", "six-icons", "--icon", "warming-step", "--measured", "a.csv"),
             "read_curves_aligned": ("compare", "a.csv", "a.csv", "--align"),
             "read_recording": ("convert", "a.csv", "--column", "skin_C", "-o", "b.cue"),
-            "read_plan": ("session", "six-icons", "--order", "a.csv"),
+            "read_plan": ("simulate", "six-icons", "--order", "a.csv"),
             "read_setting": ("check", "six-icons", "--set", data.decode("utf-8", "replace").replace("\0", "")),
         }.get(reader.__name__, ())  # what else reads tables takes minutes
         for name in words:

@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from tests.owndraws import few_draws
-from thermicon.notebooks.cli.main import lab
+from thermicon.notebooks.cli import lab
 from thermicon.notebooks.workbench.workbench import Workbench
 
 Cli = Callable[..., Any]

@@ -12,8 +12,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.cli.app import with_command
-from thermicon.notebooks.cli.main import app, main
+from thermicon.notebooks.cli.main import COMMANDS, main, program
 
 Cli = Callable[..., Any]
 
@@ -29,10 +28,31 @@ def test_the_version(process: Cli) -> None:
 
 
 def test_a_command_reads_its_own_options_alone() -> None:
-    assert [command.name for command in with_command(app, ["rank"]).registered_commands] == ["rank"]
-    for words in ([], ["--help"], ["chek"]):
-        assert with_command(app, words) is app
-    assert len(app.registered_commands) > 20
+    assert [command.name for command in program(["rank"]).registered_commands] == ["rank"]
+    for words in ([], ["--help"], ["chek"], ["-q", "rank"]):
+        assert len(program(words).registered_commands) == len(COMMANDS) == 15
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help(cli: Cli, name: str) -> None:
+    said = cli(name, "--help")
+    assert (said.exit_code, said.stderr) == (0, "")
+    assert said.stdout.startswith(f"Usage: thermicon {name} ")
+
+
+def test_quiet_is_without_notes_and_with_errors(cli: Cli, two: Path, tmp_path: Path) -> None:
+    assert cli("simulate", two, "-o", tmp_path / "t.csv").stderr
+    assert cli("-q", "simulate", two, "-o", tmp_path / "t.csv").stderr == ""
+    assert "no such rig" in cli("-q", "simulate", two, "--rig", "nowhere").stderr
+    assert cli("simulate", two, "-o", tmp_path / "t.csv").stderr
+
+
+def test_the_shell_completes_rigs_and_sets(process: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("_THERMICON_COMPLETE", "complete_bash")
+    for words, found in (("thermicon rank six", "six-icons"), ("thermicon rank six-icons --rig fo", "forearm")):
+        monkeypatch.setenv("COMP_WORDS", words)
+        monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
+        assert found in process().stdout
 
 
 def test_the_package_runs_as_a_module(tmp_path: Path) -> None:
@@ -58,7 +78,7 @@ def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     [
         "thermicon.notebooks.cli.app.TyperGroup.make_context",
         "thermicon.notebooks.cli.app.TyperGroup.invoke",
-        "thermicon.notebooks.cli.main.with_command",
+        "thermicon.notebooks.cli.main.program",
     ],
 )
 def test_an_interrupt_is_told_wherever_it_comes(
@@ -68,7 +88,7 @@ def test_an_interrupt_is_told_wherever_it_comes(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(where, stopped)
-    monkeypatch.setattr(sys, "argv", ["thermicon", "library"])
+    monkeypatch.setattr(sys, "argv", ["thermicon", "list"])
     with pytest.raises(SystemExit) as end:
         main()
     assert end.value.code == 130
@@ -79,8 +99,8 @@ def test_damaged_machine_code_is_told_with_the_cure(monkeypatch: pytest.MonkeyPa
     def damaged(*_: object, **__: object) -> None:
         raise EOFError("Ran out of input")
 
-    monkeypatch.setattr("thermicon.notebooks.cli.shipped.show_library", damaged)
-    said = cli("library")
+    monkeypatch.setattr("thermicon.notebooks.cli.listing.show_icons", damaged)
+    said = cli("list", "icons")
     assert said.exit_code == 1
     assert "is damaged: delete this folder; it is made again" in said.stderr
 
@@ -148,7 +168,7 @@ def test_an_error_of_the_program_itself_is_not_hidden(monkeypatch: pytest.Monkey
 
 
 def test_rigs_are_listed_with_what_they_rest_at(cli: Cli) -> None:
-    said = cli("rigs")
+    said = cli("list", "rigs")
     assert said.exit_code == 0
     for word in ("thenar", "shani2021", "34.5", "−80"):
         assert word in said.stdout
@@ -156,7 +176,7 @@ def test_rigs_are_listed_with_what_they_rest_at(cli: Cli) -> None:
 
 
 def test_the_library_is_listed_with_its_source(cli: Cli) -> None:
-    said = cli("library")
+    said = cli("list", "icons")
     assert said.exit_code == 0
     assert "six-icons" in said.stdout
     assert "cooling-step" in said.stdout

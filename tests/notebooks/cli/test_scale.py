@@ -16,7 +16,7 @@ def test_workers_change_no_byte_and_parts_are_kept_where_asked(cli: Cli, two: Pa
     outs = []
     for extra in ((), ("--workers", 1), ("--workers", 3, "--keep", tmp_path / "kept"), ("--keep", tmp_path / "kept")):
         outs.append(tmp_path / f"{len(outs)}.json")
-        said = cli("rank", two, "--people", 5, "--parameters", 0, "--json", outs[-1], *extra)
+        said = cli("rank", two, "--people", 5, "--intervals", 0, "--json", outs[-1], *extra)
         assert said.exit_code == 0, said.stderr
     assert len({out.read_bytes() for out in outs}) == 1
     assert len(list((tmp_path / "kept").glob("*/*.npz"))) == 1
@@ -29,16 +29,13 @@ def test_a_number_of_workers_that_makes_no_sense(cli: Cli, two: Path, number: st
     assert f"{number} is outside 1 to 1024" in said.stderr
 
 
-def test_no_people_and_both_kinds_of_workers(cli: Cli, two: Path) -> None:
+def test_no_people(cli: Cli, two: Path) -> None:
     assert "0 is outside 1 to 100000" in cli("rank", two, "--people", 0).stderr
-    said = cli("rank", two, "--workers", 2, "--cluster", "tcp://127.0.0.1:1")
-    assert said.exit_code == 2
-    assert "applies to this machine; a cluster brings its own workers" in said.stderr
 
 
 def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:
     pytest.importorskip("distributed")
-    said = cli("rank", two, "--people", 2, "--cluster", "nowhere")
+    said = cli("rank", two, "--people", 2, "--workers", "nowhere")
     assert said.exit_code == 1
     assert "'nowhere' is not the address of a scheduler" in said.stderr
     assert "Traceback" not in said.stderr
@@ -54,7 +51,7 @@ def test_a_folder_for_parts_that_is_a_file(cli: Cli, two: Path, tmp_path: Path) 
 @pytest.mark.slow
 def test_the_error_of_sampling_is_in_the_json(cli: Cli, tmp_path: Path) -> None:
     out = tmp_path / "six.json"
-    said = cli("rank", "six-icons", "--people", 20, "--parameters", 0, "--json", out)
+    said = cli("rank", "six-icons", "--people", 20, "--intervals", 0, "--json", out)
     assert said.exit_code == 0, said.stderr
     found = json.loads(out.read_text(encoding="utf-8"))["confusion"]
     assert 0 < found["standard_error"] < found["person_standard_error"] < 0.005

@@ -53,26 +53,6 @@ def test_the_trace_has_the_promised_columns_and_rows(cli: Cli, two: Path, tmp_pa
     assert not list(tmp_path.glob(".*"))
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
-def test_power_is_a_column_on_demand(cli: Cli, two: Path, tmp_path: Path, suffix: str) -> None:
-    out = tmp_path / f"trace{suffix}"
-    assert cli("simulate", two, "-o", out, "--power").exit_code == 0
-    frame = pd.read_csv(out) if suffix == ".csv" else pd.read_parquet(out)
-    assert list(frame.columns) == [*COLUMNS, "power_W"]
-    assert np.allclose(frame["power_W"], frame["current_A"] * frame["voltage_V"], rtol=1e-7, atol=1e-7)
-    assert frame["power_W"].max() > 3.0
-    drive = tmp_path / "drive.csv"
-    drive.write_text("time_s,current_A\n0,0.1\n1,0.5\n", encoding="utf-8")
-    shown = cli("simulate", "--current", drive, "--power", "-o", "-")
-    assert shown.stdout.splitlines()[0].endswith(",power_W")
-
-
-def test_power_without_a_file_is_refused(cli: Cli, two: Path) -> None:
-    said = cli("simulate", two, "--power")
-    assert said.exit_code == 2
-    assert "adds a column to the trace; name its file with -o" in " ".join(said.stderr.split())
-
-
 def test_another_site_alone_is_warned_of(cli: Cli, two: Path) -> None:
     said = cli("simulate", two, "--set", "skin.site=forearm")
     assert said.exit_code == 0

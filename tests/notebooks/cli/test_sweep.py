@@ -240,7 +240,7 @@ def test_figure_marks_what_was_missed_and_what_was_impossible(two: Path, tmp_pat
     assert (tmp_path / "a.png").stat().st_size > 20_000
 
 
-QUICK = ("--people", 4, "--parameters", 4)
+QUICK = ("--people", 4, "--intervals", 4)
 
 
 def test_what_people_perceive_stands_beside_what_the_rig_does(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -262,7 +262,7 @@ def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
     from thermicon.perception import rank
 
     icons, rig = read_cue(two), Rig.load("thenar")
-    measured = Measured(icons, ("correct", "detected"), people=4, parameters=4)
+    measured = Measured(icons, ("correct", "detected"), people=4, intervals=4)
     frame = sweep(icons, rig, "site", ["fingertip"], measured=measured)
     moved = rig.with_(**_of("fingertip"))
     ranking = rank(icons, moved, people=4, parameters=4)
@@ -305,7 +305,7 @@ def _of(name: str) -> dict[str, Any]:
 def test_older_people_feel_less(two: Path) -> None:
     from thermicon.notebooks.cli.sweep import Measured
 
-    measured = Measured(read_cue(two), ("detected", "onset"), people=4, parameters=0)
+    measured = Measured(read_cue(two), ("detected", "onset"), people=4, intervals=0)
     frame = sweep(read_cue(two), Rig.load("fingertip"), "people.age_years", [25.0, 80.0], measured=measured)
     cool = frame[frame["icon"] == "cool-step"]
     assert cool["detected"].iloc[1] < cool["detected"].iloc[0]
@@ -328,8 +328,8 @@ def test_two_keys_with_a_site_make_maps(cli: Cli, two: Path, tmp_path: Path) -> 
             "'fun' is not one of correct, correct_95, detected, onset, d_prime, bits",
         ),
         (("--vary", f"{AREA}=1:9:2", "--measure", "bits,bits"), 2, "the same quantity is given twice"),
-        (("--vary", f"{AREA}=1:9:2", "--measure", "bits", "--parameters", 1), 2, "1 draw has no interval"),
-        (("--vary", f"{AREA}=1:9:2", "--measure", "correct_95", "--parameters", 0), 2, "needs 2 draws or more"),
+        (("--vary", f"{AREA}=1:9:2", "--measure", "bits", "--intervals", 1), 2, "1 draw has no interval"),
+        (("--vary", f"{AREA}=1:9:2", "--measure", "correct_95", "--intervals", 0), 2, "needs 2 draws or more"),
         (("--vary", "people.age_years=20:80:3"), 2, "changes what people perceive only; add --measure correct"),
         (("--vary", "people.age_years=8:80:3", "--measure", "bits"), 1, "an age of 8 years is not covered"),
         (("--vary", "site=thenar,nose"), 1, "site=nose: there is no such site; there are fingertip, forearm"),

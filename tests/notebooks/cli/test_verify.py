@@ -314,7 +314,7 @@ class TestCommand:
             (("six-icons", "--verify", "out"), "leave out the file six-icons", 2),
             (("--verify", "out", "--to", "csv"), "leave out --to", 2),
             (("--verify", "out", "-o", "out"), "leave out -o", 2),
-            (("--verify", "out", "--force"), "leave out --force and --tail", 2),
+            (("--verify", "out", "--force"), "leave out --force", 2),
             ((), "Missing argument 'FILE'", 2),
             (("--verify", "nowhere"), "cannot verify nowhere: there is no such folder", 1),
             (("--verify", "two.cue"), "cannot verify two.cue: it is a file; give the folder of an export", 1),

@@ -10,7 +10,8 @@ import typer
 from matplotlib.figure import Figure
 from PIL import Image
 
-from thermicon.notebooks.figures.figure_look import Look, figure_look, read_width_mm
+from thermicon.notebooks.cli.options import FigureOptions
+from thermicon.notebooks.figures.figure_look import Look, read_width_mm
 from thermicon.notebooks.figures.print_figure import restyle, write_figure
 
 
@@ -138,6 +139,5 @@ def test_a_width_that_cannot_be(text: str, what: str) -> None:
 
 def test_looks_without_a_figure_are_refused() -> None:
     with pytest.raises(typer.BadParameter, match="name its file with --figure"):
-        figure_look(None, "85mm", "screen", False)
-    with pytest.raises(typer.BadParameter, match="'print' is not one of screen, paper"):
-        figure_look(Path("a.png"), None, "print", False)
+        FigureOptions(paper="85mm")
+    assert FigureOptions(Path("a.png"), "85mm").look == Look("paper", 85.0, title=False, kind="pdf")

@@ -15,7 +15,8 @@ from markupsafe import escape
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.notebooks.cli.ranking import Request, command_text
+from thermicon.notebooks.cli.options import CrowdOptions, RigOptions
+from thermicon.notebooks.cli.ranking import TaskOptions, command_text
 from thermicon.notebooks.report.blocks import as_html
 from thermicon.notebooks.report.report import LIMITS, SAFETY, report
 from thermicon.perception import Ranking, rank
@@ -191,7 +192,7 @@ def test_the_choice_is_told(rig: Rig, three: IconSet) -> None:
 @pytest.mark.slow
 def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "report.html"
-    options = ("--people", 3, "--parameters", 0, "--set", "contact.area_cm2=4")
+    options = ("--people", 3, "--intervals", 0, "--set", "contact.area_cm2=4")
     said = cli("rank", two, *options, "--report", out, "--json", tmp_path / "a.json")
     assert said.exit_code == 0, said.stderr
     assert f"wrote {out}" in said.stderr
@@ -220,34 +221,20 @@ def test_a_page_that_cannot_be_written_is_said_at_once(
     assert told in " ".join(said.stderr.replace("│", " ").split())
 
 
-def test_the_command_can_be_given_again(rig: Rig) -> None:
-    assert command_text(["six-icons"], rig, Request()) == "thermicon rank six-icons"
-    asked = Request(
-        seed=3,
-        norm="naming",
-        by="rules",
-        tracking="ideal",
-        choosing=Selection(3, "bits", ("a", "b"), 20.0),
-        edits="all",
+def test_the_command_can_be_given_again() -> None:
+    assert command_text(["six-icons"], RigOptions(), CrowdOptions()) == "thermicon rank six-icons"
+    changed = RigOptions("/home/x/watch.toml", ["driver.current_limit_A=1.2"])
+    asked = CrowdOptions(seed=3, norm="naming", tracking="ideal", observer=Path("/home/x/lab.csv"))
+    groups = (changed, asked, TaskOptions(["gap=8", "bias=0.5"]))
+    assert command_text(["/home/x/my icons.cue", "b.cue"], *groups) == (
+        "thermicon rank 'my icons.cue' b.cue --rig watch.toml --set driver.current_limit_A=1.2 --seed 3 "
+        "--tracking ideal --norm naming --observer lab.csv --task gap=8 --task bias=0.5"
     )
-    changed = Rig.load("forearm").with_set(["driver.current_limit_A=1.2"])
-    assert command_text(["/home/x/my icons.cue", "b.cue"], changed, asked) == (
-        "thermicon rank 'my icons.cue' b.cue --rig forearm --set driver.current_limit_A=1.2 --seed 3 --tracking ideal "
-        "--norm naming --by rules --choose 3 --objective bits --must a --must b --most-time 20 --edits"
-    )
+    assert "--observer /home/x/lab.csv" in command_text(["six-icons"], asked, paths=True)
 
 
 def test_a_page_escapes_its_title() -> None:
     assert "<title>a &lt;b&gt;</title>" in as_html([], "a <b>")
-
-
-def test_the_command_names_files_as_they_are_given() -> None:
-    rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4.0})
-    asked = Request(rig="/home/x/watch.toml", observer=Path("/home/x/lab.csv"), goal="correct >= 90 %")
-    assert command_text(["six-icons"], rig, asked) == (
-        "thermicon rank six-icons --rig watch.toml --set contact.area_cm2=4.0 --observer lab.csv "
-        "--goal 'correct >= 90 %'"
-    )
 
 
 @pytest.mark.slow

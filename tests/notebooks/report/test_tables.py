@@ -53,10 +53,10 @@ def test_a_pipe_gets_one_line_per_row() -> None:
 
 @pytest.mark.parametrize("width", [80, 60])
 def test_listings_fit(width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from thermicon.notebooks.cli.shipped import show_library, show_rigs
+    from thermicon.notebooks.cli.listing import show_icons, show_rigs
 
     monkeypatch.setenv("COLUMNS", str(width))
-    show_library()
+    show_icons()
     show_rigs()
     said = capsys.readouterr().out
     compact = re.sub(r"\s", "", said)

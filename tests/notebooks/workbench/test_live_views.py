@@ -112,7 +112,7 @@ def test_a_goal_that_an_observer_cannot_judge_says_what_it_needs(tmp_path: Path)
     bench.tabs.selected_index = 1
     assert view.worker.wait()
     assert "not judged: a share of people takes draws of the model too" in view.goal.verdict.value
-    assert "observed --keep" in view.goal.verdict.value
+    assert "pilot --keep" in view.goal.verdict.value
     view.goal.text.value = "time <= 60 s"
     assert view.worker.wait()
     assert "goal met" in view.goal.verdict.value

@@ -311,7 +311,7 @@ def test_an_edit_that_does_not_fit_is_refused_with_what_to_do() -> None:
 
 @pytest.fixture(scope="module")
 def laboratory(tmp_path_factory: pytest.TempPathFactory) -> ObserverModel:
-    """Draws of one laboratory, as ``observed --keep lab.toml`` writes them."""
+    """Draws of one laboratory, as ``pilot --keep lab.toml`` writes them."""
     file = tmp_path_factory.mktemp("lab") / "lab.csv"
     return ObserverModel.load(few_draws(file, 2, "by weights from 4 laboratories", "thenar"))
 

@@ -102,11 +102,11 @@ PLAIN = "icon plain(by in [-3, -2] °C) { change by by at 3 °C/s; hold for 1 s;
 @pytest.mark.parametrize(
     "command",
     [
-        "rank {0} --people 4 --parameters 0",
-        "search {0} --people 4",
-        "frontier {0}",
-        "sensitivity {0} --people 4",
-        "plan {0}",
+        "rank {0} --people 4 --intervals 0",
+        "improve {0} --people 4",
+        "improve {0} --up-to 2",
+        "rank {0} --doubt --people 4",
+        "pilot {0}",
     ],
 )
 def test_an_icon_with_too_many_episodes_is_refused_by_name(command: str, tmp_path: Path) -> None:

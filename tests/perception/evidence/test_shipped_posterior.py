@@ -93,10 +93,10 @@ def parted(text: str) -> tuple[dict[str, str], list[str], np.ndarray]:
 
 
 @pytest.mark.slow
-def test_calibrate_makes_draws_of_the_shipped_distribution_from_their_seed(tmp_path: Path) -> None:
+def test_sampling_makes_draws_of_the_shipped_distribution_from_their_seed(tmp_path: Path) -> None:
     """Six minutes of processor time. The draws themselves are the same only where a computer rounds alike."""
     made = tmp_path / "draws.csv"
-    command = [sys.executable, "-m", "thermicon.notebooks", "calibrate", "--seed", "0", "-o", made]
+    command = [sys.executable, "-m", "thermicon.perception.evidence", "sample", "--seed", "0", "-o", made]
     subprocess.run(command, check=True, capture_output=True)
     (header, names, shipped), (own_header, own_names, own) = (
         parted(path.read_text("utf-8")) for path in (DATA / "posterior.csv", made)

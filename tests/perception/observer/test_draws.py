@@ -87,7 +87,11 @@ def test_an_unknown_constant_names_the_nearest(posterior: PosteriorDraws) -> Non
 
 
 def test_what_is_no_table_of_draws_is_refused(tmp_path: Path) -> None:
-    refused(tmp_path, "a,b\n1,2\n", r"mine.csv, line 1: this is not a table of posterior draws.*thermicon calibrate")
+    refused(
+        tmp_path,
+        "a,b\n1,2\n",
+        r"mine.csv, line 1: this is not a table of posterior draws.*thermicon.perception.evidence sample",
+    )
     with pytest.raises(RecordError, match=r"absent.csv: no such table of posterior draws"):
         PosteriorDraws.load(tmp_path / "absent.csv")
 

@@ -172,7 +172,7 @@ def pilot(run: Run, folder: Path) -> dict[str, Any]:
             for trial in range(1, 25):
                 shown = draws.choice(names)
                 out.writerow([person, trial, shown, shown if draws.random() < 0.85 else draws.choice(names)])
-    document = document_of(run, folder, "observed", str(trials), "six-icons", "--draws", "200")
+    document = document_of(run, folder, "pilot", "six-icons", "--answers", str(trials), "--draws", "200")
     key = dict(numbers({part: document[part] for part in document if part in ("observed", "predicted", "conditioned")}))
     return {"numbers": digest_of_numbers(document), "key": dict(list(key.items())[:60])}
 

@@ -1,4 +1,4 @@
-"""``thermicon fmt``: files in canonical layout, whole or untouched."""
+"""``thermicon check --fix``: files in canonical layout, whole or untouched."""
 
 from __future__ import annotations
 
@@ -25,62 +25,50 @@ def written(path: Path, text: str | bytes) -> Path:
 def test_files_are_brought_into_canonical_layout(cli: Cli, tmp_path: Path) -> None:
     loose, tidy = written(tmp_path / "a.cue", LOOSE), written(tmp_path / "b.cue", TIDY)
     before = tidy.stat().st_mtime_ns, tidy.stat().st_ino
-    said = cli("fmt", loose, tidy)
-    assert (said.exit_code, said.stderr) == (0, "")
-    assert said.stdout == f"{loose}: formatted\n{tidy}: unchanged\n"
+    said = cli("check", "--fix", loose, tidy)
+    assert (said.exit_code, said.stderr) == (0, f"{loose}: formatted\n")
+    assert [line.split(":")[0] for line in said.stdout.splitlines()] == ["a.cue", "b.cue"]
     assert loose.read_bytes() == tidy.read_bytes() == TIDY.encode()
     assert (tidy.stat().st_mtime_ns, tidy.stat().st_ino) == before
     assert sorted(each.name for each in tmp_path.iterdir()) == ["a.cue", "b.cue"]
 
 
-def test_check_only_names_what_would_change(cli: Cli, tmp_path: Path) -> None:
-    loose, tidy = written(tmp_path / "a.cue", LOOSE), written(tmp_path / "b.cue", TIDY)
-    said = cli("fmt", "--check", loose, tidy)
-    assert (said.exit_code, said.stdout, said.stderr) == (1, f"{loose}\n", "")
-    assert loose.read_text(encoding="utf-8") == LOOSE
-    said = cli("fmt", "--check", tidy)
-    assert (said.exit_code, said.stdout, said.stderr) == (0, "", "")
-
-
-@pytest.mark.parametrize("check", [(), ("--check",)], ids=["in place", "check"])
-def test_bad_files_are_told_together_and_stay_as_they_are(cli: Cli, tmp_path: Path, check: tuple[str, ...]) -> None:
+def test_bad_files_are_told_together_and_stay_as_they_are(cli: Cli, tmp_path: Path) -> None:
     good = written(tmp_path / "good.cue", LOOSE)
     slip = written(tmp_path / "slip.cue", "cue 1\nicon x{ hold for 4 }")
     mute = written(tmp_path / "mute.cue", b"cue 1\n\xff")
-    said = cli("fmt", slip, good, mute, tmp_path / "none.cue", tmp_path, *check)
+    said = cli("check", "--fix", slip, good, mute, tmp_path / "none.cue", tmp_path)
     assert said.exit_code == 1
     for words in ("slip.cue:2:18  E102", "mute.cue  E007", "none.cue  E001 no such file", "E002 a folder, not a file"):
         assert words in said.stderr
     assert slip.read_bytes() == b"cue 1\nicon x{ hold for 4 }"
     assert mute.read_bytes() == b"cue 1\n\xff"
-    assert good.read_text(encoding="utf-8") == (LOOSE if check else TIDY)
+    assert good.read_text(encoding="utf-8") == TIDY
 
 
 def test_a_shipped_set_is_refused(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    said = cli("fmt", "six-icons")
+    said = cli("check", "--fix", "six-icons")
     assert (said.exit_code, said.stdout) == (1, "")
     assert said.stderr == "six-icons: a shipped set cannot be changed; give the name of your own file\n"
     monkeypatch.chdir(tmp_path)
     written(tmp_path / "six-icons", LOOSE)
-    assert cli("fmt", "six-icons").stdout == "six-icons: formatted\n"
+    assert cli("check", "--fix", "six-icons").stderr == "six-icons: formatted\n"
 
 
 def test_line_ends_stay_and_a_byte_order_mark_goes(cli: Cli, tmp_path: Path) -> None:
     path = written(tmp_path / "a.cue", b"\xef\xbb\xbf" + LOOSE.replace("\n", "\r\n").encode())
-    assert cli("fmt", path).exit_code == 0
+    assert cli("check", "--fix", path).exit_code == 0
     assert path.read_bytes() == TIDY.replace("\n", "\r\n").encode()
-    assert cli("fmt", "--check", path).exit_code == 0
-    mixed = written(path, TIDY.replace("\n", "\r\n", 2).encode())
-    assert cli("fmt", "--check", mixed).exit_code == 1
+    assert cli("check", "--fix", path).stderr == ""
     old = written(path, TIDY.replace("\n", "\r").encode())
-    assert cli("fmt", old).exit_code == 0
+    assert cli("check", "--fix", old).exit_code == 0
     assert old.read_bytes() == TIDY.encode()
 
 
 def test_comments_and_units_stay(cli: Cli, tmp_path: Path) -> None:
     text = "# über alles\ncue 1\nicon x { hold for 500 ms; warm by 1 K at 1 degC/s } # end\n"
     path = written(tmp_path / "a.cue", text)
-    assert cli("fmt", path).exit_code == 0
+    assert cli("check", "--fix", path).exit_code == 0
     assert path.read_text(encoding="utf-8") == format_text(text)
     assert "# über alles\n" in format_text(text)
     assert "500 ms" in format_text(text)
@@ -92,7 +80,7 @@ def test_the_mode_of_a_file_stays_and_a_link_is_followed(cli: Cli, tmp_path: Pat
     path.chmod(0o640)
     link = tmp_path / "link.cue"
     link.symlink_to(path)
-    assert cli("fmt", link).exit_code == 0
+    assert cli("check", "--fix", link).exit_code == 0
     assert link.is_symlink()
     assert path.read_text(encoding="utf-8") == TIDY
     assert stat.S_IMODE(path.stat().st_mode) == 0o640
@@ -101,21 +89,27 @@ def test_the_mode_of_a_file_stays_and_a_link_is_followed(cli: Cli, tmp_path: Pat
 def test_a_file_that_cannot_be_written_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = written(tmp_path / "a.cue", LOOSE)
     monkeypatch.setattr("os.access", lambda *_: False)
-    said = cli("fmt", path)
+    said = cli("check", "--fix", path)
     assert said.exit_code == 1
     assert f"cannot write {path}" in said.stderr
     assert path.read_text(encoding="utf-8") == LOOSE
 
 
-def test_usage(cli: Cli) -> None:
-    assert cli("fmt").exit_code == 2
-    assert "canonical layout" in cli("fmt", "--help").stdout
-
-
 def test_json_is_no_cue_file(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "a.json"
     path.write_text('{"a": 1}', encoding="utf-8")
-    said = cli("fmt", str(path))
+    said = cli("check", "--fix", str(path))
     assert said.exit_code == 1
     assert "this is JSON" in said.stderr
     assert path.read_text(encoding="utf-8") == '{"a": 1}'
+
+
+def test_a_code_is_explained_by_an_example(cli: Cli) -> None:
+    said = cli("check", "--explain", "e102")
+    assert said.exit_code == 0
+    assert said.stdout.startswith("E102 missing unit\n")
+    assert "did you mean:" in said.stdout
+    unknown = cli("check", "--explain", "E99")
+    assert (unknown.exit_code, "there is no error E99; the nearest are" in unknown.stderr) == (2, True)
+    assert "stands alone" in cli("check", "--explain", "E102", "six-icons").stderr
+    assert "canonical layout" in cli("check", "--help").stdout

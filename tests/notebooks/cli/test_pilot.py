@@ -1,4 +1,4 @@
-"""``thermicon observed`` and ``thermicon plan``: tables for people, files for scripts, and clear refusals."""
+"""``thermicon pilot``, as a plan and with answers: tables for people, files for scripts, and clear refusals."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ def answers(tmp_path: Path) -> Path:
 def test_observed_prints_writes_and_keeps(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
     out, lab, picture = tmp_path / "out.json", tmp_path / "lab.toml", tmp_path / "out.png"
     said = cli(
-        "observed", answers, two, *QUICK, "--for", "six-icons", "--json", out, "--keep", lab, "--figure", picture
+        *("pilot", two, "six-icons", "--answers", answers, *QUICK),
+        *("--json", out, "--keep", lab, "--figure", picture),
     )
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
@@ -55,7 +56,7 @@ def test_observed_prints_writes_and_keeps(cli: Cli, two: Path, answers: Path, tm
 
 @pytest.mark.slow
 def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path, answers: Path) -> None:
-    said = [cli("observed", answers, two, *QUICK, "--seed", 4, "--json", "-").stdout for _ in range(2)]
+    said = [cli("pilot", two, "--answers", answers, *QUICK, "--seed", 4, "--json", "-").stdout for _ in range(2)]
     assert said[0] == said[1]
     assert json.loads(said[0])["seed"] == 4
 
@@ -73,7 +74,7 @@ def test_what_rank_shows_of_a_kept_laboratory_is_what_it_shows(
     cli: Cli, two: Path, answers: Path, tmp_path: Path, options: tuple[str, ...]
 ) -> None:
     lab = tmp_path / "my lab.toml"
-    said = cli("observed", answers, two, *QUICK, "--seed", 3, "--keep", lab, *options)
+    said = cli("pilot", two, "--answers", answers, *QUICK, "--seed", 3, "--keep", lab, *options)
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
     promised = re.search(r"rank shows (\d+ %) correct for this laboratory: 200 other people at the first of", words)
@@ -88,15 +89,15 @@ def test_what_rank_shows_of_a_kept_laboratory_is_what_it_shows(
 
 
 def test_without_keep_the_way_to_a_laboratory_is_named(cli: Cli, two: Path, answers: Path) -> None:
-    words = " ".join(cli("observed", answers, two, *QUICK).stdout.split())
-    assert words.endswith("With --keep lab.toml, rank, search and the workbench can predict for this laboratory.")
+    words = " ".join(cli("pilot", two, "--answers", answers, *QUICK).stdout.split())
+    assert words.endswith("With --keep lab.toml, rank, improve and the workbench can predict for this laboratory.")
     assert "rank shows" not in words
 
 
 def test_an_icon_that_nobody_was_presented_is_named(cli: Cli, two: Path, tmp_path: Path) -> None:
     path = tmp_path / "t.csv"
     path.write_text("participant,trial,presented,responded\nP,1,cool-step,cool-step\nP,2,cool-step,warm-step\n")
-    said = cli("observed", path, two, *QUICK)
+    said = cli("pilot", two, "--answers", path, *QUICK)
     assert said.exit_code == 0
     assert "Never presented: warm-step. What is said of them is prediction alone" in " ".join(said.stdout.split())
 
@@ -104,7 +105,7 @@ def test_an_icon_that_nobody_was_presented_is_named(cli: Cli, two: Path, tmp_pat
 def test_a_single_slip_judges_no_model(cli: Cli, two: Path, tmp_path: Path) -> None:
     path = tmp_path / "t.csv"
     path.write_text("participant,trial,presented,responded\nP,1,cool-step,warm-step\n", encoding="utf-8")
-    said = cli("observed", path, two, *QUICK)
+    said = cli("pilot", two, "--answers", path, *QUICK)
     assert said.exit_code == 0
     words = " ".join(said.stdout.split())
     assert "after the answers were used: 1 answer is too little to judge the model by; 20 or more can" in words
@@ -114,7 +115,7 @@ def test_a_single_slip_judges_no_model(cli: Cli, two: Path, tmp_path: Path) -> N
 
 
 def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: Path) -> None:
-    words = " ".join(cli("observed", answers, two, "--draws", 200).stdout.split())
+    words = " ".join(cli("pilot", two, "--answers", answers, "--draws", 200).stdout.split())
     assert "95 % bits 95 % narrower" in words
     assert "too few to say" not in words
 
@@ -125,7 +126,7 @@ def test_odd_answers_are_judged_by_as_much_as_was_tried(cli: Cli, two: Path, tmp
     for person in ("ann", "bob", "cem"):
         rows += [f"{person},{k},{'cool-step' if k % 2 else 'warm-step'},cool-step" for k in range(10)]
     path.write_text("\n".join(rows) + "\n", encoding="utf-8")
-    few, many = (" ".join(cli("observed", path, two, "--draws", n).stdout.split()) for n in (24, 240))
+    few, many = (" ".join(cli("pilot", two, "--answers", path, "--draws", n).stdout.split()) for n in (24, 240))
     assert "the answers are unlikely, but 12 laboratories are too few to say that no constants explain them" in few
     assert "the model cannot explain these answers, not even with other constants" in many
 
@@ -133,11 +134,11 @@ def test_odd_answers_are_judged_by_as_much_as_was_tried(cli: Cli, two: Path, tmp
 def test_a_bad_table_is_bad_input_and_nothing_is_written(cli: Cli, two: Path, tmp_path: Path) -> None:
     path, out = tmp_path / "t.csv", tmp_path / "out.json"
     path.write_text("participant,trial,presented,responded\nP,1,cool-step,Cool-step\n", encoding="utf-8")
-    said = cli("observed", path, two, "--json", out)
+    said = cli("pilot", two, "--answers", path, "--json", out)
     assert said.exit_code == 1
     assert said.stderr.startswith(f"{path}:2: responded is 'Cool-step', which is not an icon of the set; did you mean")
     assert not out.exists()
-    assert "no such table of trials" in cli("observed", tmp_path / "none.csv", two).stderr
+    assert "no such table of trials" in cli("pilot", two, "--answers", tmp_path / "none.csv").stderr
 
 
 @pytest.mark.parametrize(
@@ -146,37 +147,32 @@ def test_a_bad_table_is_bad_input_and_nothing_is_written(cli: Cli, two: Path, tm
         (("--draws", 5), "'--draws': 5 is outside 20 to 20000"),
         (("--seed", -1), "'--seed': -1 is outside 0 to 4294967295"),
         (("--norm", "mean"), "'--norm': 'mean' is not one of episodes, naming"),
-        (("--force",), "'--force': belongs to --keep, whose files it replaces"),
+        (("--participants", "4"), "'--participants': belongs to a plan, before there are answers"),
         (("--keep", "-"), "'--keep': - is not a file; give a name such as lab.toml"),
     ],
 )
 def test_bad_options_of_observed(cli: Cli, two: Path, answers: Path, options: tuple[object, ...], told: str) -> None:
-    said = cli("observed", answers, two, *options)
+    said = cli("pilot", two, "--answers", answers, *options)
     assert (said.exit_code, said.stdout) == (2, "")
     assert told in " ".join(said.stderr.replace("│", " ").split())
 
 
 def test_outputs_are_checked_before_work_begins(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
-    said = cli("observed", answers, two, "--keep", tmp_path / "lab.csv")
+    said = cli("pilot", two, "--answers", answers, "--keep", tmp_path / "lab.csv")
     assert said.exit_code == 1
     assert "an observer is written as .toml, not .csv" in said.stderr
     own = answers.with_suffix(".toml")
-    assert "is read by this command; give another name" in cli("observed", answers, two, "--keep", own).stderr
+    assert "is read by this command; give another name" in cli("pilot", two, "--answers", answers, "--keep", own).stderr
 
 
-def test_what_was_kept_is_replaced_only_with_force(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
+def test_what_was_kept_is_never_replaced(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
     lab = tmp_path / "lab.toml"
     lab.with_suffix(".csv").write_text("mine", encoding="utf-8")
-    said = cli("observed", answers, two, *QUICK, "--keep", lab)
+    said = cli("pilot", two, "--answers", answers, *QUICK, "--keep", lab)
     assert (said.exit_code, said.stdout) == (1, "")
-    assert said.stderr == f"{lab.with_suffix('.csv')} already exists and was kept; --force replaces it\n"
-    lab.write_text("mine", encoding="utf-8")
-    both = cli("observed", answers, two, *QUICK, "--keep", lab).stderr
-    assert both == f"{lab} and 1 more already exist and were kept; --force replaces them\n"
-    assert lab.read_text(encoding="utf-8") == lab.with_suffix(".csv").read_text(encoding="utf-8") == "mine"
-    said = cli("observed", answers, two, *QUICK, "--keep", lab, "--force")
-    assert said.exit_code == 0, said.stderr
-    assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 12
+    told = "already there and kept; give --keep another name, or move them away"
+    assert said.stderr == f"{lab.with_suffix('.csv')} {told}\n"
+    assert lab.with_suffix(".csv").read_text(encoding="utf-8") == "mine"
 
 
 def test_doubtful_times_are_warned_of_on_screen_and_in_the_file(
@@ -185,7 +181,7 @@ def test_doubtful_times_are_warned_of_on_screen_and_in_the_file(
     out = tmp_path / "out.json"
     text = answers.read_text(encoding="utf-8").replace("ann,3,cool-step,cool-step,4.5", "ann,3,cool-step,cool-step,900")
     answers.write_text(text, encoding="utf-8")
-    said = cli("observed", answers, two, *QUICK, "--json", out)
+    said = cli("pilot", two, "--answers", answers, *QUICK, "--json", out)
     assert said.exit_code == 0
     warning = f"{answers}:5: time_s is 900 s, and the median of participant 'ann' is "
     assert said.stderr.startswith(f"warning: {warning}")
@@ -194,7 +190,7 @@ def test_doubtful_times_are_warned_of_on_screen_and_in_the_file(
 
 def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "plan.json"
-    said = cli("plan", two, *QUICK, "--participants", "16,4", "--trials", "6,20", "--pilot", 3, "--json", out)
+    said = cli("pilot", two, *QUICK, "--participants", "16,4", "--trials", "6,20", "--presentations", 3, "--json", out)
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
     assert "participants 6 trials 20 trials" in words
@@ -206,19 +202,19 @@ def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
 
 
 def test_plan_of_two_sets(cli: Cli, two: Path) -> None:
-    said = cli("plan", two, "six-icons", *QUICK, "--participants", "6", "--trials", "12", "--pilot", 2)
+    said = cli("pilot", two, "six-icons", *QUICK, "--participants", "6", "--trials", "12", "--presentations", 2)
     words = " ".join(said.stdout.split())
     assert "Difference of the two: " in words
     assert "Share of experiments that distinguish the two sets in the right direction (paired t test at 5 %" in words
 
 
 def test_a_plan_that_nothing_satisfies_says_so(cli: Cli, two: Path) -> None:
-    quick = (*QUICK, "--participants", "4", "--trials", "6", "--pilot", 1)
-    said = cli("plan", two, *quick, "--width", 0.1)
+    quick = (*QUICK, "--participants", "4", "--trials", "6", "--presentations", 1)
+    said = cli("pilot", two, *quick, "--wanted", 0.1)
     assert "None of these sizes is enough: an interval of 0.1 points or less needs more" in " ".join(
         said.stdout.split()
     )
-    same = cli("plan", two, two, *quick)
+    same = cli("pilot", two, two, *quick)
     assert "cannot be had where the sets hardly differ" in " ".join(same.stdout.split())
 
 
@@ -228,13 +224,14 @@ def test_a_plan_that_nothing_satisfies_says_so(cli: Cli, two: Path) -> None:
         (("--participants", "1,8"), "'--participants': 1 is outside 2 to 500"),
         (("--participants", "some"), "'--participants': 'some' is not a list of whole numbers such as 8,16,32"),
         (("--trials", "0"), "'--trials': 0 is outside 1 to 5000"),
-        (("--pilot", 0), "'--pilot': 0 is outside 1 to 1000"),
-        (("--power", 80), "'--power': belongs to two sets; with one, give --width"),
-        (("--width", 0), "'--width': 0 is outside 0 to 100"),
+        (("--presentations", 0), "'--presentations': 0 is outside 1 to 1000"),
+        (("six-icons", "six-icons"), "a plan is for one set, or for two"),
+        (("--wanted", 0), "'--wanted': 0 is outside 0 to 100"),
+        (("--keep", "lab.toml"), "'--keep': needs --answers FILE"),
     ],
 )
 def test_bad_options_of_plan(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
-    said = cli("plan", two, *options)
+    said = cli("pilot", two, *options)
     assert (said.exit_code, said.stdout) == (2, "")
     assert told in " ".join(said.stderr.replace("│", " ").split())
 
@@ -252,7 +249,7 @@ bob,reaction_time,,warm,6,1.7,s,,12
 def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     path, lab, picture, out = (tmp_path / name for name in ("v.csv", "lab.toml", "v.png", "v.json"))
     path.write_text(VALUES, encoding="utf-8")
-    said = cli("observed", path, two, "--draws", 40, "--keep", lab, "--figure", picture, "--json", out)
+    said = cli("pilot", two, "--answers", path, "--draws", 40, "--keep", lab, "--figure", picture, "--json", out)
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())
     assert "cold, limits, 1 K/s 2 1.79 K" in words
@@ -267,22 +264,15 @@ def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path:
     assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 20
     assert f"thermicon rank {two} --observer {lab.with_suffix('.csv')}" in words
     assert picture.stat().st_size > 10_000
-    kept = cli("observed", path, two, "--draws", 20, "--observer", lab.with_suffix(".csv"))
+    kept = cli("pilot", two, "--answers", path, "--draws", 20, "--observer", lab.with_suffix(".csv"))
     assert kept.exit_code == 0, kept.stderr
 
 
 def test_bad_measurements_are_refused_in_words(cli: Cli, two: Path, tmp_path: Path) -> None:
     path = tmp_path / "v.csv"
     path.write_text(VALUES.replace("2.3,K", "305,K"), encoding="utf-8")
-    said = cli("observed", path, two)
+    said = cli("pilot", two, "--answers", path)
     assert said.exit_code == 1
     assert "v.csv:5: value is '305' K, a threshold lies within 0.005 to 20 K" in said.stderr
-    metal = cli("observed", path, two, "--set", "load.film_W_per_m2K=10")
+    metal = cli("pilot", two, "--answers", path, "--set", "load.film_W_per_m2K=10")
     assert metal.exit_code == 1
-
-
-def test_a_misspelt_norm_gets_a_hint(cli: Cli, two: Path) -> None:
-    for command in (("rank", two), ("observed", "t.csv", two), ("plan", two), ("frontier", two), ("sensitivity", two)):
-        said = cli(*command, "--norm", "epsodes")
-        assert said.exit_code == 2
-        assert "did you mean episodes?" in " ".join(said.stderr.split())

@@ -1,74 +1,75 @@
-"""``thermicon sensitivity``: which constants carry the doubt about a set, and what to measure first."""
+"""``thermicon rank --doubt``: which constants carry the doubt about a set, and what to measure first."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import percent
 
-from ..figures.figure_look import SCREEN, Look
-from ..files.outputs import FIGURE_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
-from ..messages import check_draws, fail, load_observer, progress_bar
-from ..report.options import check_norm_option
+from ..files.outputs import STDOUT
+from ..messages import check_draws, fail, progress_bar, usage
 from ..report.tables import show, table
 from .cues import read_set, warn_of_frames
-from .sweep import write_study
+from .options import CrowdOptions, RigOptions, write_text
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.perception.ranking.sensitivity import Sensitivity
+
+    from .ranking import SetFigureOptions
 
 SHOWN = 12
 """Constants in the table; a file has them all."""
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
-    """The options of ``sensitivity``."""
-
-    people: int = 24
-    seed: int = 0
-    draws: int | None = None
-    norm: str = "episodes"
-    observer: Path | None = None
-
-
-def sensitivity_file(
-    file: str, rig: Rig, request: Request, output: Path | None, figure: Path | None, look: Look = SCREEN
+def doubt_about(
+    files: Sequence[str],
+    crowd: CrowdOptions,
+    rig: RigOptions,
+    figure: SetFigureOptions,
+    json: Path | None,
+    unused: Mapping[str, object],
 ) -> None:
-    """Study the icons of a file on the rig: the table on stdout, other outputs on request."""
+    """Study the icons of files on the rig: the table on stdout, other outputs on request."""
+    for option, value in unused.items():
+        if value:
+            raise usage("belongs to a ranking; leave it out, or --doubt", option)
+    if figure.figure is not None and figure.picture is None:
+        raise usage("with --doubt there is one figure: name a .pdf, .svg or .png file", "--figure")
     from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS, sensitivity
 
-    check_norm_option(request.norm)
-    if output is not None:
-        check_output(output, TRACE_SUFFIXES, "a table of sensitivities")
-    if figure is not None:
-        check_output(figure, FIGURE_SUFFIXES, "a figure")
-    check_separate([file], [output, figure])
-    icons = read_set([file])
+    if crowd.intervals is not None and crowd.intervals < FEWEST_DRAWS:
+        raise usage(f"{crowd.intervals} draws are too few for --doubt: give {FEWEST_DRAWS} or more", "--intervals")
+    icons = read_set(files)
     if len(icons) < 2:
-        fail(f"{file}: a sensitivity study needs at least two icons, since one alone is never confused")
-    warn_of_frames([file], icons, rig)
-    model = load_observer(request.observer, rig, "a sensitivity is read from draws of a posterior")
-    draws = check_draws(model, request.draws, "--draws", DRAWS, FEWEST_DRAWS)
-    with progress_bar("sensitivity") as progress:
+        fail(f"{files[0]}: --doubt needs at least two icons, since one alone is never confused")
+    where = rig.load()
+    warn_of_frames(files, icons, where)
+    model = crowd.load(where, "what carries the doubt is read from draws of a posterior")
+    draws = check_draws(model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
+    with progress_bar("doubt") as progress:
         found = sensitivity(
             icons,
-            rig,
-            people=request.people,
-            seed=request.seed,
+            where,
+            people=crowd.people,
+            seed=crowd.seed,
+            norm=crowd.norm,
             draws=draws,
-            norm=request.norm,
             observer=model,
             progress=progress,
         )
-    if not write_study(found, output, figure, look):
-        show_sensitivity(found, icons.title)
+    if json is not None:
+        write_text(dumps(asdict(found), ensure_ascii=False, indent=1) + "\n", json)
+    if figure.figure is not None:
+        figure.write(found.plot().figure)
+    if json != STDOUT:
+        show_doubt(found, icons.title)
 
 
-def show_sensitivity(found: Sensitivity, title: str) -> None:
+def show_doubt(found: Sensitivity, title: str) -> None:
     """Print one row per constant that counts, the most important first, and what to measure first."""
     made = table(
         "constant",

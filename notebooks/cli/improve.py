@@ -1,0 +1,208 @@
+"""``thermicon improve``: better icons, from edits of single pairs to a search of whole families."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
+from ..messages import progress_bar, usage
+from ..report.rank_text import show_ranking
+from .cues import read_set, warn_of_frames
+from .frontier import show_frontier
+from .options import CrowdOptions, FigureOptions, FileNames, RigOptions, out, write_text
+from .ranking import cures
+from .search_result import FoundSet
+from .sweep import write_frame
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+    from thermicon.perception import Goal
+
+USUAL_EVALUATIONS, MOST_CHOSEN = 2000, 64
+Objective = Literal["worst", "correct", "bits", "bits-per-s"]
+
+
+def improve_command(
+    files: FileNames,
+    crowd: CrowdOptions,
+    rig: RigOptions,
+    choose: Annotated[
+        int | None, typer.Option(metavar="N", min=2, max=MOST_CHOSEN, help="Choose the best N icons.")
+    ] = None,
+    up_to: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=2, max=MOST_CHOSEN, help="Choose the best 2, 3, … N icons, as a table."),
+    ] = None,
+    goal: Annotated[
+        str | None,
+        typer.Option(
+            metavar="TEXT",
+            help='What is wanted, such as "correct >= 90 % for 95 % of people, time <= 10 s, safety green".',
+        ),
+    ] = None,
+    edits: Annotated[
+        bool, typer.Option("--edits", help="Find the cheapest edit of every pair that is not distinguishable.")
+    ] = False,
+    evaluations: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=10,
+            max=1_000_000,
+            help="Search the families of FILE: number of icons to try; more take longer and may find a better set.  "
+            "[default: 2000]",
+        ),
+    ] = None,
+    objective: Annotated[
+        Objective | None,
+        typer.Option(help="What a choice or a search improves.  [default: that of the goal, or worst (pair)]"),
+    ] = None,
+    must: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ICON", help="An icon that must be chosen; may be given several times."),
+    ] = None,
+    output: Annotated[
+        list[Path] | None,
+        out(
+            "OUT",
+            "Write what was found: a searched set to .cue, the table of --up-to to .csv or .parquet and its figure to "
+            ".pdf, .svg or .png, a choice with its ranking to .json; - prints it.",
+            "-o",
+            "--output",
+        ),
+    ] = None,
+) -> None:
+    """Improve a set of icons: edit pairs, choose the best icons, or search the families of a set.
+
+    Families are searched over their continuous parameters, unless --choose, --up-to or --edits without --evaluations
+    asks for icons as they are; all other icons stay. Totals, numbers and single icons that a goal asks for are kept,
+    and where a search misses it, changes of the rig are tried. What is found is the best for the model: test it with
+    people.
+    """
+    from thermicon.icons import Family, IconSet
+    from thermicon.perception import Goal
+
+    wanted = None if goal is None else Goal.parse(goal)
+    icons = read_set(files)
+    has_families = isinstance(icons, IconSet) and any(isinstance(entry, Family) for entry in icons.entries)
+    as_they_are = choose is not None or up_to is not None or edits
+    searched = evaluations is not None or (has_families and not as_they_are)
+    if up_to is not None and (choose is not None or edits or searched):
+        raise usage("is a question of its own: leave out --choose, --edits and --evaluations", "--up-to")
+    if edits and searched:
+        raise usage("edits icons as they are, which a search does not leave: leave out --evaluations", "--edits")
+    if must and choose is None:
+        raise usage("needs --choose K, which chooses the best K icons", "--must")
+    if objective is not None and not (choose or up_to or searched):
+        raise usage("needs --choose K, --up-to K or a search of families", "--objective")
+    kinds = (".cue",) if searched else (*TRACE_SUFFIXES, *FIGURE_SUFFIXES) if up_to is not None else (".json",)
+    outputs = output or []
+    for path in outputs:
+        check_output(path, kinds, "what this finds")
+    check_separate(files, outputs)
+    if searched and len(files) > 1:
+        raise usage("one file is searched; join its families into one set", "FILE")
+    where = rig.load()
+    model = crowd.load(where)
+    warn_of_frames(files, icons, where)
+    how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
+    what = objective or ("correct" if up_to is not None else _objective(wanted))
+    if up_to is not None:
+        tabulate(icons, where, up_to, what, how, outputs)
+    elif searched:
+        tried = USUAL_EVALUATIONS if evaluations is None else evaluations
+        search_set(icons, where, choose, what, must, tried, how, outputs)
+    else:
+        choose_icons(icons, where, choose, what, must, edits, how, outputs)
+
+
+def _objective(goal: Goal | None) -> Objective:
+    """What a goal wants most of: the worst pair, unless it is about the proportion correct or bits."""
+    wanted = [name for name in ("correct", "bits") if goal is not None and goal.of(name) is not None]
+    return "worst" if not wanted else "correct" if wanted[0] == "correct" else "bits"
+
+
+def choose_icons(
+    icons: IconSet,
+    rig: Rig,
+    count: int | None,
+    objective: Objective,
+    must: Sequence[str] | None,
+    edits: bool,
+    how: Mapping[str, Any],
+    outputs: Sequence[Path],
+) -> None:
+    """Choose the best few icons as they are, or edit them; judge them by a goal."""
+    from thermicon.perception import rank
+    from thermicon.perception.ranking.rank_file import ranking_file
+    from thermicon.perception.selection.request import Selection
+
+    goal: Goal | None = how["goal"]
+    limits = (None, None) if goal is None else (goal.of("time"), goal.of("energy"))
+    with progress_bar("choosing" if count else "ranking") as progress:
+        ranking = rank(
+            icons,
+            rig,
+            choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
+            edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
+            warnings=tuple(rig.warnings),
+            progress=progress,
+            **how,
+        )
+    for path in outputs:
+        write_text(ranking.to_json() + "\n", path)
+    if STDOUT not in outputs:
+        names = [row["icon"] for row in ranking.rows()]
+        show_ranking(ranking_file(ranking, mapped=False), names, icons.title, cures(ranking, icons, rig))
+
+
+def tabulate(
+    icons: IconSet, rig: Rig, most: int, objective: Objective, how: Mapping[str, Any], outputs: Sequence[Path]
+) -> None:
+    """Choose the best 2, 3, … icons, and show scores and total time of each choice."""
+    from thermicon.perception import frontier
+
+    with progress_bar("choosing") as progress:
+        found = frontier(icons, rig, most=most, objective=objective, progress=progress, **how)
+    for path in outputs:
+        if path.suffix.lower() in FIGURE_SUFFIXES:
+            FigureOptions(path).write(found.plot().figure)
+        else:
+            write_frame(found.to_frame(), path)
+    if STDOUT not in outputs:
+        show_frontier(found, icons.title)
+
+
+def search_set(
+    icons: IconSet,
+    rig: Rig,
+    count: int | None,
+    objective: Objective,
+    must: Sequence[str] | None,
+    evaluations: int,
+    how: Mapping[str, Any],
+    outputs: Sequence[Path],
+) -> None:
+    """Search the families of a set for a better one, and show it beside the set that the search began with."""
+    from thermicon.perception import search
+
+    with progress_bar("searching") as progress:
+        found = search(
+            icons,
+            rig,
+            count=count,
+            objective=objective,
+            evaluations=evaluations,
+            must=must,
+            progress=progress,
+            **how,
+        )
+    for path in outputs:
+        write_text(str(found.found), path)
+    if STDOUT not in outputs:
+        FoundSet.ranked(found, icons, rig, must, how).show(icons.title, rig.name, evaluations)

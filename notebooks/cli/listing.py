@@ -1,0 +1,180 @@
+"""``thermicon list``: what is shipped, how it is cited, and copies of it to start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from thermicon.icons.number_text import number
+
+from ..files.outputs import OutputError, check_output
+from ..messages import usage
+from ..report.tables import show, table
+from .cues import read_set, warn_of_site
+from .options import RigOptions, write_text
+
+
+def list_command(
+    rig: RigOptions,
+    what: Annotated[
+        Literal["icons", "rigs", "devices", "formats"] | None,
+        typer.Argument(metavar="icons|rigs|devices|formats", show_default=False, help="What to list.  [default: all]"),
+    ] = None,
+    cite: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Instead: a paragraph for the methods section, of --rig too if it is given."),
+    ] = None,
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="With --cite: BibTeX entries of the sources.")] = False,
+    copy: Annotated[
+        tuple[str, Path] | None,
+        typer.Option(
+            metavar="NAME FILE", help="Instead: write a shipped set (.cue), rig or device (.toml) to a new file."
+        ),
+    ] = None,
+) -> None:
+    """List shipped icon sets, rigs, devices and file formats of drives; cite them, or copy one to start from."""
+    if bibtex and cite is None:
+        raise usage("belongs to --cite FILE", "--bibtex")
+    if rig.given and (cite is None or bibtex):
+        raise usage("applies to the paragraph of --cite; BibTeX entries do not describe a rig", "--rig")
+    if [what, cite, copy].count(None) < 2:
+        raise usage("list, --cite and --copy are different things: ask for one of them", "--cite" if cite else "--copy")
+    if cite is not None:
+        cite_file(cite, bibtex, rig)
+    elif copy is not None:
+        copy_shipped(*copy)
+    else:
+        shown = {"icons": show_icons, "rigs": show_rigs, "devices": show_devices, "formats": show_formats}
+        for place, each in enumerate([what] if what else shown):
+            show(*([""] if place else []))
+            shown[each]()
+
+
+def cite_file(file: str, as_bibtex: bool, rig: RigOptions) -> None:
+    """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
+    from thermicon.circuit.rig.rig_summary import rig_for_methods
+    from thermicon.icons.files.bibtex import bibtex
+    from thermicon.icons.files.methods import methods
+
+    icons = read_set([file])
+    if as_bibtex:
+        typer.echo(bibtex(icons), nl=False)
+        return
+    where = rig.load(module_matters=False) if rig.given else None
+    if where is not None:
+        warn_of_site(file, icons, where)
+    typer.echo(methods(icons, None if where is None else rig_for_methods(where)))
+
+
+def copy_shipped(name: str, output: Path) -> None:
+    """Write the file of a shipped set, rig or device under a new name; what is there already is kept."""
+    from importlib import resources
+
+    from thermicon.circuit.delivery.device import device_names
+    from thermicon.circuit.rig.rig import rig_names
+    from thermicon.icons.files.shipped import library_names
+    from thermicon.icons.near_words import did_you_mean
+
+    kinds = (
+        (library_names(), "icons", "library", ".cue"),
+        (rig_names(), "circuit", "rigs", ".toml"),
+        (device_names(), "circuit", "devices", ".toml"),
+    )
+    for names, package, folder, ending in kinds:
+        if name in names:
+            check_output(output, (ending,), "a copy of it")
+            if output.exists():
+                raise OutputError(f"{output} already exists and was kept; give another name")
+            text = resources.files(f"thermicon.{package}").joinpath(folder, name + ending).read_text(encoding="utf-8")
+            write_text(text, output)
+            return
+    near = [*library_names(), *rig_names(), *device_names()]
+    raise usage(f"{name!r} is not shipped; {did_you_mean(name, near)}", "--copy")
+
+
+def show_rigs() -> None:
+    """Print the shipped rigs: site, resting temperature, blood temperature and resting heat flow."""
+    from thermicon.circuit import Rig
+    from thermicon.circuit.rig.rig import rig_names
+
+    numbers = ("rest °C", "blood °C", "flux W/m²")
+    made = table("name", "title", "site", *numbers, numbers=numbers)
+    notes = []
+    for name in rig_names():
+        rig = Rig.load(name)
+        flux = number(rig.resting_flux_W_per_m2, 0)
+        made.add_row(name, rig.title, rig.site, number(rig.skin.rest_C), number(rig.blood_C, 2), flux)
+        notes += [f"{name}: {warning}" for warning in rig.warnings]
+    show(made, "", "flux: heat flow into bare skin at rest; negative because skin loses heat.", *notes)
+
+
+def show_icons() -> None:
+    """Print the shipped icon sets: icons with their meanings, what they control, and their source."""
+    from thermicon.icons import Family
+    from thermicon.icons.files.shipped import library_names, load_library
+
+    for position, name in enumerate(library_names()):
+        icons = load_library(name)
+        made = table("", "", "")
+        made.show_header = False
+        for icon in icons.entries:
+            tags = f"({', '.join(icon.metadata.tags)})" if icon.metadata.tags else ""
+            count = f", {len(icon):,} icons" if isinstance(icon, Family) else ""
+            made.add_row(f"  {icon.name}{count}", icon.metadata.means or "", tags)
+        source = "; ".join(text for text in (icons.metadata.by, icons.metadata.doi) if text)
+        show(
+            *([""] if position else []),
+            f"{name}: {icons.title}" if icons.title else name,
+            f"  controls {PRESCRIBES[icons.context.control]}; source: {source or 'not stated'}",
+            made,
+        )
+
+
+def show_devices() -> None:
+    """Print the shipped devices with input, range, resolution and rate, and which were tested on hardware."""
+    from thermicon.circuit import Device
+    from thermicon.circuit.delivery.device import device_names
+
+    made = table("device", "driven by", "range", "resolution", "rate")
+    devices = [Device.load(name) for name in device_names()]
+    for device in devices:
+        low, high = device.interval("set-point range" if device.unit == "°C" else "output range")
+        unit = {"V": "V", "°C": "°C"}.get(device.unit, "A")
+        bits, step = device.record("resolution"), device.record("set-point step")
+        steps = f"{bits.central:g} bits" if bits else f"{step.central:g} K" if step else "–"
+        fastest = next(
+            (_rate(device.most(name)) for name in ("update rate", "carrier frequency") if device.record(name)),
+            f"{device.most('tick') * 1e3:g} ms ticks",
+        )
+        made.add_row(device.name, device.driven_by, f"{number(low)} to {number(high)} {unit}", steps, fastest)
+    played = [device.name for device in devices if device.played]
+    tested = f"Tested on hardware: {', '.join(played)}." if played else "None of them has been tested on hardware yet."
+    show(
+        made,
+        "",
+        *(f"{device.name}: {device.title}" for device in devices),
+        "",
+        tested,
+        "Describe your own device in a .toml file like the shipped ones (--copy), with a source for each number.",
+    )
+
+
+def show_formats() -> None:
+    """Print the file formats of drives, and the device that each is for."""
+    from thermicon.circuit.delivery.formats import format_names, load_format
+
+    forms = table("format", "content", "default device")
+    for name in format_names():
+        form = load_format(name)
+        forms.add_row(name, form.title, form.device)
+    show(forms)
+
+
+def _rate(value_Hz: float) -> str:
+    size, unit = next((size, unit) for size, unit in ((1e6, "MHz"), (1e3, "kHz"), (1.0, "Hz")) if value_Hz >= size)
+    return f"{number(value_Hz / size)} {unit}"
+
+
+PRESCRIBES = {"skin": "the skin surface temperature", "display": "the display temperature", "current": "the current"}

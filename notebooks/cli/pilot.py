@@ -1,0 +1,234 @@
+"""``thermicon pilot``: the experiment that a set needs, and what its participants' answers change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..files.outputs import STDOUT, OutputError, check_output, check_separate, complete_or_absent
+from ..messages import note, progress_bar, usage
+from .cues import read_set, warn_of_frames
+from .options import FigureOptions, FileNames, Json, ObserverOptions, RigOptions, out, write_text
+from .ranking import command_text
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+    from thermicon.perception.pilot.measurements import Measurements
+    from thermicon.perception.pilot.observed import Observed
+    from thermicon.perception.pilot.trials import Trials
+
+LEAST_DRAWS, MOST_DRAWS, USUAL_DRAWS, USUAL_PLAN_DRAWS = 20, 20_000, 1000, 300
+"""The least as in `thermicon.perception.pilot.observed`, repeated here to avoid its imports."""
+MOST_LENGTH, MOST_SIZES, MOST_PARTICIPANTS, MOST_TRIALS = 1000, 12, 500, 5000
+PARTICIPANTS, TRIALS, LENGTH = "4,8,12,16,24,32,48", "12,24,48,96", 20
+KEEP_IT = "With --keep lab.toml, rank, improve and the workbench can predict for this laboratory."
+NEEDS = "laboratories are drawn from draws of a posterior"
+
+
+def pilot_command(
+    files: FileNames,
+    crowd: ObserverOptions,
+    rig: RigOptions,
+    figure: FigureOptions,
+    answers: Annotated[
+        Path | None,
+        out(
+            "TRIALS.csv",
+            "Sharpen the prediction by answers: columns participant, trial, presented, responded and, if recorded, "
+            "time_s. Or by measurements: participant, kind (threshold, reaction_time, rating), method, channel, "
+            "size_K, value, unit, standard_error, trials.",
+            "--answers",
+            "--measurements",
+        ),
+    ] = None,
+    keep: Annotated[
+        Path | None,
+        out(
+            "LAB.toml",
+            "With answers: write the conditioned observer, and its draws, half as many as --draws, as LAB.csv.",
+            "--keep",
+        ),
+    ] = None,
+    participants: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N,N,…", help=f"Plan: numbers of participants to try, 2 to 500.  [default: {PARTICIPANTS}]"
+        ),
+    ] = None,
+    trials: Annotated[
+        str | None,
+        typer.Option(
+            metavar="N,N,…", help=f"Plan: trials of a participant with each set, to try.  [default: {TRIALS}]"
+        ),
+    ] = None,
+    wanted: Annotated[
+        float | None,
+        typer.Option(
+            metavar="PERCENT",
+            help="Plan: wanted width of the 95 % interval in points; with two sets, wanted share of experiments that "
+            "distinguish them.  [default: 10; 80]",
+        ),
+    ] = None,
+    presentations: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=1,
+            max=MOST_LENGTH,
+            help="Plan: number of presentations of a pilot with one participant.  [default: 20]",
+        ),
+    ] = None,
+    draws: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=LEAST_DRAWS,
+            max=MOST_DRAWS,
+            help="Draws of the posterior, each with a laboratory.  [default: 1000; 300 for a plan]",
+        ),
+    ] = None,
+    json: Json = None,
+) -> None:
+    """Plan an identification experiment, or compare its answers with the prediction and sharpen it by them.
+
+    Without answers, whole experiments are simulated in laboratories that the evidence allows: how many participants and
+    trials give the wanted interval of FILE's per cent correct, or distinguish two sets, and which icons to pilot. With
+    answers, FILE is the set that was presented; further ones are predicted for the laboratory too. A laboratory is one
+    draw of the posterior with people of its own: those that make the answers likely count more.
+    """
+    planned = {"--participants": participants, "--trials": trials, "--wanted": wanted, "--presentations": presentations}
+    observed = {"--keep": keep, "--figure": figure.figure}
+    for option, value in (planned if answers is not None else observed).items():
+        if value is not None:
+            raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
+    if json is not None:
+        check_output(json, (), "JSON")
+    if answers is not None:
+        condition(answers, files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
+        return
+    people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
+    times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)
+    if len(files) > 2:
+        raise usage("a plan is for one set, or for two that are to be distinguished", "FILE")
+    if wanted is not None and not 0.0 < wanted < 100.0:
+        raise usage(f"{wanted:g} is outside 0 to 100", "--wanted")
+    check_separate(files, [json])
+    from thermicon.perception.pilot.plan import plan
+
+    from ..report.plan_text import show_plan
+
+    sets, where = [read_set([name]) for name in files], rig.load()
+    model = crowd.load(where, NEEDS)
+    for name, each in zip(files, sets, strict=True):
+        warn_of_frames([name], each, where)
+    with progress_bar("simulating experiments") as progress:
+        found = plan(
+            sets[0],
+            where,
+            *sets[1:],
+            participants=people,
+            trials=times,
+            wanted=None if wanted is None else wanted / 100.0,
+            length=presentations or LENGTH,
+            draws=draws or USUAL_PLAN_DRAWS,
+            **crowd.asked,
+            observer=model,
+            progress=progress,
+        )
+    if json is not None:
+        write_text(found.to_json() + "\n", json)
+    if json != STDOUT:
+        show_plan(found, [Path(name).name for name in files])
+
+
+def condition(
+    answers: Path,
+    files: Sequence[str],
+    crowd: ObserverOptions,
+    rig: RigOptions,
+    figure: FigureOptions,
+    keep: Path | None,
+    draws: int,
+    json: Path | None,
+) -> None:
+    """Sharpen the prediction for the sets of a laboratory by its answers or measurements; show and keep it."""
+    drawn = None if keep is None else keep.with_suffix(".csv")
+    if keep is not None and drawn is not None:
+        check_output(keep, (".toml",), "an observer")
+        if keep == STDOUT:
+            raise usage("- is not a file; give a name such as lab.toml", "--keep")
+        check_output(drawn, (".csv",), "a table of draws")
+    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, figure.figure, keep, drawn])
+    if there := [str(path) for path in (keep, drawn) if path is not None and path.exists()]:
+        raise OutputError(f"{' and '.join(there)} already there and kept; give --keep another name, or move them away")
+    from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
+    from thermicon.perception.pilot.observed import observed
+    from thermicon.perception.pilot.trials_file import read_trials
+
+    from ..report.observed_text import show_observed
+
+    (icons, *others), where = [read_set([name]) for name in files], rig.load()
+    model = crowd.load(where, NEEDS)
+    data: Trials | Measurements
+    if is_measurements(answers):
+        data = read_measurements(answers, where)
+    else:
+        data = read_trials(answers, [icon.name for icon in icons])
+        for warning in data.warnings:
+            note(f"warning: {warning}")
+    warn_of_frames(files[:1], icons, where)
+    with progress_bar("simulating laboratories") as progress:
+        found = observed(
+            data, icons, where, others=others, draws=draws, observer=model, progress=progress, **crowd.asked
+        )
+    if json is not None:
+        write_text(found.to_json() + "\n", json)
+    if figure.figure is not None:
+        from ..figures.observed_figure import observed_figure
+
+        figure.write(observed_figure(found, stacked=figure.look.narrow))
+    last = [KEEP_IT]
+    if keep is not None and drawn is not None:
+        _keep(found, keep, drawn)
+        last = _rank_lines(files[0], icons, where, replace(crowd, seed=0, observer=drawn), rig)
+    if json == STDOUT:
+        return
+    show_observed(found, files, last)
+
+
+def _keep(found: Observed[Any, Any], keep: Path, drawn: Path) -> None:
+    """Write the conditioned observer and its draws, both or none."""
+    observer, draws = found.files()
+    with complete_or_absent(drawn) as table, complete_or_absent(keep) as draft:
+        table.write_text(draws, encoding="utf-8")
+        draft.write_text(observer, encoding="utf-8")
+    note(f"wrote {keep} and {drawn}")
+
+
+def _rank_lines(file: str, icons: IconSet, where: Rig, crowd: ObserverOptions, rig: RigOptions) -> list[str]:
+    """The command that ranks the set with the laboratory that was kept, and the per cent correct that it shows."""
+    from thermicon.perception import rank
+
+    from ..report.observed_text import rank_lines
+
+    with progress_bar("ranking") as progress:
+        ranking = rank(icons, where, **crowd.asked, parameters=0, observer=crowd.observer, progress=progress)
+    return rank_lines(command_text([file], rig, crowd, paths=True), ranking.proportion_correct, ranking.people)
+
+
+def _numbers(text: str, option: str, least: int, most: int) -> tuple[int, ...]:
+    """Whole numbers between commas, each once and in rising order."""
+    try:
+        found = sorted({int(part) for part in text.split(",")})
+    except ValueError:
+        raise usage(f"{text!r} is not a list of whole numbers such as 8,16,32", option) from None
+    if wrong := [number for number in found if not least <= number <= most]:
+        raise usage(f"{wrong[0]} is outside {least} to {most}", option)
+    if len(found) > MOST_SIZES:
+        raise usage(f"{len(found)} numbers; at most {MOST_SIZES} are tried at once", option)
+    return tuple(found)

@@ -1,0 +1,124 @@
+"""``python -m thermicon.perception.evidence``: sample the posterior of all constants, or leave each experiment out.
+
+``sample`` writes 1,000 draws of the posterior, from the shipped evidence and priors; chains that have not converged are
+refused without ``--force``. ``leave-out`` infers all constants again without each experiment in turn and predicts it.
+Both keep chains in a folder and go on from there; on one computer the same seed gives the same draws, however many
+workers there are and however often the run was interrupted.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from thermicon.circuit.cores import cores
+from thermicon.circuit.records import RecordError
+
+from ..observer.draws_file import to_text, variant_named
+from . import left_out_file, variant_scores
+from .diagnostics import require_extra
+from .learning import CHAINS
+from .posterior import Posterior
+from .posterior_tables import scores_sentence, variants_sentence
+from .sampling import LEAST_STEPS, Sampled, sample
+from .summaries import summarise
+
+REFUSED = 3
+LEAST_STEPS_ASKED, MOST_STEPS, USUAL_STEPS = 100, 100_000, 20_000
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Run what the words ask for, and return the exit code: 3 where chains have not converged."""
+    asked = parser().parse_args(words)
+    if not LEAST_STEPS_ASKED <= asked.steps <= MOST_STEPS:
+        parser().error(f"--steps {asked.steps} is outside {LEAST_STEPS_ASKED} to {MOST_STEPS:,}")
+    require_extra()
+    if asked.keep is not None:
+        asked.keep.mkdir(exist_ok=True)
+    return leave_out(asked) if asked.what == "leave-out" else sample_posterior(asked)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The words that this program reads."""
+    made = argparse.ArgumentParser(
+        "python -m thermicon.perception.evidence", description=(__doc__ or "").split("\n")[0]
+    )
+    made.add_argument("what", choices=("sample", "leave-out"))
+    made.add_argument("-o", "--output", type=Path, help="the file of draws, or the folder of both tables")
+    made.add_argument("--variant", default="temperature", help="what receptors respond to: temperature or heat-flow")
+    made.add_argument("--seed", type=int, default=0)
+    made.add_argument("--keep", type=Path, metavar="DIR", help="folder of chains; needed by leave-out")
+    made.add_argument("--steps", type=int, default=USUAL_STEPS, help=f"most steps of each chain, 100 to {MOST_STEPS:,}")
+    made.add_argument("--workers", type=int, default=min(cores(), CHAINS))
+    made.add_argument("--force", action="store_true", help="write draws of chains that have not converged, marked")
+    return made
+
+
+def tell(done: int, total: int, words: str = "") -> None:
+    """Say on stderr how far it has come."""
+    sys.stderr.write(f"\r{done} of {total} {words}".ljust(78))
+
+
+def sample_posterior(asked: argparse.Namespace) -> int:
+    """Sample the posterior and write its draws."""
+    sampled = sample(
+        Posterior(variant_named(asked.variant)),
+        asked.seed,
+        keep=asked.keep,
+        workers=asked.workers,
+        least_steps=min(LEAST_STEPS, asked.steps),
+        most_steps=asked.steps,
+        progress=tell,
+    )
+    sys.stderr.write("\n")
+    draws, found = sampled.draws(), sampled.diagnostics
+    for each in summarise(draws):
+        remark = "at the edge of its prior" if each.at_edge else "not moved" if each.unmoved else ""
+        spans = f"{each.median:10.3g} {each.low:10.3g} {each.high:10.3g} {each.unit:<12} SD left {each.narrowed:.2f}"
+        sys.stdout.write(f"{each.name:<44} {spans} {remark}\n")
+    sys.stdout.write(f"{draws.header.status}; worst: {found.worst}, {worst_text(sampled)}\n")
+    if not found.converged and not asked.force:
+        sys.stderr.write("nothing was written: give more --steps and --keep DIR, or --force to write it marked\n")
+        return REFUSED
+    if asked.output is not None:
+        draft = asked.output.with_name(f"{asked.output.name}.part")
+        draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
+        draft.replace(asked.output)
+    return 0
+
+
+def worst_text(sampled: Sampled) -> str:
+    """Diagnostics of the constant that has converged least."""
+    found = sampled.diagnostics
+    place = found.names.index(found.worst)
+    return f"R-hat {found.r_hat[place]:.3f}, effective sample size {found.ess[place]:.0f}"
+
+
+def leave_out(asked: argparse.Namespace) -> int:
+    """Leave every experiment out and score the variants; what is done already is not done again."""
+    if asked.keep is None:
+        sys.stderr.write("leave-out needs --keep DIR for finished parts\n")
+        return 2
+    posterior = Posterior()
+    if not left_out_file.complete(asked.keep):
+        sampled = sample(posterior, asked.seed, keep=asked.keep, workers=asked.workers, progress=tell)
+        if not sampled.diagnostics.converged:
+            sys.stderr.write(f"\nthe chains in {asked.keep} have not converged: sample with more --steps first\n")
+            return REFUSED
+    rows = left_out_file.leave_each_out(asked.keep, posterior, asked.seed, asked.workers, tell)
+    scores = variant_scores.score_variants(asked.keep, asked.workers)
+    if asked.output is not None:
+        asked.output.mkdir(exist_ok=True)
+        left_out_file.write(rows, asked.output / left_out_file.LEFT_OUT)
+        variant_scores.write(scores, asked.output / variant_scores.SCORES)
+    sys.stdout.write(f"\n{scores_sentence(rows)}\n\n{variants_sentence(scores)}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (RecordError, OSError) as problem:
+        sys.exit(str(problem))

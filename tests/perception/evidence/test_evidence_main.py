@@ -1,0 +1,102 @@
+"""``python -m thermicon.perception.evidence``: what it refuses, and what it writes from finished chains and parts."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.perception.evidence import __main__ as main_module
+from thermicon.perception.evidence import sampling
+from thermicon.perception.evidence.__main__ import main
+from thermicon.perception.evidence.diagnostics import Diagnostics
+from thermicon.perception.evidence.left_out_file import load_left_out
+from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.evidence.sampling import Sampled, shipped_vector
+from thermicon.perception.evidence.variant_scores import load_variant_scores
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.observer import DATA
+
+
+@pytest.fixture(autouse=True)
+def first_draw_is_nominal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Which draw is nominal takes a prediction of all evidence for each; `test_sampling.py` examines the choice."""
+    monkeypatch.setattr(sampling, "in_the_middle", lambda *_: 0)
+
+
+def sampled(r_hat: float) -> Sampled:
+    posterior = Posterior()
+    size = len(posterior.priors)
+    chains = shipped_vector(posterior) + 0.3 * np.random.default_rng(0).standard_normal((4, 300, size))
+    found = Diagnostics(posterior.priors.names, np.full(size, r_hat), np.full(size, 900.0))
+    return Sampled(posterior, chains, np.zeros((4, 300)), 5000, 0.4, found, 0)
+
+
+def test_draws_of_converged_chains_are_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(main_module, "sample", lambda *_, **__: sampled(1.003))
+    out = tmp_path / "mine.csv"
+    assert main(["sample", "-o", str(out)]) == 0
+    assert "R-hat up to 1.003, ESS from 900" in capsys.readouterr().out
+    draws = PosteriorDraws.load(out)
+    assert len(draws) == 1000
+    assert draws.header.converged
+
+
+def test_what_did_not_converge_is_refused_and_marked_with_force(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(main_module, "sample", lambda *_, **__: sampled(1.07))
+    out = tmp_path / "mine.csv"
+    assert main(["sample", "-o", str(out)]) == 3
+    said = capsys.readouterr()
+    assert "worst: cold conduction velocity, R-hat 1.070" in said.out
+    assert "nothing was written" in said.err
+    assert not out.exists()
+    assert main(["sample", "-o", str(out), "--force"]) == 0
+    with pytest.warns(UserWarning, match="NOT CONVERGED"):
+        assert not PosteriorDraws.load(out).header.converged
+
+
+@pytest.mark.parametrize("words", [("sample", "--steps", "5"), ("guess",), ()])
+def test_bad_options_are_refused_before_any_work(words: tuple[str, ...]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(words)
+    assert stopped.value.code == 2
+
+
+@pytest.fixture
+def finished(tmp_path: Path) -> Path:
+    """A folder in which a run has left every part."""
+    folder = tmp_path / "parts"
+    folder.mkdir()
+    rows = load_left_out()
+    for experiment in dict.fromkeys(row.experiment for row in rows):
+        own = [asdict(row) for row in rows if row.experiment == experiment]
+        (folder / f"left-out-{experiment}.json").write_text(json.dumps(own), encoding="utf-8")
+    for name, ending in (("temperature", "temperature"), ("heat_flow", "heat-flow")):
+        scores = [getattr(row, name) for row in load_variant_scores()]
+        (folder / f"scores-{ending}.json").write_text(json.dumps(scores), encoding="utf-8")
+    return folder
+
+
+def test_finished_parts_are_summed_up_and_written(
+    finished: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "tables"
+    assert main(["leave-out", "--keep", str(finished), "-o", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "rows lie inside their 50 % interval" in said
+    assert "temperature is ahead of heat flow by" in said
+    for name in ("left-out.csv", "variant-scores.csv"):
+        assert (out / name).read_text(encoding="utf-8") == (DATA / name).read_text(encoding="utf-8")
+    assert main(["leave-out"]) == 2
+
+
+def test_draws_without_an_experiment_say_so() -> None:
+    without = replace(sampled(1.0), posterior=Posterior(left_out=frozenset({"E3"})))
+    assert without.draws().header.left_out == ("E3",)
