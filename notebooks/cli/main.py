@@ -66,7 +66,7 @@ def thermicon(
 def doctor_command(
     json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of lines.")] = False,
 ) -> None:
-    """Check the installation: versions, extras, outside programs, cache, fonts, Jupyter, and a self-test.
+    """Check the installation: versions, extras, ngspice, the cache, the kernel of Jupyter, and a self-test.
 
     Every line is ok, a note (something that can be done without) or a fault, with its cure. With a fault, the exit code
     is 1.

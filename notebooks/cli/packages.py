@@ -23,8 +23,8 @@ EXTRAS = {
     "page": ("voila", "the workbench as a web page (lab --page)"),
     "hardware": ("npTDMS", "drives and logs in TDMS, the format of National Instruments"),
     "parquet": ("pyarrow", "traces in Parquet (simulate -o OUT.parquet)"),
-    "cluster": ("distributed", "ranking on a dask cluster (rank --cluster)"),
-    "calibrate": ("emcee", "sampling the observer's constants again (calibrate)"),
+    "cluster": ("distributed", "ranking on a dask cluster (rank --workers ADDRESS)"),
+    "calibrate": ("emcee", "sampling the constants of the observer again (python -m thermicon.perception.evidence)"),
     "study": ("questplus", "QUEST+ threshold runs in a study ([threshold])"),
 }
 """The package that each extra brings, and what it is for; extras that only developers need are left out."""
