@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .selection.goal import Goal
     from .selection.request import ChoiceError, Selection
     from .selection.choose import Choice, choose
+    from .selection.goal_result import judge_goal
     from .selection.edit import cheapest_edit
     from .selection.edit_result import Edit, NoEdit
     from .selection.search import SearchResult, search
@@ -70,6 +71,7 @@ __all__ = [
     "ChoiceError",
     "choose",
     "Choice",
+    "judge_goal",
     "cheapest_edit",
     "Edit",
     "NoEdit",
@@ -131,6 +133,7 @@ if not TYPE_CHECKING:
             "selection.goal": "Goal",
             "selection.request": "ChoiceError Selection",
             "selection.choose": "Choice choose",
+            "selection.goal_result": "judge_goal",
             "selection.edit": "cheapest_edit",
             "selection.edit_result": "Edit NoEdit",
             "selection.search": "SearchResult search",

@@ -84,10 +84,12 @@ def rank_files(
     look: Look = SCREEN,
 ) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
-    from thermicon.perception import Task, rank
+    from thermicon.perception import Goal, Task, choose, judge_goal, rank
     from thermicon.perception.identification.laboratory import DRAWS
-    from thermicon.perception.ranking.rank_file import ranking_file
-    from thermicon.perception.selection.goal import Goal
+    from thermicon.perception.selection.pair_edits import cheapest_edits
+    from thermicon.perception.selection.request import check_selection
+
+    from ..report.set_report import SetReport
 
     check_norm_option(request.norm)
     if json_out is not None:
@@ -105,6 +107,12 @@ def rank_files(
     wanted = None if request.goal is None else Goal.parse(request.goal)
     model = load_observer(request.observer, rig)
     draws = check_draws(model, request.parameters, "--parameters", DRAWS)
+    asked = request.choosing
+    if asked is not None:
+        check_selection(asked, [icon.name for icon in icons])
+    if wanted is not None:
+        wanted.check_count(None if asked is None else asked.count)
+        wanted.check_draws(draws * (request.by == "model"))
     if request.keep is not None:
         check_folder(request.keep)
     _say_if_first()
@@ -118,21 +126,23 @@ def rank_files(
             tracking=request.tracking,
             norm=request.norm,
             by=request.by,
-            parameters=draws,
-            choosing=request.choosing,
-            goal=wanted,
-            edits=request.edits if request.by == "model" else "none",
+            parameters=draws if asked is None else 0,
             task=Task(request.context, request.gap, request.bias),
             observer=model,
-            warnings=tuple(warnings),
-            workers=request.workers,
-            cluster=request.cluster,
+            workers=request.cluster or request.workers,
             keep=request.keep,
             progress=progress,
         )
+    choice = None
+    if asked is not None:
+        with progress_bar("choosing") as progress:
+            choice = choose(ranking, asked, parameters=draws, progress=progress)
+    reached = None if wanted is None else judge_goal(wanted, ranking, choice)
+    edits = cheapest_edits(ranking, request.edits if request.by == "model" else "none")
+    found = SetReport(ranking, choice, reached, edits, tuple(warnings))
     if json_out is not None and json_out != STDOUT:
         with complete_or_absent(json_out) as draft:
-            draft.write_text(ranking.to_json() + "\n", encoding="utf-8")
+            draft.write_text(found.to_json() + "\n", encoding="utf-8")
         note(f"wrote {json_out}")
     if figures is not None:
         from ..figures.set_figures import write_figures
@@ -142,14 +152,14 @@ def rank_files(
     if report_out is not None:
         from ..report.report import report
 
-        made = report(ranking, icons, rig, command_text(files, rig, request), near)
+        made = report(found, icons, rig, command_text(files, rig, request), near)
         with complete_or_absent(report_out) as draft:
             draft.write_text(made, encoding="utf-8", newline="\n")
         note(f"wrote {report_out}")
     if json_out == STDOUT:
-        typer.echo(ranking.to_json())
+        typer.echo(found.to_json())
     else:
-        show_ranking(ranking_file(ranking, mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
+        show_ranking(found.to_dict(mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
 
 
 def _say_if_first() -> None:

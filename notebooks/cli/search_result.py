@@ -13,12 +13,13 @@ from ..figures.figure_look import SCREEN, Look
 from ..files.outputs import complete_or_absent
 from ..messages import note, progress_bar
 from ..report.choices import NAMES, goal_lines, goal_value, laboratory
+from ..report.set_report import SetReport
 from ..report.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Goal, Ranking, SearchResult
+    from thermicon.perception import Goal, SearchResult
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.reach import Advice, Trial
 
@@ -53,8 +54,8 @@ class FoundSet:
     """A found set with both rankings, and changes that were tried where a goal is not met."""
 
     found: SearchResult
-    before: Ranking
-    after: Ranking
+    before: SetReport
+    after: SetReport
     advice: Advice | None
 
     @classmethod
@@ -63,13 +64,13 @@ class FoundSet:
     ) -> FoundSet:
         """Rank both sets and judge them by the goal; try what would help where the found one misses it."""
         from thermicon.icons import IconSet
-        from thermicon.perception import rank
+        from thermicon.perception import judge_goal, rank
         from thermicon.perception.selection.reach import what_would_help
 
         start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
         draws = 0 if model.posterior is None else how.parameters
         with progress_bar("ranking") as bar:
-            before, after = (
+            rankings = [
                 rank(
                     each,
                     rig,
@@ -78,12 +79,12 @@ class FoundSet:
                     tracking=how.tracking,
                     norm=how.norm,
                     parameters=draws,
-                    goal=goal,
                     observer=model,
                     progress=bar,
                 )
                 for each in (start, found.found)
-            )
+            ]
+        before, after = (SetReport(each, goal=None if goal is None else judge_goal(goal, each)) for each in rankings)
         advice: Advice | None = None
         if after.goal is not None and not after.goal.met:
             with progress_bar("trying changes") as bar:
@@ -113,11 +114,11 @@ class FoundSet:
         if figures is not None:
             from ..figures.set_figures import write_figures
 
-            write_figures(self.after, icons, rig, figures, look)
+            write_figures(self.after.ranking, icons, rig, figures, look)
         if report_out is not None:
             from ..report.report import report
 
-            made = report(self.after, icons, rig, command, cures(self.after, icons, rig))
+            made = report(self.after, icons, rig, command, cures(self.after.ranking, icons, rig))
             with complete_or_absent(report_out) as draft:
                 draft.write_text(made, encoding="utf-8", newline="\n")
             note(f"wrote {report_out}")
@@ -131,7 +132,7 @@ class FoundSet:
         made = table("", "before", "after", numbers=("before", "after"))
         for what, before, after in self._rows():
             made.add_row(what, before, after)
-        crowd = count_of(self.after.people, "virtual person", "virtual people")
+        crowd = count_of(self.after.ranking.people, "virtual person", "virtual people")
         icons = [
             f"  - {icon.name}: {icon.metadata.tags[-1]}"
             for icon in found.found
@@ -174,18 +175,18 @@ class FoundSet:
         before, after = self.found.before, self.found.after
         yield "worst pair, d′", number(before.d_prime), number(after.d_prime)
         yield "proportion correct", percent(before.proportion_correct), percent(after.proportion_correct)
-        pair = (self.before, self.after)
-        if self.after.people > 1:
+        pair = (self.before.ranking, self.after.ranking)
+        if pair[1].people > 1:
             one, other = (percent_span(*each.proportion_correct_interval) for each in pair)
             yield "  middle 95 % of people", one, other
         intervals = [each.new_laboratory for each in pair]
         if all(intervals):
             one, other = (percent_span(*each.proportion_correct) for each in intervals if each is not None)
-            yield f"  {laboratory(self.after.observer, self.after.own_laboratory)} (95 %)", one, other
+            yield f"  {laboratory(pair[1].observer, pair[1].own_laboratory)} (95 %)", one, other
         yield from self._shares()
         yield "information, bits", f"{before.information_bits:.2f}", f"{after.information_bits:.2f}"
         yield "information rate, bits/s", f"{before.bits_per_s:.2f}", f"{after.bits_per_s:.2f}"
-        yield "total duration, s", number(self.before.total_s), number(self.after.total_s)
+        yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)
 
     def _shares(self) -> Iterator[tuple[str, str, str]]:
         """What the shares of people reach that the goal asks for, as the goal judges it."""
@@ -206,7 +207,7 @@ class FoundSet:
                 f"Listed values only: {', '.join(self.found.listed)}. A range such as 0.5..2 step 0.5 s is searched "
                 "between its ends, whatever its step."
             )
-        for icon in self.after.icons:
+        for icon in self.after.ranking.icons:
             if not icon.playable:
                 yield f"{icon.name} cannot be played: {icon.reason or 'the rig does not reach it'}"
             elif icon.cautions:

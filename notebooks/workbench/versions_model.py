@@ -24,7 +24,9 @@ if TYPE_CHECKING:
     from thermicon.perception import Observer, Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.goal import Goal
+    from thermicon.perception.selection.goal_result import GoalResult
 
+    from ..report.set_report import SetReport
     from .set_model import RankedSet
 
 PEOPLE, DRAWS = 200, 128
@@ -93,11 +95,15 @@ class Version:
 
 @dataclass(frozen=True, slots=True)
 class RankedVersions:
-    """Rankings of A and B with the same virtual people; None for a version that cannot be ranked, with its reason."""
+    """Rankings of A and B with the same virtual people; None for a version that cannot be ranked, with its reason.
+
+    `goals` are how both meet a goal, None without one.
+    """
 
     a: Ranking | None
     b: Ranking | None
     reasons: tuple[str, str]
+    goals: tuple[GoalResult | None, GoalResult | None]
 
     @property
     def gain(self) -> tuple[float, tuple[float, float]] | None:
@@ -118,7 +124,7 @@ def rank_versions(
     from .set_model import rank_set
 
     draws = DRAWS if goal is not None and goal.single_people else 0
-    rankings: list[Ranking | None] = []
+    reports: list[SetReport | None] = []
     reasons = []
     keys = [(each.text, each.rig, goal) for each in (a, b)]
     for each, key in zip((a, b), keys, strict=True):
@@ -128,14 +134,15 @@ def rank_versions(
                     each.text, each.rig, PEOPLE, draws, progress=progress, goal=goal, observer=each.model
                 )
         except (InputError, ValueError) as wrong:
-            rankings.append(None)
+            reports.append(None)
             reasons.append(str(wrong))
         else:
-            rankings.append(known[key].ranking)
+            reports.append(known[key].report)
             reasons.append("")
     for key in [key for key in known if key not in keys]:
         del known[key]
-    return RankedVersions(rankings[0], rankings[1], (reasons[0], reasons[1]))
+    first, second = ((None, None) if each is None else (each.ranking, each.goal) for each in reports)
+    return RankedVersions(first[0], second[0], (reasons[0], reasons[1]), (first[1], second[1]))
 
 
 def both_frame(a: Version, b: Version) -> CanvasFrame:

@@ -35,8 +35,8 @@ def results_html(both: RankedVersions) -> str:
 
 def _goal_rows(both: RankedVersions) -> list[Row]:
     """Whether each version meets the goal, then one row per part of it; none without a goal."""
-    judged = [None if ranking is None else ranking.goal for ranking in (both.a, both.b)]
-    known = next((goal for goal in judged if goal is not None), None)
+    judged = both.goals
+    known = judged[0] or judged[1]
     if known is None:
         return []
 
