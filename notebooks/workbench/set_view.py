@@ -247,9 +247,9 @@ class SetView(LiveView[SetRequest]):
             self._safely(lambda: self.pick(*pair))
 
     def _look_for_edit(self, job: Job, made: RankedSet, a: str, b: str) -> None:
-        from thermicon.perception.selection.pair_edits import edit_of
+        from thermicon.perception import cheapest_edit
 
-        found = edit_of(made.ranking, a, b)
+        found = cheapest_edit(made.ranking, a, b)
         job.on_page(lambda: self._offer_edit(found))
 
     def _no_edit(self, said: str) -> None:

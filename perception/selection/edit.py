@@ -66,7 +66,7 @@ class _CandidateEdit:
     way: tuple[int, int]
 
 
-def cheapest_edit(
+def find_edit(
     icons: Sequence[Icon],
     rig: Rig,
     a: str,
@@ -81,45 +81,10 @@ def cheapest_edit(
     task: Task = USUAL,
     observer: Observer | None = None,
 ) -> Edit | NoEdit:
-    """Find the cheapest edit of one of two icons that separates them by a median d′.
+    """Find the cheapest edit of one of two icons of a set that separates them by a median d′ of `wanted`.
 
-    Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
-    by more than 0.1 d′ below twice `wanted`.
-
-    Parameters
-    ----------
-    icons, rig
-        All icons of the set, and the rig that plays them.
-    a, b
-        Names of the two.
-    wanted
-        Median d′ to be reached; by default that of a distinguishable pair.
-    people, seed
-        Number of virtual people and the seed they are drawn from, or the people.
-    tracking, norm
-        What every person gets, and how a difference over time is counted, as in `rank`.
-    before, task
-        Median d′ of all pairs (icons, icons), where it is known, and the task it was found in.
-    observer
-        The nominal observer; None: the shipped one.
-
-    Returns
-    -------
-    Edit or NoEdit
-        The edit, or why there is none.
-
-    Raises
-    ------
-    KeyError, ValueError
-        For a name that is not there; for a `wanted` that is not above 0.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.icons import read_cue
-    >>> two = list(read_cue("six-icons"))[:2]
-    >>> cheapest_edit(two, Rig.load("thenar"), "cooling-step", "warming-step", people=4).reason
-    'the pair is distinguishable already: d′ ..., criterion 2.56'
+    `people` are the virtual people, or their number, drawn from `seed`; `before` is the median d′ of all pairs (icons,
+    icons) in the `task`, where it is known. Raises `KeyError` for a name that is not there, and `ValueError`.
     """
     if not 0 < wanted < math.inf:
         raise ValueError(f"a pair is separated by a d′ above 0, not {wanted:g}")

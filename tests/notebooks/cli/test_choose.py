@@ -158,7 +158,7 @@ def test_bad_searches(cli: Cli, options: tuple[object, ...], code: int, told: st
 def test_search_says_what_a_goal_lacks_and_what_would_help(
     cli: Cli, families: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from thermicon.perception.ranking import reach
+    from thermicon.perception.selection import reach
 
     monkeypatch.setattr(reach, "EVALUATIONS", 10)
     monkeypatch.setattr(reach, "PEOPLE", 4)
