@@ -161,10 +161,9 @@ def frontier(
     ------
     ChoiceError
         Where not even two icons can be chosen, or no two keep the limits.
-    GoalError
-        For a goal for a share of people without draws.
     ValueError
-        For an unknown norm, a single draw, and more draws than there are.
+        For an unknown norm, a single draw, and more draws than there are; a `GoalError` for a goal for a share of
+        people without draws.
 
     Examples
     --------

@@ -106,8 +106,8 @@ def judge_goal(goal: Goal | str, found: Ranking | SetOutcome, choice: Choice | N
 
     Raises
     ------
-    GoalError
-        For a text that is no goal, and for a goal for a share of people where ranking or choice have no draws.
+    ValueError
+        A `GoalError` for a text that is no goal, and for a share of people where ranking or choice have no draws.
 
     Examples
     --------
