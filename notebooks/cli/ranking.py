@@ -84,8 +84,9 @@ def rank_files(
     look: Look = SCREEN,
 ) -> None:
     """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
-    from thermicon.perception import Goal, Task, choose, judge_goal, rank
+    from thermicon.perception import Goal, Task, choose, rank
     from thermicon.perception.identification.laboratory import DRAWS
+    from thermicon.perception.selection.goal_result import judge_goal
     from thermicon.perception.selection.pair_edits import cheapest_edits
     from thermicon.perception.selection.request import check_selection
 

@@ -19,9 +19,10 @@ from ..report.tables import show, table
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Goal, SearchResult
+    from thermicon.perception import Goal
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.reach import Advice, Trial
+    from thermicon.perception.selection.search import SearchResult
 
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.evaluators`, repeated here to avoid its imports."""
@@ -64,7 +65,8 @@ class FoundSet:
     ) -> FoundSet:
         """Rank both sets and judge them by the goal; try what would help where the found one misses it."""
         from thermicon.icons import IconSet
-        from thermicon.perception import judge_goal, rank
+        from thermicon.perception import rank
+        from thermicon.perception.selection.goal_result import judge_goal
         from thermicon.perception.selection.reach import what_would_help
 
         start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)

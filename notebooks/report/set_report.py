@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from thermicon.perception.ranking.rank_file import as_text, plain, ranking_file
+from thermicon.perception.selection.edit_result import Edit
 
 if TYPE_CHECKING:
-    from thermicon.perception import Choice, Edit, NoEdit, Ranking
+    from thermicon.perception import Ranking
+    from thermicon.perception.selection.choose import Choice
+    from thermicon.perception.selection.edit_result import NoEdit
     from thermicon.perception.selection.goal_result import GoalResult
 
 
@@ -19,7 +22,8 @@ class SetReport:
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> from thermicon.perception import judge_goal, rank
+    >>> from thermicon.perception import rank
+    >>> from thermicon.perception.selection.goal_result import judge_goal
     >>> ranking = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)
     >>> SetReport(ranking, goal=judge_goal("correct >= 50 %", ranking)).to_dict(mapped=False)["goal"]["met"]
     True
@@ -33,8 +37,6 @@ class SetReport:
 
     def to_dict(self, mapped: bool = True) -> dict[str, Any]:
         """The content of `rank --json` as plain data; the map takes a while and is None where it is not wanted."""
-        from thermicon.perception import Edit
-
         made = ranking_file(self.ranking, mapped)
         made["warnings"] = list(self.warnings)
         made["goal"] = None if self.goal is None else plain(self.goal.to_dict())

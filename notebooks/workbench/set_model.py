@@ -20,8 +20,10 @@ from ..timeline.terms import terms_of
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
-    from thermicon.perception import PairScore, PerceptualMap, Ranking
+    from thermicon.perception import Ranking
+    from thermicon.perception.identification.map import PerceptualMap
     from thermicon.perception.observer.observer_model import ObserverModel
+    from thermicon.perception.ranking.scores import PairScore
     from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
@@ -92,8 +94,10 @@ def rank_set(
     >>> rank_set(text, Rig.load("thenar"), 2, 0).labels
     ['dip', 'glow']
     """
-    from thermicon.perception import choose, judge_goal, map_of, rank
+    from thermicon.perception import choose, rank
+    from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import clustered_order
+    from thermicon.perception.selection.goal_result import judge_goal
 
     began = time.perf_counter()
     reading = read_text(text)

@@ -178,7 +178,7 @@ def choose(
     >>> len(choose(pool, Selection(2), parameters=0).icons)
     2
     """
-    from thermicon.circuit import simulate_all
+    from thermicon.circuit.solver.simulate import simulate_all
 
     job, felt, model = ranking.job, ranking.felt, ranking.model
     draws = model.draw_count(parameters, DRAWS)

@@ -272,7 +272,8 @@ def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
 
 
 def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: Path, tmp_path: Path) -> None:
-    from thermicon.perception import judge_goal, rank
+    from thermicon.perception import rank
+    from thermicon.perception.selection.goal_result import judge_goal
 
     said = cli(
         "sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK, "-o", tmp_path / "m.csv",

@@ -12,11 +12,12 @@ from thermicon.circuit import Rig, simulate, simulate_all
 from thermicon.icons import IconSet, load_library, read_cue
 from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
-from thermicon.perception import choose, dprime_from_memory, judge_delivered, perceive, rank
+from thermicon.perception import choose, dprime_from_memory, perceive, rank
 from thermicon.perception.arrays import Array
 from thermicon.perception.evidence.pulses import CUES, RIG
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.confusion import embed
+from thermicon.perception.identification.delivered import judge_delivered
 from thermicon.perception.identification.episodes import EpisodesError
 from thermicon.perception.observer.people import draw_people
 from thermicon.perception.selection.appraise import population_dprime

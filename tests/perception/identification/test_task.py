@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
-from thermicon.perception import Observer, Ranking, Selection, Task, choose, rank
+from thermicon.perception import Observer, Ranking, Task, choose, rank
 from thermicon.perception.identification.carry_over import CarryOver, carry_over
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
@@ -15,6 +15,7 @@ from thermicon.perception.observer.observer import NORMS
 from thermicon.perception.observer.people import People
 from thermicon.perception.selection.edit import find_edit
 from thermicon.perception.selection.edit_result import Edit
+from thermicon.perception.selection.request import Selection
 
 RIG = Rig.load("thenar")
 SIX = read_cue("six-icons")

@@ -5,13 +5,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, Trace, duration_s, simulate_all
+from thermicon.circuit import Rig, Trace
+from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import Icon, parse, read_cue
-from thermicon.perception import ChoiceError, Selection, choose, draw_people, rank
+from thermicon.perception import choose, draw_people, rank
 from thermicon.perception.observer.people import People
 from thermicon.perception.ranking.assemble import energy_J
 from thermicon.perception.selection.appraise import appraise, population_dprime
 from thermicon.perception.selection.choose import best_subset
+from thermicon.perception.selection.request import ChoiceError, Selection
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
 GOOD = (

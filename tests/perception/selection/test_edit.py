@@ -3,12 +3,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, duration_s, judge_safety, simulate
+from thermicon.circuit import Rig, simulate
+from thermicon.circuit.safety.limits import judge_safety
+from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, load_library, parse
-from thermicon.perception import Edit, NoEdit, draw_people, rank
+from thermicon.perception import draw_people, rank
 from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 from thermicon.perception.selection.appraise import population_dprime
 from thermicon.perception.selection.edit import find_edit
+from thermicon.perception.selection.edit_result import Edit, NoEdit
 from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
 
 PEOPLE = 40

@@ -3,9 +3,11 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
-from thermicon.perception import ChoiceError, Frontier, choose, frontier, judge_goal, rank
+from thermicon.perception import choose, frontier, rank
+from thermicon.perception.selection.frontier import Frontier
 from thermicon.perception.selection.goal import GoalError
-from thermicon.perception.selection.request import Selection
+from thermicon.perception.selection.goal_result import judge_goal
+from thermicon.perception.selection.request import ChoiceError, Selection
 
 THREE = (
     "cue 1; icon dip { cool by 3 K at 2 K/s }; icon sip { cool by 1 K at 2 K/s }; icon glow { warm by 2 K at 2 K/s }"

@@ -3,13 +3,17 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, judge_safety, simulate
+from thermicon.circuit import Rig, simulate
+from thermicon.circuit.safety.limits import judge_safety
 from thermicon.icons import Icon, IconSet, load_library, parse
-from thermicon.perception import ChoiceError, SearchResult, frontier, judge_goal, rank, search
+from thermicon.perception import frontier, rank, search
 from thermicon.perception.selection.appraise import Appraisal, appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
 from thermicon.perception.selection.finalists import FinalJudge
 from thermicon.perception.selection.goal import GoalError
+from thermicon.perception.selection.goal_result import judge_goal
+from thermicon.perception.selection.request import ChoiceError
+from thermicon.perception.selection.search import SearchResult
 
 SMALL = (
     "cue 1\nset small { site thenar; control display; baseline 32 °C }\n"
