@@ -86,6 +86,9 @@ def rank_files(
     """Rank the joined icons of some files on the rig: the table on stdout, other outputs on request."""
     from thermicon.perception import Goal, Task, choose, rank
     from thermicon.perception.identification.laboratory import DRAWS
+    from thermicon.perception.kernels.parallel import beside
+    from thermicon.perception.progress import step_counter
+    from thermicon.perception.ranking.rank import with_intervals
     from thermicon.perception.selection.goal_result import judge_goal
     from thermicon.perception.selection.pair_edits import cheapest_edits
     from thermicon.perception.selection.request import check_selection
@@ -127,20 +130,24 @@ def rank_files(
             tracking=request.tracking,
             norm=request.norm,
             by=request.by,
-            parameters=draws if asked is None else 0,
+            parameters=0,
             task=Task(request.context, request.gap, request.bias),
             observer=model,
             workers=request.cluster or request.workers,
             keep=request.keep,
             progress=progress,
         )
+    # One edit takes as long as the draws, mostly on one core; more of them wait for the draws.
+    which, without = request.edits if request.by == "model" else "none", ranking
+    edited = beside(lambda: cheapest_edits(without, which), request.workers if which == "worst" else 1)
     choice = None
-    if asked is not None:
-        with progress_bar("choosing") as progress:
+    with progress_bar("intervals" if asked is None else "choosing") as progress:
+        if asked is not None:
             choice = choose(ranking, asked, parameters=draws, progress=progress)
+        elif draws and request.by == "model":
+            ranking = with_intervals(ranking, draws, step_counter(progress, draws))
     reached = None if wanted is None else judge_goal(wanted, ranking, choice)
-    edits = cheapest_edits(ranking, request.edits if request.by == "model" else "none")
-    found = SetReport(ranking, choice, reached, edits, tuple(warnings))
+    found = SetReport(ranking, choice, reached, edited(), tuple(warnings))
     if json_out is not None and json_out != STDOUT:
         with complete_or_absent(json_out) as draft:
             draft.write_text(found.to_json() + "\n", encoding="utf-8")

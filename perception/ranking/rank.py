@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +21,6 @@ from ..observer.observer_model import ObserverModel
 from ..progress import Progress, step_counter
 from ..sensation.percept import perceive
 from .assemble import assemble, objection, playable_pairs, worst_of
-from .assumptions import assumptions_of
 from .batches import Execution, Job, collect_batches
 from .ranking import Ranking
 from .rule_score import disagreements, worst_by_rules
@@ -119,7 +120,8 @@ def rank(
     model = ObserverModel.of(observer)
     draws = model.draw_count(parameters, DRAWS) * (by == "model")
     execution = Execution(workers, keep)
-    nominal, crowd = model.nominal, model.people(people, seed)
+    nominal = model.nominal
+    model.people(people, seed)  # refuses fewer than one person before anything is simulated
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
@@ -133,14 +135,6 @@ def rank(
     felt = collect_batches(job, execution, report)
     made = assemble(members, traces, durations, percepts, felt, chosen, nominal)
     counted = playable_pairs(made)
-    elsewhere = None
-    if draws:
-        whole = Nominal(
-            float(felt.correct.mean()), float(felt.bits.mean()), felt.detected, felt.middle, felt.detection.onset_s
-        )
-        elsewhere = new_laboratory(
-            felt.thin, crowd, whole, chosen, model=model, draws=draws, seed=seed, task=task, step=report
-        )
     ranking = Ranking(
         version=own_version(),
         content_hash=_hash(icons, rig, model),
@@ -155,13 +149,22 @@ def rank(
         rules_disagree=disagreements(made.icons, made.pairs),
         spread=spread_over_people(felt.d_prime, felt.each_correct),
         carry_over=left,
-        new_laboratory=elsewhere,
-        assumptions=assumptions_of(felt.correct, crowd, rig, nominal, None if elsewhere is None else elsewhere.each)
-        if by == "model"
-        else None,
     )
     report()
-    return ranking
+    return with_intervals(ranking, draws, report) if draws else ranking
+
+
+def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None = None) -> Ranking:
+    """A ranking with what a new laboratory will find, from draws of the posterior; `step` is called after each."""
+    job, felt, model = ranking.job, ranking.felt, ranking.model
+    whole = Nominal(
+        ranking.proportion_correct, ranking.information_bits, felt.detected, felt.middle, felt.detection.onset_s
+    )
+    crowd = model.people(job.people, job.seed)
+    found = new_laboratory(
+        felt.thin, crowd, whole, job.norm, model=model, draws=draws, seed=job.seed, task=job.task, step=step
+    )
+    return replace(ranking, new_laboratory=found)
 
 
 def _hash(icons: IconSet, rig: Rig, model: ObserverModel) -> str:

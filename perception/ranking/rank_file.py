@@ -25,7 +25,7 @@ NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_labora
 
 def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
     """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
-    model = ranking.by == "model"
+    model, assumptions = ranking.by == "model", ranking.assumptions
     asked = ranking.new_laboratory if model else None
     elsewhere: list[dict[str, Any]] = (
         asked.rows(ranking.labels) if asked else [dict.fromkeys(NEW_LABORATORY) for _ in ranking.icons]
@@ -58,7 +58,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             },
             "set": _set(ranking, model, asked),
             "persons": {"proportion_correct": list(ranking.persons) if model else None},
-            "assumptions": None if ranking.assumptions is None else ranking.assumptions.to_dict(),
+            "assumptions": None if assumptions is None else assumptions.to_dict(),
             "goal": None,
             "chosen": None,
             "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,

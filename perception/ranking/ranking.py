@@ -17,7 +17,7 @@ from ..arrays import Array
 from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
 from ..identification.map import PersonSpread
-from .assumptions import Assumptions
+from .assumptions import Assumptions, assumptions_of
 from .rule_score import counted
 from .rules import RuleResult
 from .scores import IconScore, PairScore
@@ -68,8 +68,6 @@ class Ranking(Drawn):
         What each icon leaves behind for the next where there is a gap; None: nothing.
     new_laboratory
         What a new laboratory will find: people, constants and laboratory together; None: not requested.
-    assumptions
-        What the result depends on most, where people and draws show it.
 
     Raises
     ------
@@ -95,7 +93,6 @@ class Ranking(Drawn):
     spread: PersonSpread | None = None
     carry_over: CarryOver | None = None
     new_laboratory: NewLaboratory | None = None
-    assumptions: Assumptions | None = None
 
     def __post_init__(self) -> None:
         square = self.confusion.shape == (len(self.icons),) * 2
@@ -183,6 +180,15 @@ class Ranking(Drawn):
     def bits_per_s(self) -> float:
         """Information over the mean length of an icon, bits per s."""
         return self.information_bits / (sum(icon.duration_s for icon in self.icons) / len(self.icons))
+
+    @property
+    def assumptions(self) -> Assumptions | None:
+        """What the result depends on most, where people and draws show it; None by rules."""
+        if self.by == "rules":
+            return None
+        crowd, elsewhere = self.model.people(self.people, self.seed), self.new_laboratory
+        each = None if elsewhere is None else elsewhere.each
+        return assumptions_of(self.felt.correct, crowd, self.job.rig, self.model.nominal, each)
 
     @property
     def total_s(self) -> float:
