@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from .selection.request import ChoiceError, Selection
     from .selection.choose import Choice, choose
     from .selection.goal_result import judge_goal
+    from .selection.edit import cheapest_edit
     from .selection.edit_result import Edit, NoEdit
-    from .selection.pair_edits import cheapest_edit
     from .selection.search import SearchResult, search
     from .selection.robust import SetComparison, compare_sets
     from .ranking.ranking import Ranking
@@ -134,8 +134,8 @@ if not TYPE_CHECKING:
             "selection.request": "ChoiceError Selection",
             "selection.choose": "Choice choose",
             "selection.goal_result": "judge_goal",
+            "selection.edit": "cheapest_edit",
             "selection.edit_result": "Edit NoEdit",
-            "selection.pair_edits": "cheapest_edit",
             "selection.search": "SearchResult search",
             "selection.robust": "SetComparison compare_sets",
             "ranking.ranking": "Ranking",

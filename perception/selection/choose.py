@@ -14,13 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..identification.carry_over import CarryOver, task_among
+from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.run_end import RATE_HZ
-from ..identification.task import USUAL, Task
-from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, Observer
-from ..observer.people import People
 from ..progress import Progress, step_counter
 from .appraise import Appraisal, appraise
 from .max_min_subset import Limits, max_min_subset
@@ -29,9 +25,6 @@ from .request import ChoiceError, Selection, usable_icons
 from .subset_identification import Objective, SubsetIdentification
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
-
     from ..ranking.ranking import Ranking
 
 ONE_BY_ONE = 50
@@ -183,73 +176,47 @@ def choose(
     job, felt, model = ranking.job, ranking.felt, ranking.model
     draws = model.draw_count(parameters, DRAWS)
     step, crowd = step_counter(progress, 1 + draws), model.people(job.people, job.seed)
-    traces = list(simulate_all(job.icons, job.rig, end_s=job.end_s, rate_Hz=RATE_HZ))
-    picked = best_subset(
-        asked,
-        job.icons,
-        job.rig,
-        traces,
-        felt.d_prime,
-        crowd,
-        seed=job.seed,
-        tracking=job.tracking,
-        norm=job.norm,
-        task=job.task,
-        left=ranking.carry_over,
-        observer=model.nominal,
-    )
-    step()
-    if not draws:
-        return picked
-    places, own = [ranking.labels.index(name) for name in picked.icons], picked.at_own_range
-    alone = Nominal(
-        own.proportion_correct,
-        own.information_bits,
-        felt.detected[places],
-        felt.middle[np.ix_(places, places)],
-        felt.detection.onset_s[places],
-    )
-    task = task_among(job.task, ranking.carry_over, places)
-    found = new_laboratory(
-        felt.thin.of(places), crowd, alone, job.norm, model=model, draws=draws, seed=job.seed, task=task, step=step
-    )
-    return replace(picked, new_laboratory=found)
-
-
-def best_subset(
-    asked: Selection,
-    icons: Sequence[Icon],
-    rig: Rig,
-    traces: Sequence[Trace],
-    d_prime: Array,
-    crowd: People,
-    *,
-    seed: int = 0,
-    tracking: str | None = None,
-    norm: Norm = USUAL_NORM,
-    task: Task = USUAL,
-    left: CarryOver | None = None,
-    observer: Observer | None = None,
-) -> Choice:
-    """Choose among icons of which the nominal traces and the d′ of every person (people, icons, icons) are known.
-
-    `left` is what icons leave behind for the next in the task. Raises `ChoiceError`.
-    """
-    pool = usable_icons(asked, icons, traces, rig)
+    traces = simulate_all(job.icons, job.rig, end_s=job.end_s, rate_Hz=RATE_HZ)
+    icons, d_prime = job.icons, felt.d_prime
+    pool = usable_icons(asked, icons, traces, job.rig)
     places = list(pool.places)
     d = d_prime[:, places][:, :, places]
     must = [k for k, place in enumerate(places) if icons[place].name in asked.must]
     limits = limits_of(asked, pool)
     namings = None
     if asked.objective != "worst":
-        favour = replace(task, places=tuple(places)).favour(0, len(d), len(places), seed)
-        namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, seed, favour=favour)
-    picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, seed)
+        favour = replace(job.task, places=tuple(places)).favour(0, len(d), len(places), job.seed)
+        namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, job.seed, favour=favour)
+    picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, job.seed)
     if picked is None:
         raise ChoiceError(nothing_fits(asked, pool))
     chosen = [places[k] for k in picked.chosen]
     names = [icons[k].name for k in chosen]
     share, loss = _for_people(d, picked, must, limits) if asked.objective == "worst" else (None, None)
+    task = task_among(job.task, ranking.carry_over, chosen)
+    own = appraise(
+        [icons[k] for k in chosen],
+        job.rig,
+        people=crowd,
+        seed=job.seed,
+        tracking=job.tracking,
+        norm=job.norm,
+        task=task,
+        observer=model.nominal,
+    )
+    step()
+    found = None
+    if draws:
+        alone = Nominal(
+            own.proportion_correct,
+            own.information_bits,
+            felt.detected[chosen],
+            felt.middle[np.ix_(chosen, chosen)],
+            felt.detection.onset_s[chosen],
+        )
+        found = new_laboratory(
+            felt.thin.of(chosen), crowd, alone, job.norm, model=model, draws=draws, seed=job.seed, task=task, step=step
+        )
     return Choice(
         icons=tuple(names),
         objective=asked.objective,
@@ -265,16 +232,8 @@ def best_subset(
         excluded=pool.excluded,
         best_share=share,
         loss=loss,
-        at_own_range=appraise(
-            [icons[k] for k in chosen],
-            rig,
-            people=crowd,
-            seed=seed,
-            tracking=tracking,
-            norm=norm,
-            task=task_among(task, left, chosen),
-            observer=observer,
-        ),
+        at_own_range=own,
+        new_laboratory=found,
     )
 
 

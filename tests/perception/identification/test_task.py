@@ -7,13 +7,12 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
-from thermicon.perception import Observer, Ranking, Task, choose, rank
+from thermicon.perception import Observer, Ranking, Task, cheapest_edit, choose, rank
 from thermicon.perception.identification.carry_over import CarryOver, carry_over
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
 from thermicon.perception.observer.people import People
-from thermicon.perception.selection.edit import find_edit
 from thermicon.perception.selection.edit_result import Edit
 from thermicon.perception.selection.request import Selection
 
@@ -147,7 +146,9 @@ def test_the_same_whoever_works_on_it() -> None:
     ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=60.0), 2.0)], ids=["context", "gap"]
 )
 def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -> None:
-    found = find_edit(list(SIX), RIG, "warming-step", "linear-warming", people=20, task=task, wanted=wanted)
+    found = cheapest_edit(
+        rank(list(SIX), RIG, people=20, parameters=0, task=task), "warming-step", "linear-warming", wanted=wanted
+    )
     assert isinstance(found, Edit)
     edited = replace(SIX, entries=tuple(found.edited if icon.name == found.icon else icon for icon in SIX))
     after = rank(edited, RIG, people=20, parameters=0, task=task)

@@ -12,7 +12,6 @@ from thermicon.perception import choose, draw_people, rank
 from thermicon.perception.observer.people import People
 from thermicon.perception.ranking.assemble import energy_J
 from thermicon.perception.selection.appraise import appraise, population_dprime
-from thermicon.perception.selection.choose import best_subset
 from thermicon.perception.selection.request import ChoiceError, Selection
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
@@ -45,11 +44,11 @@ class Pool:
         self.icons: list[Icon] = list(parse(HEAD + text))
         self.rig, self.crowd = rig, crowd
         self.traces: tuple[Trace, ...] = simulate_all(self.icons, rig, end_s=30.0)
+        self.ranking = rank(parse(HEAD + text), rig, people=len(crowd), seed=1, parameters=0)
         self.d, self.durations = population_dprime(self.icons, rig, crowd)
 
     def choose(self, *arguments: Any, **more: Any) -> Any:
-        asked = Selection(*arguments, **more)
-        return best_subset(asked, self.icons, self.rig, self.traces, self.d, self.crowd, seed=1)
+        return choose(self.ranking, Selection(*arguments, **more), parameters=0)
 
 
 @pytest.fixture(scope="module")
