@@ -10,11 +10,10 @@ import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import progress_bar, usage
-from ..report.rank_text import show_ranking
 from .cues import read_set, warn_of_frames
 from .frontier import show_frontier
 from .options import CrowdOptions, FigureOptions, FileNames, RigOptions, out, write_text
-from .ranking import cures
+from .ranking import cures, report_of, show
 from .search_result import FoundSet
 from .sweep import write_frame
 
@@ -138,27 +137,23 @@ def choose_icons(
     outputs: Sequence[Path],
 ) -> None:
     """Choose the best few icons as they are, or edit them; judge them by a goal."""
-    from thermicon.perception import rank
-    from thermicon.perception.ranking.rank_file import ranking_file
     from thermicon.perception.selection.request import Selection
 
     goal: Goal | None = how["goal"]
     limits = (None, None) if goal is None else (goal.of("time"), goal.of("energy"))
-    with progress_bar("choosing" if count else "ranking") as progress:
-        ranking = rank(
-            icons,
-            rig,
-            choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
-            edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
-            warnings=tuple(rig.warnings),
-            progress=progress,
-            **how,
-        )
+    found = report_of(
+        icons,
+        rig,
+        how["parameters"],
+        edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
+        choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
+        warnings=tuple(rig.warnings),
+        **{name: value for name, value in how.items() if name != "parameters"},
+    )
     for path in outputs:
-        write_text(ranking.to_json() + "\n", path)
+        write_text(found.to_json() + "\n", path)
     if STDOUT not in outputs:
-        names = [row["icon"] for row in ranking.rows()]
-        show_ranking(ranking_file(ranking, mapped=False), names, icons.title, cures(ranking, icons, rig))
+        show(found, icons, cures(found.ranking, icons, rig))
 
 
 def tabulate(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -20,7 +20,10 @@ from .options import CrowdOptions, FigureOptions, FileNames, Json, Options, RigO
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Ranking, Task
+    from thermicon.perception import Goal, Ranking, Task
+    from thermicon.perception.selection.request import Selection
+
+    from ..report.set_report import SetReport
 
 OTHER_PICTURES = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 TRIALS, MOST_WORKERS = 48, 1024
@@ -143,16 +146,13 @@ def rank_command(
     if json is not None:
         check_output(json, (), "JSON")
     check_separate(files, [json, report, figure.picture])
-    here, cluster = read_workers(workers)
+    here = read_workers(workers)
     if doubt:
         from .doubt import doubt_about
 
         given = {"--task": task.task, "--report": report, "--workers": workers, "--keep": keep}
         doubt_about(files, crowd, rig, figure, json, {**given, "--tracking": crowd.tracking})
         return
-    from thermicon.perception import rank
-    from thermicon.perception.ranking.rank_file import ranking_file
-
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
         what = (
@@ -166,50 +166,98 @@ def rank_command(
     if keep is not None:
         check_folder(keep)
     _say_if_first()
-    with progress_bar("ranking") as progress:
-        ranking = rank(
-            icons,
-            where,
-            **crowd.asked,
-            trials=task.trials,
-            parameters=draws,
-            edits="worst",
-            task=task.load(),
-            observer=model,
-            warnings=warnings,
-            workers=here,
-            cluster=cluster,
-            keep=keep,
-            progress=progress,
-        )
+    found = report_of(
+        icons,
+        where,
+        draws,
+        warnings=warnings,
+        workers=here,
+        **crowd.asked,
+        trials=task.trials,
+        task=task.load(),
+        observer=model,
+        keep=keep,
+    )
     if json is not None and json != STDOUT:
-        write_text(ranking.to_json() + "\n", json)
+        write_text(found.to_json() + "\n", json)
     if figure.figure is not None:
         from ..figures.set_figures import write_figures
 
-        write_figures(ranking, icons, where, figure.figure, figure.look)
-    near = cures(ranking, icons, where) if report is not None or json != STDOUT else {}
+        write_figures(found.ranking, icons, where, figure.figure, figure.look)
+    near = cures(found.ranking, icons, where) if report is not None or json != STDOUT else {}
     if report is not None:
         from ..report.report import report as page
 
-        write_text(page(ranking, icons, where, command_text(files, rig, crowd, task), near), report)
+        write_text(page(found, icons, where, command_text(files, rig, crowd, task), near), report)
     if json == STDOUT:
-        typer.echo(ranking.to_json())
+        typer.echo(found.to_json())
     else:
-        show_ranking(ranking_file(ranking, mapped=False), [row["icon"] for row in ranking.rows()], icons.title, near)
+        show(found, icons, near)
 
 
-def read_workers(text: str | None) -> tuple[int | None, str | None]:
+def report_of(
+    icons: IconSet,
+    rig: Rig,
+    draws: int,
+    *,
+    edits: Literal["worst", "all", "none"] = "worst",
+    choosing: Selection | None = None,
+    goal: Goal | None = None,
+    warnings: tuple[str, ...] = (),
+    workers: int | str | None = None,
+    **how: Any,
+) -> SetReport:
+    """Rank a set; choose of it, judge it by a goal and edit its pairs, as far as that is asked.
+
+    `draws` are those of an interval, `how` other arguments of `rank`.
+    """
+    from thermicon.perception import choose, rank
+    from thermicon.perception.kernels.parallel import beside
+    from thermicon.perception.progress import step_counter
+    from thermicon.perception.ranking.rank import with_intervals
+    from thermicon.perception.selection.goal_result import judge_goal
+    from thermicon.perception.selection.pair_edits import cheapest_edits
+    from thermicon.perception.selection.request import check_selection
+
+    from ..report.set_report import SetReport
+
+    if choosing is not None:
+        check_selection(choosing, [icon.name for icon in icons])
+    if goal is not None:
+        goal.check_count(None if choosing is None else choosing.count)
+        goal.check_draws(draws)
+    with progress_bar("ranking") as progress:
+        ranking = without = rank(icons, rig, parameters=0, workers=workers, progress=progress, **how)
+    # One edit takes as long as the draws, mostly on one core; more of them wait for the draws.
+    cores = workers if isinstance(workers, int) else None
+    edited = beside(lambda: cheapest_edits(without, edits), cores if edits == "worst" else 1)
+    choice = None
+    with progress_bar("intervals" if choosing is None else "choosing") as progress:
+        if choosing is not None:
+            choice = choose(ranking, choosing, parameters=draws, progress=progress)
+        elif draws:
+            ranking = with_intervals(ranking, draws, step_counter(progress, draws))
+    reached = None if goal is None else judge_goal(goal, ranking, choice)
+    return SetReport(ranking, choice, reached, edited(), warnings)
+
+
+def show(found: SetReport, icons: IconSet, near: Mapping[str, str]) -> None:
+    """Print a ranking with what was asked of it; `near` are cures of icons that the rig does not reach."""
+    names = [row["icon"] for row in found.ranking.rows()]
+    show_ranking(found.to_dict(mapped=False), names, icons.title, near)
+
+
+def read_workers(text: str | None) -> int | str | None:
     """Number of cores, or address of a cluster.
 
-    >>> read_workers("2"), read_workers("tcp://10.0.0.1:8786"), read_workers(None)
-    ((2, None), (None, 'tcp://10.0.0.1:8786'), (None, None))
+    >>> read_workers("2"), read_workers("tcp://10.0.0.1:8786")
+    (2, 'tcp://10.0.0.1:8786')
     """
     if text is None or not text.lstrip("-").isdecimal():
-        return None, text
+        return text
     if not 1 <= int(text) <= MOST_WORKERS:
         raise usage(f"{text} is outside 1 to {MOST_WORKERS}", "--workers")
-    return int(text), None
+    return int(text)
 
 
 def _say_if_first() -> None:

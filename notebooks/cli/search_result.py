@@ -10,12 +10,12 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from ..messages import progress_bar
 from ..report.choices import NAMES, goal_lines, goal_value, laboratory
+from ..report.set_report import SetReport
 from ..report.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Ranking
     from thermicon.perception.selection.reach import Advice, Trial
     from thermicon.perception.selection.search import SearchResult
 
@@ -36,8 +36,8 @@ class FoundSet:
     """A found set with both rankings, and changes that were tried where a goal is not met."""
 
     found: SearchResult
-    before: Ranking
-    after: Ranking
+    before: SetReport
+    after: SetReport
     advice: Advice | None
 
     @classmethod
@@ -47,14 +47,16 @@ class FoundSet:
         """Rank both sets as the search did; try what would help where the found one misses the goal."""
         from thermicon.icons import IconSet
         from thermicon.perception import rank
+        from thermicon.perception.selection.goal_result import judge_goal
         from thermicon.perception.selection.reach import what_would_help
 
         start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
         draws = 0 if how["observer"].posterior is None else how["parameters"]
+        goal, asked = how["goal"], {**how, "parameters": draws}
+        del asked["goal"]
         with progress_bar("ranking") as bar:
-            before, after = (
-                rank(each, rig, **{**how, "parameters": draws}, progress=bar) for each in (start, found.found)
-            )
+            rankings = [rank(each, rig, **asked, progress=bar) for each in (start, found.found)]
+        before, after = (SetReport(each, goal=None if goal is None else judge_goal(goal, each)) for each in rankings)
         advice: Advice | None = None
         if after.goal is not None and not after.goal.met:
             with progress_bar("trying changes") as bar:
@@ -80,7 +82,7 @@ class FoundSet:
         made = table("", "before", "after", numbers=("before", "after"))
         for what, before, after in self._rows():
             made.add_row(what, before, after)
-        crowd = count_of(self.after.people, "virtual person", "virtual people")
+        crowd = count_of(self.after.ranking.people, "virtual person", "virtual people")
         icons = [
             f"  - {icon.name}: {icon.metadata.tags[-1]}"
             for icon in found.found
@@ -123,18 +125,18 @@ class FoundSet:
         before, after = self.found.before, self.found.after
         yield "worst pair, d′", number(before.d_prime), number(after.d_prime)
         yield "proportion correct", percent(before.proportion_correct), percent(after.proportion_correct)
-        pair = (self.before, self.after)
-        if self.after.people > 1:
+        pair = (self.before.ranking, self.after.ranking)
+        if pair[1].people > 1:
             one, other = (percent_span(*each.proportion_correct_interval) for each in pair)
             yield "  middle 95 % of people", one, other
         intervals = [each.new_laboratory for each in pair]
         if all(intervals):
             one, other = (percent_span(*each.proportion_correct) for each in intervals if each is not None)
-            yield f"  {laboratory(self.after.observer, self.after.own_laboratory)} (95 %)", one, other
+            yield f"  {laboratory(pair[1].observer, pair[1].own_laboratory)} (95 %)", one, other
         yield from self._shares()
         yield "information, bits", f"{before.information_bits:.2f}", f"{after.information_bits:.2f}"
         yield "information rate, bits/s", f"{before.bits_per_s:.2f}", f"{after.bits_per_s:.2f}"
-        yield "total duration, s", number(self.before.total_s), number(self.after.total_s)
+        yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)
 
     def _shares(self) -> Iterator[tuple[str, str, str]]:
         """What the shares of people reach that the goal asks for, as the goal judges it."""
@@ -155,7 +157,7 @@ class FoundSet:
                 f"Listed values only: {', '.join(self.found.listed)}. A range such as 0.5..2 step 0.5 s is searched "
                 "between its ends, whatever its step."
             )
-        for icon in self.after.icons:
+        for icon in self.after.ranking.icons:
             if not icon.playable:
                 yield f"{icon.name} cannot be played: {icon.reason or 'the rig does not reach it'}"
             elif icon.cautions:

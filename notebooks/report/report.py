@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking
 
+    from .set_report import SetReport
+
 MOST_PAIRS = 60
 LIMITS = (
     "Everything here follows from a model of the skin and of its receptors, calibrated on published thresholds. No "
@@ -40,7 +42,7 @@ SAFETY = (
 
 
 def report(
-    ranking: Ranking,
+    made: SetReport,
     icons: IconSet,
     rig: Rig,
     command: str = "",
@@ -52,9 +54,7 @@ def report(
     ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
     an icon could be reached, and a ``date`` is printed only if it is given.
     """
-    from thermicon.perception.ranking.rank_file import ranking_file
-
-    result = ranking_file(ranking, mapped=False)  # the map is drawn, not printed
+    ranking, result = made.ranking, made.to_dict(mapped=False)  # the map is drawn, not printed
     title = icons.title or "Thermal icons"
     parts: list[Block] = [
         *_head(result, ranking, title),

@@ -20,8 +20,8 @@ FEWEST = 2
 def show_matrix(sets: Mapping[str, IconSet], rigs: Mapping[str, Rig], seed: int = 0) -> None:
     """Print proportion correct, worst pair and bits of every set on every rig, with the same virtual people."""
     from thermicon.circuit import simulate
+    from thermicon.perception.ranking.assemble import objection
     from thermicon.perception.selection.appraise import appraise
-    from thermicon.perception.selection.request import objection
 
     numbers = ("icons", "correct", "d′", "bits")
     made = table("set", "rig", *numbers, "worst pair", numbers=numbers)

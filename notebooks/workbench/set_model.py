@@ -12,6 +12,7 @@ import numpy as np
 from ..cli.cues import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
 from ..figures.map_drawing import distinct
+from ..report.set_report import SetReport
 from ..timeline.frames import CanvasFrame, traces_of
 from ..timeline.terms import terms_of
 
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from thermicon.perception.identification.map import PerceptualMap
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.ranking.scores import PairScore
-    from thermicon.perception.selection.edit_result import Edit, NoEdit
     from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
@@ -35,7 +35,7 @@ STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
 
 @dataclass(frozen=True, slots=True)
 class RankedSet:
-    """A ranking, the text and rig that it is of, its map, the order of its heat maps, and what it took (ms).
+    """A ranking with choice and goal, its text and rig, its map, the order of its heat maps, and what it took (ms).
 
     ``observer`` is what it is predicted with; None: the shipped one.
     """
@@ -43,11 +43,16 @@ class RankedSet:
     text: str
     rig: Rig
     icons: tuple[Icon, ...]
-    ranking: Ranking
+    report: SetReport
     map: PerceptualMap | None
     order: tuple[int, ...]
     ms: float
     observer: ObserverModel | None = None
+
+    @property
+    def ranking(self) -> Ranking:
+        """The ranking."""
+        return self.report.ranking
 
     @property
     def labels(self) -> list[str]:
@@ -90,9 +95,10 @@ def rank_set(
     >>> rank_set(text, Rig.load("thenar"), 2, 0).labels
     ['dip', 'glow']
     """
-    from thermicon.perception import rank
+    from thermicon.perception import choose, rank
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import clustered_order
+    from thermicon.perception.selection.goal_result import judge_goal
 
     began = time.perf_counter()
     reading = read_text(text)
@@ -105,16 +111,16 @@ def rank_set(
         reading.icons,
         rig,
         people=people,
-        parameters=draws,
-        choosing=choosing,
-        goal=judged,
+        parameters=draws if choosing is None else 0,
         progress=progress,
         observer=observer,
     )
+    picked = None if choosing is None else choose(made, choosing, parameters=draws, progress=progress)
+    report = SetReport(made, picked, None if judged is None else judge_goal(judged, made, picked))
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
     ms = 1e3 * (time.perf_counter() - began)
-    return RankedSet(text, rig, tuple(reading.icons), made, laid, order, ms, observer)
+    return RankedSet(text, rig, tuple(reading.icons), report, laid, order, ms, observer)
 
 
 def why_not(reading: Reading) -> str | None:
@@ -189,16 +195,6 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
 
 
 PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("warm", "felt as warm (d′)", 1.0))
-
-
-def edit_of(made: RankedSet, a: str, b: str) -> Edit | NoEdit:
-    """The cheapest edit that parts a pair, confirmed by the people of the ranking."""
-    from thermicon.perception import cheapest_edit
-    from thermicon.perception.observer.observer_model import ObserverModel
-
-    known, model = made.ranking.d_prime, ObserverModel.of(made.observer)
-    people = model.people(made.ranking.people, made.ranking.seed)
-    return cheapest_edit(made.icons, made.rig, a, b, people=people, before=known, observer=model.nominal)
 
 
 def _traces(made: RankedSet, name: str) -> CanvasFrame:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from thermicon.perception.ranking.scores import PairScore
     from thermicon.perception.selection.edit_result import Edit, NoEdit
 
+    from ..report.set_report import SetReport
+
 TITLED = {"detected": "detected", "onset": "onset", "as": "felt", "correct": "proportion correct"}
 """Columns with a word of the glossary as their tooltip."""
 ALONE = "The set has only one icon, so there are no distances to show."
@@ -58,8 +60,9 @@ def notes_html(result: dict[str, Any]) -> str:
     return fragment("notes", [*trouble_lines(icons, {}), *outside_lines(icons)])
 
 
-def scores_html(ranking: Ranking) -> str:
+def scores_html(made: SetReport) -> str:
     """Proportion correct and bits with both intervals, between people and for the laboratory that is predicted."""
+    ranking = made.ranking
     if len(ranking.icons) == 1:
         return fragment("notes", [ALONE])
     draws, where = ranking.new_laboratory, _where(ranking)
@@ -70,7 +73,7 @@ def scores_html(ranking: Ranking) -> str:
     if draws is not None:
         correct.append(f"{where}: {percent_span(*draws.proportion_correct)}")
         bits.append(f"{where}: {draws.information_bits[0]:.2f}–{draws.information_bits[1]:.2f}")
-    if ranking.chosen is not None:
+    if made.choice is not None:
         correct.append(f"{where}: see the chosen icons")
     shown: tuple[tuple[str, list[str]], ...] = (
         (f"{percent(ranking.proportion_correct)} correct", correct),
@@ -115,11 +118,11 @@ def edit_html(edit: Edit | NoEdit | None) -> str:
     return fragment("edit", edit.icon, longer, number(edit.d_prime), edit.old, edit.new)
 
 
-def chosen_html(ranking: Ranking) -> str:
+def chosen_html(made: SetReport) -> str:
     """Which icons were chosen, and how certain that choice is."""
-    if ranking.chosen is None:
+    if made.choice is None:
         return ""
-    first, *rest = choice_lines(ranking.chosen.to_dict(), _where(ranking))
+    first, *rest = choice_lines(made.choice.to_dict(), _where(made.ranking))
     return fragment("chosen", first, [line.removeprefix("  - ") for line in rest])
 
 

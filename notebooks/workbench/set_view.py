@@ -21,7 +21,6 @@ from .set_model import (
     QUICK,
     WELL,
     RankedSet,
-    edit_of,
     heat_frame,
     overlay_frame,
     rank_set,
@@ -174,7 +173,7 @@ class SetView(LiveView[SetRequest]):
 
     def keep_chosen(self) -> None:
         """Take the icons that were not chosen out of the text, as one step that can be undone."""
-        chosen = None if self.made is None else self.made.ranking.chosen
+        chosen = None if self.made is None else self.made.report.choice
         if chosen is None:
             raise ValueError("no icons are chosen yet: say above how many")
         self._show_text(only(self.design.text, tuple(chosen.icons)))
@@ -194,7 +193,7 @@ class SetView(LiveView[SetRequest]):
         def progress(done: int, total: int) -> None:
             job.go_on()
             share = SHARES * done // max(total, 1)
-            if share > reported[0]:
+            if share != reported[0]:  # it starts again where icons are chosen after the ranking
                 reported[0] = share
                 doing = "choosing" if choosing is not None and not quick else "refining"
                 status = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
@@ -212,8 +211,6 @@ class SetView(LiveView[SetRequest]):
         self._finished = request if well else None
         if well:
             self._running = None
-        from thermicon.perception.ranking.rank_file import ranking_file
-
         ranking, said = made.ranking, self.said
         alone = len(made.icons) < 2
         self.body.layout.display = ""
@@ -228,14 +225,14 @@ class SetView(LiveView[SetRequest]):
             frame = heat_frame(made, pair)
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
-        result = ranking_file(ranking, mapped=False)  # the map exists already, aligned with the one before
-        said["scores"].value = scores_html(ranking)
+        result = made.report.to_dict(mapped=False)  # the map exists already, aligned with the one before
+        said["scores"].value = scores_html(made.report)
         said["table"].value = ranking_table(ranking, result)
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)
-        said["choice"].value = chosen_html(ranking)
-        self.goal.show(ranking.goal, well)
-        self.take.layout.display = "none" if ranking.chosen is None else ""
+        said["choice"].value = chosen_html(made.report)
+        self.goal.show(made.report.goal, well)
+        self.take.layout.display = "none" if made.report.choice is None else ""
         people = f"{ranking.people} people"
         self._say(f"{people}" if well else f"preliminary: {people}; refining …")
         self._offer(len(made.icons))
@@ -247,7 +244,9 @@ class SetView(LiveView[SetRequest]):
             self._safely(lambda: self.pick(*pair))
 
     def _look_for_edit(self, job: Job, made: RankedSet, a: str, b: str) -> None:
-        found = edit_of(made, a, b)
+        from thermicon.perception import cheapest_edit
+
+        found = cheapest_edit(made.ranking, a, b)
         job.on_page(lambda: self._offer_edit(found))
 
     def _no_edit(self, said: str) -> None:

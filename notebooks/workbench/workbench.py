@@ -184,7 +184,7 @@ class Workbench:
         if self._ranked is None or self._ranked[0] != asked:
             self._ranked = (
                 asked,
-                rank(self.icons, self.rig, people=people, edits="worst", observer=self._design.model),
+                rank(self.icons, self.rig, people=people, observer=self._design.model),
             )
         return self._ranked[1]
 

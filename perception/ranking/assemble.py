@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..identification.episodes import remembered
 from ..observer.observer import Norm, Observer
 from ..sensation.coverage import outside_data
@@ -37,6 +39,7 @@ class Assembled:
 def assemble(
     icons: Sequence[Icon],
     traces: Sequence[Trace],
+    durations_s: Sequence[float],
     percepts: Sequence[Percept],
     all_: PooledResult,
     norm: Norm,
@@ -67,7 +70,7 @@ def assemble(
         of_icon[pair.a].append(pair)
         of_icon[pair.b].append(pair)
     scored = []
-    for k, (icon, trace, percept) in enumerate(zip(icons, traces, percepts, strict=True)):
+    for k, (icon, trace, lasting, percept) in enumerate(zip(icons, traces, durations_s, percepts, strict=True)):
         safe, reason, cautions = _verdict(trace)
         own = icon_rules(trace, percept)
         share, margin = icon_score(own, [(pair.rules_pass, pair.rules_margin) for pair in of_icon[icon.name]])
@@ -89,6 +92,8 @@ def assemble(
                 rules_score=share,
                 rules_margin=margin,
                 outside_data=outside_data(trace),
+                duration_s=lasting,
+                energy_J=energy_J(trace, lasting),
             )
         )
     return Assembled(tuple(scored), tuple(pairs))
@@ -102,6 +107,35 @@ def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
     objection = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
     amber = tuple(str(finding) for finding in safety.findings if finding.severity != "hard")
     return bool(safety.safe), "; ".join(objection) or None, amber
+
+
+def objection(trace: Trace) -> str | None:
+    """Why an icon cannot be played: it is not safe, or the rig does not reach it; None where it can be played."""
+    from thermicon.circuit.safety.limits import judge_safety
+
+    verdict = judge_safety(trace)
+    if not verdict.safe:
+        return f"is not safe: {verdict.reason}"
+    if not trace.reachable:
+        return f"is not reached: {trace.reason}"
+    return None
+
+
+def energy_J(trace: Trace, until_s: float) -> float:
+    """Energy (J) that the driver puts into the module until a time: ∫ V·I dt, with the current held between rows.
+
+    NaN on a thermode, which states none.
+
+    >>> from thermicon.circuit import Rig, simulate
+    >>> from thermicon.icons import read_cue
+    >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"))
+    >>> energy_J(trace, 4.0) < energy_J(trace, 8.0)
+    True
+    """
+    if not trace.has_current:
+        return math.nan
+    steps = np.diff(np.minimum(trace.time_s, until_s))
+    return float((trace.voltage_V[:-1] * trace.current_A[:-1] * steps).sum())
 
 
 def playable_pairs(made: Assembled) -> tuple[PairScore, ...]:

@@ -18,7 +18,7 @@ import numpy as np
 from thermicon.circuit.program import DRIVES
 from thermicon.circuit.program import code_digest as digest_of
 
-from ..arrays import Array
+from ..arrays import Array, own_arrays
 from ..identification.confusion import SAMPLES, normalised, sampling_error
 from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
@@ -218,12 +218,11 @@ class Execution:
     Raises `ValueError` for fewer than one worker.
     """
 
-    workers: int | None = None
-    cluster: str | None = None
+    workers: int | str | None = None
     keep: Path | None = None
 
     def __post_init__(self) -> None:
-        if self.workers is not None and self.workers < 1:
+        if isinstance(self.workers, int) and self.workers < 1:
             raise ValueError(f"at least one worker is needed, not {self.workers}")
 
 
@@ -248,6 +247,9 @@ class PooledResult:
     standard_error: float
     person_standard_error: float
     thin: ReceptorTemperatures
+
+    def __post_init__(self) -> None:
+        own_arrays(self, "pooled")
 
     @property
     def detected(self) -> Array:
@@ -338,12 +340,12 @@ def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResu
             yield number, BatchResult(**arrays)
     if not missing:
         return
-    if execution.cluster is None:
-        results = locally(job, missing, execution.workers)
-    else:
+    if isinstance(execution.workers, str):
         from .cluster import on_cluster
 
-        results = on_cluster(job, missing, execution.cluster)
+        results = on_cluster(job, missing, execution.workers)
+    else:
+        results = locally(job, missing, execution.workers)
     for number, result in results:
         if store is not None:
             store.put(number, {field.name: getattr(result, field.name) for field in fields(result)})

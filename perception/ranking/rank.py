@@ -3,48 +3,34 @@
 from __future__ import annotations
 
 import hashlib
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from thermicon.circuit.program import own_version
 
-from ..arrays import Array
-from ..identification.carry_over import CarryOver, prepare_task, task_among
+from ..identification.carry_over import prepare_task
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
 from ..identification.run_end import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
-from ..kernels.parallel import beside
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, check_norm
+from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People
 from ..progress import Progress, step_counter
-from ..selection.choose import Choice, choose
-from ..selection.goal import NEEDS_DRAWS, Goal, GoalError
-from ..selection.goal_result import judge_goal
-from ..selection.pair_edits import with_edits
-from ..selection.request import Selection, check_selection, energy_J, objection
 from ..sensation.percept import perceive
-from .assemble import assemble, playable_pairs, worst_of
-from .assumptions import assumptions_of
-from .batches import Execution, Job, PooledResult, collect_batches
-from .outcome import outcome_of_choice, outcome_of_set
+from .assemble import assemble, objection, playable_pairs, worst_of
+from .batches import Execution, Job, collect_batches
 from .ranking import Ranking
 from .rule_score import disagreements, worst_by_rules
 from .rules import rig_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.icons import Icon, IconSet
+    from thermicon.icons import IconSet
 
 RANKED_BY = ("model", "rules")
-EDITS = ("worst", "all", "none")
 
 
 def rank(
@@ -58,14 +44,9 @@ def rank(
     norm: str = USUAL_NORM,
     by: str = "model",
     parameters: int | None = None,
-    choosing: Selection | None = None,
-    goal: Goal | str | None = None,
-    edits: str = "none",
     task: Task = USUAL,
     observer: ObserverModel | Path | str | None = None,
-    warnings: tuple[str, ...] = (),
-    workers: int | None = None,
-    cluster: str | None = None,
+    workers: int | str | None = None,
     keep: Path | None = None,
     progress: Progress | None = None,
 ) -> Ranking:
@@ -94,20 +75,12 @@ def rank(
     parameters
         Draws from the posterior of the constants, for the intervals that a new laboratory will find (None: 128, or as
         many as the observer has; 0: none).
-    choosing
-        Request for the best subset; the intervals are then those of the chosen icons.
-    goal
-        What is wanted of the set, or of what is chosen, as a `Goal` or its text; None: nothing in particular.
-    edits
-        Find the cheapest edit of the `worst` pair, of `all` pairs that are not distinguishable, or of `none`.
     task
         The identification task: memory noise that follows the range of the set, a short gap, favoured names.
     observer
         Another posterior or observer in place of the shipped one: `ObserverModel`, or its file. One without draws
         gives no intervals for a new laboratory.
-    warnings
-        What was said of files and rig before, to be kept with the result.
-    workers, cluster
+    workers
         Threads (None: one per core), or the address of the scheduler of a dask cluster.
     keep
         Folder that keeps finished batches, so that an interrupted run continues from them.
@@ -122,7 +95,11 @@ def rank(
     Raises
     ------
     ValueError
-        For a set without icons, unknown names, a single draw, and a choice that cannot be made.
+        For a set without icons, unknown names, and a single draw.
+
+    See Also
+    --------
+    choose, judge_goal, cheapest_edits : What to ask of a ranking next.
 
     Examples
     --------
@@ -140,163 +117,54 @@ def rank(
     chosen = check_norm(norm)
     if by not in RANKED_BY:
         raise ValueError(f"a ranking is by {' or '.join(RANKED_BY)}, not by {by!r}")
-    if edits not in EDITS:
-        raise ValueError(f"edits are of {', '.join(EDITS)}, not {edits!r}")
-    if choosing is not None:
-        check_selection(choosing, [icon.name for icon in members])
-    wanted = Goal.parse(goal) if isinstance(goal, str) else goal
     model = ObserverModel.of(observer)
     draws = model.draw_count(parameters, DRAWS) * (by == "model")
-    if wanted is not None and choosing is not None:
-        wanted.check_count(choosing.count)
-    if wanted is not None and wanted.single_people and not draws:
-        raise GoalError(NEEDS_DRAWS)
-    execution = Execution(workers, cluster, keep)
-    nominal, crowd = model.nominal, model.people(people, seed)
+    execution = Execution(workers, keep)
+    nominal = model.nominal
+    model.people(people, seed)  # refuses fewer than one person before anything is simulated
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())
-    report = step_counter(progress, 2 + job.batches + draws + (choosing is not None))
+    report = step_counter(progress, 2 + job.batches + draws)
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
 
-    all_ = collect_batches(job, execution, report)
-    made = assemble(members, traces, percepts, all_, chosen, nominal)
+    felt = collect_batches(job, execution, report)
+    made = assemble(members, traces, durations, percepts, felt, chosen, nominal)
     counted = playable_pairs(made)
-    worst = worst_of(counted) if by == "model" else worst_by_rules(counted)
-    # One edit takes as long as the draws, mostly on one core; more of them would keep an interrupted run waiting.
-    edited = beside(
-        lambda: with_edits(edits, made.pairs, worst, members, rig, crowd, tracking, chosen, all_.middle, task, nominal),
-        workers if edits == "worst" else 1,
-    )
-    picked = None
-    if choosing is not None:
-        picked = choose(
-            choosing,
-            members,
-            rig,
-            traces,
-            all_.d_prime,
-            crowd,
-            seed=seed,
-            tracking=tracking,
-            norm=chosen,
-            task=task,
-            left=left,
-            observer=nominal,
-        )
-        report()
-    elsewhere = None
-    if draws and picked is None:
-        whole = Nominal(
-            float(all_.correct.mean()), float(all_.bits.mean()), all_.detected, all_.middle, all_.detection.onset_s
-        )
-        elsewhere = new_laboratory(
-            all_.thin, crowd, whole, chosen, model=model, draws=draws, seed=seed, task=task, step=report
-        )
-    elif draws and picked is not None:
-        picked = _with_interval(
-            picked, [icon.name for icon in members], all_, crowd, chosen, model, draws, seed, (task, left), report
-        )
-    pairs = edited()
-    energies = [energy_J(trace, lasting) for trace, lasting in zip(traces, durations, strict=True)]
-    reached = None
-    if wanted is not None:
-        outcome = outcome_of_set(made, all_, durations, energies, worst, elsewhere)
-        reached = judge_goal(wanted, outcome if picked is None else outcome_of_choice(outcome, picked))
     ranking = Ranking(
         version=own_version(),
-        rig=rig.name,
-        rig_changes=tuple(rig.changes),
-        seed=seed,
-        people=people,
-        tracking=_tracking(members, tracking),
-        by=by,
-        norm=chosen,
         content_hash=_hash(icons, rig, model),
-        observer=model.name,
-        own_laboratory=model.posterior is not None and model.posterior.one_laboratory,
-        rig_text=rig.toml,
-        persons=tuple(all_.correct.tolist()),
-        total_s=math.fsum(durations),
-        total_J=math.fsum(energies),
-        goal=reached,
-        warnings=warnings,
-        assumptions=assumptions_of(all_.correct, crowd, rig, nominal, None if elsewhere is None else elsewhere.each)
-        if by == "model"
-        else None,
+        job=job,
+        model=model,
+        felt=felt,
+        by=by,
         icons=made.icons,
-        pairs=pairs,
-        confusion=all_.pooled,
-        proportion_correct=float(all_.correct.mean()),
-        proportion_correct_interval=_interval(all_.correct),
-        information_bits=float(all_.bits.mean()),
-        information_bits_interval=_interval(all_.bits),
-        bits_per_s=float(all_.bits.mean()) / (sum(durations) / len(durations)),
-        information_bits_plugin=float(all_.plugin.mean()),
-        trials=trials,
-        worst_pair=worst,
-        rules_disagree=disagreements(made.icons, made.pairs),
-        by_norm={norm: tuple(each.tolist()) for norm, each in all_.by_norm.items()},
-        stress=float(np.median(all_.stress)),
-        standard_error=all_.standard_error,
-        person_standard_error=all_.person_standard_error,
+        pairs=made.pairs,
+        worst_pair=worst_of(counted) if by == "model" else worst_by_rules(counted),
         rules=rig_rules(rig),
-        new_laboratory=elsewhere,
-        chosen=picked,
-        spread=spread_over_people(all_.d_prime, all_.each_correct),
-        task=task,
+        rules_disagree=disagreements(made.icons, made.pairs),
+        spread=spread_over_people(felt.d_prime, felt.each_correct),
         carry_over=left,
     )
     report()
-    return ranking
+    return with_intervals(ranking, draws, report) if draws else ranking
 
 
-def _tracking(icons: Sequence[Icon], asked: str | None) -> str:
-    from thermicon.circuit.solver.batch import usual_tracking
-
-    return asked or ", ".join(sorted({usual_tracking(icon) for icon in icons}))
-
-
-def _with_interval(
-    picked: Choice,
-    names: Sequence[str],
-    all_: PooledResult,
-    crowd: People,
-    norm: Norm,
-    model: ObserverModel,
-    draws: int,
-    seed: int,
-    asked: tuple[Task, CarryOver | None],
-    step: Callable[[], None],
-) -> Choice:
-    """A choice with the intervals for a new laboratory: of the chosen, since nobody will name all of the pool."""
-    places = [names.index(name) for name in picked.icons]
-    own = picked.at_own_range
-    middle = all_.middle[np.ix_(places, places)]
-    alone = Nominal(
-        own.proportion_correct, own.information_bits, all_.detected[places], middle, all_.detection.onset_s[places]
+def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None = None) -> Ranking:
+    """A ranking with what a new laboratory will find, from draws of the posterior; `step` is called after each."""
+    job, felt, model = ranking.job, ranking.felt, ranking.model
+    whole = Nominal(
+        ranking.proportion_correct, ranking.information_bits, felt.detected, felt.middle, felt.detection.onset_s
     )
+    crowd = model.people(job.people, job.seed)
     found = new_laboratory(
-        all_.thin.of(places),
-        crowd,
-        alone,
-        norm,
-        model=model,
-        draws=draws,
-        seed=seed,
-        task=task_among(*asked, places),
-        step=step,
+        felt.thin, crowd, whole, job.norm, model=model, draws=draws, seed=job.seed, task=job.task, step=step
     )
-    return replace(picked, new_laboratory=found)
-
-
-def _interval(values: Array) -> tuple[float, float]:
-    low, high = np.percentile(values, [2.5, 97.5])
-    return float(low), float(high)
+    return replace(ranking, new_laboratory=found)
 
 
 def _hash(icons: IconSet, rig: Rig, model: ObserverModel) -> str:

@@ -1,6 +1,7 @@
 """A ranking as the plain data of `rank --json`: what does not exist is None, never NaN.
 
-By rules, everything that only the model gives is None, so that nobody takes a number for one of the rules'.
+By rules, everything that only the model gives is None, so that nobody takes a number for one of the rules'. So is what
+is asked of a ranking only afterwards: warnings, edits, a goal, a choice.
 """
 
 from __future__ import annotations
@@ -12,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..identification.doubt import doubts
-from ..observer.observer import check_norm
-from ..selection.edit_result import Edit, NoEdit
 
 if TYPE_CHECKING:
     from ..identification.laboratory import Interval, NewLaboratory
@@ -26,7 +25,7 @@ NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_labora
 
 def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
     """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
-    model = ranking.by == "model"
+    model, assumptions = ranking.by == "model", ranking.assumptions
     asked = ranking.new_laboratory if model else None
     elsewhere: list[dict[str, Any]] = (
         asked.rows(ranking.labels) if asked else [dict.fromkeys(NEW_LABORATORY) for _ in ranking.icons]
@@ -36,9 +35,9 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "thermicon": ranking.version,
             "rig": ranking.rig,
             "rig_changes": list(ranking.rig_changes),
-            "rig_text": ranking.rig_text,
+            "rig_text": ranking.job.rig.toml,
             "observer": ranking.observer,
-            "warnings": list(ranking.warnings),
+            "warnings": [],
             "seed": ranking.seed,
             "people": ranking.people,
             "tracking": ranking.tracking,
@@ -54,14 +53,14 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "confusion": {
                 "labels": list(ranking.labels),
                 "probability": ranking.confusion.tolist() if model else None,
-                "standard_error": ranking.standard_error if model else None,
-                "person_standard_error": ranking.person_standard_error if model else None,
+                "standard_error": ranking.felt.standard_error if model else None,
+                "person_standard_error": ranking.felt.person_standard_error if model else None,
             },
             "set": _set(ranking, model, asked),
             "persons": {"proportion_correct": list(ranking.persons) if model else None},
-            "assumptions": None if ranking.assumptions is None else ranking.assumptions.to_dict(),
-            "goal": None if ranking.goal is None else ranking.goal.to_dict(),
-            "chosen": None if ranking.chosen is None else ranking.chosen.to_dict(),
+            "assumptions": None if assumptions is None else assumptions.to_dict(),
+            "goal": None,
+            "chosen": None,
             "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,
         }
     )
@@ -122,8 +121,8 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
         "information_bits": ranking.information_bits if many else None,
         "information_bits_interval": list(ranking.information_bits_interval) if many else None,
         "bits_per_s": ranking.bits_per_s if many else None,
-        "information_bits_plugin": ranking.information_bits_plugin if many else None,
-        "trials": ranking.trials,
+        "information_bits_plugin": float(ranking.felt.plugin.mean()) if many else None,
+        "trials": ranking.job.trials,
         "total_s": ranking.total_s,
         "total_J": ranking.total_J,
         "worst_pair": None if ranking.worst_pair is None else list(ranking.worst_pair),
@@ -170,7 +169,7 @@ def _carried(ranking: Ranking, place: int) -> dict[str, Any] | None:
     """After which icon this one feels least like itself; None where every icon comes after a long pause."""
     if ranking.carry_over is None or ranking.by == "rules":
         return None
-    return ranking.carry_over.worst_of(place, check_norm(ranking.norm), ranking.task.counted)
+    return ranking.carry_over.worst_of(place, ranking.norm, ranking.task.counted)
 
 
 def _map(ranking: Ranking) -> dict[str, Any]:
@@ -197,7 +196,6 @@ def _pairs(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> list[d
 
 
 def _pair(pair: PairScore, model: bool, elsewhere: Interval | None) -> dict[str, Any]:
-    edit = pair.edit if model else None
     return {
         "a": pair.a,
         "b": pair.b,
@@ -206,9 +204,9 @@ def _pair(pair: PairScore, model: bool, elsewhere: Interval | None) -> dict[str,
         "confused_probability": pair.confused_probability if model else None,
         "why": list(pair.why) if model else [r.text for r in pair.rules],
         "rules": [r.to_dict() for r in pair.rules],
-        "edit": edit.to_dict() if isinstance(edit, Edit) else None,
+        "edit": None,
         "distinguishable_by_rules": pair.rules_pass,
         "rules_margin": pair.rules_margin,
-        "no_edit": edit.reason if isinstance(edit, NoEdit) else None,
+        "no_edit": None,
         "parts": [part.to_dict() for part in pair.parts] if model else [],
     }

@@ -13,14 +13,11 @@ import numpy as np
 
 from thermicon.icons.number_text import count_of
 
-from ..arrays import Array, own_arrays
+from ..arrays import Array
 from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
 from ..identification.map import PersonSpread
-from ..identification.task import USUAL, Task
-from ..observer.observer_model import SHIPPED
-from ..selection.goal_result import GoalResult
-from .assumptions import Assumptions
+from .assumptions import Assumptions, assumptions_of
 from .rule_score import counted
 from .rules import RuleResult
 from .scores import IconScore, PairScore
@@ -29,7 +26,10 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from ..identification.carry_over import CarryOver
-    from ..selection.choose import Choice
+    from ..identification.task import Task
+    from ..observer.observer import Norm
+    from ..observer.observer_model import ObserverModel
+    from .batches import Job, PooledResult
 
 
 PERCENTAGE_POINT = 0.01
@@ -43,72 +43,31 @@ class Ranking(Drawn):
     ----------
     version
         Version of the program.
-    rig
-        Name of the rig.
-    seed, people
-        Seed, and number of virtual people.
-    tracking
-        What every person gets: `replay`, `display` or `ideal`.
+    content_hash
+        Hash of icons, rig and observer.
+    job
+        What was ranked, and how: icons, rig, seed and number of people, trials, tracking, norm, task.
+    model
+        The observer with its people and draws.
+    felt
+        Responses of all people.
     by
         What the icons and the worst pair are ranked by, `model` or `rules`; the model's numbers are present in both
         cases.
-    norm
-        How a difference over time is counted.
-    content_hash
-        Hash of icons, rig and observer.
     icons, pairs
         Scores, in file order.
-    confusion
-        Pooled probabilities (icons, icons): rows are presented, columns answered.
-    proportion_correct, proportion_correct_interval
-        Mean over people, 0–1, and the 2.5–97.5 % interval over them.
-    information_bits, information_bits_interval
-        The same for information, bits.
-    bits_per_s
-        Information over the mean length of an icon, bits per s.
-    information_bits_plugin
-        What an experiment of `trials` trials would report, bits.
-    trials
-        Trials of the predicted experiment.
     worst_pair
         Names of the pair that is confused most often; None for one icon.
-    rules_disagree
-        Where rules and model judge differently.
-    by_norm
-        Proportion correct of each icon by the other norms.
-    stress, standard_error, person_standard_error
-        Accuracy of the confusions: how far the embedding bends the distances, and the largest sampling error of a
-        pooled cell and of a cell of one person.
     rules
         Rules on the rig.
-    new_laboratory
-        What a new laboratory will find: people, constants and laboratory together; None: not requested.
-    rig_changes
-        Keys of the rig that were changed, such as `contact.area_cm2=4`.
-    chosen
-        The best subset, where requested.
+    rules_disagree
+        Where rules and model judge differently.
     spread
         What figures need of single people.
-    task
-        The identification task.
     carry_over
         What each icon leaves behind for the next where there is a gap; None: nothing.
-    observer
-        Name of the observer's file, or `shipped`.
-    own_laboratory
-        Whether its draws are those of one laboratory, which intervals are then for, and not for a new one.
-    rig_text
-        The whole rig file as used.
-    persons
-        Proportion correct of every virtual person, 0–1.
-    total_s, total_J
-        Time in s and energy in J of all icons together; on a thermode, which states no energy, NaN.
-    goal
-        Whether the set, or what was chosen of it, meets the goal; None: no goal.
-    warnings
-        What was said of files and rig before.
-    assumptions
-        What the result depends on most, where people and draws show it.
+    new_laboratory
+        What a new laboratory will find: people, constants and laboratory together; None: not requested.
 
     Raises
     ------
@@ -121,51 +80,125 @@ class Ranking(Drawn):
     """
 
     version: str
-    rig: str
-    seed: int
-    people: int
-    tracking: str
-    by: str
-    norm: str
     content_hash: str
+    job: Job
+    model: ObserverModel
+    felt: PooledResult
+    by: str
     icons: tuple[IconScore, ...]
     pairs: tuple[PairScore, ...]
-    confusion: Array
-    proportion_correct: float
-    proportion_correct_interval: tuple[float, float]
-    information_bits: float
-    information_bits_interval: tuple[float, float]
-    bits_per_s: float
-    information_bits_plugin: float
-    trials: int
     worst_pair: tuple[str, str] | None
+    rules: tuple[RuleResult, ...]
     rules_disagree: tuple[dict[str, Any], ...]
-    by_norm: dict[str, tuple[float, ...]]
-    stress: float
-    standard_error: float
-    person_standard_error: float
-    rules: tuple[RuleResult, ...] = ()
-    new_laboratory: NewLaboratory | None = None
-    rig_changes: tuple[str, ...] = ()
-    chosen: Choice | None = None
     spread: PersonSpread | None = None
-    task: Task = USUAL
     carry_over: CarryOver | None = None
-    observer: str = SHIPPED
-    own_laboratory: bool = False
-    rig_text: str = ""
-    persons: tuple[float, ...] = ()
-    total_s: float = math.nan
-    total_J: float = math.nan
-    goal: GoalResult | None = None
-    warnings: tuple[str, ...] = ()
-    assumptions: Assumptions | None = None
+    new_laboratory: NewLaboratory | None = None
 
     def __post_init__(self) -> None:
-        own_arrays(self, "confusion")
         square = self.confusion.shape == (len(self.icons),) * 2
         if not square or not np.allclose(self.confusion.sum(axis=1), 1.0, rtol=0, atol=1e-12):
             raise ValueError("the confusion matrix must have one row and one column per icon, and rows that sum to 1")
+
+    @property
+    def rig(self) -> str:
+        """Name of the rig."""
+        return self.job.rig.name
+
+    @property
+    def rig_changes(self) -> tuple[str, ...]:
+        """Keys of the rig that were changed, such as `contact.area_cm2=4`."""
+        return tuple(self.job.rig.changes)
+
+    @property
+    def seed(self) -> int:
+        """Seed of the people and of all noise."""
+        return self.job.seed
+
+    @property
+    def people(self) -> int:
+        """Number of virtual people."""
+        return self.job.people
+
+    @property
+    def tracking(self) -> str:
+        """What every person gets: `replay`, `display` or `ideal`."""
+        from thermicon.circuit.solver.batch import usual_tracking
+
+        return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
+
+    @property
+    def norm(self) -> Norm:
+        """How a difference over time is counted."""
+        return self.job.norm
+
+    @property
+    def task(self) -> Task:
+        """The identification task."""
+        return self.job.task
+
+    @property
+    def observer(self) -> str:
+        """Name of the observer's file, or `shipped`."""
+        return self.model.name
+
+    @property
+    def own_laboratory(self) -> bool:
+        """Whether the observer's draws are those of one laboratory, which intervals are then for, not for a new one."""
+        return self.model.posterior is not None and self.model.posterior.one_laboratory
+
+    @property
+    def confusion(self) -> Array:
+        """Pooled probabilities (icons, icons): rows are presented, columns answered."""
+        return self.felt.pooled
+
+    @property
+    def persons(self) -> tuple[float, ...]:
+        """Proportion correct of every virtual person, 0–1."""
+        return tuple(self.felt.correct.tolist())
+
+    @property
+    def proportion_correct(self) -> float:
+        """Proportion correct, 0–1: the mean over people."""
+        return float(self.felt.correct.mean())
+
+    @property
+    def proportion_correct_interval(self) -> tuple[float, float]:
+        """Proportion correct of the middle 95 % of people."""
+        return _interval(self.felt.correct)
+
+    @property
+    def information_bits(self) -> float:
+        """Information, bits: the mean over people."""
+        return float(self.felt.bits.mean())
+
+    @property
+    def information_bits_interval(self) -> tuple[float, float]:
+        """Information of the middle 95 % of people, bits."""
+        return _interval(self.felt.bits)
+
+    @property
+    def bits_per_s(self) -> float:
+        """Information over the mean length of an icon, bits per s."""
+        return self.information_bits / (sum(icon.duration_s for icon in self.icons) / len(self.icons))
+
+    @property
+    def assumptions(self) -> Assumptions | None:
+        """What the result depends on most, where people and draws show it; None by rules."""
+        if self.by == "rules":
+            return None
+        crowd, elsewhere = self.model.people(self.people, self.seed), self.new_laboratory
+        each = None if elsewhere is None else elsewhere.each
+        return assumptions_of(self.felt.correct, crowd, self.job.rig, self.model.nominal, each)
+
+    @property
+    def total_s(self) -> float:
+        """Time of all icons together, s."""
+        return math.fsum(icon.duration_s for icon in self.icons)
+
+    @property
+    def total_J(self) -> float:
+        """Energy of all icons together, J; on a thermode, which states no energy, NaN."""
+        return math.fsum(icon.energy_J for icon in self.icons)
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -190,7 +223,7 @@ class Ranking(Drawn):
     @property
     def norm_sensitivity(self) -> dict[str, float]:
         """Proportion correct of the set by each of the other norms."""
-        return {norm: sum(each) / len(each) for norm, each in self.by_norm.items()}
+        return {norm: sum(each) / len(each) for norm, each in self._by_norm.items()}
 
     @property
     def norm_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
@@ -205,8 +238,13 @@ class Ranking(Drawn):
                 for i, j in permutations(range(len(own)), 2)
                 if own[i] > own[j] + PERCENTAGE_POINT and each[j] > each[i] + PERCENTAGE_POINT
             )
-            for norm, each in self.by_norm.items()
+            for norm, each in self._by_norm.items()
         }
+
+    @property
+    def _by_norm(self) -> dict[str, list[float]]:
+        """Proportion correct of each icon by the other norms."""
+        return {norm: each.tolist() for norm, each in self.felt.by_norm.items()}
 
     @property
     def rules_score(self) -> float | None:
@@ -291,3 +329,8 @@ def with_changes(rig: str, changes: Sequence[str]) -> str:
     ('thenar with contact.area_cm2=4', 'thenar')
     """
     return f"{rig} with {', '.join(changes)}" if changes else rig
+
+
+def _interval(values: Array) -> tuple[float, float]:
+    low, high = np.percentile(values, [2.5, 97.5])
+    return float(low), float(high)

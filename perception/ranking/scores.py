@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from ..observer.observer import Channel
 from .distance_components import DistanceComponent
 from .rules import DISTINGUISHABLE, RuleResult
-
-if TYPE_CHECKING:
-    from ..selection.edit_result import Edit, NoEdit
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +40,8 @@ class IconScore:
         Soft safety limits that it exceeds.
     outside_data
         Where no data support the prediction.
+    duration_s, energy_J
+        How long it lasts, s, and what the driver puts into the module until then, J; NaN on a thermode.
 
     See Also
     --------
@@ -65,6 +64,8 @@ class IconScore:
     rules_margin: float | None
     cautions: tuple[str, ...] = ()
     outside_data: tuple[str, ...] = ()
+    duration_s: float = math.nan
+    energy_J: float = math.nan
 
     @property
     def playable(self) -> bool:
@@ -90,8 +91,6 @@ class PairScore:
         Results of the rules of thumb.
     rules_margin
         Margin by which rules separate the pair, in shares of a threshold; None: by direction alone.
-    edit
-        The cheapest edit that separates the two, or the reason why there is none; None: not requested.
     parts
         Components of the distance for a nominal person.
 
@@ -107,7 +106,6 @@ class PairScore:
     why: tuple[str, ...]
     rules: tuple[RuleResult, ...]
     rules_margin: float | None = None
-    edit: Edit | NoEdit | None = None
     parts: tuple[DistanceComponent, ...] = ()
 
     @property

@@ -1,4 +1,4 @@
-"""The best k of n icons: exact where that can be proven, else the best of seeded restarts with an upper bound.
+"""The best k of the icons that were ranked, and what people make of them as a set of their own.
 
 Icons are compared at the range of the pool they come from, so that the d′ of a pair is the same in every choice; the
 chosen icons are then evaluated again at their own range.
@@ -12,43 +12,23 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..identification.carry_over import CarryOver, task_among
-from ..identification.laboratory import NewLaboratory
-from ..identification.task import USUAL, Task
-from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, Observer
-from ..observer.people import People
+from ..identification.carry_over import task_among
+from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
+from ..identification.run_end import RATE_HZ
+from ..progress import Progress, step_counter
 from .appraise import Appraisal, appraise
-from .max_min_subset import Limits, UndecidedError, max_min_subset
-from .request import ChoiceError, Selection, UsableIcons, usable_icons
+from .max_min_subset import Limits, max_min_subset
+from .pick import SubsetChoice, limits_of, nothing_fits, pick
+from .request import ChoiceError, Selection, usable_icons
 from .subset_identification import Objective, SubsetIdentification
-from .upper_bounds import upper_bound
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
-    from thermicon.icons import Icon
+    from ..ranking.ranking import Ranking
 
-ENUMERATED = 20
-MOST_SUBSETS = 200_000
-"""Pools of up to 20 icons, and all with at most this many choices, are enumerated completely."""
-RESTARTS = 6
-"""Random choices that larger pools are also climbed from."""
 ONE_BY_ONE = 50
 """Number of people for each of whom the best choice is found."""
-
-
-@dataclass(frozen=True, slots=True)
-class SubsetChoice:
-    """Places of the chosen icons, the objective's value, its bound, whether it is reached, and choices examined."""
-
-    chosen: tuple[int, ...]
-    value: float
-    bound: float
-    optimal: bool
-    seen: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,48 +131,20 @@ class Choice:
 
 
 def choose(
-    asked: Selection,
-    icons: Sequence[Icon],
-    rig: Rig,
-    traces: Sequence[Trace],
-    d_prime: Array,
-    crowd: People,
-    *,
-    seed: int = 0,
-    tracking: str | None = None,
-    norm: Norm = USUAL_NORM,
-    task: Task = USUAL,
-    left: CarryOver | None = None,
-    observer: Observer | None = None,
+    ranking: Ranking, asked: Selection, *, parameters: int | None = None, progress: Progress | None = None
 ) -> Choice:
-    """Choose among icons of which the d′ of every person and the nominal traces are known.
+    """Choose the best few icons of a set that was ranked.
 
     Parameters
     ----------
+    ranking
+        The pool, as people identify it. It needs no intervals of its own: the draws are spent on the chosen.
     asked
         The request.
-    icons
-        The pool.
-    rig
-        The rig that plays it.
-    traces
-        Nominal traces of the icons.
-    d_prime
-        d′ from memory (people, icons, icons).
-    crowd
-        The people.
-    seed
-        Seed of the noise of identification.
-    tracking
-        What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
-    norm
-        How episodes are remembered: `episodes` or `naming`.
-    task
-        The task that `d_prime` was found in.
-    left
-        What icons leave behind for the next there; None: nothing.
-    observer
-        The nominal observer; None: the shipped one.
+    parameters
+        Draws from the posterior, for what a new laboratory will find with the chosen, as in `rank`.
+    progress
+        Called with (steps done, steps in all).
 
     Returns
     -------
@@ -203,36 +155,68 @@ def choose(
     ------
     ChoiceError
         Where too few icons are usable or no choice keeps the limits.
+    ValueError
+        For a single draw, and for more draws than there are.
 
     See Also
     --------
-    rank : With `choosing`, computes what this needs and calls it.
+    rank : Ranks a pool.
 
     Examples
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> from thermicon.perception import rank
-    >>> asked = Selection(2)
-    >>> made = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0, choosing=asked)
-    >>> len(made.chosen.icons)
+    >>> pool = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)
+    >>> len(choose(pool, Selection(2), parameters=0).icons)
     2
     """
-    pool = usable_icons(asked, icons, traces, rig)
+    from thermicon.circuit.solver.simulate import simulate_all
+
+    job, felt, model = ranking.job, ranking.felt, ranking.model
+    draws = model.draw_count(parameters, DRAWS)
+    step, crowd = step_counter(progress, 1 + draws), model.people(job.people, job.seed)
+    traces = simulate_all(job.icons, job.rig, end_s=job.end_s, rate_Hz=RATE_HZ)
+    icons, d_prime = job.icons, felt.d_prime
+    pool = usable_icons(asked, icons, traces, job.rig)
     places = list(pool.places)
     d = d_prime[:, places][:, :, places]
     must = [k for k, place in enumerate(places) if icons[place].name in asked.must]
     limits = limits_of(asked, pool)
     namings = None
     if asked.objective != "worst":
-        favour = replace(task, places=tuple(places)).favour(0, len(d), len(places), seed)
-        namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, seed, favour=favour)
-    picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, seed)
+        favour = replace(job.task, places=tuple(places)).favour(0, len(d), len(places), job.seed)
+        namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, job.seed, favour=favour)
+    picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, job.seed)
     if picked is None:
         raise ChoiceError(nothing_fits(asked, pool))
     chosen = [places[k] for k in picked.chosen]
     names = [icons[k].name for k in chosen]
     share, loss = _for_people(d, picked, must, limits) if asked.objective == "worst" else (None, None)
+    task = task_among(job.task, ranking.carry_over, chosen)
+    own = appraise(
+        [icons[k] for k in chosen],
+        job.rig,
+        people=crowd,
+        seed=job.seed,
+        tracking=job.tracking,
+        norm=job.norm,
+        task=task,
+        observer=model.nominal,
+    )
+    step()
+    found = None
+    if draws:
+        alone = Nominal(
+            own.proportion_correct,
+            own.information_bits,
+            felt.detected[chosen],
+            felt.middle[np.ix_(chosen, chosen)],
+            felt.detection.onset_s[chosen],
+        )
+        found = new_laboratory(
+            felt.thin.of(chosen), crowd, alone, job.norm, model=model, draws=draws, seed=job.seed, task=task, step=step
+        )
     return Choice(
         icons=tuple(names),
         objective=asked.objective,
@@ -248,108 +232,9 @@ def choose(
         excluded=pool.excluded,
         best_share=share,
         loss=loss,
-        at_own_range=appraise(
-            [icons[k] for k in chosen],
-            rig,
-            people=crowd,
-            seed=seed,
-            tracking=tracking,
-            norm=norm,
-            task=task_among(task, left, chosen),
-            observer=observer,
-        ),
+        at_own_range=own,
+        new_laboratory=found,
     )
-
-
-def pick(
-    middle: Array,
-    namings: SubsetIdentification | None,
-    count: int,
-    objective: Objective,
-    must: Sequence[int] = (),
-    limits: Limits | None = None,
-    seed: int = 0,
-) -> SubsetChoice | None:
-    """The best `count` by one objective: of median d′ (n, n) for `worst`, else of the namings; None: no choice fits."""
-    within = limits or Limits.none(len(middle))
-    if namings is None or objective == "worst":
-        try:
-            best = max_min_subset(middle, count, must, within)
-        except UndecidedError:
-            raise ChoiceError(
-                "it could not be decided whether any choice keeps the totals: relax one of them"
-            ) from None
-        if best is None:
-            return None
-        return SubsetChoice(best.chosen, best.value, best.bound, best.proven, best.thresholds)
-    n, free = len(middle), count - len(must)
-    if n <= ENUMERATED or math.comb(n - len(must), free) <= MOST_SUBSETS:
-        optimum = namings.enumerated(count, objective, must, within.costs, within.most)
-        return None if optimum is None else SubsetChoice(optimum[0], optimum[1], optimum[1], True, optimum[2])
-    return _climbed(middle, namings, count, objective, must, within, seed)
-
-
-def _climbed(
-    middle: Array,
-    namings: SubsetIdentification,
-    count: int,
-    objective: Objective,
-    must: Sequence[int],
-    limits: Limits,
-    seed: int,
-) -> SubsetChoice | None:
-    """The best of the widest choice and of random ones, each improved by single swaps until none helps."""
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 6]))
-    others = [k for k in range(len(middle)) if k not in must]
-    starts = [pick(middle, None, count, "worst", must, limits)]
-    if starts[0] is None:
-        return None
-    first = starts[0].chosen
-    drawn = [
-        [*must, *sorted(int(k) for k in rng.choice(others, count - len(must), replace=False))] for _ in range(RESTARTS)
-    ]
-    best, value, seen = first, -math.inf, 0
-    for start in [list(first), *(one for one in drawn if limits.kept(one))]:
-        chosen, score = start, namings.score(start, objective)
-        while True:
-            allowed = swaps(chosen, must, limits, len(middle))
-            found = namings.swapped(chosen, objective, allowed)
-            seen += int(allowed.sum())
-            place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
-            if not found[place, other] > score:
-                break
-            score, chosen[place] = float(found[place, other]), other
-        ordered = tuple(sorted(chosen))
-        if score > value + 1e-12:
-            best, value = ordered, namings.score(ordered, objective)
-    bound = upper_bound(namings, count, objective)
-    return SubsetChoice(best, value, max(bound, value), value >= bound, seen)
-
-
-def swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) -> NDArray[np.bool_]:
-    """Which icon (chosen, n) may replace a chosen one: not one of those that must stay, and within the limits."""
-    allowed = np.ones((len(chosen), n), dtype=bool)
-    allowed[:, list(chosen)] = False
-    for place, thing in enumerate(chosen):
-        if thing in must:
-            allowed[place] = False
-        elif limits.most:
-            rest = [k for k in chosen if k != thing]
-            for other in np.flatnonzero(allowed[place]):
-                allowed[place, other] = limits.kept([*rest, int(other)])
-    return allowed
-
-
-def limits_of(asked: Selection, pool: UsableIcons) -> Limits:
-    """The totals that a request sets to the icons of a pool."""
-    rows = [
-        (costs, most)
-        for costs, most in ((pool.durations_s, asked.most_s), (pool.energies_J, asked.most_J))
-        if most is not None
-    ]
-    if not rows:
-        return Limits.none(len(pool.places))
-    return Limits(np.stack([costs for costs, _ in rows]), tuple(most for _, most in rows))
 
 
 def _for_people(d: Array, picked: SubsetChoice, must: Sequence[int], limits: Limits) -> tuple[float, float]:
@@ -367,17 +252,3 @@ def _worst_pair(middle: Array, names: Sequence[str]) -> tuple[str, str]:
     first, second = np.triu_indices(len(names), 1)
     k = int(middle[first, second].argmin())
     return names[first[k]], names[second[k]]
-
-
-def nothing_fits(asked: Selection, pool: UsableIcons) -> str:
-    """Why no choice keeps the totals of a request, with the least that so many icons take."""
-    totals = []
-    for costs, most, unit, what in (
-        (pool.durations_s, asked.most_s, "s", "shortest last"),
-        (pool.energies_J, asked.most_J, "J", "most frugal take"),
-    ):
-        if most is not None:
-            least = math.fsum(np.sort(costs)[: asked.count])
-            totals.append(f"{most:g} {unit} (the {asked.count} {what} {least:.3g} {unit})")
-    forced = f" with {', '.join(asked.must)} among them" if asked.must else ""
-    return f"no {asked.count} of the {len(pool.places)} icons{forced} stay within a total of {' and '.join(totals)}"

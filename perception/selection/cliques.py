@@ -32,17 +32,15 @@ def find_clique(
     neighbours = [sum(1 << int(k) for k in np.flatnonzero(row)) & ~(1 << i) for i, row in enumerate(compatible)]
     steps = 0
 
-    def too_few(candidates: int, missing: int) -> bool:
-        """Whether candidates fall into fewer groups without a compatible pair than are missing: each gives one."""
-        for _ in range(missing - 1):
+    def outside_groups(candidates: int, groups: int) -> int:
+        """What is left of candidates without so many groups in which no pair is compatible: each gives one at most."""
+        for _ in range(groups):
             group = candidates
             while group:
                 one = group.bit_length() - 1
                 candidates &= ~(1 << one)
                 group &= ~(neighbours[one] | 1 << one)
-            if not candidates:
-                return True
-        return False
+        return candidates
 
     def extended(clique: tuple[int, ...], candidates: int) -> tuple[int, ...] | None:
         nonlocal steps
@@ -52,10 +50,10 @@ def find_clique(
         missing = size - len(clique)
         if missing == 0:
             return clique if accepts(clique) else None
-        if missing >= GROUPED_FROM and too_few(candidates, missing):
-            return None
-        while candidates.bit_count() >= missing:
-            last = candidates.bit_length() - 1
+        tried = outside_groups(candidates, missing - 1)  # whatever completes the clique has one of these
+        while tried:
+            last = tried.bit_length() - 1
+            tried &= ~(1 << last)
             candidates &= ~(1 << last)
             complete = extended((*clique, last), candidates & neighbours[last])
             if complete is not None:

@@ -18,17 +18,15 @@ from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.carry_over import prepare_task
 from ..identification.task import USUAL, Task
-from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, Observer
-from ..observer.people import People, draw_people
 from .appraise import population_dprime, population_response
 from .edit_result import Edit, NoEdit
 from .icon_numbers import Number, line_of, numbers_of, repeated, with_number
 from .nominal import Sensed, dprimes, end_of, sense
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import Icon
+
+    from ..ranking.ranking import Ranking
 
 PER_SECOND = 0.1
 TOLERANCE = 0.1
@@ -44,7 +42,6 @@ DEARER = 1.5
 REPEATS = (2, 3)
 MOST_LONGER_S = 30.0
 """By more than this no edit makes an icon longer."""
-CONFIRMED_BY = 200
 MOST_NEAR, NEAR = 5, 3.0
 """Up to 5 icons that an edit brings nearer are checked with people, if they end within three times the wanted d′."""
 MOST_CONFIRMED = 8
@@ -66,42 +63,20 @@ class _CandidateEdit:
     way: tuple[int, int]
 
 
-def cheapest_edit(
-    icons: Sequence[Icon],
-    rig: Rig,
-    a: str,
-    b: str,
-    *,
-    wanted: float = DISTINGUISHABLE_DPRIME,
-    people: int | People = CONFIRMED_BY,
-    seed: int = 0,
-    tracking: str | None = None,
-    norm: Norm = USUAL_NORM,
-    before: Array | None = None,
-    task: Task = USUAL,
-    observer: Observer | None = None,
-) -> Edit | NoEdit:
+def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUISHABLE_DPRIME) -> Edit | NoEdit:
     """Find the cheapest edit of one of two icons that separates them by a median d′.
 
     Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
-    by more than 0.1 d′ below twice `wanted`.
+    by more than 0.1 d′ below twice `wanted`. The people of the ranking confirm it, in its task.
 
     Parameters
     ----------
-    icons, rig
-        All icons of the set, and the rig that plays them.
+    ranking
+        The set as it was ranked.
     a, b
         Names of the two.
     wanted
         Median d′ to be reached; by default that of a distinguishable pair.
-    people, seed
-        Number of virtual people and the seed they are drawn from, or the people.
-    tracking, norm
-        What every person gets, and how a difference over time is counted, as in `rank`.
-    before, task
-        Median d′ of all pairs (icons, icons), where it is known, and the task it was found in.
-    observer
-        The nominal observer; None: the shipped one.
 
     Returns
     -------
@@ -117,41 +92,35 @@ def cheapest_edit(
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> two = list(read_cue("six-icons"))[:2]
-    >>> cheapest_edit(two, Rig.load("thenar"), "cooling-step", "warming-step", people=4).reason
+    >>> from thermicon.perception import rank
+    >>> ranking = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)
+    >>> cheapest_edit(ranking, "cooling-step", "warming-step").reason
     'the pair is distinguishable already: d′ ..., criterion 2.56'
     """
     if not 0 < wanted < math.inf:
         raise ValueError(f"a pair is separated by a d′ above 0, not {wanted:g}")
     if a == b:
         raise ValueError(f"a pair is two icons, not {a} twice")
-    names = [icon.name for icon in icons]
+    names = ranking.labels
     for name in (a, b):
         if name not in names:
             raise KeyError(f"no icon is called {name!r}; there are {', '.join(names[:20])}{' …' if names[20:] else ''}")
-    search = _Search(list(icons), rig, (names.index(a), names.index(b)), wanted, norm, observer)
-    crowd = draw_people(people, seed) if isinstance(people, int) else people
-    return search.run(crowd, tracking, before, task)
+    return _Search(ranking, (names.index(a), names.index(b)), wanted).run()
 
 
 class _Search:
-    def __init__(
-        self,
-        icons: list[Icon],
-        rig: Rig,
-        pair: tuple[int, int],
-        wanted: float,
-        norm: Norm,
-        observer: Observer | None,
-    ) -> None:
+    def __init__(self, ranking: Ranking, pair: tuple[int, int], wanted: float) -> None:
         from thermicon.circuit.solver.simulate import duration_s
 
-        self.icons, self.rig, self.pair, self.wanted, self.norm = icons, rig, pair, wanted, norm
-        self.observer = Observer.load() if observer is None else observer
-        self.durations = [duration_s(icon, rig) for icon in icons]
+        job, model = ranking.job, ranking.model
+        self.icons, self.rig, self.pair, self.wanted, self.norm = list(job.icons), job.rig, pair, wanted, job.norm
+        self.tracking, self.task, self.before, self.observer = job.tracking, job.task, ranking.d_prime, model.nominal
+        self.crowd = model.people(job.people, job.seed)
+        self.rigs = self.crowd.rigs(job.rig)
+        self.durations = [duration_s(icon, job.rig) for icon in job.icons]
         self.end_s = end_of(self.durations)
-        self.kept = sense(icons, rig, self.end_s, self.observer)
-        self.now = dprimes(self.kept, self.kept, norm, self.observer)
+        self.kept = sense(job.icons, job.rig, self.end_s, self.observer)
+        self.now = dprimes(self.kept, self.kept, job.norm, self.observer)
         self.target = wanted
         self.largest = LARGEST
         self.closest = self.confirmed = 0.0
@@ -159,18 +128,17 @@ class _Search:
         self.refused: set[tuple[int, str]] = set()
         self.rows: dict[tuple[int, str], Array] = {}
 
-    def run(self, crowd: People, tracking: str | None, known: Array | None, task: Task = USUAL) -> Edit | NoEdit:
-        i, j = self.pair
-        rigs = crowd.rigs(self.rig)
+    def run(self) -> Edit | NoEdit:
+        (i, j), before = self.pair, self.before
 
         def medians(some: Sequence[Icon], end_s: float, asked: Task = USUAL) -> Array:
             found = population_dprime(
                 some,
                 self.rig,
-                crowd,
-                tracking,
+                self.crowd,
+                self.tracking,
                 self.norm,
-                rigs=rigs,
+                rigs=self.rigs,
                 end_s=end_s,
                 task=asked,
                 observer=self.observer,
@@ -178,12 +146,6 @@ class _Search:
             middle: Array = np.median(found, axis=0)
             return middle
 
-        def of_set(icons: Sequence[Icon], end_s: float) -> Array:
-            return medians(
-                icons, end_s, prepare_task(task, icons, self.rig, end_s, task.counted, tracking, self.observer)[0]
-            )
-
-        before = of_set(self.icons, self.end_s) if known is None else known
         if before[i, j] >= self.wanted:
             return NoEdit(f"the pair is distinguishable already: d′ {before[i, j]:.1f}, criterion {self.wanted:.3g}")
         if self.now[i, j] > 0 and before[i, j] > 0:
@@ -198,17 +160,20 @@ class _Search:
                 break
             one = offered[0]
             end_s = max(self.end_s, end_of([self.durations[one.place] + one.added_s]))
-            if task.plain:
+            if self.task.plain:
                 others = [j if one.place == i else i, *self._near(one)]
                 after = medians([one.icon, *(self.icons[k] for k in others)], end_s)[0, 1:]
                 parted, worse = float(after[0]), self._worse(before[one.place, others[1:]], after[1:])
             else:  # the range, and what is left behind, move every pair of the set
-                whole = of_set([one.icon if k == one.place else icon for k, icon in enumerate(self.icons)], end_s)
+                edited = [one.icon if k == one.place else icon for k, icon in enumerate(self.icons)]
+                count, person = self.task.counted, self.observer
+                asked, _ = prepare_task(self.task, edited, self.rig, end_s, count, self.tracking, person)
+                whole = medians(edited, end_s, asked)
                 rest = np.triu(np.ones_like(whole, dtype=bool), 1)
                 rest[min(i, j), max(i, j)] = False
                 parted, worse = float(whole[i, j]), self._worse(before[rest], whole[rest])
             if parted >= self.wanted and not worse and _reads_back(one.icon):
-                recounted = self._recounted(one, crowd, rigs, tracking, end_s)
+                recounted = self._recounted(one, end_s)
                 return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
             refused |= worse
             self.refused.add((one.place, one.new))
@@ -218,17 +183,15 @@ class _Search:
         reason = "each one that separates them makes another pair worse" if refused or self.opposed else self._why_not()
         return NoEdit(f"no single edit separates them to d′ {self.wanted:.3g}: {reason}")
 
-    def _recounted(
-        self, one: _CandidateEdit, crowd: People, rigs: Sequence[Rig], tracking: str | None, end_s: float
-    ) -> float:
+    def _recounted(self, one: _CandidateEdit, end_s: float) -> float:
         """Share of the first people whose number of episodes of the icon changes with the edit."""
-        few, both = crowd.part(0, min(len(crowd), MOST_RECOUNTED)), [self.icons[one.place], one.icon]
+        few, both = self.crowd.part(0, min(len(self.crowd), MOST_RECOUNTED)), [self.icons[one.place], one.icon]
         felt, _ = population_response(
             both,
             self.rig,
             few,
-            tracking,
-            rigs=rigs[: len(few)],
+            self.tracking,
+            rigs=self.rigs[: len(few)],
             rate_Hz=25.0,
             end_s=end_s,
             observer=self.observer,

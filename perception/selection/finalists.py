@@ -21,7 +21,7 @@ from ..observer.observer import Norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .appraise import Appraisal, appraise
-from .goal import NEEDS_DRAWS, Goal, GoalError, GoalPart
+from .goal import Goal, GoalPart
 from .subset_identification import Objective
 
 if TYPE_CHECKING:
@@ -50,8 +50,8 @@ class FinalJudge:
     goal: Goal | None = None
 
     def __post_init__(self) -> None:
-        if self.goal is not None and self.goal.single_people and (self.draws < 2 or self.model.posterior is None):
-            raise GoalError(NEEDS_DRAWS)
+        if self.goal is not None:
+            self.goal.check_draws(0 if self.draws < 2 or self.model.posterior is None else self.draws)
 
     @property
     def parts(self) -> tuple[GoalPart, ...]:

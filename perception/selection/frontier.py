@@ -22,10 +22,10 @@ from ..observer.observer_model import ObserverModel
 from ..progress import Progress, step_counter
 from ..ranking.batches import Execution, Job, collect_batches
 from .appraise import identified
-from .choose import limits_of, nothing_fits, pick
 from .frontier_point import FrontierPoint, PointJudge
-from .goal import NEEDS_DRAWS, Goal, GoalError
+from .goal import Goal
 from .nominal import end_of, sense
+from .pick import limits_of, nothing_fits, pick
 from .request import ChoiceError, Selection, UsableIcons, check_selection, usable_icons
 from .search_request import SearchRequest, soft_finding
 from .subset_identification import Objective, SubsetIdentification
@@ -161,10 +161,9 @@ def frontier(
     ------
     ChoiceError
         Where not even two icons can be chosen, or no two keep the limits.
-    GoalError
-        For a goal for a share of people without draws.
     ValueError
-        For an unknown norm, a single draw, and more draws than there are.
+        For an unknown norm, a single draw, and more draws than there are; a `GoalError` for a goal for a share of
+        people without draws.
 
     Examples
     --------
@@ -181,8 +180,8 @@ def frontier(
         raise ChoiceError(f"a choice of {most} has no pair to compare: give 2 or more")
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
     draws = model.draw_count(parameters, DRAWS)
-    if wanted is not None and wanted.single_people and not draws:
-        raise GoalError(NEEDS_DRAWS)
+    if wanted is not None:
+        wanted.check_draws(draws)
     request = SearchRequest(most_s, None, wanted)
     time, energy = request.totals
     asked = Selection(2, objective, most_s=time, most_J=energy)

@@ -15,9 +15,10 @@ from ..observer.observer import Norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..ranking.batches import PooledResult
-from .choose import SubsetChoice
 from .goal import Goal
-from .goal_result import GoalResult, SetOutcome, judge_goal
+from .goal_result import GoalResult, judge_goal
+from .outcome import SetOutcome
+from .pick import SubsetChoice
 from .request import UsableIcons
 
 REACHED_BY = 0.95

@@ -131,7 +131,7 @@ class Goal:
 
     See Also
     --------
-    rank : Judges a set by a goal.
+    judge_goal : Judges a set by a goal.
     search : Looks for a set that meets one.
 
     Examples
@@ -196,6 +196,11 @@ class Goal:
                 f"goal: it asks for {least:g} icons or more, and {count} are to be chosen: choose {least:g}, or write "
                 f"count {count}"
             )
+
+    def check_draws(self, draws: int) -> None:
+        """Raise a GoalError for a goal for a share of people without draws of the posterior to judge it by."""
+        if self.single_people and not draws:
+            raise GoalError(NEEDS_DRAWS)
 
     @property
     def single_people(self) -> bool:

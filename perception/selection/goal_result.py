@@ -9,62 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array
-from .goal import NEEDS_DRAWS, QUANTITIES, SAFETY, VERDICTS, Goal, GoalError, GoalPart
+from .goal import QUANTITIES, SAFETY, VERDICTS, Goal, GoalPart
+from .outcome import SetOutcome
+
+if TYPE_CHECKING:
+    from ..ranking.ranking import Ranking
+    from .choose import Choice
 
 TOLERANCE = 1e-9
-
-
-@dataclass(frozen=True, slots=True)
-class SetOutcome:
-    """What goals are judged by: scores of a set, its icons, and its people.
-
-    Attributes
-    ----------
-    names
-        Names of all icons.
-    correct, bits, d_prime
-        Means over people, and d′ of the nearest pair.
-    detected, onset_s
-        Of every icon; onset is NaN where it is not felt.
-    durations_s, energies_J
-        Of every icon; energies are NaN on a thermode, which states none.
-    worst_pair
-        Names of the pair that is confused most; None for one icon.
-    nearest_pair
-        Names of the pair with the smallest d′; None for one icon.
-    amber, red
-        Names of the icons that pass a soft limit of safety, and of those that pass a hard one.
-    unreached
-        Names of the icons that the rig does not reach: no matter of safety, which judges what the rig plays of them.
-    persons
-        Values of `correct`, `detected` (of the icon that is detected least) and `bits` for single people (n,), of all
-        draws together; empty without draws.
-    """
-
-    names: tuple[str, ...]
-    correct: float
-    bits: float
-    d_prime: float
-    detected: Array
-    onset_s: Array
-    durations_s: Array
-    energies_J: Array
-    worst_pair: tuple[str, str] | None
-    nearest_pair: tuple[str, str] | None
-    amber: tuple[str, ...]
-    red: tuple[str, ...]
-    persons: dict[str, Array]
-    unreached: tuple[str, ...] = ()
-
-    @property
-    def unplayable(self) -> tuple[str, ...]:
-        """Names of the icons that are not safe or not reached."""
-        return tuple(name for name in self.names if name in self.red or name in self.unreached)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +87,42 @@ class GoalResult:
         return f"GoalResult({self.goal.text}: {'met' if self.met else 'not met'})"
 
 
-def judge_goal(goal: Goal, outcome: SetOutcome) -> GoalResult:
-    """Judge every part of a goal; one for a share of people needs an outcome of draws, or it is a `GoalError`."""
-    if goal.single_people and not outcome.persons:
-        raise GoalError(NEEDS_DRAWS)
-    return GoalResult(goal, tuple(_judged(part, outcome) for part in goal.parts), outcome.unreached)
+def judge_goal(goal: Goal | str, found: Ranking | SetOutcome, choice: Choice | None = None) -> GoalResult:
+    """Judge every part of a goal.
+
+    Parameters
+    ----------
+    goal
+        What is wanted, as a `Goal` or its text.
+    found
+        A ranking, or what goals are judged by.
+    choice
+        A choice out of the ranking, which is then judged as a set of its own; None: the whole set.
+
+    Returns
+    -------
+    GoalResult
+        The goal with its parts judged.
+
+    Raises
+    ------
+    ValueError
+        A `GoalError` for a text that is no goal, and for a share of people where ranking or choice have no draws.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import read_cue
+    >>> from thermicon.perception import rank
+    >>> ranking = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)
+    >>> judge_goal("correct >= 50 %, safety green", ranking).met
+    True
+    """
+    wanted = Goal.parse(goal) if isinstance(goal, str) else goal
+    outcome = found if isinstance(found, SetOutcome) else SetOutcome.of(found)
+    outcome = outcome if choice is None else outcome.of_choice(choice)
+    wanted.check_draws(len(outcome.persons))
+    return GoalResult(wanted, tuple(_judged(part, outcome) for part in wanted.parts), outcome.unreached)
 
 
 def _judged(part: GoalPart, outcome: SetOutcome) -> GoalPartResult:

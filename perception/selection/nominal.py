@@ -12,8 +12,8 @@ from ..arrays import Array
 from ..identification.from_memory import dprimes_from_memory
 from ..identification.run_end import run_end_s
 from ..observer.observer import Norm, Observer
+from ..ranking.assemble import objection
 from ..sensation.percept import perceive_many, uniform_clock
-from .request import objection
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace

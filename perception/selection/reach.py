@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ..observer.observer_model import ObserverModel
 from ..ranking.rank import rank
 from .goal import Goal
-from .goal_result import GoalPartResult, GoalResult
+from .goal_result import GoalPartResult, GoalResult, judge_goal
 from .request import ChoiceError
 from .search import search
 from .subset_identification import Objective
@@ -130,11 +130,10 @@ def what_would_help(
             if each is None:
                 continue
             ranking = rank(
-                each, where, people=PEOPLE, parameters=draws, seed=seed, tracking=tracking, norm=norm, goal=wanted,
-                observer=model,
+                each, where, people=PEOPLE, parameters=draws, seed=seed, tracking=tracking, norm=norm, observer=model,
             )  # fmt: skip
-            if ranking.goal is not None and all(icon.playable for icon in ranking.icons):
-                results.append(ranking.goal)
+            if all(icon.playable for icon in ranking.icons):
+                results.append(judge_goal(wanted, ranking))
         return min(results, key=shortfall, default=None)
 
     changed = [*_rigs(rig), *((text, words, rig, relaxed) for text, words, relaxed in _relaxed(goal))]

@@ -12,6 +12,7 @@ import numpy as np
 from thermicon.icons.number_text import count_of
 
 from ..arrays import Array
+from ..ranking.assemble import energy_J, objection
 from .subset_identification import OBJECTIVES, Objective
 
 if TYPE_CHECKING:
@@ -128,23 +129,6 @@ def usable_icons(asked: Selection, icons: Sequence[Icon], traces: Sequence[Trace
     return UsableIcons(places, durations, energies, listed)
 
 
-def energy_J(trace: Trace, until_s: float) -> float:
-    """Energy (J) that the driver puts into the module until a time: ∫ V·I dt, with the current held between rows.
-
-    NaN on a thermode, which states none.
-
-    >>> from thermicon.circuit import Rig, simulate
-    >>> from thermicon.icons import read_cue
-    >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"))
-    >>> energy_J(trace, 4.0) < energy_J(trace, 8.0)
-    True
-    """
-    if not trace.has_current:
-        return math.nan
-    steps = np.diff(np.minimum(trace.time_s, until_s))
-    return float((trace.voltage_V[:-1] * trace.current_A[:-1] * steps).sum())
-
-
 def shape_of(icon: Icon, rig: Rig) -> object:
     """What two icons share that play alike: control and corner points."""
     from thermicon.circuit.solver.inverse import baseline_C
@@ -154,18 +138,6 @@ def shape_of(icon: Icon, rig: Rig) -> object:
     start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
     corners = icon.corners(start)
     return icon.context.control, base, corners
-
-
-def objection(trace: Trace) -> str | None:
-    """Why an icon cannot be played: it is not safe, or the rig does not reach it; None where it can be played."""
-    from thermicon.circuit.safety.limits import judge_safety
-
-    verdict = judge_safety(trace)
-    if not verdict.safe:
-        return f"is not safe: {verdict.reason}"
-    if not trace.reachable:
-        return f"is not reached: {trace.reason}"
-    return None
 
 
 def check_selection(asked: Selection, names: Sequence[str]) -> None:

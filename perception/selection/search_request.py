@@ -11,11 +11,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..observer.observer import Observer
+from ..ranking.assemble import energy_J
 from ..sensation.detection import detect
 from .goal import SAFETY, Goal
 from .max_min_subset import Limits
 from .nominal import Sensed
-from .request import ChoiceError, energy_J
+from .request import ChoiceError
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from .candidates import Candidate, sample_candidates
-from .choose import pick, swaps
 from .evaluators import NominalEvaluator, PopulationEvaluator
 from .max_min_subset import Limits, max_min_subset, nearest_pair
+from .pick import pick, swaps
 from .request import ChoiceError
 from .share_evaluator import ShareEvaluator
 from .subset_identification import Objective, SubsetIdentification

@@ -276,6 +276,7 @@ def test_a_swept_value_is_what_rank_predicts(two: Path) -> None:
 
 def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: Path, tmp_path: Path) -> None:
     from thermicon.perception import rank
+    from thermicon.perception.selection.goal_result import judge_goal
 
     said = cli(
         "sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK, "-o", tmp_path / "m.csv",
@@ -283,10 +284,8 @@ def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(cli: Cli, two: 
     )  # fmt: skip
     assert said.exit_code == 0, said.stderr
     frame = pd.read_csv(tmp_path / "m.csv")
-    goal = rank(
-        read_cue(two), Rig.load("thenar"), people=4, parameters=4, goal="correct >= 1 % for 95 % of people"
-    ).goal
-    assert goal is not None
+    ranking = rank(read_cue(two), Rig.load("thenar"), people=4, parameters=4)
+    goal = judge_goal("correct >= 1 % for 95 % of people", ranking)
     whole = frame[frame["icon"] == "all icons"].set_index(AREA)["correct_95"]
     assert whole[9.0] == pytest.approx(goal.parts[0].value, rel=1e-8)
     assert frame[frame["icon"] != "all icons"]["correct_95"].isna().all()

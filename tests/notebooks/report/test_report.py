@@ -19,7 +19,10 @@ from thermicon.notebooks.cli.options import CrowdOptions, RigOptions
 from thermicon.notebooks.cli.ranking import TaskOptions, command_text
 from thermicon.notebooks.report.blocks import as_html
 from thermicon.notebooks.report.report import LIMITS, SAFETY, report
-from thermicon.perception import Ranking, rank
+from thermicon.notebooks.report.set_report import SetReport
+from thermicon.perception import Ranking, choose, rank
+from thermicon.perception.selection.goal_result import judge_goal
+from thermicon.perception.selection.pair_edits import cheapest_edits
 from thermicon.perception.selection.request import Selection
 
 Cli = Callable[..., Any]
@@ -84,12 +87,12 @@ def three() -> IconSet:
 
 @pytest.fixture(scope="module")
 def ranking(icons: IconSet, rig: Rig) -> Ranking:
-    return rank(icons, rig, people=6, parameters=4, edits="worst")
+    return rank(icons, rig, people=6, parameters=4)
 
 
 @pytest.fixture(scope="module")
 def made(ranking: Ranking, icons: IconSet, rig: Rig) -> str:
-    return report(ranking, icons, rig, "thermicon rank a&b.cue")
+    return report(SetReport(ranking, edits=cheapest_edits(ranking)), icons, rig, "thermicon rank a&b.cue")
 
 
 @pytest.mark.slow
@@ -141,7 +144,8 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
 def test_it_is_the_same_every_time_and_dated_only_on_demand(
     made: str, ranking: Ranking, icons: IconSet, rig: Rig
 ) -> None:
-    dated = report(ranking, icons, rig, "thermicon rank a&b.cue", date="2031-02-03")
+    found = SetReport(ranking, edits=cheapest_edits(ranking))
+    dated = report(found, icons, rig, "thermicon rank a&b.cue", date="2031-02-03")
     assert re.findall(r"20\d\d-\d\d-\d\d", read(made).text) == []
     assert re.findall(r"20\d\d-\d\d-\d\d", read(dated).text) == ["2031-02-03"]
     (row,) = re.findall(r"<tr>(?:(?!<tr>).)*<td>2031-02-03</td></tr>\n?", dated, re.DOTALL)
@@ -151,7 +155,7 @@ def test_it_is_the_same_every_time_and_dated_only_on_demand(
 
 @pytest.mark.slow
 def test_by_rules_it_has_no_number_of_the_model(rig: Rig, three: IconSet) -> None:
-    words = read(report(rank(three, rig, people=2, by="rules"), three, rig)).text
+    words = read(report(SetReport(rank(three, rig, people=2, by="rules")), three, rig)).text
     for word in ("bits", "detected", "d′ ", "perceptual", "named correctly"):
         assert word not in words.replace("model: d′ ", "")
     assert "Worst pair by rules: " in words
@@ -161,7 +165,7 @@ def test_by_rules_it_has_no_number_of_the_model(rig: Rig, three: IconSet) -> Non
 
 def test_one_icon_has_no_pairs(rig: Rig) -> None:
     icons = parse("cue 1\nicon only { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n")
-    made = report(rank(icons, rig, people=1, parameters=0), icons, rig)
+    made = report(SetReport(rank(icons, rig, people=1, parameters=0)), icons, rig)
     words = read(made).text
     assert "Predicted ranking of 1 icon by thermicon" in words
     for heading in ("Pairs", "Pictures of the set", "Worst pair"):
@@ -176,7 +180,8 @@ def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
         "icon burn { to -3 A at 20 A/s; hold for 20 s; return at 20 A/s }\n"
         "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n"
     )
-    made = report(rank(icons, rig, people=2, parameters=0), icons, rig, cures={"jolt": "it would be with less"})
+    ranking = rank(icons, rig, people=2, parameters=0)
+    made = report(SetReport(ranking), icons, rig, cures={"jolt": "it would be with less"})
     assert '<p class="warn">* burn is NOT SAFE and not reached: ' in made
     assert "; it would be with less</p>" in made
     assert '<p class="note">Outside the data: burn: ' in made
@@ -185,8 +190,9 @@ def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
 
 @pytest.mark.slow
 def test_the_choice_is_told(rig: Rig, three: IconSet) -> None:
-    ranking = rank(three, rig, people=4, parameters=0, choosing=Selection(2))
-    assert "<h3>Best 2 of 3, by the worst pair: " in report(ranking, three, rig)
+    ranking = rank(three, rig, people=4, parameters=0)
+    chosen = choose(ranking, Selection(2), parameters=0)
+    assert "<h3>Best 2 of 3, by the worst pair: " in report(SetReport(ranking, chosen), three, rig)
 
 
 @pytest.mark.slow
@@ -244,8 +250,9 @@ def test_a_page_holds_goal_warnings_and_the_whole_rig() -> None:
 
     rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4.0})
     six = load_library("six-icons")
-    ranking = rank(six, rig, people=4, parameters=0, goal="correct >= 99 %", warnings=("for another site",))
-    page = report(ranking, six, rig)
+    ranking = rank(six, rig, people=4, parameters=0)
+    reached = judge_goal("correct >= 99 %", ranking)
+    page = report(SetReport(ranking, goal=reached, warnings=("for another site",)), six, rig)
     assert "Goal: NOT met" in page
     assert "✗ correct &gt;= 99 %" in page
     assert "warning: for another site" in page

@@ -248,7 +248,7 @@ def test_the_best_few_are_chosen_and_marked() -> None:
     assert "by bits" in bench.said("choice")
     assert bench.view.take.layout.display == ""
     bench.view.keep = lambda names: bench.type(only(bench.design.text, names))
-    chosen = bench.view.made.ranking.chosen.icons if bench.view.made and bench.view.made.ranking.chosen else ()
+    chosen = bench.view.made.report.choice.icons if bench.view.made and bench.view.made.report.choice else ()
     bench.view.take.click()
     assert bench.design.scene.names == tuple(chosen)
     assert bench.view.count.value == 0
@@ -321,19 +321,19 @@ def test_scores_name_the_laboratory_in_the_words_of_rank(laboratory: ObserverMod
     result = ranking_file(made.ranking, mapped=False)
     words = "your laboratory, lab.csv"
     assert any(f"people in {words} (95 %): " in line for line in number_lines(result))
-    scores = scores_html(made.ranking)
+    scores = scores_html(made.report)
     assert scores.count(f"{words}: ") == 2
     assert "new laboratory" not in scores
     assert "Predicted with the observer of lab.csv." in caveat_html(result)
     new = rank_set(TWO, Rig.load("thenar"), 4, 2)
-    assert scores_html(new.ranking).count("a new laboratory: ") == 2
+    assert scores_html(new.report).count("a new laboratory: ") == 2
     assert "observer of" not in caveat_html(ranking_file(new.ranking, mapped=False))
 
 
 def test_a_choice_names_the_laboratory(laboratory: ObserverModel) -> None:
     made = rank_set(THREE, Rig.load("thenar"), 4, 2, Selection(2, "worst"), observer=laboratory)
-    assert "your laboratory, lab.csv: see the chosen icons" in scores_html(made.ranking)
-    assert "for your laboratory, lab.csv (95 %): " in chosen_html(made.ranking)
+    assert "your laboratory, lab.csv: see the chosen icons" in scores_html(made.report)
+    assert "for your laboratory, lab.csv (95 %): " in chosen_html(made.report)
 
 
 @pytest.mark.slow

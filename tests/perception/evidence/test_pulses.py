@@ -13,7 +13,7 @@ from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.icons import IconSet, load_library, read_cue
 from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
-from thermicon.perception import dprime_from_memory, perceive, rank
+from thermicon.perception import choose, dprime_from_memory, perceive, rank
 from thermicon.perception.arrays import Array
 from thermicon.perception.evidence.pulses import CUES, RIG
 from thermicon.perception.identification.carry_over import carry_over
@@ -70,8 +70,8 @@ def test_a_second_pulse_counts_and_cold_is_not_warm() -> None:
 
 @pytest.mark.slow
 def test_twenty_two_short_pulses_are_named() -> None:
-    found = rank(read_cue(CUES), Rig.load(RIG), seed=11, choosing=Selection(22)).chosen
-    assert found is not None and len(found.icons) == 22
+    found = choose(rank(read_cue(CUES), Rig.load(RIG), seed=11, parameters=0), Selection(22))
+    assert len(found.icons) == 22
     assert found.at_own_range.proportion_correct > 0.8
     assert found.new_laboratory is not None and found.new_laboratory.proportion_correct[1] >= 0.93
 

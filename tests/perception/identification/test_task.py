@@ -7,13 +7,12 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
-from thermicon.perception import Observer, Ranking, Task, rank
+from thermicon.perception import Observer, Ranking, Task, cheapest_edit, choose, rank
 from thermicon.perception.identification.carry_over import CarryOver, carry_over
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
 from thermicon.perception.observer.people import People
-from thermicon.perception.selection.edit import cheapest_edit
 from thermicon.perception.selection.edit_result import Edit
 from thermicon.perception.selection.request import Selection
 
@@ -147,7 +146,9 @@ def test_the_same_whoever_works_on_it() -> None:
     ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=60.0), 2.0)], ids=["context", "gap"]
 )
 def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -> None:
-    found = cheapest_edit(list(SIX), RIG, "warming-step", "linear-warming", people=20, task=task, wanted=wanted)
+    found = cheapest_edit(
+        rank(list(SIX), RIG, people=20, parameters=0, task=task), "warming-step", "linear-warming", wanted=wanted
+    )
     assert isinstance(found, Edit)
     edited = replace(SIX, entries=tuple(found.edited if icon.name == found.icon else icon for icon in SIX))
     after = rank(edited, RIG, people=20, parameters=0, task=task)
@@ -165,8 +166,8 @@ def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
     hot = "icon hot { warm by 17 °C over 3 s; hold for 2 s; return over 3 s }\n"  # as long as the six
     pool = parse(str(SIX) + "\n" + hot)
     for task in (Task(gap_s=3.0), Task(context=1.0), Task(bias=1.5)):
-        chosen = rank(pool, RIG, people=20, parameters=0, task=task, choosing=Selection(3)).chosen
-        assert chosen is not None and "hot" not in chosen.icons
+        chosen = choose(rank(pool, RIG, people=20, parameters=0, task=task), Selection(3), parameters=0)
+        assert "hot" not in chosen.icons
         alone = rank(replace(SIX, entries=tuple(SIX[n] for n in chosen.icons)), RIG, people=20, parameters=0, task=task)
         if not task.bias:  # favoured names hang on places in the pool
             assert chosen.at_own_range.proportion_correct == pytest.approx(alone.proportion_correct, abs=2e-3)
@@ -187,10 +188,9 @@ def test_what_is_not_safe_leaves_nothing_behind() -> None:
 
 def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
     plain, biased = (
-        rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias), choosing=Selection(5, "correct")).chosen
+        choose(rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias)), Selection(5, "correct"), parameters=0)
         for bias in (0.0, 3.0)
     )
-    assert plain is not None and biased is not None
     assert biased.value < plain.value - 0.001
     assert biased.value == pytest.approx(biased.at_own_range.proportion_correct, abs=0.02)
 

@@ -63,7 +63,7 @@ def test_records_without_how_people_differ_are_refused(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_ranking_with_other_draws_follows_them_throughout(draws_file: Path) -> None:
     six, rig = load_library("six-icons"), Rig.load("thenar")
-    numb = rank(six, rig, people=8, parameters=8, observer=draws_file, edits="worst")
+    numb = rank(six, rig, people=8, parameters=8, observer=draws_file)
     usual = rank(six, rig, people=8, parameters=8)
     place = usual.labels.index("cooling-step")
     # Cold needs five times the change: the percept, the d′ to its neighbour and the interval all follow.

@@ -57,14 +57,14 @@ def test_a_dead_address_is_said_within_seconds() -> None:
     address = f"tcp://127.0.0.1:{free_port()}"
     start = time.monotonic()
     with pytest.raises(ClusterError, match=rf"no cluster answers at {re.escape(address)} within 5 s: start one with"):
-        rank(ICONS, RIG, people=2, parameters=0, cluster=address)
+        rank(ICONS, RIG, people=2, parameters=0, workers=address)
     assert time.monotonic() - start < 30.0
 
 
 @pytest.mark.parametrize("address", ["nonsense", "tcp://", "foo://bar:1", "tcp://here"])
 def test_an_address_that_is_none(address: str) -> None:
     with pytest.raises(ClusterError, match=rf"'{address}' is not the address of a scheduler: give one such as tcp"):
-        rank(ICONS, RIG, people=2, parameters=0, cluster=address)
+        rank(ICONS, RIG, people=2, parameters=0, workers=address)
 
 
 def test_without_the_package_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,7 +77,7 @@ def test_without_the_package_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -
 @pytest.mark.slow
 def test_a_scheduler_without_workers(tmp_path: Path) -> None:
     with scheduler(tmp_path) as address, pytest.raises(ClusterError, match=r"has no workers: start some with `dask wo"):
-        rank(ICONS, RIG, people=2, parameters=0, cluster=address)
+        rank(ICONS, RIG, people=2, parameters=0, workers=address)
 
 
 @pytest.mark.slow
@@ -101,7 +101,7 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
         assassin = threading.Thread(target=kill_one)
         assassin.start()
         try:
-            far = rank(ICONS, RIG, people=people, parameters=0, cluster=address, keep=kept).to_json()
+            far = rank(ICONS, RIG, people=people, parameters=0, workers=address, keep=kept).to_json()
         finally:
             over.set()
             assassin.join(10)
@@ -127,7 +127,7 @@ def test_threads_of_linear_algebra_change_no_byte(tmp_path: Path, monkeypatch: p
         workers = [worker(address, tmp_path) for _ in range(2)]
         try:
             there = [
-                rank(icons, rig, people=40, parameters=8, cluster=address, keep=far).to_json() for icons, rig in jobs
+                rank(icons, rig, people=40, parameters=8, workers=address, keep=far).to_json() for icons, rig in jobs
             ]
         finally:
             for one in workers:

@@ -306,6 +306,6 @@ def test_messages(rig: Rig) -> None:
 def test_direct_naming_states_the_error_of_its_own_trials(rig: Rig) -> None:
     pair = parse("cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow { warm by 3 K at 2 K/s }")
     named = rank(pair, rig, people=4, parameters=0, norm="naming")
-    assert named.standard_error == pytest.approx(sampling_error(named.confusion, 4 * NAMED), rel=1e-12)
-    assert named.person_standard_error > named.standard_error > 0.0
-    assert rank(pair, rig, people=4, parameters=0).standard_error == 0.0
+    assert named.felt.standard_error == pytest.approx(sampling_error(named.confusion, 4 * NAMED), rel=1e-12)
+    assert named.felt.person_standard_error > named.felt.standard_error > 0.0
+    assert rank(pair, rig, people=4, parameters=0).felt.standard_error == 0.0

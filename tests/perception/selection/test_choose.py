@@ -10,8 +10,9 @@ from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import Icon, parse, read_cue
 from thermicon.perception import choose, draw_people, rank
 from thermicon.perception.observer.people import People
+from thermicon.perception.ranking.assemble import energy_J
 from thermicon.perception.selection.appraise import appraise, population_dprime
-from thermicon.perception.selection.request import ChoiceError, Selection, energy_J
+from thermicon.perception.selection.request import ChoiceError, Selection
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
 GOOD = (
@@ -43,10 +44,11 @@ class Pool:
         self.icons: list[Icon] = list(parse(HEAD + text))
         self.rig, self.crowd = rig, crowd
         self.traces: tuple[Trace, ...] = simulate_all(self.icons, rig, end_s=30.0)
+        self.ranking = rank(parse(HEAD + text), rig, people=len(crowd), seed=1, parameters=0)
         self.d, self.durations = population_dprime(self.icons, rig, crowd)
 
     def choose(self, *arguments: Any, **more: Any) -> Any:
-        return choose(Selection(*arguments, **more), self.icons, self.rig, self.traces, self.d, self.crowd, seed=1)
+        return choose(self.ranking, Selection(*arguments, **more), parameters=0)
 
 
 @pytest.fixture(scope="module")
@@ -133,12 +135,11 @@ def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> 
 
 def test_intervals_are_those_of_the_chosen() -> None:
     six, rig = read_cue("six-icons"), Rig.load("thenar")
-    found = rank(six, rig, people=8, parameters=8, choosing=Selection(3))
-    assert found.new_laboratory is None and found.chosen is not None
-    own = found.chosen.to_dict()["at_own_range"]
+    found = choose(rank(six, rig, people=8, parameters=0), Selection(3), parameters=8)
+    own = found.to_dict()["at_own_range"]
     low, high = own["proportion_correct_interval_new_laboratory"]
     assert low < own["proportion_correct"] < high
-    alone = rank(replace(six, entries=tuple(six[name] for name in found.chosen.icons)), rig, people=8, parameters=8)
+    alone = rank(replace(six, entries=tuple(six[name] for name in found.icons)), rig, people=8, parameters=8)
     assert alone.new_laboratory is not None
     assert (low, high) == pytest.approx(alone.new_laboratory.proportion_correct, abs=0.02)
 

@@ -28,7 +28,7 @@ def six() -> list[Icon]:
 
 @pytest.fixture(scope="module")
 def found(six: list[Icon], rig: Rig) -> Edit:
-    edit = cheapest_edit(six, rig, "warming-step", "linear-warming", people=PEOPLE)
+    edit = cheapest_edit(rank(six, rig, people=PEOPLE, parameters=0), "warming-step", "linear-warming")
     assert isinstance(edit, Edit)
     return edit
 
@@ -71,17 +71,17 @@ def test_it_is_safe_and_reached_and_costs_what_is_said(six: list[Icon], found: E
 
 
 def test_the_same_arguments_give_the_same_edit(six: list[Icon], found: Edit, rig: Rig) -> None:
-    assert cheapest_edit(six, rig, "warming-step", "linear-warming", people=PEOPLE) == found
+    assert cheapest_edit(rank(six, rig, people=PEOPLE, parameters=0), "warming-step", "linear-warming") == found
 
 
 def test_what_is_apart_needs_no_edit(six: list[Icon], rig: Rig) -> None:
-    edit = cheapest_edit(six, rig, "cooling-step", "warming-step", people=8)
+    edit = cheapest_edit(rank(six, rig, people=8, parameters=0), "cooling-step", "warming-step")
     assert isinstance(edit, NoEdit)
     assert "criterion 2.56" in edit.reason
 
 
 def test_what_no_edit_can_do_is_told(six: list[Icon], rig: Rig) -> None:
-    edit = cheapest_edit(six, rig, "warming-step", "linear-warming", wanted=30.0, people=8)
+    edit = cheapest_edit(rank(six, rig, people=8, parameters=0), "warming-step", "linear-warming", wanted=30.0)
     assert isinstance(edit, NoEdit)
     assert edit.reason.startswith("no single edit separates them to d′ 30: the largest d′ of a safe and reachable one")
     assert 0.0 < float(edit.reason.rsplit(" ", 1)[1]) < 30.0
@@ -95,7 +95,7 @@ def test_what_is_short_of_the_criterion_is_said_to_be_less(rig: Rig) -> None:
         "icon late { warm by 5 °C at 1 °C/s; hold for 1 s; return at 2 °C/s }\n"
     )
     small = Rig.load("fingertip")
-    edit = cheapest_edit(list(parse(text)), small, "warm", "late", people=PEOPLE)
+    edit = cheapest_edit(rank(list(parse(text)), small, people=PEOPLE, parameters=0), "warm", "late")
     assert isinstance(edit, NoEdit)
     assert 0.0 < float(edit.reason.rsplit(" ", 1)[1]) < DISTINGUISHABLE_DPRIME
 
@@ -111,7 +111,7 @@ def test_a_repeat_is_an_edit(rig: Rig) -> None:
     assert duration_s(twice, rig) == 4.0
     assert "repeat 2 {" in str(twice)
     assert "total at most 9 s" in str(twice)
-    edit = cheapest_edit(icons, rig, "x", "y", people=8)
+    edit = cheapest_edit(rank(icons, rig, people=8, parameters=0), "x", "y")
     assert isinstance(edit, Edit)
     assert edit.d_prime >= DISTINGUISHABLE_DPRIME
 
@@ -148,7 +148,7 @@ def test_icons_too_weak_to_feel_are_made_strong_enough(rig: Rig) -> None:
         for name, way in (("up", "warm"), ("down", "cool"))
     )
     icons = list(parse(text))
-    found = cheapest_edit(icons, rig, "up", "down", people=12)
+    found = cheapest_edit(rank(icons, rig, people=12, parameters=0), "up", "down")
     assert isinstance(found, Edit)
     edited = [found.edited if icon.name == found.icon else icon for icon in icons]
     again = np.median(population_dprime(edited, rig, draw_people(12))[0], axis=0)[0, 1]
@@ -158,7 +158,7 @@ def test_icons_too_weak_to_feel_are_made_strong_enough(rig: Rig) -> None:
 @pytest.mark.slow
 def test_what_is_promised_is_what_a_ranking_finds(six: list[Icon], rig: Rig) -> None:
     whole = load_library("six-icons")
-    found = cheapest_edit(six, rig, "warming-step", "linear-warming", people=12, wanted=3.5)
+    found = cheapest_edit(rank(six, rig, people=12, parameters=0), "warming-step", "linear-warming", wanted=3.5)
     assert isinstance(found, Edit)
     edited = replace(whole, entries=tuple(found.edited if icon.name == found.icon else icon for icon in whole))
     pairs = rank(edited, rig, people=12, parameters=0).pairs
@@ -168,6 +168,6 @@ def test_what_is_promised_is_what_a_ranking_finds(six: list[Icon], rig: Rig) -> 
 
 def test_bad_questions(six: list[Icon], rig: Rig) -> None:
     with pytest.raises(KeyError, match="nobody"):
-        cheapest_edit(six, rig, "warming-step", "nobody")
+        cheapest_edit(rank(six, rig, people=4, parameters=0), "warming-step", "nobody")
     with pytest.raises(ValueError, match=r"^a pair is two icons, not double-dip twice"):
-        cheapest_edit(six, rig, "double-dip", "double-dip")
+        cheapest_edit(rank(six, rig, people=4, parameters=0), "double-dip", "double-dip")

@@ -3,9 +3,10 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
-from thermicon.perception import frontier, rank
+from thermicon.perception import choose, frontier, rank
 from thermicon.perception.selection.frontier import Frontier
 from thermicon.perception.selection.goal import GoalError
+from thermicon.perception.selection.goal_result import judge_goal
 from thermicon.perception.selection.request import ChoiceError, Selection
 
 THREE = (
@@ -34,22 +35,22 @@ def test_every_size_has_its_best_choice(found: Frontier) -> None:
 
 def test_a_choice_is_that_of_rank(found: Frontier) -> None:
     asked = Selection(3, "worst")
-    whole = rank(load_library("six-icons"), Rig.load("thenar"), people=12, seed=3, parameters=0, choosing=asked)
-    assert whole.chosen is not None
+    whole = rank(load_library("six-icons"), Rig.load("thenar"), people=12, seed=3, parameters=0)
+    chosen = choose(whole, asked, parameters=0)
     point = found.points[1]
-    assert set(point.icons) == set(whole.chosen.icons)
-    assert point.d_prime == pytest.approx(whole.chosen.value, rel=1e-6)
-    assert point.proportion_correct == pytest.approx(whole.chosen.at_own_range.proportion_correct, abs=0.01)
-    assert point.total_s == pytest.approx(whole.chosen.total_s)
+    assert set(point.icons) == set(chosen.icons)
+    assert point.d_prime == pytest.approx(chosen.value, rel=1e-6)
+    assert point.proportion_correct == pytest.approx(chosen.at_own_range.proportion_correct, abs=0.01)
+    assert point.total_s == pytest.approx(chosen.total_s)
 
 
 def test_direct_naming_of_all_icons_is_that_of_rank() -> None:
     """By itself, as a choice and on a frontier, a set has one proportion correct."""
     icons, rig = parse(THREE), Rig.load("thenar")
-    whole = rank(icons, rig, people=8, parameters=0, norm="naming", choosing=Selection(3))
-    assert whole.chosen is not None
-    assert whole.chosen.at_own_range.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
-    assert whole.chosen.at_own_range.information_bits == pytest.approx(whole.information_bits, abs=1e-12)
+    whole = rank(icons, rig, people=8, parameters=0, norm="naming")
+    own = choose(whole, Selection(3), parameters=0).at_own_range
+    assert own.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
+    assert own.information_bits == pytest.approx(whole.information_bits, abs=1e-12)
     point = frontier(icons, rig, people=8, parameters=0, norm="naming").points[-1]
     assert point.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
     assert point.information_bits == pytest.approx(whole.information_bits, abs=1e-12)
@@ -93,12 +94,11 @@ def test_what_95_percent_reach_is_the_number_of_a_goal() -> None:
     assert [len(point.icons) for point in seen.points] == [2, 3]
     assert all(point.total_s <= 30.0 for point in seen.points)
     asked = Selection(3, "worst", most_s=30.0)
-    ranking = rank(six, rig, people=8, parameters=8, choosing=asked, goal=goal)
+    ranking = rank(six, rig, people=8, parameters=0)
+    chosen = choose(ranking, asked, parameters=8)
     point = seen.points[1]
-    assert ranking.goal is not None
-    assert ranking.chosen is not None
-    assert set(point.icons) == set(ranking.chosen.icons)
-    assert point.low_with_model == pytest.approx(ranking.goal.parts[0].value, abs=0.01)
+    assert set(point.icons) == set(chosen.icons)
+    assert point.low_with_model == pytest.approx(judge_goal(goal, ranking, chosen).parts[0].value, abs=0.01)
     assert point.goal is not None
     assert point.goal.parts[0].value == point.low_with_model == point.reached
     row = seen.rows()[1]

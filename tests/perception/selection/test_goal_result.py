@@ -5,8 +5,9 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception import Goal, rank
-from thermicon.perception.selection.goal_result import SetOutcome, judge_goal
+from thermicon.perception import Goal, choose, rank
+from thermicon.perception.selection.goal_result import judge_goal
+from thermicon.perception.selection.outcome import SetOutcome
 from thermicon.perception.selection.request import Selection
 
 OUTCOME = SetOutcome(
@@ -72,11 +73,11 @@ def test_an_icon_that_is_not_reached_is_no_matter_of_safety() -> None:
 
 def test_a_weak_rig_makes_icons_unreached_not_red() -> None:
     weak = Rig.load("thenar").with_(**{"driver.current_limit_A": 0.5})
-    ranking = rank(load_library("six-icons"), weak, people=2, parameters=0, goal="safety green")
-    assert ranking.goal is not None
+    ranking = rank(load_library("six-icons"), weak, people=2, parameters=0)
+    reached = judge_goal("safety green", ranking)
     assert all(icon.safe for icon in ranking.icons)
-    assert ranking.goal.met
-    assert ranking.goal.unreached == tuple(icon.name for icon in ranking.icons if not icon.reachable) != ()
+    assert reached.met
+    assert reached.unreached == tuple(icon.name for icon in ranking.icons if not icon.reachable) != ()
 
 
 def test_an_icon_that_is_not_felt_has_no_onset() -> None:
@@ -94,18 +95,16 @@ def test_a_share_of_people_needs_draws() -> None:
 def test_a_ranking_and_a_choice_are_judged_by_their_own_numbers() -> None:
     six, rig = load_library("six-icons"), Rig.load("thenar")
     goal = "correct >= 99 % for 95 % of people, correct >= 30 %, time <= 500 s"
-    whole = rank(six, rig, people=6, parameters=12, goal=goal)
-    chosen = rank(six, rig, people=6, parameters=12, goal=Goal.parse(goal), choosing=Selection(2))
-    assert whole.goal is not None
-    assert chosen.goal is not None
-    assert [part.met for part in whole.goal.parts] == [False, True, True]
-    assert whole.goal.parts[1].value == whole.proportion_correct
-    assert chosen.goal.parts[0].value > whole.goal.parts[0].value  # type: ignore[operator]
-    assert chosen.chosen is not None
-    assert chosen.goal.parts[2].value == pytest.approx(chosen.chosen.total_s)
+    ranking = rank(six, rig, people=6, parameters=12)
+    choice = choose(ranking, Selection(2), parameters=12)
+    whole, chosen = judge_goal(goal, ranking), judge_goal(Goal.parse(goal), ranking, choice)
+    assert [part.met for part in whole.parts] == [False, True, True]
+    assert whole.parts[1].value == ranking.proportion_correct
+    assert chosen.parts[0].value > whole.parts[0].value  # type: ignore[operator]
+    assert chosen.parts[2].value == pytest.approx(choice.total_s)
     # People and model together: the 5 % quantile lies below the mean over people.
-    assert whole.goal.parts[0].value < whole.proportion_correct  # type: ignore[operator]
-    held = whole.to_dict()["goal"]
+    assert whole.parts[0].value < ranking.proportion_correct  # type: ignore[operator]
+    held = whole.to_dict()
     assert (held["text"], held["met"]) == (Goal.parse(goal).text, False)
     assert held["parts"][0]["wanted"] == 0.99
     assert held["binding"]

@@ -11,6 +11,7 @@ from thermicon.perception.selection.appraise import Appraisal, appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
 from thermicon.perception.selection.finalists import FinalJudge
 from thermicon.perception.selection.goal import GoalError
+from thermicon.perception.selection.goal_result import judge_goal
 from thermicon.perception.selection.request import ChoiceError
 from thermicon.perception.selection.search import SearchResult
 
@@ -166,11 +167,10 @@ def test_of_the_sets_held_at_the_end_the_goal_chooses(
     result = search(small, rig, goal=goal, parameters=8, **asked)  # type: ignore[arg-type]
     assert result.finalists == len(merits) > 1
     assert result.chosen_by == "correct for 95 % of people"
-    ranking = rank(result.found, rig, people=12, seed=3, parameters=8, goal=goal)
-    assert ranking.goal is not None
+    ranking = rank(result.found, rig, people=12, seed=3, parameters=8)
     best = max(merits.values())
     # Nearness to the goal first, then what 95 % of people reach: the same number as in a ranking.
-    assert ranking.goal.parts[0].value == pytest.approx(best[1], abs=0.02)
+    assert judge_goal(goal, ranking).parts[0].value == pytest.approx(best[1], abs=0.02)
     assert best[0] == pytest.approx(-max(0.0, 1.0 - best[1] / 0.99))
 
 
@@ -188,8 +188,7 @@ def test_a_search_for_a_share_of_people_starts_where_a_frontier_ends(small: Icon
     start = IconSet("", "", small.context, small.metadata, found.start)
     reached = []
     for icons in (found.found, start):
-        goal_result = rank(icons, rig, people=12, seed=3, parameters=8, goal=goal).goal
-        assert goal_result is not None
+        goal_result = judge_goal(goal, rank(icons, rig, people=12, seed=3, parameters=8))
         reached.append(goal_result.parts[0].value)
     assert None not in reached
     # Single people of 8 draws: the two programs differ by rounding of their clocks.
