@@ -16,6 +16,7 @@ from thermicon.icons.number_text import signed
 
 from ..safety.checks import worst_of
 from ..safety.demands import CutOff, Demands, Loop, SingleFault
+from ..safety.first_plays import polarity_check
 from ..safety.gate import Gate
 from ..safety.single_faults import BEYOND_K
 from ..safety.thermode import DisplayCourse, Under
@@ -101,7 +102,7 @@ def _demands(
         f"holding the baseline for {duration} before the first play",
     )
     faulty = module.faulty(samples_of(delivery))
-    polarity, _ = faulty.polarity()
+    polarity, _ = polarity_check(faulty)
     _, stuck = faulty.cut_off((cut.low + BEYOND_K, cut.high - BEYOND_K))
     lost = SingleFault(
         "sensor lost or poles swapped: the loop runs to the driver's limit",
