@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, RigError, netlist
-from thermicon.circuit.delivery.netlist_drive import points
+from thermicon.circuit.delivery.netlist_landing import points
 from thermicon.circuit.delivery.subcircuit import subcircuits
 
 Tool = Callable[[str], str]
