@@ -154,8 +154,8 @@ def _result(
     notes: list[str],
 ) -> RigFit:  # fmt: skip
     missed = beyond_noise(problem, solution.theta, solution.inflation)
-    elsewhere = not missed or not solution.converged or unsteady(problem, solution.theta)
-    late = "" if elsewhere else late_column(problem, solution)
+    other_cause = not solution.converged or unsteady(problem, solution.theta)
+    late = "" if other_cause else late_column(problem, solution)
     parameters, correlation = identified(problem, solution, start, late=bool(late))
     unknown = tuple(item for item in parameters if not item.identified)
     disagreed, why = disagreement(problem, solution, missed, late, unknown)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from .keys import fittable, free_keys, value_of
 from .problem import Problem, Unknown
 from .rig_fit import channel_fits
 from .runs import MAD_TO_SD, Channel
-from .solve import Solution, huber, solve
+from .solve import Solution, covariance_of, huber, solve
 
 BEYOND = 2.0
 """Residuals that scatter by so many times the noise are more than noise."""
@@ -56,14 +55,21 @@ def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()
 
 
 def late_column(problem: Problem, solution: Solution) -> str:
-    """A sentence on the column whose delay against the others of its file explains the residuals best; or nothing."""
+    """A sentence on the column whose delay against the others of its file explains the residuals best; or nothing.
+
+    Other keys may make up for a delay within the noise: one step of Gauss and Newton tells whether a fit is worth it.
+    """
     best, sentence = np.inf, ""
     for r, c, channel in problem.channels():
         if channel.clock or len(problem.runs[r].channels) == 1:
             continue
-        late_by = Unknown("late", r, c, LATE_SD_S, low=-MOST_LATE_S, high=MOST_LATE_S)
-        wide = replace(problem, unknowns=(*problem.unknowns, late_by))
-        found = solve(wide, np.append(solution.theta, 0.0), LATE_EVALUATIONS)
+        wide = problem.with_unknown(Unknown("late", r, c, LATE_SD_S, low=-MOST_LATE_S, high=MOST_LATE_S))
+        begin = np.append(solution.theta, 0.0)
+        residuals, jacobian = wide.residuals(begin, solution.sigma), wide.jacobian(begin, solution.sigma)
+        step = float(np.linalg.lstsq(jacobian, -residuals)[0][-1])
+        if abs(step) < LATE_SDS * float(np.sqrt(covariance_of(wide, jacobian, solution.inflation)[-1, -1])):
+            continue
+        found = solve(wide, begin, LATE_EVALUATIONS)
         late, sd = float(found.theta[-1]), float(np.sqrt(found.covariance[-1, -1]))
         left = huber(wide.residuals(found.theta, solution.sigma))
         explained = not beyond_noise(wide, found.theta, found.inflation)

@@ -213,6 +213,12 @@ class Problem:
             out[:, k] = (self.residuals(moved, sigma) - base) / step
         return out
 
+    def with_unknown(self, item: Unknown) -> Problem:
+        """The problem with something more fitted along that changes how a run is read, and not the run."""
+        wide = replace(self, unknowns=(*self.unknowns, item))
+        wide._kept = self._kept
+        return wide
+
     def mesh_error(self, theta: Array, sigma: Sequence[float]) -> Array:
         """What a fine mesh of the skin would change in `residuals`."""
         fine = finely_divided(self.rig)
