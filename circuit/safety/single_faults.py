@@ -208,7 +208,7 @@ class Faulty:
         shares = driver.current_min_A / full, driver.current_max_A / full
 
         def holds(most_A: float) -> bool:
-            return max(self._late_K(moments, share * most_A, cut).max() for share in shares) <= 0.0
+            return bool(max(self._late_K(moments, share * most_A, cut).max() for share in shares) <= 0.0)
 
         tried = np.linspace(full, float(np.abs(self.drive.current_A).max()), LIMITS_TRIED)[1:].tolist()
         place = bisect_left(tried, True, key=holds)
