@@ -182,8 +182,9 @@ STEPPED = {
 """What computes a temperature of the circuit."""
 CONSIDERED = {
     "fitting": {"forward"},
-    "delivery": {"deliver", "netlist", "regulated", "spread", "temperatures", "formats/form"},
-    "packing": {"any_loop", "judged_loop"},
+    "delivery": {
+        "any_loop", "controlled", "deliver", "netlist", "regulated", "spread", "temperatures", "formats/form",
+    },
     "safety": {"corners", "endings", "ensemble", "sessiondrive", "thermode"},
     "solver": {
         "batch", "batch_inputs", "constant_current", "displayed", "inverse", "landing", "prescribed", "pwm",
