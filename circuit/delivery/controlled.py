@@ -1,33 +1,55 @@
 """The gate for a controller around the rig's own module: its display at the set-points, and what any loop may do.
 
 A display that is as far from its set-points as the loop's sensor may be wrong bounds the doses of repetition, and the
-temperatures of a loop that works. What no loop may pass, in any play after any other, is in `any_loop.py`; which loops
-play the set-points without swinging in `judged_loop.py`. The module that follows shows how a play ends.
+temperatures of a loop that works. What no loop may pass, in any play after any other, is in `any_loop.py`; which PI
+loops play the set-points without swinging, in the fastest and slowest corners, is tried here. The module that follows
+shows how a play ends.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from thermicon.icons.number_text import signed
 
-from ..safety.checks import worst_of
+from ..arrays import Array
+from ..rig.module import ZERO_C_IN_K
+from ..rig.parts import Controller
+from ..safety.checks import Check, worst_of
 from ..safety.demands import CutOff, Demands, Loop, SingleFault
+from ..safety.first_plays import polarity_check
 from ..safety.gate import Gate
 from ..safety.single_faults import BEYOND_K
 from ..safety.thermode import DisplayCourse, Under
 from ..safety.thermode_gate import gate_shown
-from .any_loop import AnyLoop, Limits_A
+from ..solver.batch_inputs import Bank, run_regulate
+from ..solver.kernel_pid import DELAY_S, KD, KI, KP, LAG_S
+from ..solver.plate import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
+from .any_loop import SENSOR_K, AnyLoop, Limits_A
 from .delivered_drive import DeliveredDrive
 from .following_module import FollowingModule
 from .formats.form import samples_of
-from .judged_loop import judged_loop
+from .samples import Samples
+from .temperatures import rest_of_a_loop, updates_of
 
 BESIDE_K = 0.5
 """How far beside its set-points a display is judged: a wrong sensor, and what a loop swings by on the average."""
+SENSOR_LAG_S, LATE_S = 0.1, 0.02
+"""Sensor and delay of a loop that the rig does not state: a bead glued to a plate, two turns of a loop of 100 Hz."""
+DELAYS_S = (0.1, 0.05, 0.02, 0.01, 0.0)
+"""Delays that a loop of the rig may have beside what its file states; the longest that does not swing is demanded."""
+CALM = 0.7
+"""kp · K/s per A · (lag + delay): an integrator that is late by so much overshoots by some percent."""
+RESETS_PER_S = (0.5, 0.25, 0.1, 0.05)
+"""ki/kp, the quickest first: slower than the loop itself, so that it does not swing."""
+WEAKER = 0.5
+"""Share of the gains from which on a loop is judged."""
+SETTLING_S, SWING_K = 10.0, 0.2
+"""How long after the last set-point a loop may swing, and by how much a second before that."""
 
 
 def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
@@ -51,7 +73,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     flows = np.concatenate([drive.current_A for drive in drives], axis=1)
     used_A = min(0.0, float(flows.min())), max(0.0, float(flows.max()))
     cut, limits_A, held = loops.cut_off(reach_C, limits_A, used_A)
-    loop, swung = judged_loop(loops, plays, limits_A, cut)
+    loop, swung = _judged_loop(loops, plays, limits_A, cut)
     failed = tuple(check for check in (*swings, *held, *swung) if not check.passed)
     judged = []
     for delivery, verdict, drive in zip(deliveries, verdicts, drives, strict=True):
@@ -101,7 +123,7 @@ def _demands(
         f"holding the baseline for {duration} before the first play",
     )
     faulty = module.faulty(samples_of(delivery))
-    polarity, _ = faulty.polarity()
+    polarity, _ = polarity_check(faulty)
     _, stuck = faulty.cut_off((cut.low + BEYOND_K, cut.high - BEYOND_K))
     lost = SingleFault(
         "sensor lost or poles swapped: the loop runs to the driver's limit",
@@ -128,3 +150,63 @@ def _rest_s(under: Under, delivery: DeliveredDrive, unpowered_C: tuple[float, fl
     times = [under.recovery_s(rest, under.steady(level)) for level in unpowered_C]
     known = [time for time in times if time is not None]
     return max(known) if len(known) == len(times) else None
+
+
+def _judged_loop(
+    loops: AnyLoop, plays: Sequence[Samples], limits_A: Limits_A, cut: CutOff
+) -> tuple[Loop, tuple[Check, ...]]:
+    """The rig's own loop, or one that suits its module, with what it may differ by; then a check that fails, if any."""
+    bank = loops.within(limits_A)
+    middle_K = float(plays[0].command.mean()) + ZERO_C_IN_K
+    heat_W_per_A = bank.plates[:, ALPHA] * middle_K - bank.plates[:, LOWEST_A] * bank.plates[:, RESISTANCE]
+    speed = heat_W_per_A * loops.module.ensemble.gain / bank.plates[:, COLD_J_PER_K]
+    rigs = sorted({0, int(speed.argmin()), int(speed.argmax())})
+    slew = max(float(np.abs(np.diff(play.command)).max()) * play.rate_Hz for play in plays)
+    for loop in _candidates(loops.module.ensemble.rig.controller, float(speed.max()), float(f"{slew:.3g}")):
+        swings = (_swing(loops, bank, rigs, loop, play, cut) for play in plays)
+        failed = tuple(itertools.islice((check for check in swings if not check.passed), 1))
+        if not failed:
+            break
+    return loop, failed
+
+
+def _candidates(own: Controller | None, speed: float, slew: float) -> Iterator[Loop]:
+    """The loops that are tried, the most useful first: the rig's with shorter and shorter delays, or slower resets."""
+    if own is not None:
+        kp, ki = own.kp_A_per_K, own.ki_A_per_Ks
+        for delay in DELAYS_S:
+            yield Loop((WEAKER * kp, kp), (WEAKER * ki, ki), own.kd_As_per_K, delay, own.lag_s, SENSOR_K, slew)
+        return
+    kp = float(f"{CALM / (speed * (SENSOR_LAG_S + LATE_S)):.2g}")
+    for reset in RESETS_PER_S:
+        ki = float(f"{reset * kp:.2g}")
+        yield Loop((WEAKER * kp, kp), (WEAKER * ki, ki), 0.0, LATE_S, SENSOR_LAG_S, SENSOR_K, slew)
+
+
+def _swing(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, play: Samples, cut: CutOff) -> Check:
+    """How far a play leaves the display beyond its set-points, or swinging after the last of them, at worst."""
+    module = loops.module
+    period = 1.0 / module.ensemble.rig.driver.update_Hz
+    held: Array = updates_of(play.until(float(play.time_s[-1]) + SETTLING_S), period)
+    goals = np.array([held - SENSOR_K, held + SENSOR_K])
+    lanes = list(itertools.product(rigs, range(len(goals))))
+    rests = [rest_of_a_loop(module.rigs[rig], float(goals[goal, 0])) for rig, goal in lanes]
+    rig_of, goal_of = np.array(lanes, dtype=np.int64).T.copy()
+    bias, states = np.array([rest[0] for rest in rests]), bank.states([rest[1] for rest in rests])
+    bias = np.clip(bias, bank.plates[rig_of, LOWEST_A], bank.plates[rig_of, HIGHEST_A])
+    beyond, swing = 0.0, 0.0
+    for kp, ki in zip(loop.kp_A_per_K, loop.ki_A_per_Ks, strict=True):
+        flowing = np.zeros((len(bank.count), 5))
+        flowing[:, [KP, KI, KD]] = np.outer(module.ensemble.gain, [kp, ki, loop.kd_As_per_K])
+        flowing[:, LAG_S], flowing[:, DELAY_S] = loop.sensor_lag_at_most_s, loop.delay_at_most_s
+        _, display, _ = run_regulate(bank, rig_of, goal_of, period, goals, flowing, bias, states)
+        beyond = max(beyond, float(display.max()) - held.max(), held.min() - float(display.min()))
+        late = display[:, -max(2, round(1.0 / period)) :]
+        swing = max(swing, float(np.ptp(late, axis=1).max()))
+    room = min(cut.high - held.max(), held.min() - cut.low) - SENSOR_K
+    value, limit = (beyond, room) if beyond > room or swing <= SWING_K else (swing, SWING_K)
+    since = float(play.time_s[-1]) if value > limit else None
+    gains = f"{loop.kp_A_per_K[1]:g} A/K, {loop.ki_A_per_Ks[1]:g} A/(K·s)"
+    what = f"a loop of {gains} and a lag of {loop.sensor_lag_at_most_s:g} s"
+    cure = "so that its cut-off would act; use a smaller controller.kp_A_per_K or a faster sensor"
+    return Check("swing of the display", "hard", value, limit, "K", float(play.time_s[-1]), since, cure, "", True, what)

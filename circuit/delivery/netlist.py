@@ -18,8 +18,7 @@ from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
-from .netlist_drive import EDGE_S, points
-from .netlist_landing import check_landing, contact_lines, lead_currents, lead_s, led_points
+from .netlist_landing import EDGE_S, check_landing, contact_lines, lead_currents, lead_s, led_points, points
 
 LONGEST_STEP_S = 2.5e-3
 """Longest step for either program: at 10 ms a steep ramp of the current costs them 2 mK."""

@@ -1,4 +1,4 @@
-"""A hand that lands, in a netlist: its clock begins at the landing, and the cue follows by the lead.
+"""The drive of a netlist, and a hand that lands: the clock begins at the landing, and the cue follows by the lead.
 
 The operating point is a display in air over bare skin at rest; a switch of 1 µs then closes the contact and takes away
 the air at the display and the heat that keeps the skin's face at `skin.rest_C`.
@@ -15,7 +15,9 @@ from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.drive import Drive
 from ..solver.landing import lead_of
-from .netlist_drive import EDGE_S, points
+
+EDGE_S = 1e-6
+"""Width of the flank that replaces a jump of a held current; less where rows are closer than four of these."""
 
 
 def lead_s(rig: Rig) -> float:
@@ -75,3 +77,22 @@ def contact_lines(rig: Rig, resistance_K_per_W: float, first: str) -> Iterator[s
     yield "* until then: the display in air, and the heat that bare skin at rest takes up at its face"
     yield f"Bair cold 0 I=(1-V(landed))*{film_W_per_K!r}*(V(cold)-{rig.ambient.temperature_C!r})"
     yield f"Brest 0 {first} I=(1-V(landed))*{rest_W!r}"
+
+
+def points(drive: Drive, rest_A: float | None) -> list[tuple[float, float]]:
+    """Corners of a drive's current: (time s, A), a flank of 1 µs for each jump."""
+    times, currents = drive.time_s.tolist(), drive.current_A.tolist()
+    start: list[tuple[float, float]] = [(0.0, currents[0])]
+    if rest_A is not None and rest_A != currents[0]:
+        edge = min(EDGE_S, times[1] / 4)
+        slope = 0.0 if drive.held else (currents[1] - currents[0]) / times[1]
+        start = [(0.0, float(rest_A)), (edge, currents[0] + slope * edge)]
+    if not drive.held:
+        return [*start, *zip(times[1:], currents[1:], strict=True)]
+    points, before = start, currents[0]
+    for k in range(1, len(times) - 1):
+        if currents[k] != before:
+            half = min(EDGE_S / 2, (times[k] - times[k - 1]) / 4, (times[k + 1] - times[k]) / 4)
+            points += [(times[k] - half, before), (times[k] + half, currents[k])]
+            before = currents[k]
+    return [*points, (times[-1], before)]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, fields
 from typing import Any
@@ -13,7 +15,6 @@ from ..safety.summary import summarise
 from .delivered_drive import DeliveredDrive
 from .delivery_deviation import DeliveryDeviation, loss_table
 from .device import Device
-from .digests import digest, digest_of_content, plain
 from .formats.form import Format, events_in
 from .samples import Samples
 from .setpoints import Setpoints
@@ -182,3 +183,34 @@ def _record(record: Record) -> dict[str, object]:
 
 def _without(content: dict[str, Any], key: str) -> dict[str, Any]:
     return {name: value for name, value in content.items() if name != key}
+
+
+def digest(content: bytes) -> str:
+    """Return the SHA-256 of bytes in hexadecimal digits.
+
+    >>> digest(b"")[:8]
+    'e3b0c442'
+    """
+    return hashlib.sha256(content).hexdigest()
+
+
+def digest_of_content(content: Any) -> str:
+    """Return the SHA-256 of content as JSON with sorted keys, the text that a rig's document is kept in.
+
+    >>> digest_of_content({"b": 1, "a": 2.5}) == digest(b'{"a": 2.5, "b": 1}')
+    True
+    """
+    return digest(json.dumps(plain(content), sort_keys=True, ensure_ascii=False).encode("utf-8"))
+
+
+def plain(content: Any) -> Any:
+    """Return content as JSON can hold it: mappings, lists, finite numbers; NaN and infinity become None.
+
+    >>> plain({1: (float("inf"), 2)})
+    {'1': [None, 2]}
+    """
+    if isinstance(content, Mapping):
+        return {str(key): plain(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [plain(value) for value in content]
+    return None if isinstance(content, float) and not math.isfinite(content) else content

@@ -8,8 +8,7 @@ from typing import Any, Literal
 
 from ..program import own_version, this_program
 from .claims import Claims, claims_of, table_of
-from .digests import digest, digest_of_content
-from .sidecar import sealed, sidecar_text
+from .sidecar import digest, digest_of_content, sealed, sidecar_text
 
 STUDY = "study.json"
 RESTORE = "put the file back as it was exported, or export again"

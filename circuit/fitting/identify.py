@@ -9,19 +9,28 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
+from ..rig.keyunits import unit_of
+from ..rig.rig import Rig
+from .keys import CONTACT, value_of
 from .problem import Problem
 from .runs import Channel, Run
-from .solve import covariance_of
+from .skin_layers import CONDUCTIVITY, THICKNESS
+from .solve import Solution, covariance_of
 
 T95 = 1.96
 """Half of a 95 % interval in standard deviations, of a normal distribution."""
 NOISE_K, NOISE_V = 0.02, 0.005
 """Noise of a further channel that is only considered: a thermistor and a 16-bit voltage input."""
 
+BOUND = 1e-3
+"""A parameter within this share of its room from a bound is at the bound."""
+
 FURTHER = ("display_C", "voltage_V", "hot_plate_C", "skin_C")
 """Columns that a log without them may be advised to have."""
 CLOSE = 0.9
 """Correlation from which on two parameters are named as a pair that the log does not separate."""
+
+LATE_FIRST = "first give the late column a file of its own, and fit again"
 
 SHORT = {"display_C": "display", "voltage_V": "voltage", "hot_plate_C": "hot plate", "skin_C": "skin"}
 
@@ -85,10 +94,70 @@ def is_identified(log: bool, sd: float, usual: float) -> bool:
     return half_width(log, sd) < usual
 
 
+def identified(
+    problem: Problem, solution: Solution, start: Rig, *, late: bool = False
+) -> tuple[tuple[Parameter, ...], Array]:
+    """Return the free keys with intervals, and their correlations; `start` is the rig as it was given.
+
+    Where a column of a log is `late`, that must be mended before any measurement can be advised.
+    """
+    count, theta = len(problem.keys), solution.theta
+    deviation = np.sqrt(np.diag(solution.covariance)[:count])
+    correlation = solution.covariance[:count, :count] / np.outer(deviation, deviation)
+    wanting = [
+        k
+        for k, key in enumerate(problem.keys)
+        if not is_identified(key.log, float(deviation[k]), key.usual) or _at_bound(problem, theta, k)
+    ]
+    advice = dict.fromkeys(wanting, LATE_FIRST) if late else cures(problem, theta, wanting, correlation)
+    parameters = []
+    for k, key in enumerate(problem.keys):
+        half, before = T95 * float(deviation[k]), value_of(start, key.key)
+        ends = (float(theta[k]) - half, float(theta[k]), float(theta[k]) + half)
+        low, value, high = (math.exp(min(end, 500.0)) for end in ends) if key.log else ends
+        if key.key.endswith("lag_s"):
+            low = max(low, 0.0)
+        assert before is not None
+        parameters.append(
+            Parameter(
+                key.key, key.words, unit_of(key.key), before, value, low, high, key.log, k not in wanting,
+                advice.get(k, ""),
+            )
+        )  # fmt: skip
+    return tuple(parameters), correlation
+
+
+def _at_bound(problem: Problem, theta: Array, place: int) -> bool:
+    item = problem.unknowns[place]
+    near = BOUND * (item.high - item.low)
+    low = theta[place] - item.low < near and not problem.keys[place].key.endswith("lag_s")
+    return bool(low or item.high - theta[place] < near)
+
+
+def in_series(problem: Problem, solution: Solution) -> Parameter | None:
+    """Contact and outermost layer in series; None where one of them is not fitted."""
+    names: list[object] = [key.key for key in problem.keys]
+    names += [(item.kind, item.place) for item in problem.along]
+    wanted = (CONTACT, (THICKNESS, 0), (CONDUCTIVITY, 0))
+    if any(each not in names for each in wanted):
+        return None
+    places = [names.index(each) for each in wanted]
+    layer, rig = problem.rig.skin.layers[0], problem.rig
+    contact, thicker, better = np.exp(solution.theta[places])
+    before = layer.thickness_m / layer.conductivity_W_per_mK
+    above = before * thicker / better
+    total, slope = contact + above, np.array([contact, above, -above])
+    half = math.exp(T95 * math.sqrt(slope @ solution.covariance[np.ix_(places, places)] @ slope) / total)
+    start = rig.contact.resistance_m2K_per_W + before
+    return Parameter(
+        f"contact + {layer.name}", f"contact and {layer.name} in series", unit_of(CONTACT), start, float(total),
+        float(total / half), float(total * half), True, True,
+    )  # fmt: skip
+
+
 def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: bool = False) -> Problem:
     """Return the problem with further channels in every run, read on the drive's clock; `only`: in place of its own."""
-    found = problem.predictions(theta)
-    assert found is not None
+    found = problem.simulated(theta)
     runs = []
     for run, rows in zip(problem.runs, found, strict=True):
         extra = tuple(

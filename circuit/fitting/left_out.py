@@ -7,14 +7,16 @@ their intervals are too narrow, however small the noise is.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
 from ..arrays import Array
 from .keys import fittable, free_keys, value_of
-from .problem import Nuisance, Problem
+from .problem import Problem, Unknown
+from .rig_fit import channel_fits
 from .runs import MAD_TO_SD, Channel
-from .solve import Solution, huber, solve
+from .solve import Solution, covariance_of, huber, solve
 
 BEYOND = 2.0
 """Residuals that scatter by so many times the noise are more than noise."""
@@ -30,64 +32,52 @@ LATE_SD_S, MOST_LATE_S, LEAST_LATE_S, LATE_SDS = 1.0, 5.0, 0.01, 5.0
 standard deviations of the delay itself."""
 
 
-def beyond_noise(problem: Problem, theta: Array) -> tuple[str, ...]:
-    """Sentences on channels whose residuals at a point exceed the noise of the log; few wild rows do not count."""
-    found = problem.predictions(theta)
-    assert found is not None
+def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()) -> tuple[str, ...]:
+    """A sentence on each channel whose residuals at a point exceed the noise of the log; few wild rows do not count.
+
+    With the `inflation` of a solution, also on those whose residuals are within the noise, but have a structure.
+    """
     sentences = []
-    for r, c, channel in problem.channels():
-        inside = problem.inside(theta, r, channel)
-        residual = (channel.values - problem.modelled(theta, r, c, found[r]))[inside]
-        noise = noise_of(channel)
-        if residual.size and MAD_TO_SD * float(np.median(np.abs(residual))) > BEYOND * noise:
-            rms = float(np.sqrt(np.mean(residual**2)))
-            unit = "K" if channel.temperature else "V"
+    for place, (each, (_, _, channel)) in enumerate(zip(channel_fits(problem, theta), problem.channels(), strict=True)):
+        noise, factor = noise_of(channel), inflation[place] if inflation else 1.0
+        structure = "neighbouring residuals are alike, so that the rig leaves something out"
+        if each.residual.size and MAD_TO_SD * float(np.median(np.abs(each.residual))) > BEYOND * noise:
             sentences.append(
-                f"{channel.file}: {channel.column}: residuals of {milli(rms, unit)} rms exceed the log's own noise of "
-                f"{milli(noise, unit)}"
+                f"{each.file}: {each.column}: residuals of {milli(each.rms, each.unit)} rms exceed the log's own noise "
+                f"of {milli(noise, each.unit)}{f'; {structure}' if factor > ALIKE else ''}"
+            )
+        elif factor > ALIKE:
+            sentences.append(
+                f"{each.file}: {each.column}: {structure}; intervals are {math.sqrt(factor):.1f} times as wide "
+                f"as its noise alone would make them"
             )
     return tuple(sentences)
 
 
-def left_out(problem: Problem, solution: Solution) -> tuple[str, ...]:
-    """Sentences on channels whose residuals are more than the noise of the log, and on what would explain them."""
-    beyond, alike = beyond_noise(problem, solution.theta), _alike(problem, solution)
-    if not beyond and not alike:
-        return ()
-    cure = late_column(problem, solution)
-    if not cure and beyond:
-        keys = explaining(problem, solution)
-        cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
-    closing = f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"
-    return (*beyond, *alike, *((closing,) if cure else ()))
-
-
-def _alike(problem: Problem, solution: Solution) -> tuple[str, ...]:
-    """Sentences on channels whose residuals have a structure, although they may be as small as the noise."""
-    return tuple(
-        f"{channel.file}: {channel.column}: neighbouring residuals are alike, so that the rig leaves something out; "
-        f"intervals are {math.sqrt(factor):.1f} times as wide as its noise alone would make them"
-        for (_, _, channel), factor in zip(problem.channels(), solution.inflation, strict=True)
-        if factor > ALIKE
-    )
-
-
 def late_column(problem: Problem, solution: Solution) -> str:
-    """A sentence on the column whose delay against the others of its file explains the residuals best; or nothing."""
+    """A sentence on the column whose delay against the others of its file explains the residuals best; or nothing.
+
+    Other keys may make up for a delay within the noise: one step of Gauss and Newton tells whether a fit is worth it.
+    """
     best, sentence = np.inf, ""
     for r, c, channel in problem.channels():
         if channel.clock or len(problem.runs[r].channels) == 1:
             continue
-        wide = problem.with_nuisance(Nuisance("late", r, c, LATE_SD_S), MOST_LATE_S)
-        found = solve(wide, np.append(solution.theta, 0.0), LATE_EVALUATIONS)
+        wide = problem.with_unknown(Unknown("late", r, c, LATE_SD_S, low=-MOST_LATE_S, high=MOST_LATE_S))
+        begin = np.append(solution.theta, 0.0)
+        residuals, jacobian = wide.residuals(begin, solution.sigma), wide.jacobian(begin, solution.sigma)
+        step = float(np.linalg.lstsq(jacobian, -residuals)[0][-1])
+        if abs(step) < LATE_SDS * float(np.sqrt(covariance_of(wide, jacobian, solution.inflation)[-1, -1])):
+            continue
+        found = solve(wide, begin, LATE_EVALUATIONS)
         late, sd = float(found.theta[-1]), float(np.sqrt(found.covariance[-1, -1]))
         left = huber(wide.residuals(found.theta, solution.sigma))
-        explained = not beyond_noise(wide, found.theta) and not _alike(wide, found)
+        explained = not beyond_noise(wide, found.theta, found.inflation)
         if explained and abs(late) > max(LEAST_LATE_S, LATE_SDS * sd) and left < best:
             best, word = left, "late" if late > 0 else "early"
             sentence = (
-                f"{channel.column} of {channel.file} is {abs(late):.2g} s {word} against the other columns; save it "
-                f"with time_s as a file of its own, whose clock is then fitted"
+                f"{channel.column} of {channel.file} is {abs(late):.2g} s {word} against the other columns, which "
+                f"makes values and intervals wrong: save it with time_s as a file of its own; its clock is then fitted"
             )
     return sentence
 

@@ -117,11 +117,11 @@ class Log:
         for key, column in used.items():
             if fault := unit_fault(key, column):
                 raise LogError(f"{name}: {fault}")
-        left_out = [key for key in values if key not in used]
-        more = (f"{name}: columns that are not used: {', '.join(left_out)}",) if left_out else ()
+        unused = unused or ", ".join(key for key in values if key not in used)
+        more = (f"{name}: columns that are not used: {unused}",) if unused else ()
         for array in (time, *used.values()):
             array.setflags(write=False)
-        return Log(name, sha256, time, tuple(used.items()), (*notes, *more), unused or ", ".join(left_out))
+        return Log(name, sha256, time, tuple(used.items()), (*notes, *more), unused)
 
     @property
     def drive(self) -> str | None:

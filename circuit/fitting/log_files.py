@@ -7,7 +7,7 @@ import hashlib
 import io
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -36,10 +36,10 @@ ZONE = re.compile(r"(?:z|zone)_?(?P<zone>[1-9])_?(?P<what>set|setpoint|command|c
 ASIDE = ("#", "sep=")
 """Comments, and the line by which spreadsheets name the separator."""
 
-NOTHING = "n/a"
-"""An empty cell of a TSV."""
-NOTHINGS = (NOTHING, "na", "nan")
+NOTHINGS = ("n/a", "na", "nan")
 """What loggers write for a missing number."""
+NUMBER = re.compile(r"[-+\d.,eE\s]*|n/a|nan")
+"""A cell that names no column."""
 MISSPELT = 0.85
 """A name of a column that is so much alike a known one is taken for a slip of the pen."""
 
@@ -132,16 +132,15 @@ def _from_text(where: Path, text: str, digest: str) -> Log:
     used = set(values) if merged else set(columns)
     left_out = [name for name in header if name not in used and name != "icon"]
     listed = ", ".join(_with_likely_name(name, columns) for name in left_out[:8])
-    more = (f"{where.name}: columns that are not used: {listed}",) if left_out else ()
     texts = tuple(f"{where.name}: {gap}" for gap in gaps)
-    return Log.of(where.name, columns, sha256=digest, notes=(*notes, *texts, *more), rows=places, unused=listed)
+    return Log.of(where.name, columns, sha256=digest, notes=(*notes, *texts), rows=places, unused=listed)
 
 
 def _check_header(header: Sequence[str], place: str) -> None:
     doubled = [name for k, name in enumerate(header) if name and name in header[:k]]
     if doubled:
         raise LogError(f"{place}: the column {doubled[0]} appears twice; remove one of them")
-    if all(re.fullmatch(r"[-+\d.,eE\s]*", name) for name in header):
+    if all(map(NUMBER.fullmatch, header)):
         raise LogError(f"{place}: this line holds numbers, not the names of columns; put time_s,current_A,… above it")
 
 
@@ -202,7 +201,7 @@ def _numbers(
 
 def _sidecar(where: Path, first: str, mark: str) -> list[str] | None:
     """Names of the columns of a session without a header, from the JSON beside it; None where the file has one."""
-    if where.suffix.lower() != ".tsv" or not all(_is_number(cell) for cell in first.split(mark)):
+    if where.suffix.lower() != ".tsv" or not all(NUMBER.fullmatch(cell.strip()) for cell in first.split(mark)):
         return None
     beside = where.with_suffix(".json")
     if not beside.is_file():
@@ -220,17 +219,6 @@ def _sidecar(where: Path, first: str, mark: str) -> list[str] | None:
     return names
 
 
-def _is_number(cell: str) -> bool:
-    text = cell.strip()
-    if not text or text == NOTHING:
-        return True
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
 def _session_name(name: str) -> bool:
     return name in SESSION_TIME or bool(ZONE.fullmatch(name.lower()))
 
@@ -244,8 +232,4 @@ def _session(values: Mapping[str, Array]) -> dict[str, Array] | None:
     time = next((values[name] for name in SESSION_TIME if name in values), None)
     if time is None or not zones["display_C"]:
         return None
-    return {"time_s": time, **{name: _mean(columns) for name, columns in zones.items() if columns}}
-
-
-def _mean(columns: Iterable[Array]) -> Array:
-    return np.asarray(np.mean(list(columns), axis=0), dtype=np.float64)
+    return {"time_s": time, **{name: np.mean(columns, axis=0) for name, columns in zones.items() if columns}}

@@ -45,22 +45,27 @@ IMPOSSIBLE = 1e3
 
 
 @dataclass(frozen=True, slots=True)
-class Nuisance:
-    """Something fitted along with the keys: its `kind`, run, place and prior SD.
+class Unknown:
+    """One number of a fit: a key of the rig, a scale as its logarithm, or something fitted along with the keys.
 
-    A kind is offset, row, shift, drift, start, one of LAYER_KINDS, whose place is the layer, or, where a column is
-    tried to be late, late.
+    A kind is key, offset, row, shift, drift, start, one of LAYER_KINDS, whose place is the layer, or, where a column is
+    tried to be late, late. The fit begins at `first` and stays between `low` and `high`; `sd` is that of the prior
+    about 0, of a key, which has none, a usual change; `step` is that of the derivative.
     """
 
     kind: str
     run: int
     place: int
     sd: float
+    first: float = 0.0
+    low: float = -1e3
+    high: float = 1e3
+    step: float = STEP_LINEAR
 
 
 @dataclass(slots=True, eq=False)
 class Problem:
-    """A rig, its free keys and the runs; a point is `theta`: the keys (scales as logarithms), then the nuisances."""
+    """A rig, its free keys and the runs; a point is `theta`, a number for each of `unknowns`, the keys first."""
 
     rig: Rig
     keys: tuple[FitKey, ...]
@@ -68,11 +73,8 @@ class Problem:
     start_count: int
     offset_sd_K: float
     fixed_skin: bool
-    first: Array
-    low: Array
-    high: Array
-    nuisances: tuple[Nuisance, ...]
-    _kept: dict[bytes, tuple[Prediction, ...] | None] = field(default_factory=dict)
+    unknowns: tuple[Unknown, ...]
+    _kept: dict[bytes, tuple[Prediction, ...]] = field(init=False, default_factory=dict)
 
     @staticmethod
     def of(
@@ -84,19 +86,28 @@ class Problem:
         fixed_skin: bool = False,
     ) -> Problem:
         """Return the problem of fitting keys of a rig to runs, beginning at the rig's own values."""
-        values = np.array([_begin(rig, key) for key in keys])
-        log = np.array([key.log for key in keys])
-        room = np.array([math.log(key.room) if key.log else key.room for key in keys])
-        low = values - room
-        low[~log & np.array([key.key.endswith("_s") for key in keys])] = 0.0
         layers = {} if fixed_skin else layer_priors(rig)
-        skin = [Nuisance(kind, 0, k, sd) for (kind, k), sd in layers.items()]
-        extra = (*_nuisances(runs, start_count, offset_sd_K), *skin)
-        limit = np.array([0.2 if item.kind == "drift" else 1.0 if item.kind in LAYER_KINDS else 1e3 for item in extra])
-        return Problem(
-            rig, keys, runs, start_count, offset_sd_K, fixed_skin, np.concatenate([values, np.zeros(len(extra))]),
-            np.concatenate([low, -limit]), np.concatenate([values + room, limit]), extra,
-        )  # fmt: skip
+        unknowns = (
+            *(_key(rig, key, place) for place, key in enumerate(keys)),
+            *_along(runs, start_count, offset_sd_K),
+            *(Unknown(kind, 0, k, sd, low=-1.0, high=1.0, step=STEP_LOG) for (kind, k), sd in layers.items()),
+        )
+        return Problem(rig, keys, runs, start_count, offset_sd_K, fixed_skin, unknowns)
+
+    @property
+    def first(self) -> Array:
+        """Where the fit begins (unknowns,)."""
+        return np.array([item.first for item in self.unknowns])
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """Between which numbers the fit stays, each (unknowns,)."""
+        return np.array([item.low for item in self.unknowns]), np.array([item.high for item in self.unknowns])
+
+    @property
+    def along(self) -> tuple[Unknown, ...]:
+        """What is fitted along with the keys."""
+        return self.unknowns[len(self.keys) :]
 
     def again(self, rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...]) -> Problem:
         """Another rig, keys or runs, with the same fitted along."""
@@ -115,30 +126,30 @@ class Problem:
 
     def factors(self, theta: Array) -> Factors:
         """Logarithms of what the layers of the skin are multiplied by; empty where they are not fitted along."""
-        extra = zip(self.nuisances, theta[len(self.keys) :], strict=True)
-        return {(item.kind, item.place): float(value) for item, value in extra if item.kind in LAYER_KINDS}
+        all_ = zip(self.unknowns, theta, strict=True)
+        return {(item.kind, item.place): float(value) for item, value in all_ if item.kind in LAYER_KINDS}
 
-    def predictions(self, theta: Array) -> tuple[Prediction, ...] | None:
-        """All runs at a point; None where the rig cannot exist. Depends on keys, skin and starts alone."""
-        count = len(self.keys)
-        moving = [k for k, item in enumerate(self.nuisances, count) if item.kind in ("start", *LAYER_KINDS)]
-        token = np.concatenate([theta[:count], theta[moving]]).tobytes()
+    def simulated(self, theta: Array) -> tuple[Prediction, ...]:
+        """All runs at a point; raises RigError where the rig cannot exist. Depends on keys, skin and starts alone."""
+        moving = [k for k, item in enumerate(self.unknowns) if item.kind in ("key", "start", *LAYER_KINDS)]
+        token = theta[moving].tobytes()
         if token not in self._kept:
-            if len(self._kept) > 4 * (count + len(moving) + 1):
+            if len(self._kept) > 4 * (len(moving) + 1):
                 self._kept.clear()
-            self._kept[token] = self._simulate(theta)
+            rig = self.rig_at(theta)
+            self._kept[token] = tuple(predict(rig, run, self.start(theta, k)) for k, run in enumerate(self.runs))
         return self._kept[token]
 
-    def _simulate(self, theta: Array) -> tuple[Prediction, ...] | None:
+    def predictions(self, theta: Array) -> tuple[Prediction, ...] | None:
+        """All runs at a point; None where the rig cannot exist."""
         try:
-            rig = self.rig_at(theta)
-            return tuple(predict(rig, run, self.start(theta, k)) for k, run in enumerate(self.runs))
+            return self.simulated(theta)
         except RigError:
             return None
 
     def nuisance(self, theta: Array, kind: str, run: int, place: int) -> float:
         """Value of what is fitted along, 0 where it is not."""
-        for item, value in zip(self.nuisances, theta[len(self.keys) :], strict=True):
+        for item, value in zip(self.unknowns, theta, strict=True):
             if (item.kind, item.run, item.place) == (kind, run, place):
                 return float(value)
         return 0.0
@@ -176,74 +187,71 @@ class Problem:
         return [(r, c, channel) for r, run in enumerate(self.runs) for c, channel in enumerate(run.channels)]
 
     def residuals(self, theta: Array, sigma: Sequence[float]) -> Array:
-        """Simulated minus measured in standard deviations, all channels, then the nuisances in those of their priors.
+        """Simulated minus measured of all channels, then what is fitted along, in SDs of the noise and of the priors.
 
         Rows outside their run are 0.
         """
         found = self.predictions(theta)
         if found is None:
             count = sum(len(channel.values) for _, _, channel in self.channels())
-            return np.full(count + len(self.nuisances), IMPOSSIBLE)
+            return np.full(count + len(self.along), IMPOSSIBLE)
         parts = [
             np.where(self.inside(theta, r, channel), (self.modelled(theta, r, c, found[r]) - channel.values) / sd, 0.0)
             for (r, c, channel), sd in zip(self.channels(), sigma, strict=True)
         ]
-        prior = [value / item.sd for item, value in zip(self.nuisances, theta[len(self.keys) :], strict=True)]
+        prior = [value / item.sd for item, value in zip(self.along, theta[len(self.keys) :], strict=True)]
         return np.concatenate([*parts, np.array(prior)])
 
     def jacobian(self, theta: Array, sigma: Sequence[float]) -> Array:
         """Derivatives of `residuals`, by differences forward (backward at an upper bound)."""
         base = self.residuals(theta, sigma)
         out = np.empty((len(base), len(theta)))
-        for k in range(len(theta)):
-            step = self.step(k)
-            if theta[k] + step > self.high[k]:
-                step = -step
+        for k, item in enumerate(self.unknowns):
+            step = -item.step if theta[k] + item.step > item.high else item.step
             moved = theta.copy()
             moved[k] += step
             out[:, k] = (self.residuals(moved, sigma) - base) / step
         return out
 
-    def with_nuisance(self, item: Nuisance, room: float) -> Problem:
-        """The problem with something more fitted along, within ±`room` of 0."""
-        ends = (np.append(values, value) for values, value in ((self.first, 0.0), (self.low, -room), (self.high, room)))
-        first, low, high = ends
-        return replace(self, nuisances=(*self.nuisances, item), first=first, low=low, high=high, _kept={})
+    def with_unknown(self, item: Unknown) -> Problem:
+        """The problem with something more fitted along that changes how a run is read, and not the run."""
+        wide = replace(self, unknowns=(*self.unknowns, item))
+        wide._kept = self._kept
+        return wide
 
     def mesh_error(self, theta: Array, sigma: Sequence[float]) -> Array:
         """What a fine mesh of the skin would change in `residuals`."""
         fine = finely_divided(self.rig)
-        if fine is None:
-            return np.zeros(sum(len(channel.values) for _, _, channel in self.channels()) + len(self.nuisances))
-        return replace(self, rig=fine, _kept={}).residuals(theta, sigma) - self.residuals(theta, sigma)
-
-    def step(self, place: int) -> float:
-        """Step of the derivative by a parameter."""
-        if place < len(self.keys):
-            return STEP_LOG if self.keys[place].log else STEP_LINEAR
-        return {"drift": 1e-6, "row": 1e-3, **dict.fromkeys(LAYER_KINDS, STEP_LOG)}.get(
-            self.nuisances[place - len(self.keys)].kind, STEP_LINEAR
-        )
+        here = self.residuals(theta, sigma)
+        return 0.0 * here if fine is None else replace(self, rig=fine).residuals(theta, sigma) - here
 
 
-def _begin(rig: Rig, key: FitKey) -> float:
+def _key(rig: Rig, key: FitKey, place: int) -> Unknown:
     value = value_of(rig, key.key)
     if value is None:
         raise FitError(f"{key.key}: rig {rig.name} does not give it, so that there is no value to begin from")
-    return math.log(value) if key.log else value
+    if key.log:
+        first, room = math.log(value), math.log(key.room)
+        return Unknown("key", 0, place, 0.1, first, first - room, first + room, STEP_LOG)
+    low = 0.0 if key.key.endswith("_s") else value - key.room
+    return Unknown("key", 0, place, 1.0, value, low, value + key.room)
 
 
-def _nuisances(runs: Sequence[Run], start_count: int, offset_sd_K: float) -> list[Nuisance]:
+def _along(runs: Sequence[Run], start_count: int, offset_sd_K: float) -> list[Unknown]:
+    """Start, place within the row, clocks and offsets of every run."""
     extra = []
     for r, run in enumerate(runs):
         if start_count and run.driven_by not in ("setpoint_C", "display_C"):
-            extra += [Nuisance("start", r, place, sd) for place, sd in enumerate(START_SD[:start_count])]
+            extra += [Unknown("start", r, place, sd) for place, sd in enumerate(START_SD[:start_count])]
         if any(not channel.clock for channel in run.channels):
-            extra.append(Nuisance("row", r, 0, ROW_SHARE * float(np.median(np.diff(run.time_s)))))
+            extra.append(Unknown("row", r, 0, ROW_SHARE * float(np.median(np.diff(run.time_s))), step=1e-3))
         for clock in range(1, len(run.clocks) + 1):
-            extra += [Nuisance("shift", r, clock, SHIFT_SD_S), Nuisance("drift", r, clock, DRIFT_SD)]
+            extra += [
+                Unknown("shift", r, clock, SHIFT_SD_S),
+                Unknown("drift", r, clock, DRIFT_SD, low=-0.2, high=0.2, step=1e-6),
+            ]
         if offset_sd_K > 0:
             extra += [
-                Nuisance("offset", r, c, offset_sd_K) for c, channel in enumerate(run.channels) if channel.temperature
+                Unknown("offset", r, c, offset_sd_K) for c, channel in enumerate(run.channels) if channel.temperature
             ]
     return extra

@@ -20,8 +20,8 @@ DIGEST_DIGITS = 16
 MOST_LOGS_NAMED = 5
 PLATES = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
 MISFIT = (
-    "The rig does not match these logs within their noise, so that the intervals cannot be trusted: [uncertainty] is "
-    "as wide as before the fit, or wider."
+    "Rig and logs do not agree, so that the intervals cannot be trusted: [uncertainty] is as wide as before the fit, "
+    "or wider."
 )
 LEAST_SHARE = 0.5
 """Share of the shipped uncertainty that is written at least: what a fit holds fixed, the heat sink above all, may bias
@@ -115,7 +115,7 @@ def fitted_text(
     A parameter that was not identified has the value that it had before. `layers` were fitted along; `misfit`:
     residuals exceed the noise.
     """
-    document: dict[str, Any] = _without_nothing(json.loads(rig.document))
+    document: dict[str, Any] = json.loads(rig.document)
     if name:
         document["name"] = name
     origin = document.setdefault("source", {})
@@ -146,15 +146,6 @@ def fitted_text(
         f"{own_version()}. {close}",
     ]
     return toml_text(document)
-
-
-def _without_nothing(document: dict[str, Any]) -> dict[str, Any]:
-    """A document without keys that are None, which TOML cannot write."""
-    return {
-        key: _without_nothing(value) if isinstance(value, dict) else value
-        for key, value in document.items()
-        if value is not None
-    }
 
 
 def _rounded_up(value: float) -> float:

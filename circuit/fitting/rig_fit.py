@@ -12,6 +12,7 @@ from ..inputs import LONGEST_NAME
 from ..rig.rig import Rig
 from .identify import Parameter
 from .overlay import Beside
+from .problem import Problem
 from .rig_file import fitted_text
 
 if TYPE_CHECKING:
@@ -161,3 +162,17 @@ class RigFit:
             where.write_text(self.rig_text(name or where.stem[:LONGEST_NAME]), encoding="utf-8")
         except OSError as problem:
             raise FitError(f"{where}: cannot be written ({problem.strerror or problem})") from None
+
+
+def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
+    """Return every channel beside the simulation at a point, on the clock of its run's drive."""
+    found = problem.simulated(theta)
+    fits = []
+    for r, c, channel in problem.channels():
+        inside = problem.inside(theta, r, channel)
+        measured = channel.values[inside]
+        fitted = problem.modelled(theta, r, c, found[r])[inside]
+        time, offset = problem.run_time_s(theta, r, channel)[inside], problem.nuisance(theta, "offset", r, c)
+        unit, run = "K" if channel.temperature else "V", problem.runs[r].name
+        fits.append(ChannelFit(channel.column, time, measured, fitted, run, channel.file, unit, offset))
+    return tuple(fits)

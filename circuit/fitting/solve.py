@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from ..arrays import Array
+from ..rig.rigfile import RigError
 from .keys import FitError
 from .problem import Problem
 from .runs import MAD_TO_SD
@@ -52,22 +53,18 @@ def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_
     """
     from scipy.optimize import least_squares
 
-    theta = np.clip(problem.first if begin is None else begin, problem.low, problem.high)
-    if problem.predictions(theta) is None:
-        _explain(problem, theta)
-    scale = np.array([0.1 if key.log else 1.0 for key in problem.keys] + [item.sd for item in problem.nuisances])
+    theta = np.clip(problem.first if begin is None else begin, *problem.bounds)
+    try:
+        problem.simulated(theta)
+    except RigError as fault:
+        names = ", ".join(run.name for run in problem.runs)
+        raise FitError(f"{names}: cannot be played on the rig to begin with: {fault}") from None
+    scale = np.array([item.sd for item in problem.unknowns])
     sigma, converged = spreads(problem, theta), False
     for close, loss in ROUNDS:
-
-        def residuals(point: Array, sigma: Sequence[float] = sigma) -> Array:
-            return problem.residuals(point, sigma)
-
-        def jacobian(point: Array, sigma: Sequence[float] = sigma) -> Array:
-            return problem.jacobian(point, sigma)
-
         answer = least_squares(
-            residuals, theta, jac=jacobian, bounds=(problem.low, problem.high), x_scale=scale, loss=loss,
-            f_scale=OUTLIER, xtol=1e-5, ftol=close, gtol=None, max_nfev=evaluations,
+            problem.residuals, theta, jac=problem.jacobian, args=(sigma,), bounds=problem.bounds, x_scale=scale,
+            loss=loss, f_scale=OUTLIER, xtol=1e-5, ftol=close, gtol=None, max_nfev=evaluations,
         )  # fmt: skip
         theta, converged = np.asarray(answer.x, dtype=np.float64), bool(answer.success)
         before, sigma = sigma, spreads(problem, theta)
@@ -93,19 +90,6 @@ def huber(residuals: Array) -> float:
     """Huber's sum: squares, and beyond OUTLIER linear."""
     size = np.abs(residuals)
     return float(np.sum(np.where(size <= OUTLIER, size**2, 2 * OUTLIER * size - OUTLIER**2)))
-
-
-def _explain(problem: Problem, theta: Array) -> None:
-    """Raise the error that made the first simulation impossible."""
-    from ..rig.rigfile import RigError
-    from .forward import predict
-
-    rig = problem.rig_at(theta)
-    for k, run in enumerate(problem.runs):
-        try:
-            predict(rig, run, problem.start(theta, k))
-        except RigError as problem_of_rig:
-            raise FitError(f"{run.name}: cannot be played on the rig to begin with: {problem_of_rig}") from None
 
 
 def parts_of(problem: Problem, residuals: Array) -> list[Array]:
@@ -162,9 +146,6 @@ def covariance_of(problem: Problem, jacobian: Array, inflation: Sequence[float],
     if mesh is not None:
         shared = jacobian.T @ mesh
         middle += np.outer(shared, shared)
-    count = len(problem.keys)
-    room = np.diag(
-        np.concatenate([(0.5 * (problem.high - problem.low)[:count]) ** -2.0, np.zeros(len(jacobian.T) - count)])
-    )
+    room = np.diag([(0.5 * (item.high - item.low)) ** -2.0 if item.kind == "key" else 0.0 for item in problem.unknowns])
     inverse = np.linalg.pinv(information + room, hermitian=True)
     return np.asarray(inverse @ (middle + room) @ inverse)

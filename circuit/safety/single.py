@@ -18,6 +18,7 @@ from .checks import Check, worst_of
 from .demands import CutOff, Demands
 from .endings import ENDINGS, dose_time_s, follow_endings, judge_the_end, zero_current_C
 from .ensemble import Ensemble, LaneDrives
+from .first_plays import polarity_check, rest_before
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s, recovery_s, skin_C
 from .single_faults import Faulty
 from .tally import WATCHED, Tally, worst_of_lanes
@@ -111,8 +112,8 @@ class Single:
                 key=lambda found: found[0].react_within_s,
             )
         faulty = self.faulty(corners, ())
-        rest, begins = faulty.rest_before()
-        polarity, swapped = faulty.polarity()
+        rest, begins = rest_before(faulty)
+        polarity, swapped = polarity_check(faulty)
         zero = None
         if self.ensemble.ideal:
             dose = self.tallies[0].summed("thermal dose")

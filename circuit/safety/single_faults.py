@@ -1,4 +1,4 @@
-"""Single faults of a drive played open loop: a host that stops, a start without rest, swapped poles.
+"""Single faults of a drive played open loop: a host that stops, and a driver that is stuck at its limit.
 
 They do not make a drive unsafe by themselves, since hardware prevents them. Simulating them in the worst corners gives
 what the hardware must do. With a given current a play that begins warmer stays warmer at every node, so a hang in any
@@ -15,13 +15,12 @@ import numpy as np
 from thermicon.icons.number_text import signed
 
 from ..arrays import Array, Index
-from ..rig.rules import Limits, Rule
+from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .checks import colour_of, findings_of
-from .demands import CutOff, PolarityCheck, SingleFault
+from .demands import CutOff, SingleFault
 from .ensemble import Ensemble, between
-from .tally import WATCHED, Tally
+from .tally import WATCHED
 
 HANG_S, INSTANTS = 60.0, 8
 """How long a fault is followed, and of how many stretches of a drive the end and the extreme currents may get stuck."""
@@ -37,11 +36,8 @@ STUCK_ROWS_S = np.concatenate([np.arange(250) * 0.01, 2.5 + np.arange(75) * 0.1,
 HANG_ROWS_S = np.concatenate([np.arange(50) * 0.1, 5.0 + np.arange(56) * 1.0])
 AFTER_ROWS_S = np.concatenate([np.arange(40) * 0.025, 1.0 + np.arange(30)])
 """Rows of a driver at its limit, of a stuck current, and of 30 s without any after it was cut."""
-LONGEST_REST_S = 600.0
 LIMITS_TRIED = 6
 """Current limits between the driver's own and the peak of the drive."""
-TEST_A, TEST_S = 0.3, 2.0
-"""A current small enough for any module and skin, for long enough to be seen by any thermistor."""
 BEYOND_K = 1.0
 """Cut-offs are this far beyond what the display reaches in any corner, so that they act only on a fault."""
 
@@ -132,7 +128,7 @@ class Faulty:
         if after == 0.0:
             prevented = "a cut-off on the measured temperature; no watchdog is quick enough"
         text = f"the current hangs for {min(HANG_S, tried_s / MARGIN):.2g} s: {worst}"
-        return after, SingleFault("host hangs in mid-play", _colour(far_K), text, prevented)
+        return after, SingleFault("host hangs in mid-play", "red" if far_K.max() > 0.0 else "green", text, prevented)
 
     def _hung_K(self, moments: Moments, watchdog_s: float) -> tuple[str, Array]:
         """The worst of currents that hang until a watchdog cuts them, and how far each lane passes a limit."""
@@ -154,73 +150,17 @@ class Faulty:
         text, far_K[which] = _passed(self.limits, values)
         return text, far_K
 
-    def beyond_K(
-        self, moments: Moments, watchdog_s: float, cut: CutOff, ends_A: tuple[float, float] | None = None
-    ) -> Array:
-        """How far lanes pass a limit if a watchdog and a cut-off act in time, in each fault that they are to prevent.
-
-        `ends_A` are currents at which the driver may be stuck instead of its own limits.
-        """
+    def beyond_K(self, moments: Moments, watchdog_s: float, cut: CutOff) -> Array:
+        """How far lanes pass a limit if a watchdog and a cut-off act in time, in each fault that these prevent."""
         kept = [self._hung_K(moments, watchdog_s)[1]] if watchdog_s else []
-        for full_A in (ends_A or self.ends_A) if cut.react_within_s else ():
-            stuck = moments.stuck_at(full_A)
-            display = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs, ("display_C",))[0]
-            late_s = _late_s(stuck, display, cut.low, cut.high, cut.react_within_s)
-            kept.append(self._cut_K(stuck, late_s)[1])
+        kept += [self._late_K(moments, full_A, cut) for full_A in self.ends_A if cut.react_within_s]
         return np.array(kept or [np.full(len(moments.rigs), -np.inf)])
 
-    def rest_before(self) -> tuple[float | None, SingleFault]:
-        """For how long in s rest must be held on a display that was without power, before the first play."""
-        cold = self.ensemble.at_rest(0.0)
-
-        def tally_after(rest_s: float) -> Tally:
-            state = cold
-            if rest_s > 0:
-                state = self.ensemble.rest(self.rest_A, cold, rest_s)
-            tally = Tally(self.limits, self.ensemble.corners)
-            for (rows, values), _ in self.ensemble.play(self.drive, state):
-                tally.add(rows, values)
-            return tally
-
-        at_once = tally_after(0.0)
-        findings = findings_of(at_once.checks())
-        text = "; ".join(str(check) for check in findings[:1]) or "no limit is passed"
-        rest: float | None = 0.0
-        if not at_once.passes():
-            low, high = 0, int(LONGEST_REST_S)
-            while high - low > 1:
-                middle = (low + high) // 2
-                low, high = (low, middle) if tally_after(float(middle)).passes() else (middle, high)
-            rest = float(high) if tally_after(float(high)).passes() else None
-        prevented = "nothing need be"
-        if rest is None:
-            prevented = "no rest up to 10 min; bring the display to its baseline before it touches the skin"
-        if rest:
-            prevented = f"holding the rest for {rest:g} s before the first play, without contact or with"
-        colour = colour_of(findings)
-        return rest, SingleFault("first play on a display that was without power", colour, text, prevented)
-
-    def polarity(self) -> tuple[PolarityCheck, SingleFault]:
-        """The effect of swapped poles, and the wiring check that detects them."""
-        swapped = Drive(self.drive.time_s, -self.drive.current_A, self.drive.held)
-        tally = Tally(self.limits, self.ensemble.corners, ", poles swapped")
-        low, high = np.inf, -np.inf
-        for (rows, values), _ in self.ensemble.play(swapped, self.ensemble.at_rest(0.0)):
-            tally.add(rows, values)
-            skin = np.nan_to_num(values[WATCHED.index("skin_C")], nan=999.0)
-            low, high = min(low, float(skin.min())), max(high, float(skin.max()))
-        test_A = min(TEST_A, self.ensemble.rig.driver.current_max_A)
-        values, _ = self.ensemble.hold(test_A, self.ensemble.at_rest(0.0), np.array([0.0, TEST_S]))
-        display = values[WATCHED.index("display_C")]
-        fall = float((display[:, 0] - display[:, -1]).min())
-        needed = not tally.passes()
-        check = PolarityCheck(needed, round(test_A, 3), TEST_S, round(0.5 * fall, 2), (round(low, 1), round(high, 1)))
-        text = f"skin {signed(low, '.1f')} … {signed(high, '.1f')} °C"
-        prevented = (
-            f"{signed(test_A, '.3g')} A for {TEST_S:g} s before the first play: the display must cool by "
-            f"{check.display_change_at_least_K:g} K or more"
-        )
-        return check, SingleFault("poles swapped", colour_of(findings_of(tally.checks())), text, prevented)
+    def _late_K(self, moments: Moments, full_A: float, cut: CutOff) -> Array:
+        """How far lanes pass a limit if a cut-off acts in time on a driver that is stuck at a current."""
+        stuck = moments.stuck_at(full_A)
+        display = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs, ("display_C",))[0]
+        return self._cut_K(stuck, _late_s(stuck, display, cut.low, cut.high, cut.react_within_s))[1]
 
     def cut_off(
         self, display_C: tuple[float, float], moments: Moments | None = None, *, hangs: bool = False
@@ -250,7 +190,8 @@ class Faulty:
 
     def around_C(self, display_C: tuple[float, float]) -> tuple[float, float]:
         """Where a cut-off acts that lets the display pass between two temperatures in °C."""
-        limit = {rule.upper: rule.limit for rule in self.limits.rules if _is_hard_display(rule)}
+        hard = [rule for rule in self.limits.rules if rule.quantity == "display" and rule.severity == "hard"]
+        limit = {rule.upper: rule.limit for rule in hard if rule.above_C is None}
         low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
         return round(low, 1), round(high, 1)
 
@@ -262,15 +203,15 @@ class Faulty:
 
     def _limit_instead(self, moments: Moments, low: float, high: float) -> str:
         """What prevents harm where no cut-off is quick enough: a smaller current limit that still plays the drive."""
-        driver, peak = self.ensemble.rig.driver, float(np.abs(self.drive.current_A).max())
+        driver, cut = self.ensemble.rig.driver, CutOff(low, high, REACTIONS_S[0])
         full = max(driver.current_max_A, -driver.current_min_A)
-        tried = np.linspace(full, peak, LIMITS_TRIED)[1:].tolist()
-        cut, low_A, high_A = CutOff(low, high, REACTIONS_S[0]), driver.current_min_A / full, driver.current_max_A / full
-        place = bisect_left(
-            tried,
-            1,
-            key=lambda most: int(self.beyond_K(moments, 0.0, cut, (low_A * most, high_A * most)).max() <= 0.0),
-        )
+        shares = driver.current_min_A / full, driver.current_max_A / full
+
+        def holds(most_A: float) -> bool:
+            return bool(max(self._late_K(moments, share * most_A, cut).max() for share in shares) <= 0.0)
+
+        tried = np.linspace(full, float(np.abs(self.drive.current_A).max()), LIMITS_TRIED)[1:].tolist()
+        place = bisect_left(tried, True, key=holds)
         if place < len(tried):
             prevented = f"a current limit of {tried[place]:.2g} A in the driver's hardware"
             return f"{prevented}; no cut-off is quick enough at {full:g} A"
@@ -314,11 +255,3 @@ def _passed(limits: Limits, values: Array) -> tuple[str, Array]:
             text = f"{rule.quantity} reaches {signed(reached, '.1f')} °C"
         farthest = np.maximum(farthest, over)
     return text, farthest
-
-
-def _is_hard_display(rule: Rule) -> bool:
-    return rule.quantity == "display" and rule.severity == "hard" and rule.above_C is None
-
-
-def _colour(far_K: Array) -> str:
-    return "red" if far_K.max() > 0.0 else "green"

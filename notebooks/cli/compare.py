@@ -195,8 +195,7 @@ def _tables(first: str, second: str, request: Request) -> list[Comparison]:
 
 def _shifted(first: Curves, second: Curves) -> tuple[Curves, str]:
     """Return B on the clock of A, by cross-correlation of the first column that both have, and a sentence on it."""
-    from thermicon.circuit.fitting.alignment import best_shift_s
-    from thermicon.circuit.fitting.overlay import SHIFTED_BY
+    from thermicon.circuit.fitting.overlay import SHIFTED_BY, best_shift_s
 
     common = [name for name in (*SHIFTED_BY, *first.columns) if name in first.columns and name in second.columns]
     if not common:

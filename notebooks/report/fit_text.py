@@ -22,21 +22,20 @@ PLAN_HEAD = (
 )
 LETTERS = {"display_C": "D", "voltage_V": "V", "hot_plate_C": "H", "skin_C": "S"}
 USUAL_DIGITS, MOST_DIGITS = 4, 7
-MOST_FACTOR = 1e3
-"""Ends of an interval that are so many times apart say nothing."""
 CLOSE = 0.9
 """Correlations from here on are printed."""
 
 
 def parameter_table(fitted: RigFit) -> Table:
-    """Parameters with fitted value and interval; the unit ends the key."""
+    """Parameters with fitted value and interval, neither where the logs do not tell; the unit ends the key."""
     rows = table("key", "fitted", "95 % interval", "±", numbers=("fitted", "±"), names=("key",))
     for item in fitted.parameters:
-        width = item.interval.removeprefix("±") if item.identified else "unknown"
-        digits = _digits(item.value, 0.5 * (item.high - item.low)) if item.identified else None
-        known = item.identified or not item.log or item.high < MOST_FACTOR * item.low
-        ends = f"{_short(item.low, digits)} to {_short(item.high, digits)}" if known else "not known"
-        rows.add_row(item.key, _short(item.value, digits), ends, width)
+        if not item.identified:
+            rows.add_row(item.key, "–", "not known", "unknown")
+            continue
+        digits = _digits(item.value, 0.5 * (item.high - item.low))
+        ends = f"{_short(item.low, digits)} to {_short(item.high, digits)}"
+        rows.add_row(item.key, _short(item.value, digits), ends, item.interval.removeprefix("±"))
     return rows
 
 
@@ -75,6 +74,7 @@ def doubts(fitted: RigFit) -> list[str]:
 
 def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     """What the safety gate and virtual people vary from now on, where it is not what it was before."""
+    from thermicon.circuit.fitting.rig_file import LARGEST
     from thermicon.circuit.rig.uncertainty import WORDS
 
     changed = [
@@ -86,10 +86,9 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     if not changed:
         return None
     if fitted.misfit:
-        return (
-            f"uncertainty of the fitted rig, widened to hold all that the rig before held, since the two do not agree "
-            f"and the logs are not matched: {', '.join(changed)}"
-        )
+        most = any(getattr(fitted.rig.uncertainty, key) == limit for key, limit in LARGEST.items())
+        how = "as far as a rig file may state" if most else "to hold all that the rig before held"
+        return f"uncertainty of the fitted rig, widened {how}: {', '.join(changed)}"
     return (
         f"uncertainty of the fitted rig, for the person, contact and room of these logs: {', '.join(changed)}; widen "
         f"it with --set uncertainty.KEY=VALUE for other people"

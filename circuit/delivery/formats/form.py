@@ -1,16 +1,18 @@
-"""The description of a drive file format, and the input of its writer."""
+"""The description of a drive file format, the input of its writer, and the events of a cue that files may mark."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import groupby, pairwise
+
+from thermicon.icons.model.corners import Corners
 
 from ...inputs import InputError
 from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
-from ..events import Event, events_of
 from ..prevent import MustPrevent
 from ..samples import Samples
 from ..setpoints import Setpoints
@@ -20,6 +22,8 @@ PLAYS_SETPOINTS = ("set-points",)
 PLAYS_TEMPERATURES = ("temperatures",)
 
 
+STILL = 1e-9
+"""A slope below this, in K/s or A/s, counts as level."""
 LONGEST_NAME = 200
 """Bytes of a file's name: disks take 255, and drafts, sidecars and suffixes need some of them."""
 DEVICES_OF_WINDOWS = frozenset(
@@ -39,6 +43,15 @@ class FormatError(InputError):
     ...     print(problem)
     cvs: no such format; ...
     """
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """What the cue prescribes at a time in s; `level` in the unit of its corners (°C or A)."""
+
+    name: str
+    time_s: float
+    level: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,3 +172,30 @@ def command_column(delivery: DeliveredDrive) -> Column:
         "duty": ("duty", "share of a cycle that the bridge is on; negative: reversed"),
     }[delivery.device.driven_by]
     return Column(name, delivery.device.unit, f"{meaning}, held until the next row")
+
+
+def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:
+    """Return the events of a cue that begins at `lead_s`: start and end of every stretch that rises or falls.
+
+    A stretch that ends at the level the cue began with is a return. Times are those that the cue prescribes.
+
+    >>> [(event.name, event.time_s) for event in events_of(Corners((0, 2, 6, 8), (32, 26, 26, 32), "temperature_C"))]
+    [('ramp start', 0.0), ('target reached', 2.0), ('return start', 6.0), ('baseline reached', 8.0), ('end', 8.0)]
+    """
+    points = list(zip(corners.time_s, corners.value, strict=True))
+    rest = corners.value[0]
+    steps = [(_direction(a, b), a, b) for a, b in pairwise(points)]
+    events: list[Event] = []
+    for direction, stretch in groupby(steps, key=lambda step: step[0]):
+        pieces = list(stretch)
+        (begin, from_), (end, to) = pieces[0][1], pieces[-1][2]
+        if direction:
+            back = abs(to - rest) < 1e-9
+            events.append(Event("return start" if back else "ramp start", lead_s + begin, from_))
+            events.append(Event("baseline reached" if back else "target reached", lead_s + end, to))
+    return (*events, Event("end", lead_s + corners.duration_s, corners.value[-1]))
+
+
+def _direction(a: tuple[float, float], b: tuple[float, float]) -> int:
+    slope = (b[1] - a[1]) / (b[0] - a[0])
+    return 0 if abs(slope) < STILL else 1 if slope > 0 else -1

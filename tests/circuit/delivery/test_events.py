@@ -10,7 +10,7 @@ from thermicon.circuit.delivery.delivery_deviation import (
     loss_limit,
     loss_table,
 )
-from thermicon.circuit.delivery.events import events_of
+from thermicon.circuit.delivery.formats.form import events_of
 from thermicon.icons import load_library
 from thermicon.icons.model.corners import Corners
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, netlist
-from thermicon.circuit.delivery.netlist_drive import points
+from thermicon.circuit.delivery.netlist_landing import points
 from thermicon.circuit.delivery.subcircuit import subcircuits
 from thermicon.circuit.rig.rigfile import RigError
 

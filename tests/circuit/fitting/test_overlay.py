@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, Trace, simulate
-from thermicon.circuit.fitting.alignment import best_shift_s
 from thermicon.circuit.fitting.laboratory import calibration_icon
 from thermicon.circuit.fitting.log import Log, LogError
-from thermicon.circuit.fitting.overlay import overlay
+from thermicon.circuit.fitting.overlay import best_shift_s, overlay
 
 
 @pytest.fixture(scope="module")

@@ -95,6 +95,17 @@ def test_a_late_column_is_named_with_its_delay(log: Log, true_rig: Rig, column: 
     assert found.misfit
 
 
+@pytest.mark.slow
+def test_a_late_column_that_other_keys_make_up_for_is_named_and_narrows_nothing(
+    log: Log, true_rig: Rig, thenar: Rig
+) -> None:
+    moved = np.interp(log.time_s - 0.15, log.time_s, log.column("display_C"))
+    columns = {"time_s": log.time_s, **dict(log.columns), "display_C": moved}
+    found = fit(Log.of("late.csv", columns), true_rig, free=FREE)
+    assert any("display_C of late.csv is 0.15 s late against the other" in note for note in found.notes)
+    assert found.rig.uncertainty.plates_relative >= thenar.uncertainty.plates_relative
+
+
 def test_a_number_that_no_instrument_gives_is_refused_with_its_row(log: Log) -> None:
     columns = {"time_s": np.array(log.time_s), **{name: np.array(values) for name, values in log.columns}}
     for name in ("display_C", "time_s"):

@@ -9,6 +9,7 @@ from thermicon.circuit import Drive, Limits, Rig, gate
 from thermicon.circuit.safety.endings import dose_time_s
 from thermicon.circuit.safety.ensemble import Ensemble, between
 from thermicon.circuit.safety.exposure import cem43_min
+from thermicon.circuit.safety.first_plays import polarity_check, rest_before
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.single_faults import Faulty
 from thermicon.circuit.safety.tally import WATCHED, Tally
@@ -88,7 +89,7 @@ def test_limits_of_the_display_bound_the_cut_off() -> None:
 
 
 def test_swapped_poles_are_found_by_a_small_current() -> None:
-    check, fault = faulty().polarity()
+    check, fault = polarity_check(faulty())
     assert check.needed
     assert check.swapped_skin_C[1] > 42.0, "what cools heats"
     assert fault.colour == "red"
@@ -102,7 +103,7 @@ def test_swapped_poles_are_found_by_a_small_current() -> None:
 
 
 def test_a_gentle_cue_needs_no_check_of_the_poles() -> None:
-    check, fault = faulty(Drive([0, 1], [0.0, 0.0])).polarity()
+    check, fault = polarity_check(faulty(Drive([0, 1], [0.0, 0.0])))
     assert not check.needed
     assert fault.colour in ("green", "amber")
 
@@ -111,7 +112,7 @@ def test_the_rest_before_the_first_play_is_needed_and_enough() -> None:
     """A plate without power is warm: what warms from there passes a limit that it would not pass from rest."""
     warm = Drive([0, 1.0, 4.0, 5.0], [REST, -0.22, -0.22, REST])
     one = faulty(warm)
-    needed, fault = one.rest_before()
+    needed, fault = rest_before(one)
     assert needed is not None
     assert 0.0 < needed < 600.0
     assert fault.prevented_by.startswith(f"holding the rest for {needed:g} s before the first play")

@@ -172,7 +172,7 @@ STEPPED = {
 CONSIDERED = {
     "fitting": {"forward"},
     "delivery": {
-        "any_loop", "deliver", "formats/form", "judged_loop", "netlist", "regulated", "spread", "temperatures",
+        "any_loop", "controlled", "deliver", "formats/form", "netlist", "regulated", "spread", "temperatures",
     },
     "safety": {"corners", "endings", "ensemble", "sessiondrive", "thermode"},
     "solver": {

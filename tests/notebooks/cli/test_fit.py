@@ -156,7 +156,7 @@ def test_an_interval_that_says_nothing_is_said_to(cli: Cli, log: Path) -> None:
     row = next(line for line in said.stdout.splitlines() if line.startswith(CONTACT))
     assert row.split()[2:] == ["not", "known", "unknown"]
     assert "K   " in next(line for line in said.stdout.splitlines() if line.startswith("display ("))
-    assert "widened to hold all that the rig before held" in " ".join(said.stdout.split())
+    assert "widened as far as a rig file may state" in " ".join(said.stdout.split())
 
 
 @pytest.mark.slow

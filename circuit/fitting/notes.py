@@ -1,0 +1,156 @@
+"""What a fit says beside its numbers: on drives, starts, sensors and clocks, and what is not narrowed for which reason.
+
+Of several causes of one misfit the first is named: a fit that did not come to rest, a start that was not steady, a
+column that is late, and only then keys that are held fixed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import Array
+from ..rig.parts import Uncertainty
+from .identify import Parameter
+from .left_out import beyond_noise, explaining
+from .problem import FREE_START, STEADY_BEFORE, Problem
+from .rig_file import LARGEST
+from .rig_fit import channel_fits
+from .runs import Channel
+from .solve import Solution
+
+MOST_UPDATES = 1.5
+"""Rows farther apart than 1.5 updates of the driver miss some of them."""
+
+EARLY_S, EARLY_TIMES, EARLY_NOISE = 2.0, 1.2, 5.0
+"""A start that is not steady shows in the first seconds: residuals well above noise, and above those of the rest."""
+
+NO_MATCH = "the rig does not match the logs within their noise"
+
+OFFSET_SDS = 3.0
+"""A sensor that is off by more than this many standard deviations of OFFSET_SD_K is named."""
+
+
+def disagreement(
+    problem: Problem, solution: Solution, missed: Sequence[str], late: str, unknown: Sequence[Parameter]
+) -> tuple[tuple[str, ...], str]:
+    """What rig and logs do not agree in, and that in a few words; nothing where they agree.
+
+    `missed` are sentences on channels, `late` that on a column which explains them; `unknown` was not identified.
+    """
+    if not solution.converged:
+        return (*missed, "free fewer keys, so that the fit comes to rest"), "the fit did not come to rest"
+    if late:
+        return (late,), "the columns of a log are not of one time"
+    if not missed:
+        combined = _combined(problem, solution.theta, unknown) if unknown else ()
+        return combined, NO_MATCH if combined else ""
+    if not beyond_noise(problem, solution.theta):
+        return tuple(missed), "the rig leaves something out of the logs"
+    if unsteady(problem, solution.theta):
+        return tuple(missed), NO_MATCH
+    keys = explaining(problem, solution)
+    cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
+    return (*missed, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"), NO_MATCH
+
+
+def _combined(problem: Problem, theta: Array, unknown: Sequence[Parameter]) -> tuple[str, ...]:
+    """A sentence where keys that are not identified matter together, so that the rig that keeps them misses the log."""
+    kept, names = theta.copy(), {item.key for item in unknown}
+    for k, key in enumerate(problem.keys):
+        if key.key in names:
+            kept[k] = problem.first[k]
+    if problem.predictions(kept) is not None and not beyond_noise(problem, kept):
+        return ()
+    return (
+        "the logs need another combination of the keys that are not identified, and the rig that keeps their values "
+        "misses the logs by more than their noise: leave one of them out of the free keys",
+    )
+
+
+def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[str, ...]:
+    """Sentences on slow drives, starts that were not steady, sensors that are off, and shifted clocks.
+
+    With a `misfit`, an offset is a consequence of what is wrong elsewhere rather than a fault of the sensor.
+    """
+    sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
+    sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
+    for r, run in enumerate(problem.runs):
+        if problem.start_count == STEADY_BEFORE and (change := problem.nuisance(theta, "start", r, 0)):
+            sentences.append(
+                f"{run.name}: the first row's drive has just begun; the start is taken as steady under "
+                f"{abs(change):.2f} A {'less' if change < 0 else 'more'}"
+            )
+        for clock, name in enumerate(run.clocks, 1):
+            shift = problem.nuisance(theta, "shift", r, clock)
+            drift = problem.nuisance(theta, "drift", r, clock)
+            sentences.append(
+                f"{name}: its clock was shifted by {shift:.3f} s against {run.name}, and drifts by "
+                f"{drift * 1e6:.0f} parts per million".replace("-", "−")
+            )
+    return tuple(sentences)
+
+
+def far_off(problem: Problem, theta: Array) -> list[tuple[Channel, float]]:
+    """Sensors that are off by more than they are assumed to be, with the offset in K."""
+    offsets = [(channel, problem.nuisance(theta, "offset", r, c)) for r, c, channel in problem.channels()]
+    return [(channel, offset) for channel, offset in offsets if abs(offset) > OFFSET_SDS * problem.offset_sd_K > 0]
+
+
+def _offset(channel: Channel, offset_K: float, usual_K: float, misfit: bool) -> str:
+    size = f"{offset_K:+.2f} K".replace("-", "−")
+    usual = f"more than the {usual_K:g} K (SD) that sensors are assumed to be"
+    if not misfit:
+        return f"{channel.file}: {channel.column} reads {size} off, {usual}; calibrate it"
+    return (
+        f"{channel.file}: {channel.column} is fitted with an offset of {size}, {usual}; since the rig does not match "
+        f"the log, the offset may stand for what the rig has wrong: mend that before you doubt the sensor"
+    )
+
+
+def _slow_drives(problem: Problem) -> list[str]:
+    """Logs slower than the driver: what it did between the rows is not known."""
+    sentences = []
+    for run in problem.runs:
+        step, update = float(np.median(np.diff(run.time_s))), 1.0 / problem.rig.update_Hz
+        if run.driven_by != "display_C" and step > MOST_UPDATES * update:
+            sentences.append(
+                f"{run.name}: rows are {1e3 * step:.0f} ms apart, and the rig's driver may change every "
+                f"{1e3 * update:.0f} ms: what it did in between is not in the log; log the drive at its own rate"
+            )
+    return sentences
+
+
+def unsteady(problem: Problem, theta: Array) -> list[str]:
+    """Runs whose first seconds fit much worse than the rest."""
+    if problem.start_count == FREE_START:
+        return []
+    names = []
+    for each, (_, _, channel) in zip(channel_fits(problem, theta), problem.channels(), strict=True):
+        residual, noise = np.abs(each.residual), float(np.median(np.abs(np.diff(channel.values)))) + channel.resolution
+        early = residual[each.time_s < EARLY_S]
+        most = max(EARLY_TIMES * float(np.median(residual)), EARLY_NOISE * noise, 1e-3)
+        if channel.temperature and early.size and np.median(early) > most:
+            names.append(each.run)
+    return [
+        f"{name}: the first {EARLY_S:g} s fit much worse than the rest: the rig was not steady at the first row; use "
+        f"--fit-start (fit_start=True), or log a few seconds of rest first"
+        for name in dict.fromkeys(names)
+    ]
+
+
+def kept(parameters: Sequence[Parameter]) -> tuple[str, ...]:
+    """What the fitted rig keeps of the rig before, since the logs do not say it."""
+    values = ", ".join(f"{item.key} = {item.start:.4g} {item.unit}".rstrip() for item in parameters)
+    return (f"not identified, so that the fitted rig keeps what the rig before had: {values}",) if values else ()
+
+
+def too_narrow(fitted: Uncertainty, before: Uncertainty) -> tuple[str, ...]:
+    """A sentence on uncertainties that reached the most a rig file may state."""
+    most = [
+        f"{key} = {limit:g}" for key, limit in LARGEST.items() if getattr(fitted, key) == limit > getattr(before, key)
+    ]
+    if not most:
+        return ()
+    return (f"{', '.join(most)} is the most that a rig file may state, and too narrow here; do not export from it",)
