@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal, Ranking, Task
+    from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.selection.request import Selection
 
     from ..report.set_report import SetReport
@@ -62,6 +63,25 @@ class SetFigureOptions(FigureOptions):
         """The file of the one figure of the set, where one was asked for."""
         single = self.figure is not None and self.figure.suffix.lower() in FIGURE_SUFFIXES
         return self.figure if single and self.figure is not None and not self.figure.is_dir() else None
+
+
+@dataclass(frozen=True)
+class RankedBy(CrowdOptions):
+    """Virtual people with a form of memory, or the rules of the literature."""
+
+    norm: Annotated[
+        Literal["episodes", "naming", "rules"],
+        typer.Option("--norm", "--by", help="How icons are remembered; rules: by the literature's rules, not people."),
+    ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """Arguments of `rank`."""
+        return {**super().asked, "norm": "episodes", "by": "rules"} if self.norm == "rules" else super().asked
+
+    def draws(self, model: ObserverModel) -> int:
+        """How many draws to use; rules have none."""
+        return 0 if self.norm == "rules" else super().draws(model)
 
 
 @dataclass(frozen=True)
@@ -114,7 +134,7 @@ def _read_task(text: str) -> tuple[str, float]:
 
 def rank_command(
     files: FileNames,
-    crowd: CrowdOptions,
+    crowd: RankedBy,
     task: TaskOptions,
     rig: RigOptions,
     figure: SetFigureOptions,
@@ -148,6 +168,8 @@ def rank_command(
     check_separate(files, [json, report, figure.picture])
     here = read_workers(workers)
     if doubt:
+        if crowd.norm == "rules":
+            raise usage("is about predictions for people: leave out --by rules", "--doubt")
         from .doubt import doubt_about
 
         given = {"--task": task.task, "--report": report, "--workers": workers, "--keep": keep}
@@ -170,6 +192,7 @@ def rank_command(
         icons,
         where,
         draws,
+        edits="none" if crowd.norm == "rules" else "worst",
         warnings=warnings,
         workers=here,
         **crowd.asked,

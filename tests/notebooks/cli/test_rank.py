@@ -186,6 +186,16 @@ def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_set_is_ranked_by_rules_alone(cli: Cli) -> None:
+    result = cli("rank", "six-icons", "--by", "rules")
+    assert result.exit_code == 0, result.stderr
+    assert "Set: 15 of 15 pairs distinguishable by the rules" in result.stdout
+    assert "virtual" not in result.stdout
+    refused = cli("rank", "six-icons", "--by", "rules", "--doubt")
+    assert refused.exit_code == 2
+    assert "leave out --by rules" in refused.stderr
+
+
 def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "near.cue"
     cues = [
