@@ -1,4 +1,4 @@
-"""What ``thermicon observed`` prints of answers: participants, fit, and pairs that were missed."""
+"""What ``thermicon pilot`` prints of answers: participants, fit, and pairs that were missed."""
 
 from __future__ import annotations
 

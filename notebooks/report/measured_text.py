@@ -1,4 +1,4 @@
-"""What ``thermicon observed`` prints of thresholds, reaction times and ratings, and how they fit the prediction."""
+"""What ``thermicon pilot`` prints of thresholds, reaction times and ratings, and how they fit the prediction."""
 
 from __future__ import annotations
 

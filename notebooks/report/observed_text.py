@@ -1,4 +1,4 @@
-"""What ``thermicon observed`` prints: the data beside their prediction, and the prediction before and after."""
+"""What ``thermicon pilot`` prints: the data beside their prediction, and the prediction before and after."""
 
 from __future__ import annotations
 

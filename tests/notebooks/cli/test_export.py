@@ -1,4 +1,4 @@
-"""``thermicon export`` and ``thermicon devices``: files, words, exit codes."""
+"""``thermicon export`` and ``thermicon list devices``: files, words, exit codes."""
 
 from __future__ import annotations
 
