@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from .set_report import SetReport
 
 MOST_PAIRS = 60
+OWN_UNITS = {"intensity": "1", "rate": "× per s", "duration": "s", "pause": "s"}
+"""Units of what single icons have of a component, where 1 is a multiple of threshold; differences are in d′."""
 LIMITS = (
     "Everything here follows from a model of the skin and of its receptors, calibrated on published thresholds. No "
     "experiment has confirmed it for these icons.",
@@ -210,12 +212,13 @@ def _worst(result: dict[str, Any]) -> Iterator[Block]:
     yield Heading("Components of the distance", 3)
     rows = []
     for part in pair["parts"]:
-        own = "K/s" if part["part"] == "rate" else part["unit"]
+        own = OWN_UNITS.get(part["part"], part["unit"])
         shown = [_sized(part[key], own if key in "ab" else part["unit"]) for key in ("a", "b", "value", "noticeable")]
         rows.append([part["part"], *shown, "–" if part["above"] is None else "yes" if part["above"] else "no"])
     yield grid(("component", pair["a"], pair["b"], "difference", "just noticeable", "noticeable"), rows)
     yield Text(
-        "Just noticeable holds for icons played back to back; naming one from memory needs several times as much."
+        "Intensity and rate are in multiples of threshold. Just noticeable holds for icons played back to back; naming "
+        "one from memory needs several times as much."
     )
 
 

@@ -138,6 +138,9 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
         assert words.count(part) >= 2
     for heading in ("Settings", "Ranking", "Pictures of the set", "Rules of thumb", "Icons", "Safety"):
         assert f"<h2>{heading}</h2>" in made
+    shares = re.search(r"<td>rate</td>(.*?)</tr>", made, re.S)
+    assert shares is not None
+    assert shares[1].count("× per s") == 2
 
 
 @pytest.mark.slow
