@@ -30,7 +30,7 @@ QUICK, WELL = (6, 0), (200, 128)
 """How many people, and how many draws of the parameters: at once, and when there is time."""
 MOST_RANKED = 60
 STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
-"""Dashes and width of the first curve and the second, which are told apart by them in grey too."""
+"""Dashes and width of the first curve and the second, which distinguish them in grey too."""
 
 
 @dataclass(frozen=True, slots=True)

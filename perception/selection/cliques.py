@@ -10,9 +10,6 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-GROUPED_FROM = 3
-"""With fewer things missing, looking at the candidates costs more than trying them."""
-
 
 class StepsExhaustedError(Exception):
     """The search stopped before it was complete."""
