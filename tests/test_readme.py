@@ -12,6 +12,7 @@ import io
 import os
 import re
 import shlex
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,7 +29,6 @@ from thermicon.notebooks.report.schema_table import (
 )
 from thermicon.notebooks.study.keys_table import keys_table
 from thermicon.perception.evidence import posterior_tables as tables
-from thermicon.perception.evidence.memory_forms import forms_table
 
 ROOT = Path(__file__).resolve().parents[1]
 README = ROOT / "README.md"
@@ -41,7 +41,6 @@ BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
 TABLES = {
     **tables.TABLES,
-    "forms of memory": forms_table,
     "study keys": keys_table,
     "rig keys": rig_keys_table,
     "modules": modules_table,
@@ -214,23 +213,25 @@ def draw_images(folder: Path) -> None:
 
 def draw_mechanisms(folder: Path) -> None:
     """Draw what each mechanism does, and what the inference found."""
+    sys.path.insert(0, str(ROOT / "docs" / "explain"))  # the pictures are made beside their pages
     from episodes_picture import episodes_figure  # beside this file, which draws only as a program
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Rig, simulate
-    from thermicon.icons import load_library
-    from thermicon.perception import Observer, perceive
-    from thermicon.perception.evidence.effects import EFFECTS
-    from thermicon.perception.evidence.onset_stages import onset_stages
-    from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
-    from thermicon.perception.identification.episodes import remembered
-    from thermicon.perception.plots.draw_effects import plot_effect, plot_onset_stages
-    from thermicon.perception.plots.draw_evidence import (
+    from mechanisms.draw_effects import plot_effect, plot_onset_stages
+    from mechanisms.draw_evidence import (
         plot_ablation,
         plot_left_out,
         plot_narrowing,
         plot_published_predicted,
     )
+    from mechanisms.effects import EFFECTS
+    from thermicon.circuit import Rig, simulate
+    from thermicon.icons import load_library
+    from thermicon.perception import Observer, perceive
+    from thermicon.perception.evidence.frozen import load_ablation
+    from thermicon.perception.evidence.magnitudes import onset_stages
+    from thermicon.perception.evidence.results import load_constants, load_predictions
+    from thermicon.perception.identification.episodes import remembered
 
     drawn = {f"mechanism-{name}": plot_effect(effect()) for name, effect in EFFECTS.items()} | {
         "mechanism-delays": plot_onset_stages(onset_stages(load_library("six-icons"), Rig.load("thenar"))),

@@ -13,8 +13,7 @@ from thermicon.perception.evidence.conditioning import (
     InferredConstant,
     experiment_title,
 )
-from thermicon.perception.evidence.magnitudes import CHANGES_K
-from thermicon.perception.evidence.onset_stages import OnsetStages
+from thermicon.perception.evidence.magnitudes import CHANGES_K, OnsetStages
 from thermicon.perception.evidence.results import UNMOVED_SD
 from thermicon.perception.evidence.table_text import UNITS, number, signed, span
 from thermicon.perception.observer.variants import VARIABLES

@@ -1,9 +1,10 @@
-"""``python -m thermicon.perception.evidence``: sample the posterior of all constants, or leave each experiment out.
+"""``python -m thermicon.perception.evidence``: make the shipped results of the inference again, step by step.
 
-``sample`` writes 1,000 draws of the posterior, from the shipped evidence and priors; chains that have not converged are
-refused without ``--force``. ``leave-out`` infers all constants again without each experiment in turn and predicts it.
-Both keep chains in a folder and go on from there; on one computer the same seed gives the same draws, however many
-workers there are and however often the run was interrupted.
+``fit`` infers the constants of every variant at the maximum of the posterior. ``sample`` writes 1,000 draws of the
+posterior; chains that have not converged are refused without ``--force``. ``leave-out`` infers all constants again
+without each experiment in turn and predicts it. ``observer`` writes the parameter file of the observer.
+``sample`` and ``leave-out`` keep chains in a folder and go on from there; on one computer the same seed gives the same
+draws, however many workers there are and however often the run was interrupted.
 """
 
 from __future__ import annotations
@@ -17,13 +18,15 @@ from thermicon.circuit.cores import cores
 from thermicon.circuit.records import RecordError
 
 from ..observer.draws_file import to_text, variant_named
-from . import left_out_file, variant_scores
-from .diagnostics import require_extra
+from .calibrate import write_observer
+from .chains import require_extra
+from .fit import write_fit
 from .learning import CHAINS
+from .left_out_table import LEFT_OUT, complete, leave_each_out
 from .posterior import Posterior
-from .posterior_tables import scores_sentence, variants_sentence
+from .posterior_tables import scores_sentence, summarise
+from .results import write_rows
 from .sampling import LEAST_STEPS, Sampled, sample
-from .summaries import summarise
 
 REFUSED = 3
 LEAST_STEPS_ASKED, MOST_STEPS, USUAL_STEPS = 100, 100_000, 20_000
@@ -34,10 +37,16 @@ def main(words: Sequence[str] | None = None) -> int:
     asked = parser().parse_args(words)
     if not LEAST_STEPS_ASKED <= asked.steps <= MOST_STEPS:
         parser().error(f"--steps {asked.steps} is outside {LEAST_STEPS_ASKED} to {MOST_STEPS:,}")
-    require_extra()
-    if asked.keep is not None:
-        asked.keep.mkdir(exist_ok=True)
-    return leave_out(asked) if asked.what == "leave-out" else sample_posterior(asked)
+    if asked.what == "fit":
+        write_fit(tell)
+    elif asked.what == "observer":
+        write_observer()
+    else:
+        require_extra()
+        if asked.keep is not None:
+            asked.keep.mkdir(exist_ok=True)
+        return leave_out(asked) if asked.what == "leave-out" else sample_posterior(asked)
+    return 0
 
 
 def parser() -> argparse.ArgumentParser:
@@ -45,8 +54,8 @@ def parser() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(
         "python -m thermicon.perception.evidence", description=(__doc__ or "").split("\n")[0]
     )
-    made.add_argument("what", choices=("sample", "leave-out"))
-    made.add_argument("-o", "--output", type=Path, help="the file of draws, or the folder of both tables")
+    made.add_argument("what", choices=("fit", "sample", "leave-out", "observer"))
+    made.add_argument("-o", "--output", type=Path, help="the file of draws, or the folder of left-out predictions")
     made.add_argument("--variant", default="temperature", help="what receptors respond to: temperature or heat-flow")
     made.add_argument("--seed", type=int, default=0)
     made.add_argument("--keep", type=Path, metavar="DIR", help="folder of chains; needed by leave-out")
@@ -97,23 +106,21 @@ def worst_text(sampled: Sampled) -> str:
 
 
 def leave_out(asked: argparse.Namespace) -> int:
-    """Leave every experiment out and score the variants; what is done already is not done again."""
+    """Leave every experiment out; what is done already is not done again."""
     if asked.keep is None:
         sys.stderr.write("leave-out needs --keep DIR for finished parts\n")
         return 2
     posterior = Posterior()
-    if not left_out_file.complete(asked.keep):
+    if not complete(asked.keep):
         sampled = sample(posterior, asked.seed, keep=asked.keep, workers=asked.workers, progress=tell)
         if not sampled.diagnostics.converged:
             sys.stderr.write(f"\nthe chains in {asked.keep} have not converged: sample with more --steps first\n")
             return REFUSED
-    rows = left_out_file.leave_each_out(asked.keep, posterior, asked.seed, asked.workers, tell)
-    scores = variant_scores.score_variants(asked.keep, asked.workers)
+    rows = leave_each_out(asked.keep, posterior, asked.seed, asked.workers, tell)
     if asked.output is not None:
         asked.output.mkdir(exist_ok=True)
-        left_out_file.write(rows, asked.output / left_out_file.LEFT_OUT)
-        variant_scores.write(scores, asked.output / variant_scores.SCORES)
-    sys.stdout.write(f"\n{scores_sentence(rows)}\n\n{variants_sentence(scores)}\n")
+        write_rows(rows, LEFT_OUT, "leave-out", asked.output)
+    sys.stdout.write(f"\n{scores_sentence(rows)}\n")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Published experiments on peaks, onsets, returns and radiant heat, run on the observer.
+"""Published experiments on peaks, onsets and returns, run on the observer.
 
 As in `experiments`: predictions with intervals, for one sensory variable and receptor model, and
 what is not stated where an experiment was found is stated here as a condition.
@@ -20,13 +20,9 @@ from ..observer.variants import Variable
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import Percept, perceive
-from ..sensation.receptors import receptor_drive
-from ..sensation.sensation import sensation
 from .predicted import DRAWS, Asked, Predicted, predict
-from .radiant import Warming, radiant_warming
 
 PULSE_K, PULSE_S = 4.0, 8.0
-RADIANT_S = 3.0
 HOLD_S = 4.0
 STEEP_K, STEEP_K_PER_S = 4.0, 3.0
 STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percept clock"
@@ -97,53 +93,6 @@ def first_and_return(
     return predict("step and return near threshold", asked, variable, draws, seed)
 
 
-def whole_body_warmth(
-    variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0
-) -> tuple[Predicted, ...]:
-    """Radiant flux (W/m²) on the whole body for 3 s that is just felt as warm (d′ = 1), as Hardy & Oppel 1937 had it.
-
-    Skin and site are the forearm's, to stand for the body. Twice: with spatial summation carried on from
-    a thermode to the whole body, far beyond the areas it was measured on, and without any. The rise of the
-    surface that goes with a flux is given beside, to set the published 6.3 W/m² against 0.003 °C.
-    """
-    body = load_thresholds().one("area of the body").central
-    factor = Observer.load(variable=variable).site_factor("warm", _forearm().site)
-    said = (
-        f"{RADIANT_S:g} s of radiant heat on bare skin of the forearm, absorbed at the surface, d′ = 1, "
-        f"thresholds {factor:.3g} times those of the thenar"
-    )
-    whole = f"{said}, summed over {body:g} m²"
-
-    def flux(area_m2: float | None, observer: Observer) -> float:
-        return _flux_felt(observer, area_m2)
-
-    asked = [
-        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(flux, body)),
-        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(flux, None)),
-        Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(_warmed().surface_K[-1])),
-    ]
-    return predict("whole-body warmth", asked, variable, draws, seed)
-
-
-def _flux_felt(observer: Observer, area_m2: float | None) -> float:
-    """Flux whose largest warm sensation is 1, by bisection of its logarithm."""
-    low, high = 1e-4, 1e6
-    for _ in range(60):
-        middle = float(np.sqrt(low * high))
-        low, high = (low, middle) if _warmth(observer, middle, area_m2) >= 1.0 else (middle, high)
-    return float(np.sqrt(low * high))
-
-
-def _warmth(observer: Observer, flux: float, area_m2: float | None) -> float:
-    warmed, rig = _warmed(), _forearm()
-    if observer.variable == "temperature":
-        received = rig.skin.rest_C + flux * warmed.warm_receptor_K
-    else:
-        received = rig.resting_flux_W_per_m2 + flux * warmed.warm_receptor_W_per_m2
-    drive = receptor_drive(received, warmed.dt_s, "warm", observer)
-    return float(sensation(drive, "warm", observer, area_m2=area_m2, site=rig.site).max())
-
-
 def _steep_onset(channel: Channel, observer: Observer) -> float:
     found = perceive(_steep(channel).traces[0], observer)
     return float(np.inf) if found.onset_s is None else found.onset_s - observer.decision_s
@@ -163,16 +112,6 @@ def _pulse(channel: Channel, size_K: float, duration_s: float) -> Stimulus:
 @lru_cache(maxsize=2)
 def _steep(channel: Channel) -> Stimulus:
     return _thenar("display").play([ramp(channel, STEEP_K, STEEP_K_PER_S, 2.0)], 4.0)
-
-
-@lru_cache(maxsize=1)
-def _forearm() -> Rig:
-    return Rig.load("forearm")
-
-
-@lru_cache(maxsize=1)
-def _warmed() -> Warming:
-    return radiant_warming(_forearm(), 1.0, RADIANT_S)
 
 
 @lru_cache(maxsize=2)

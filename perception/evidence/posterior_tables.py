@@ -1,22 +1,62 @@
-"""Tables of the sampled posterior as Markdown, from the shipped draws and left-out predictions."""
+"""Tables of the sampled posterior as Markdown: what it says of each constant, left-out predictions, variants."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..observer.draws import PosteriorDraws
-from ..observer.variants import VARIABLES
+from .frozen import load_forms, variant_log_scores, variant_weights
 from .left_out import FROM_WEIGHTS
-from .left_out_file import LeftOutRow, load_left_out
+from .left_out_table import LeftOutRow, load_left_out
+from .posterior import Posterior
 from .results import UNMOVED_SD, load_constants
 from .rows import load_rows
-from .summaries import UNMOVED_SHIFT, Summary, summarise
 from .table_text import UNITS, markdown, number, signed, span
 from .tables import TABLES as INFERRED
-from .variant_scores import VariantScores, variant_log_scores, variant_weights
+
+UNMOVED_SHIFT = 0.3
+"""A constant that keeps more than `UNMOVED_SD`, with its median moved by fewer SDs of the prior, was not moved."""
+EDGE = 1.96
+"""A median so many SDs of the prior away from its middle lies at the edge of the prior."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """One constant in its own unit: median and 95 % interval; `narrowed` and `shift` are in SDs of its prior."""
+
+    name: str
+    unit: str
+    median: float
+    low: float
+    high: float
+    narrowed: float
+    shift: float
+
+    @property
+    def unmoved(self) -> bool:
+        """Whether the posterior is the prior, as good as."""
+        return self.narrowed > UNMOVED_SD and abs(self.shift) < UNMOVED_SHIFT
+
+    @property
+    def at_edge(self) -> bool:
+        """Whether evidence and prior disagree so much that the median lies at the end of the prior's 95 %."""
+        return abs(self.shift) > EDGE
+
+
+def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
+    """Every constant of a posterior, in the order of the table."""
+    priors = Posterior(draws.variable).priors
+    rows = []
+    for prior in priors.each:
+        values = draws.values(prior.name)
+        places = (np.array([prior.to_place(value) for value in values.tolist()]) - prior.middle) / prior.sd
+        low, median, high = draws.interval(prior.name)
+        rows.append(Summary(prior.name, prior.unit, median, low, high, float(places.std()), float(np.median(places))))
+    return tuple(rows)
 
 
 def posterior_table() -> str:
@@ -43,21 +83,20 @@ def moved_sentence() -> str:
     found = [each for each in summarise(PosteriorDraws.load()) if each.unit != "SD"]
     return (
         f"Not moved (SD above {UNMOVED_SD:g} of the prior's, median within {UNMOVED_SHIFT:g} of its middle): "
-        f"{_names(found, 'unmoved')}. "
-        f"At the edge of the prior (median beyond its 95 %): {_names(found, 'at_edge')}."
+        f"{_names([each for each in found if each.unmoved])}. "
+        f"At the edge of the prior (median beyond its 95 %): {_names([each for each in found if each.at_edge])}."
     )
 
 
-def _names(found: list[Summary], what: str) -> str:
-    names = sorted(each.name for each in found if getattr(each, what))
-    return ", ".join(names) if names else "none"
+def _names(found: Sequence[Summary]) -> str:
+    return ", ".join(sorted(each.name for each in found)) or "none"
 
 
 def sampled_left_out_table() -> str:
     """Every row predicted by draws that never saw its experiment; misses of the 95 % interval are bold."""
     rows = []
     for each in load_left_out():
-        mark = "" if covered(each, 0.95) else "**"
+        mark = "" if each.covered(0.95) else "**"
         unit = {"1": "", "0-100": "of 100"}.get(each.unit, each.unit)
         naive = "" if math.isnan(each.naive) else signed(each.log_score - each.naive, 2)
         rows.append(
@@ -78,10 +117,9 @@ def sampled_left_out_table() -> str:
     )
 
 
-def scores_sentence(left_out: Sequence[LeftOutRow] | None = None) -> str:
-    """Coverage, widths and log scores of left-out predictions (None: the shipped ones)."""
-    rows = load_left_out() if left_out is None else left_out
-    inside = [sum(covered(each, share) for each in rows) for share in (0.5, 0.95)]
+def scores_sentence(rows: Sequence[LeftOutRow]) -> str:
+    """Coverage, widths and log scores of left-out predictions."""
+    inside = [sum(each.covered(share) for each in rows) for share in (0.5, 0.95)]
     logs = {row.key for row in load_rows() if row.log}
     ratios = sorted(each.high / each.low for each in rows if (each.experiment, each.statistic, each.channel) in logs)
     compared = [each for each in rows if not math.isnan(each.naive)]
@@ -96,21 +134,15 @@ def scores_sentence(left_out: Sequence[LeftOutRow] | None = None) -> str:
     )
 
 
-def covered(row: LeftOutRow, share: float) -> bool:
-    """Whether the central interval of a share contains the published number."""
-    return abs(row.probability - 0.5) <= 0.5 * share
-
-
-def variants_sentence(scores: Sequence[VariantScores] | None = None) -> str:
+def variants_sentence() -> str:
     """Mean left-out log score of each variant, their best mixture, and how sure temperature is better than heat flow.
 
     The standard error is that of a sum over experiments, whose rows share laboratory and people.
     """
-    names, logs = VARIABLES, variant_log_scores(scores)
-    weights = variant_weights(scores).values()
+    logs = variant_log_scores()
     parts = [
         f"{name} {signed(mean, 2)} (weight {weight:.2f})"
-        for name, mean, weight in zip(names, logs.mean(axis=1).tolist(), weights, strict=True)
+        for (name, weight), mean in zip(variant_weights().items(), logs.mean(axis=1).tolist(), strict=True)
     ]
     gains: dict[str, float] = {}
     for row, gain in zip(load_rows(), (logs[0] - logs[1]).tolist(), strict=True):
@@ -125,13 +157,28 @@ def variants_sentence(scores: Sequence[VariantScores] | None = None) -> str:
     )
 
 
+def forms_table() -> str:
+    """Scores of forms of memory, with the sum of each form."""
+    rows, forms = load_forms(), dict.fromkeys(one.norm for one in load_forms())
+    lines = []
+    for norm in forms:
+        own = [one for one in rows if one.norm == norm]
+        for one in own:
+            ends = span(one.low, one.high)
+            lines.append((f"`{norm}`", one.row, one.published, number(one.predicted), ends, f"{one.log_score:.1f}"))
+        total = f"**{sum(one.log_score for one in own):.1f}**"
+        lines.append((f"`{norm}`", "**all rows**", "", "", "", total))
+    return markdown(("norm", "row", "published", "predicted", "95 %", "log score"), lines)
+
+
 TABLES: Mapping[str, Callable[[], str]] = {
     **INFERRED,
     "posterior": posterior_table,
     "sampled": sampled_sentence,
     "moved": moved_sentence,
     "left out by draws": sampled_left_out_table,
-    "scores": scores_sentence,
+    "scores": lambda: scores_sentence(load_left_out()),
     "variants": variants_sentence,
+    "forms of memory": forms_table,
 }
 """Every table of the pages by the name that a page's mark gives, those of the inference included."""

@@ -1,4 +1,4 @@
-"""Bare skin under radiant heat, for published thresholds in W/m² that no display was used for.
+"""Whole-body warmth: bare skin under radiant heat, for published thresholds in W/m² that no display was used for.
 
 The skin is the column of a rig without its display, still air above it; the flux is absorbed at
 the surface, from t = 0 on. Changes from rest are stepped exactly for a flux that is constant.
@@ -7,14 +7,20 @@ the surface, from t = 0 on. Changes from rest are stepped exactly for a flux tha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache, partial
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.circuit import Rig
 
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+from ..arrays import Array
+from ..observer.observer import Observer, load_thresholds
+from ..observer.variants import Variable
+from ..sensation.receptors import receptor_drive
+from ..sensation.sensation import sensation
+from .predicted import DRAWS, Asked, Predicted, predict
+
+RADIANT_S = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,3 +90,60 @@ def _flow(change: Array, place: Array, here: float) -> Array:
         return mean
     face: Array = faces[:, k]
     return face
+
+
+def whole_body_warmth(
+    variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0
+) -> tuple[Predicted, ...]:
+    """Radiant flux (W/m²) on the whole body for 3 s that is just felt as warm (d′ = 1), as Hardy & Oppel 1937 had it.
+
+    Skin and site are the forearm's, to stand for the body. Twice: with spatial summation carried on from
+    a thermode to the whole body, far beyond the areas it was measured on, and without any. The rise of the
+    surface that goes with a flux is given beside, to set the published 6.3 W/m² against 0.003 °C.
+    """
+    body = load_thresholds().one("area of the body").central
+    factor = Observer.load(variable=variable).site_factor("warm", _forearm().site)
+    said = (
+        f"{RADIANT_S:g} s of radiant heat on bare skin of the forearm, absorbed at the surface, d′ = 1, "
+        f"thresholds {factor:.3g} times those of the thenar"
+    )
+    whole = f"{said}, summed over {body:g} m²"
+
+    def flux(area_m2: float | None, observer: Observer) -> float:
+        return _flux_felt(observer, area_m2)
+
+    asked = [
+        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(flux, body)),
+        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(flux, None)),
+        Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(_warmed().surface_K[-1])),
+    ]
+    return predict("whole-body warmth", asked, variable, draws, seed)
+
+
+def _flux_felt(observer: Observer, area_m2: float | None) -> float:
+    """Flux whose largest warm sensation is 1, by bisection of its logarithm."""
+    low, high = 1e-4, 1e6
+    for _ in range(60):
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if _warmth(observer, middle, area_m2) >= 1.0 else (middle, high)
+    return float(np.sqrt(low * high))
+
+
+def _warmth(observer: Observer, flux: float, area_m2: float | None) -> float:
+    warmed, rig = _warmed(), _forearm()
+    if observer.variable == "temperature":
+        received = rig.skin.rest_C + flux * warmed.warm_receptor_K
+    else:
+        received = rig.resting_flux_W_per_m2 + flux * warmed.warm_receptor_W_per_m2
+    drive = receptor_drive(received, warmed.dt_s, "warm", observer)
+    return float(sensation(drive, "warm", observer, area_m2=area_m2, site=rig.site).max())
+
+
+@lru_cache(maxsize=1)
+def _forearm() -> Rig:
+    return Rig.load("forearm")
+
+
+@lru_cache(maxsize=1)
+def _warmed() -> Warming:
+    return radiant_warming(_forearm(), 1.0, RADIANT_S)

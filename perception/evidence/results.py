@@ -1,6 +1,6 @@
-"""The shipped results of the inference: constants, predictions in and out of the fit, and the ablation.
+"""The shipped results of the inference: constants, and predictions in and out of the fit.
 
-Written by `python -m thermicon.perception.evidence.run`; a test checks that they belong to the shipped evidence and
+Written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the shipped evidence and
 priors. All are CSV tables, so that a spreadsheet opens them.
 """
 
@@ -12,6 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from functools import lru_cache
 from io import StringIO
+from pathlib import Path
 from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
@@ -23,7 +24,7 @@ from .statistics import DATA
 
 UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
-CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
+CONSTANTS, PREDICTIONS = "constants.csv", "predictions.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,19 +68,6 @@ class PredictedRow:
     log_score: float
 
 
-@dataclass(frozen=True, slots=True)
-class AblatedRow:
-    """One run of the ablation: `difference` is its log evidence minus that of its variant with every mechanism."""
-
-    variable: str
-    without: str
-    log_evidence: float
-    difference: float
-    squares: float
-    worst: str
-    worst_sd: float
-
-
 @lru_cache(maxsize=4)
 def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
     """Constants of a variant at its maximum.
@@ -96,12 +84,6 @@ def load_predictions() -> tuple[PredictedRow, ...]:
     return tuple(read_rows(PREDICTIONS, PredictedRow))
 
 
-@lru_cache(maxsize=1)
-def load_ablation() -> tuple[AblatedRow, ...]:
-    """The ablation, the default variant first."""
-    return tuple(read_rows(ABLATION, AblatedRow))
-
-
 def constant(name: str) -> Constant:
     """One constant by name; a ValueError names the nearest."""
     for each in load_constants():
@@ -110,14 +92,18 @@ def constant(name: str) -> Constant:
     raise ValueError(f"there is no constant {name!r}: {did_you_mean(name, {each.name for each in load_constants()})}")
 
 
-def to_csv(rows: Sequence[Any]) -> str:
-    """A table with a header, numbers to six figures, from frozen rows of one kind."""
+def write_rows(rows: Sequence[Any], name: str, verb: str, folder: Path = DATA) -> None:
+    """Write frozen rows of one kind as a table, numbers to six figures, below what it was made from.
+
+    `verb` is the command of this room that made them.
+    """
     text = StringIO()
     writer = csv.DictWriter(text, [field.name for field in fields(rows[0])], lineterminator="\n")
     writer.writeheader()
     for row in rows:
         writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in asdict(row).items()})
-    return text.getvalue()
+    head = f"# written by python -m thermicon.perception.evidence {verb} from inputs {inputs_digest()}\n"
+    (folder / name).write_text(head + text.getvalue(), encoding="utf-8")
 
 
 def inputs_digest() -> str:

@@ -26,8 +26,7 @@ from ..arrays import Array
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
 from ..observer.prior_file import LABORATORIES, load_priors
-from .chains import Chain, Reference, extend
-from .diagnostics import ESS, R_HAT, Diagnostics, diagnose
+from .chains import ESS, R_HAT, Chain, Diagnostics, Reference, diagnose, extend
 from .learning import CHAIN_STEPS, CHAINS, Points, Recorder, fitted, learn, misses_at
 from .maximum import Maximum, maximise
 from .posterior import Posterior

@@ -13,7 +13,8 @@ from ..observer.mechanisms import ALL_OFF, find_mechanism
 from ..observer.observer import load_thresholds
 from ..observer.people import people_records
 from ..observer.priors import WITHIN_95
-from .results import UNMOVED_SD, AblatedRow, Constant, PredictedRow, load_ablation, load_constants, load_predictions
+from .frozen import AblatedRow, load_ablation
+from .results import UNMOVED_SD, Constant, PredictedRow, load_constants, load_predictions
 from .rows import PEOPLE_WRIST, load_rows
 from .statistics import load_evidence
 from .table_text import UNITS, markdown, number, signed, span

@@ -1,6 +1,6 @@
 """The observer: every constant of the perceptual chain, read from the calibrated parameter file.
 
-The file `data/observer.toml` is written by `thermicon.perception.evidence.calibrate`; each number there
+The file `data/observer.toml` is written by `thermicon.perception.evidence observer`; each number there
 says what it was calibrated on, or that it is assumed, and carries its interval.
 """
 
@@ -318,7 +318,7 @@ def observer_records() -> Table:
     """The records of the shipped observer and of how people differ."""
     path = DATA / "observer.toml"
     if not path.exists():
-        raise RecordError("observer.toml: not there: write it with python -m thermicon.perception.evidence.calibrate")
+        raise RecordError("observer.toml: not there: write it with python -m thermicon.perception.evidence observer")
     return load_records(path)
 
 

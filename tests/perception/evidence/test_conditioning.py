@@ -5,9 +5,15 @@ import math
 
 import pytest
 
-from thermicon.perception.evidence.conditioning import EDGE, SUSPECTED, experiment_title, load_conditioning
-from thermicon.perception.evidence.conditioning_file import conditioning_file
-from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.evidence.conditioning import (
+    EDGE,
+    SUSPECTED,
+    conditioning_file,
+    experiment_title,
+    load_conditioning,
+)
+from thermicon.perception.evidence.frozen import load_ablation
+from thermicon.perception.evidence.results import load_constants, load_predictions
 from thermicon.perception.evidence.tables import unmoved_sentence
 from thermicon.perception.evidence.validate import ValidationReport
 from thermicon.perception.evidence.validate_file import report_file

@@ -3,7 +3,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer
-from thermicon.perception.evidence.plausible import plausible_observers
+from thermicon.perception.evidence.predicted import plausible_observers
 from thermicon.perception.experiments.classical import forced_choice
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.variants import VARIABLES, Variable

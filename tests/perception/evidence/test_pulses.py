@@ -15,7 +15,7 @@ from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
 from thermicon.perception import choose, dprime_from_memory, perceive, rank
 from thermicon.perception.arrays import Array
-from thermicon.perception.evidence.pulses import CUES, RIG
+from thermicon.perception.evidence.identified import CUES, RIG
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.confusion import embed
 from thermicon.perception.identification.delivered import judge_delivered

@@ -5,7 +5,8 @@ import re
 import pytest
 
 from thermicon.perception.evidence import tables
-from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.evidence.frozen import load_ablation
+from thermicon.perception.evidence.results import load_constants, load_predictions
 from thermicon.perception.evidence.rows import load_rows
 
 

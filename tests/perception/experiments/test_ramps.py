@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
-from thermicon.perception.evidence.plausible import plausible_observers
+from thermicon.perception.evidence.predicted import plausible_observers
 from thermicon.perception.experiments import classical
 from thermicon.perception.experiments.classical import method_of_limits
 from thermicon.perception.experiments.measured import crowd_of

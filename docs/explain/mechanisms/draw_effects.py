@@ -12,8 +12,9 @@ from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..evidence.effects import Effect
-    from ..evidence.onset_stages import OnsetStages
+    from thermicon.perception.evidence.magnitudes import OnsetStages
+
+    from .effects import Effect
 
 LOOKS: dict[str, dict[str, Any]] = {
     "cold": {"color": COOL, "lw": 2.0},

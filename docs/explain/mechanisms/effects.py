@@ -13,16 +13,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, own_arrays
-from ..experiments.laboratory import SURFACE_DEPTH_M
-from ..experiments.skin_modes import Corner, SkinModes, skin_modes
-from ..observer.channels import CHANNELS, Channel, sign_of
-from ..observer.observer import Observer
-from ..observer.transducer import Transducer
-from ..sensation.detection import detect
-from ..sensation.receptors import receptor_drive
-from ..sensation.sensation import sensation, sensitivity
-from .results import Constant, load_constants
+from thermicon.perception.arrays import Array, own_arrays
+from thermicon.perception.evidence.results import Constant, load_constants
+from thermicon.perception.experiments.laboratory import SURFACE_DEPTH_M
+from thermicon.perception.experiments.skin_modes import Corner, SkinModes, skin_modes
+from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
+from thermicon.perception.observer.observer import Observer
+from thermicon.perception.observer.transducer import Transducer
+from thermicon.perception.sensation.detection import detect
+from thermicon.perception.sensation.receptors import receptor_drive
+from thermicon.perception.sensation.sensation import sensation, sensitivity
 
 Look = Literal["cold", "warm", "reference", "off", "other"]
 """How a curve is drawn: in a channel's colour, thin for a reference, dashed grey for a mechanism turned off."""

@@ -7,18 +7,19 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.text import Text
 
-from thermicon.circuit import Rig
-from thermicon.icons import load_library
-from thermicon.perception.evidence.effects import EFFECTS, Curve, Effect
-from thermicon.perception.evidence.onset_stages import OnsetStages, onset_stages
-from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
-from thermicon.perception.plots.draw_effects import STAGES, plot_effect, plot_onset_stages
-from thermicon.perception.plots.draw_evidence import (
+from mechanisms.draw_effects import STAGES, plot_effect, plot_onset_stages
+from mechanisms.draw_evidence import (
     plot_ablation,
     plot_left_out,
     plot_narrowing,
     plot_published_predicted,
 )
+from mechanisms.effects import EFFECTS, Curve, Effect
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
+from thermicon.perception.evidence.frozen import load_ablation
+from thermicon.perception.evidence.magnitudes import OnsetStages, onset_stages
+from thermicon.perception.evidence.results import load_constants, load_predictions
 
 effect_of = pytest.fixture(scope="module")(lambda: {name: effect() for name, effect in EFFECTS.items()})
 
