@@ -24,7 +24,7 @@ from ..observer.transducer import Transducer
 from ..observer.variants import Variable
 from ..sensation.receptors import NO_LIMIT_C
 from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
-from .crowd import SHARES, TRIALS, Crowd, draw_crowd
+from .crowd import PEOPLE, SEED, SHARES, TRIALS, Crowd, draw_crowd
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
 
 DT_S = 0.025
@@ -68,17 +68,19 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
 class Laboratory:
     """Constants by name, as `priors.toml` names them, for one sensory variable.
 
-    `without` names mechanisms that are turned off.
+    `without` names mechanisms that are turned off; `people` of a seed take part.
     """
 
     values: Mapping[str, float]
     variable: Variable = "temperature"
     without: Without = frozenset()
+    people: int = PEOPLE
+    seed: int = SEED
 
     @property
     def crowd(self) -> Crowd:
         """The people that take part in every experiment."""
-        return draw_crowd()
+        return draw_crowd(self.people, self.seed)
 
     @cached_property
     def sensitivity(self) -> dict[Channel, Array]:

@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
+from ..experiments.measure import Setting
 from .answers import AnswerScore, score_person, score_pooled
 from .conditioning import Step
 from .fit import Fit, MeasurementFit, compare, compare_measurements
@@ -22,7 +23,7 @@ from .measurements import Measurements
 from .playing import Confusions, Stage
 from .pooled_answers import PooledLikelihood
 from .prediction import Three, three
-from .simulated_measurements import Predicted, Setting, predicted
+from .simulated_measurements import Predicted, predicted
 from .states import Laboratories, LaboratoryPrior
 from .trials import Trials
 

@@ -16,9 +16,10 @@ from itertools import combinations
 import numpy as np
 
 from ..arrays import Array
+from ..experiments.measure import Condition
 from .answers import plugin_information
 from .measurement_likelihood import log_errors, person_covariance, shared_covariance
-from .measurements import Condition, Measurements
+from .measurements import Measurements
 from .playing import Confusions
 from .prediction import COVER, Three, median_three
 from .simulated_measurements import Predicted

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..experiments.task_constants import DISCREPANCY, UNSTATED
+from ..experiments.tasks import DISCREPANCY, UNSTATED
 from .measurements import Measurements
 from .pooled_answers import features_of, ridge, smooth_features
 from .simulated_measurements import Predicted

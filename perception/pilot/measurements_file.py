@@ -12,8 +12,9 @@ import numpy as np
 from thermicon.circuit.inputs import quoted
 from thermicon.icons.near_words import nearest_words
 
+from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
 from ..observer.channels import CHANNELS, Channel
-from .measurements import ADAPTIVE, METHODS, UNITS, Condition, Kind, Measurements
+from .measurements import Measurements
 from .trials_file import Cells, TrialsError, check_labels, label, read_cells, read_header
 
 if TYPE_CHECKING:
