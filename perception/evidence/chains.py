@@ -18,6 +18,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from thermicon.icons.atomic import complete_or_absent
+
 from ..arrays import Array
 from .surrogate import Surrogate
 
@@ -80,11 +82,10 @@ class Chain:
 
     def save(self, path: Path) -> None:
         """Write the chain completely or not at all."""
-        draft = path.with_suffix(".part")
         kind, keys, place, has_gauss, gauss = self.random
-        with draft.open("wb") as file:
+        with complete_or_absent(path) as draft:
             np.savez(
-                file,
+                draft,
                 white=self.white,
                 log_posterior=self.log_posterior,
                 accepted=self.accepted,
@@ -93,7 +94,6 @@ class Chain:
                 gauss=gauss,
                 kind=kind,
             )
-        draft.replace(path)
 
     @classmethod
     def load(cls, path: Path) -> Chain:

@@ -18,7 +18,6 @@ from tests.circuit.surerig import SURE
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.icons import read_cue
-from thermicon.notebooks.cli import export as exporting
 
 Cli = Callable[..., Any]
 COLD = """cue 1
@@ -211,7 +210,7 @@ class TestFiles:
         def simulated(*_: object, **__: object) -> None:
             raise AssertionError("simulated")
 
-        monkeypatch.setattr(exporting, "prepare_icons", simulated)
+        monkeypatch.setattr("thermicon.circuit.delivery.export.prepare_set", simulated)
         out = tmp_path / "out"
         out.mkdir()
         (out / name).write_text("{}")
