@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import shlex
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.builders import messages, missing
+
 Cli = Callable[..., Any]
-SAID = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+SAID = messages(__file__)
 FILES: dict[str, bytes] = {name: text.encode() for name, text in SAID["files"].items()} | {
     "empty.cue": b"",
     "picture.cue": b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR",
@@ -44,7 +45,7 @@ def test_a_command_says_what_it_must_and_leaves_nothing(
     assert said.exit_code == code, told
     assert code == 0 or said.stdout == ""
     assert "Traceback" not in told
-    assert [word for word in ([words] if isinstance(words, str) else words) if word not in told] == [], told
+    assert missing(words, told) == [], told
     assert held(folder) == before
 
 
