@@ -14,8 +14,7 @@ from ..experiments.laboratory import Laboratory
 from ..experiments.published import Predictions, predict
 from ..observer.channels import CHANNELS
 from ..observer.mechanisms import Without, find_mechanism
-from ..observer.prior_file import LABORATORIES, load_priors, priors_of
-from ..observer.priors import Priors
+from ..observer.priors import LABORATORIES, Priors, load_priors, priors_of
 from ..observer.variants import Variable
 from .rows import Row, load_rows
 

@@ -17,7 +17,7 @@ from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..observer.prior_file import load_priors
+from ..observer.priors import load_priors
 from ..observer.variants import Variable
 from .rows import load_rows
 from .statistics import DATA
