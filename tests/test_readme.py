@@ -21,16 +21,13 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.notebooks.report.schema_table import (
-    device_keys_table,
-    device_quantities_table,
-    modules_table,
-    rig_keys_table,
-)
-from thermicon.notebooks.study.keys_table import keys_table
 from thermicon.perception.evidence import posterior_tables as tables
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "docs" / "builder"))
+
+import key_tables  # noqa: E402
+
 README = ROOT / "README.md"
 INDEX = ROOT / "docs" / "README.md"
 PAGES = (README, *sorted((ROOT / "docs").rglob("*.md")))
@@ -41,11 +38,11 @@ BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
 TABLES = {
     **tables.TABLES,
-    "study keys": keys_table,
-    "rig keys": rig_keys_table,
-    "modules": modules_table,
-    "device keys": device_keys_table,
-    "device quantities": device_quantities_table,
+    "study keys": key_tables.study_keys_table,
+    "rig keys": key_tables.rig_keys_table,
+    "modules": key_tables.modules_table,
+    "device keys": key_tables.device_keys_table,
+    "device quantities": key_tables.device_quantities_table,
 }
 TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
 """Tables that are generated from data files, between comments that GitHub does not show."""

@@ -10,6 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
@@ -179,9 +180,10 @@ class Rig:
         if _build(parse_toml(saved.toml, str(where)), str(where)) != saved:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:
-            where.write_text(saved.toml, encoding="utf-8")
-        except OSError as problem:
-            raise RigError(f"{where}: cannot be written ({problem.strerror or problem})") from None
+            with complete_or_absent(where) as draft:
+                draft.write_text(saved.toml, encoding="utf-8")
+        except OutputError as problem:
+            raise RigError(str(problem)) from None
 
     def _pump_for(self, what: str) -> HeatPump:
         if self.pump is None:

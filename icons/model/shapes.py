@@ -87,7 +87,7 @@ class Wave:
         prove_number(self, "by_K", "difference")
         prove_number(self, "by_A", "current")
         if self.by_A is not None and self.by_A <= 0:
-            raise ValueError(f"Wave.by_A = {self.by_A!r}: an amplitude is positive")
+            raise ValueError(f'Wave.by_A = {self.by_A!r}: an amplitude is positive; to begin downwards, start "down"')
         prove_given(self, "period_s", "time")
         prove_given(self, "duration_s", "time")
         up, down = ("warm", "cool") if self.by_A is None else ("up", "down")

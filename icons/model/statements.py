@@ -1,6 +1,7 @@
 """What an icon is made of: frozen statements in SI floats that prove themselves; shapes stand in ``shapes``."""
 
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import TYPE_CHECKING, Literal, get_args
 
 from .shapes import Heading, Pulse, Step, Wave
@@ -164,13 +165,14 @@ class Repeat:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if isinstance(self.count, bool) or not isinstance(self.count, int) or not 1 <= self.count <= MOST_REPEATS:
+        if isinstance(self.count, bool) or not isinstance(self.count, Integral) or not 1 <= self.count <= MOST_REPEATS:
             raise ValueError(f"Repeat.count must be a whole number from 1 to {MOST_REPEATS}, not {self.count!r}")
         body = tuple(self.body)
         if not body or not all(isinstance(part, (Repeat, Play, Broken, *LEAVES)) for part in body):
             raise ValueError("Repeat.body must hold at least one statement, and nothing else")
         if any(isinstance(part, Total) for part in body):
             raise ValueError("Repeat.body may not hold a Total, which concerns the whole icon")
+        object.__setattr__(self, "count", int(self.count))
         object.__setattr__(self, "body", body)
 
 

@@ -1,6 +1,7 @@
 """What a number in an icon may be: the language's own limits, and the proofs that statements run on construction."""
 
 import math
+from numbers import Real
 from typing import Literal
 
 from .units import LARGEST, SMALLEST, Kind, decimal_text, exact
@@ -52,7 +53,7 @@ def prove_number(owner: object, name: str, kind: Kind) -> None:
     value = getattr(owner, name)
     if value is None:
         return
-    if isinstance(value, bool) or not isinstance(value, int | float):
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"{type(owner).__name__}.{name} must be a number, not {value!r}")
     value = float(value) + 0.0
     found = fault(value, kind)

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from thermicon.circuit.cores import cores
 from thermicon.circuit.records import RecordError
+from thermicon.icons.atomic import complete_or_absent
 
 from ..observer.draws_file import to_text, variant_named
 from .calibrate import write_observer
@@ -92,9 +93,8 @@ def sample_posterior(asked: argparse.Namespace) -> int:
         sys.stderr.write("nothing was written: give more --steps and --keep DIR, or --force to write it marked\n")
         return REFUSED
     if asked.output is not None:
-        draft = asked.output.with_name(f"{asked.output.name}.part")
-        draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
-        draft.replace(asked.output)
+        with complete_or_absent(asked.output) as draft:
+            draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
     return 0
 
 

@@ -21,6 +21,7 @@ import numpy as np
 
 from thermicon.circuit.cores import quiet_blas
 from thermicon.circuit.records import RecordError
+from thermicon.icons.atomic import complete_or_absent
 
 from ..arrays import Array
 from ..observer.draws import PosteriorDraws
@@ -252,16 +253,14 @@ def _save_learned(keep: Path | None, reference: Reference, points: Points, begun
         return
     for number, chain in enumerate(begun):
         chain.save(keep / f"warm-{number}.npz")
-    draft = keep / "points.part"
-    with draft.open("wb") as file:
+    with complete_or_absent(keep / POINTS) as draft:
         np.savez(
-            file,
+            draft,
             middle=reference.middle,
             factor=reference.factor,
             vectors=points.vectors,
             misses=points.misses,
         )
-    draft.replace(keep / POINTS)
 
 
 def load_vectors(keep: Path, reference: Reference) -> Array:

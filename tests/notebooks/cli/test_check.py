@@ -1,7 +1,8 @@
-"""``thermicon check``: one line a file, and quick."""
+"""``thermicon check``: one line a file, and quick; with ``--fix``, files in canonical layout, whole or untouched."""
 
 from __future__ import annotations
 
+import stat
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,6 +13,14 @@ import pytest
 
 Cli = Callable[..., Any]
 HEAVY = {"numba", "numpy", "pandas", "matplotlib", "scipy", "IPython", "ipywidgets", "rich", "tqdm"}
+LOOSE = "# über alles\ncue 1\nicon dip{cool by 6K at 3 K/s; hold for 500 ms; return at 3 K/s # back\n}\n"
+TIDY = "# über alles\ncue 1\n\nicon dip {\n  cool by 6 K at 3 K/s\n  hold for 500 ms\n  return at 3 K/s  # back\n}\n"
+LARGE = "cue 1\nicon one(size in 0.001..10 step 0.001 K) { cool by size over 2 s; return over 1 s }\n"
+
+
+def written(path: Path, text: str | bytes) -> Path:
+    path.write_bytes(text.encode() if isinstance(text, str) else text)
+    return path
 
 
 def test_one_line_a_file(cli: Cli, two: Path) -> None:
@@ -20,49 +29,16 @@ def test_one_line_a_file(cli: Cli, two: Path) -> None:
     assert said.stdout == "two.cue: 2 icons, 6–8 s, 26–36 °C, steepest 3 °C/s\n"
 
 
-def test_several_files_and_a_shipped_set(cli: Cli, two: Path) -> None:
-    said = cli("check", two, "six-icons")
+@pytest.mark.parametrize("most", [100, pytest.param(None, marks=pytest.mark.slow)])
+def test_a_large_family_is_checked_whole_and_against_a_rig_by_some(
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, most: int | None
+) -> None:
+    if most is not None:
+        monkeypatch.setattr("thermicon.notebooks.cli.check.MOST_ICONS", most)
+    said = cli("check", written(tmp_path / "large.cue", LARGE), "--rig", "thenar")
     assert said.exit_code == 0
-    first, second = said.stdout.splitlines()
-    assert first.startswith("two.cue: 2 icons")
-    assert second.startswith("six-icons: 6 icons")
-
-
-def test_a_set_by_current_is_told_in_amperes(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "amps.cue"
-    path.write_text(
-        "cue 1\nset amps { control current }\n"
-        "icon a {\n  to 0.5 A at 1 A/s\n  hold for 1 s\n  to -0.25 A at 0.5 A/s\n  return at 0.5 A/s\n}\n",
-        encoding="utf-8",
-    )
-    said = cli("check", path)
-    assert said.exit_code == 0, said.stderr
-    assert said.stdout == "amps.cue: 1 icon, 3.5 s, −0.25 to 0.5 A, steepest 1 A/s\n"
-
-
-def test_a_rig_adds_its_limits(cli: Cli, two: Path) -> None:
-    assert cli("check", two, "--rig", "thenar").exit_code == 0
-    said = cli("check", two, "--rig", "thenar", "--set", "driver.current_limit_A=0.2")
-    assert said.exit_code == 1
-    assert "cool-step" in said.stderr
-    assert "3 °C/s of cooling" in said.stderr
-
-
-def test_a_set_for_another_site_is_only_warned_about(cli: Cli, two: Path) -> None:
-    two.write_text(two.read_text(encoding="utf-8").replace("site thenar", "site forearm"), encoding="utf-8")
-    said = cli("check", two, "--rig", "thenar")
-    assert said.exit_code == 0
-    assert "warning" in said.stderr
-    assert "forearm" in said.stderr
-
-
-def test_a_rest_that_the_language_does_not_know(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "free.cue"
-    path.write_text("cue 1\nicon a { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n", encoding="utf-8")
-    assert cli("check", path, "--set", "skin.rest_C=30").stdout.startswith("free.cue: 1 icon, 4 s, 30–32 °C")
-    said = cli("check", path, "--set", "skin.rest_C=70")
-    assert said.exit_code == 1
-    assert "70" in said.stderr
+    assert "10,000 icons" in said.stdout
+    assert f"{most or 2000:,} of its 10,000 icons" in said.stderr
 
 
 @pytest.mark.parametrize(
@@ -78,3 +54,64 @@ def test_nothing_heavy_is_imported(two: Path, more: tuple[str, ...], needed: set
         [sys.executable, "-c", program, "check", str(two), *more], capture_output=True, encoding="utf-8", check=True
     )
     assert HEAVY & set(run.stdout.split()) == needed
+
+
+def test_files_are_brought_into_canonical_layout(cli: Cli, tmp_path: Path) -> None:
+    loose, tidy = written(tmp_path / "a.cue", LOOSE), written(tmp_path / "b.cue", TIDY)
+    before = tidy.stat().st_mtime_ns, tidy.stat().st_ino
+    said = cli("check", "--fix", loose, tidy)
+    assert (said.exit_code, said.stderr) == (0, f"{loose}: formatted\n")
+    assert [line.split(":")[0] for line in said.stdout.splitlines()] == ["a.cue", "b.cue"]
+    assert loose.read_bytes() == tidy.read_bytes() == TIDY.encode()
+    assert (tidy.stat().st_mtime_ns, tidy.stat().st_ino) == before
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["a.cue", "b.cue"]
+
+
+def test_bad_files_are_told_together_and_stay_as_they_are(cli: Cli, tmp_path: Path) -> None:
+    good = written(tmp_path / "good.cue", LOOSE)
+    slip = written(tmp_path / "slip.cue", "cue 1\nicon x{ hold for 4 }")
+    mute = written(tmp_path / "mute.cue", b"cue 1\n\xff")
+    said = cli("check", "--fix", slip, good, mute, tmp_path / "none.cue", tmp_path)
+    assert said.exit_code == 1
+    for words in ("slip.cue:2:18  E102", "mute.cue  E007", "none.cue  E001", "E002"):
+        assert words in said.stderr
+    assert slip.read_bytes() == b"cue 1\nicon x{ hold for 4 }"
+    assert mute.read_bytes() == b"cue 1\n\xff"
+    assert good.read_text(encoding="utf-8") == TIDY
+
+
+def test_an_own_file_hides_a_shipped_set_of_its_name(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path / "six-icons", LOOSE)
+    assert cli("check", "--fix", "six-icons").stderr == "six-icons: formatted\n"
+
+
+def test_line_ends_stay_and_a_byte_order_mark_goes(cli: Cli, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.cue", b"\xef\xbb\xbf" + LOOSE.replace("\n", "\r\n").encode())
+    assert cli("check", "--fix", path).exit_code == 0
+    assert path.read_bytes() == TIDY.replace("\n", "\r\n").encode()
+    assert cli("check", "--fix", path).stderr == ""
+    old = written(path, TIDY.replace("\n", "\r").encode())
+    assert cli("check", "--fix", old).exit_code == 0
+    assert old.read_bytes() == TIDY.encode()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="modes and links of POSIX")
+def test_the_mode_of_a_file_stays_and_a_link_is_followed(cli: Cli, tmp_path: Path) -> None:
+    path = written(tmp_path / "a.cue", LOOSE)
+    path.chmod(0o640)
+    link = tmp_path / "link.cue"
+    link.symlink_to(path)
+    assert cli("check", "--fix", link).exit_code == 0
+    assert link.is_symlink()
+    assert path.read_text(encoding="utf-8") == TIDY
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+
+
+def test_a_file_that_cannot_be_written_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = written(tmp_path / "a.cue", LOOSE)
+    monkeypatch.setattr("os.access", lambda *_: False)
+    said = cli("check", "--fix", path)
+    assert said.exit_code == 1
+    assert f"cannot write {path}" in said.stderr
+    assert path.read_text(encoding="utf-8") == LOOSE

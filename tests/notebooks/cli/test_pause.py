@@ -12,10 +12,9 @@ from typing import Any
 import pytest
 
 from tests.circuit.surerig import SURE, sure_rig
-from thermicon.circuit import Gate, Rig
+from thermicon.circuit import Export, Gate, export
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import load_library, parse
-from thermicon.notebooks.files.exporting import PreparedExport, prepare_icons
 from thermicon.notebooks.report.gate_words import gate_words
 from thermicon.notebooks.workbench.export_tables import delivered_html, gate_html
 
@@ -27,71 +26,47 @@ icon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }
 """
 
 
+def prepared(form: str) -> Export:
+    return export(parse(GLOW), sure_rig(), format=form, pause_s=60.0)
+
+
 @pytest.fixture(scope="module")
-def glow() -> PreparedExport:
+def glow() -> Export:
     """Two icons for PsychoPy, played a minute apart on a rig that is known exactly."""
-    return prepare_icons(list(parse(GLOW).icons), [], sure_rig(), form="psychopy", pause_s=60.0)
+    return prepared("psychopy")
 
 
-def verdict(ready: PreparedExport, place: int = 0) -> Gate:
+def verdict(ready: Export, place: int = 0) -> Gate:
     found = ready.prepared[place].verdict
     assert isinstance(found, Gate)
     return found
 
 
-class TestCommand:
-    """The words and exit codes."""
-
-    @pytest.mark.slow
-    def test_a_pause_that_is_too_short_is_refused_with_the_shortest_as_cure(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "glow.cue").write_text(GLOW, encoding="utf-8")
-        arguments = (
-            "export",
-            tmp_path / "glow.cue",
-            "--icon",
-            "glow",
-            "--to",
-            "csv",
-            "-o",
-            tmp_path / "out",
-            *SURE[2:],
-        )
-        said = cli(*arguments, "--pause", "5", "--force")
-        assert said.exit_code == 3
-        (line,) = [line for line in said.stderr.splitlines() if line.startswith("refused")]
-        assert line.startswith("refused: glow is NOT SAFE: skin surface reaches 4")
-        assert "repeated plays with 5 s of pause" in line
-        told = re.search(r"the shortest safe pause is (\S+) s \(--pause (\S+)\)$", line)
-        assert told is not None
-        assert told[1] == told[2]
-        assert 5.0 < float(told[1]) < 60.0
-        assert "the hardware must provide" not in said.stderr
-        assert said.stderr.endswith("nothing was written\n")
-        assert not (tmp_path / "out").exists()
-        said = cli(*arguments, "--pause", told[1])
-        assert said.exit_code == 0, said.stderr
-        assert json.loads((tmp_path / "out" / "glow.json").read_text())["safety"]["repeated"]["pause_s"] == float(
-            told[1]
-        )
-
-    @pytest.mark.parametrize(
-        ("pause", "told"),
-        [("nan", "nan s is outside 0 to 600 s"), ("2,5", "'2,5' is not a number in s; write a decimal point: 2.5")],
-    )
-    def test_a_pause_that_cannot_be_is_a_usage_error(
-        self, cli: Cli, two: Path, tmp_path: Path, pause: str, told: str
-    ) -> None:
-        said = cli("export", two, "--to", "csv", "-o", tmp_path / "out", "--pause", pause)
-        assert (said.exit_code, said.stdout) == (2, "")
-        assert f"Invalid value for '--pause': {told}" in " ".join(said.stderr.split())
-        assert not (tmp_path / "out").exists()
+@pytest.mark.slow
+def test_a_pause_that_is_too_short_is_refused_with_the_shortest_as_cure(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "glow.cue").write_text(GLOW, encoding="utf-8")
+    out = tmp_path / "out"
+    arguments = ("export", tmp_path / "glow.cue", "--icon", "glow", "--to", "csv", "-o", out, *SURE[2:])
+    said = cli(*arguments, "--pause", "5", "--force")
+    assert (said.exit_code, out.exists()) == (3, False)
+    (line,) = [line for line in said.stderr.splitlines() if line.startswith("refused")]
+    assert line.startswith("refused: glow is NOT SAFE: skin surface reaches 4")
+    assert "repeated plays with 5 s of pause" in line
+    told = re.search(r"the shortest safe pause is (\S+) s \(--pause (\S+)\)$", line)
+    assert told is not None
+    assert told[1] == told[2]
+    assert 5.0 < float(told[1]) < 60.0
+    assert "the hardware must provide" not in said.stderr
+    said = cli(*arguments, "--pause", told[1])
+    assert said.exit_code == 0, said.stderr
+    assert json.loads((out / "glow.json").read_text())["safety"]["repeated"]["pause_s"] == float(told[1])
 
 
 class TestFiles:
     """What the gate says stands beside the drive and in what plays it."""
 
     @pytest.mark.slow
-    def test_the_sidecar_has_repetition_and_the_demands(self, glow: PreparedExport) -> None:
+    def test_the_sidecar_has_repetition_and_the_demands(self, glow: Export) -> None:
         gate = verdict(glow)
         about = json.loads(pack(glow.prepared, glow.form)["glow.json"])
         safety, demands = about["safety"], about["hardware_must_prevent"]
@@ -108,34 +83,33 @@ class TestFiles:
         assert demands["pause_at_least_s"] == safety["shortest_pause_s"]
         assert [fault["prevented_by"] for fault in demands["faults"]].count("") == 0
 
-    def test_the_player_in_c_has_the_strictest_numbers_of_the_gate(self) -> None:
-        ready = prepare_icons(list(parse(GLOW).icons), [], sure_rig(), form="c-array", pause_s=60.0)
+    def test_players_have_the_strictest_numbers_of_the_gate(self, glow: Export) -> None:
+        ready = prepared("c-array")
         player = pack(ready.prepared, ready.form)["thermicon_player.h"].decode()
         demands = [verdict(ready, place).demands for place in (0, 1)]
-        numbers = {name: float(value) for name, value in re.findall(r"#define THERMICON_(\w+) \(?(-?[\d.]+)f", player)}
-        assert numbers["WATCHDOG_S"] == min(one.watchdog_s for one in demands) != 0.5
-        assert numbers["LOW_C"] == max(one.cut_off_display_C.low for one in demands) != 10.0
-        assert numbers["HIGH_C"] == min(one.cut_off_display_C.high for one in demands) != 43.0
-        assert numbers["REACT_S"] == min(one.cut_off_display_C.react_within_s for one in demands)
-        assert numbers["REST_S"] == max(one.rest_before_first_play_s or 0.0 for one in demands) != 60.0
-        assert numbers["PAUSE_S"] == demands[0].pause_at_least_s != 60.0
-
-    def test_the_player_for_psychopy_has_them_too(self, glow: PreparedExport) -> None:
-        player = pack(glow.prepared, glow.form)["play_icons.py"].decode()
-        demands = [verdict(glow, place).demands for place in (0, 1)]
         low, high = (
             max(one.cut_off_display_C.low for one in demands),
             min(one.cut_off_display_C.high for one in demands),
         )
+        rest = max(one.rest_before_first_play_s or 0.0 for one in demands)
+        numbers = {name: float(value) for name, value in re.findall(r"#define THERMICON_(\w+) \(?(-?[\d.]+)f", player)}
+        assert numbers["WATCHDOG_S"] == min(one.watchdog_s for one in demands) != 0.5
+        assert numbers["LOW_C"] == low != 10.0
+        assert numbers["HIGH_C"] == high != 43.0
+        assert numbers["REACT_S"] == min(one.cut_off_display_C.react_within_s for one in demands)
+        assert numbers["REST_S"] == rest != 60.0
+        assert numbers["PAUSE_S"] == demands[0].pause_at_least_s != 60.0
+        player = pack(glow.prepared, glow.form)["play_icons.py"].decode()
+        assert [verdict(glow, place).demands for place in (0, 1)] == demands
         assert f"LOW_C, HIGH_C = {low}, {high}" in player
-        assert f"\nREST_S = {max(one.rest_before_first_play_s or 0.0 for one in demands)}" in player
+        assert f"\nREST_S = {rest}" in player
         assert f"\nPAUSE_S = {demands[0].pause_at_least_s}" in player
 
 
 class TestWords:
     """What holds for a set is said once, and the strictest of what differs."""
 
-    def test_a_set_in_two_lines(self, glow: PreparedExport) -> None:
+    def test_a_set_in_two_lines(self, glow: Export) -> None:
         (again, repeated), (hardware, demanded) = gate_words(glow.prepared)
         assert (again, hardware) == ("repeated plays, in any order", "the hardware must provide")
         assert repeated.startswith("green, 27 to 29 plays in 30 min with 60 s between them; shortest safe pause: ")
@@ -144,7 +118,7 @@ class TestWords:
         assert demanded.startswith(f"watchdog {strictest[0]:g} s ({strictest[1]}), cut-off at ")
         assert "rest held for " in demanded
 
-    def test_what_no_watchdog_and_no_rest_can_do_is_said(self, glow: PreparedExport) -> None:
+    def test_what_no_watchdog_and_no_rest_can_do_is_said(self, glow: Export) -> None:
         gate = verdict(glow)
         worse = replace(gate.demands, watchdog_s=0.0, rest_before_first_play_s=None, zero_current_at_most_s=120.0)
         ready = [replace(glow.prepared[0], verdict=replace(gate, demands=worse)), glow.prepared[1]]
@@ -154,7 +128,7 @@ class TestWords:
         assert "zero current in contact for 120 s at most" in demanded
 
     def test_the_page_has_short_scenarios_with_the_full_ones_to_point_at(self) -> None:
-        ready = prepare_icons([load_library("six-icons")["cooling-step"]], [], Rig.load("thenar"))
+        ready = export(load_library("six-icons")["cooling-step"], "thenar")
         shown = gate_html(ready.prepared[0])
         cells = re.findall(r'<td title="([^"]*)">([^<]*)</td>', shown)
         assert len(cells) == len(verdict(ready).checks)

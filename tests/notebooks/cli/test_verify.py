@@ -13,19 +13,19 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.surerig import SURE, sure_rig
 from thermicon.circuit import Device
-from thermicon.circuit.delivery import verify as verifying
 from thermicon.circuit.delivery.claims import claims_of
 from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.circuit.delivery.sidecar import digest, sealed, sidecar_text
 from thermicon.circuit.delivery.verify import verify
 from thermicon.icons import load_library
 
 Cli = Callable[..., Any]
 SIX = load_library("six-icons")
+W, C = "warming-step", "cooling-step"
 
 
 def exported(form_name: str, *names: str, device: str | None = None) -> dict[str, bytes]:
@@ -43,7 +43,7 @@ def by_format() -> dict[str, dict[str, bytes]]:
 @pytest.fixture(scope="module")
 def pair() -> dict[str, bytes]:
     """Two icons for PsychoPy: drives, sidecars and the set's own files."""
-    return exported("psychopy", "warming-step", "cooling-step")
+    return exported("psychopy", W, C)
 
 
 @pytest.fixture
@@ -137,76 +137,62 @@ class TestTampered:
             words = "has no sidecar that can be read" if name.endswith(".json") else f"{name}: is missing"
             assert words in said(files)
 
-    def test_sidecars_swapped(self, pair: dict[str, bytes]) -> None:
-        one, other = "warming-step.json", "cooling-step.json"
-        text = said({**pair, one: pair[other], other: pair[one]})
-        assert "warming-step.json: describes cooling-step.csv, which does not match this name; rename it" in text
-
-    def test_drives_swapped(self, pair: dict[str, bytes]) -> None:
-        one, other = "warming-step.csv", "cooling-step.csv"
-        text = said({**pair, one: pair[other], other: pair[one]})
-        assert "warming-step.csv: is not the file that was exported with warming-step.json: its digest differs" in text
-
-    def test_a_drive_renamed(self, pair: dict[str, bytes]) -> None:
-        files = dict(pair)
-        files["other.csv"] = files.pop("warming-step.csv")
-        assert "warming-step.csv: is missing; it was exported with warming-step.json" in said(files)
-        assert "other.csv: has no sidecar" in said(files)
-
-    def test_a_pair_renamed_together(self, pair: dict[str, bytes]) -> None:
-        files = dict(pair)
-        files["other.csv"], files["other.json"] = files.pop("warming-step.csv"), files.pop("warming-step.json")
-        assert "other.json: describes warming-step.csv, which does not match this name" in said(files)
-
-    def test_a_copy_of_a_sidecar(self, pair: dict[str, bytes]) -> None:
-        files = {**pair, "warming-step.csv.json": pair["warming-step.json"]}
-        assert "describes warming-step.csv, as warming-step.json does; remove the one that is a copy" in said(files)
+    @pytest.mark.parametrize(
+        ("moves", "words"),
+        [
+            (
+                {W + ".json": C + ".json", C + ".json": W + ".json"},
+                f"{W}.json: describes {C}.csv, which does not match",
+            ),
+            ({W + ".csv": C + ".csv", C + ".csv": W + ".csv"}, f"{W}.csv: is not the file that was exported with {W}"),
+            ({"other.csv": W + ".csv", W + ".csv": ""}, f"{W}.csv: is missing; it was exported with {W}.json"),
+            ({"other.csv": W + ".csv", W + ".csv": ""}, "other.csv: has no sidecar"),
+            (
+                {"other.csv": W + ".csv", W + ".csv": "", "other.json": W + ".json", W + ".json": ""},
+                f"other.json: describes {W}.csv, which does not match this name",
+            ),
+            ({W + ".csv.json": W + ".json"}, f"describes {W}.csv, as {W}.json does; remove the one that is a copy"),
+        ],
+        ids=["sidecars swapped", "drives swapped", "drive renamed", "drive alone", "both renamed", "sidecar copied"],
+    )
+    def test_files_moved(self, pair: dict[str, bytes], moves: dict[str, str], words: str) -> None:
+        files = {**pair, **{to: pair[name] if name else b"" for to, name in moves.items()}}
+        assert words in said({name: content for name, content in files.items() if moves.get(name) != ""})
 
     def test_files_of_two_exports(self, pair: dict[str, bytes]) -> None:
-        alone = exported("psychopy", "warming-step")
-        assert "conditions.csv: is not the file that was exported with warming-step.json" in said(
-            {**pair, "warming-step.json": alone["warming-step.json"]}
-        )
-
-    def test_another_player_is_named_once_and_every_drive_depends_on_it(self, pair: dict[str, bytes]) -> None:
-        files = {**pair, "play_icons.py": pair["play_icons.py"] + b"#"}
-        assert said(files) == (
-            "play_icons.py: is not the file that was exported with cooling-step.json and 1 more: its digest differs; "
-            "put the file back as it was exported, or export again"
-        )
-        found = verify(files)
-        assert [found.belongs(each) for each in found.claims] == [False, False]
-        del files["play_icons.py"]
-        assert said(files).startswith("play_icons.py: is missing; it was exported with cooling-step.json and 1 more")
-        other = {**pair, "warming-step.json": exported("psychopy", "warming-step")["warming-step.json"]}
+        other = {**pair, W + ".json": exported("psychopy", W)[W + ".json"]}
+        assert f"conditions.csv: is not the file that was exported with {W}.json" in said(other)
         found = verify(other)
         assert [found.belongs(each) for each in found.claims] == [False, False]
 
+    def test_another_player_is_named_once_and_every_drive_depends_on_it(self, pair: dict[str, bytes]) -> None:
+        files = {**pair, "play_icons.py": pair["play_icons.py"] + b"#"}
+        (told,) = said(files).splitlines()
+        assert told.startswith(f"play_icons.py: is not the file that was exported with {C}.json and 1 more: its digest")
+        found = verify(files)
+        assert [found.belongs(each) for each in found.claims] == [False, False]
+        del files["play_icons.py"]
+        assert said(files).startswith(f"play_icons.py: is missing; it was exported with {C}.json and 1 more")
+
     def test_a_damaged_sidecar(self, pair: dict[str, bytes]) -> None:
-        cut = pair["warming-step.json"][:-40]
-        text = said({**pair, "warming-step.json": cut})
-        assert (
-            "warming-step.json: is damaged: it cannot be read as JSON, so it describes no drive; put the file back"
-            in text
-        )
-        assert "warming-step.csv: has no sidecar that can be read, so its content is unknown" in text
-        alone = said({"warming-step.json": cut, "warming-step.csv": pair["warming-step.csv"]})
-        assert "warming-step.json: is damaged" in alone
+        cut = pair[W + ".json"][:-40]
+        text = said({**pair, W + ".json": cut})
+        assert f"{W}.json: is damaged: it cannot be read as JSON" in text
+        assert f"{W}.csv: has no sidecar that can be read, so its content is unknown" in text
+        alone = said({W + ".json": cut, W + ".csv": pair[W + ".csv"]})
+        assert f"{W}.json: is damaged" in alone
         assert "holds no sidecar" not in alone
 
-    def test_a_sidecar_that_is_only_laid_out_anew(self, pair: dict[str, bytes]) -> None:
-        neat = json.dumps(json.loads(pair["warming-step.json"]), ensure_ascii=False).encode()
-        assert "its own digest does not match" in said({**pair, "warming-step.json": neat})
-
-    @pytest.mark.parametrize("known", [None, "0"])
+    @pytest.mark.parametrize("known", ["as laid out", None, "0"])
     def test_a_sidecar_whose_own_digest_is_wrong(self, pair: dict[str, bytes], known: str | None) -> None:
-        about = {**json.loads(pair["warming-step.json"]), "sidecar_sha256": known}
+        about = {**json.loads(pair[W + ".json"]), "sidecar_sha256": known}
         if known is None:
             del about["sidecar_sha256"]
-        assert said({**pair, "warming-step.json": sidecar_text(about)}) == (
-            "warming-step.json: was changed after it was exported: its own digest does not match; put the file back "
-            "as it was exported, or export again"
-        )
+        content = sidecar_text(about)
+        if known == "as laid out":
+            content = json.dumps(json.loads(pair[W + ".json"]), ensure_ascii=False).encode()
+        (told,) = said({**pair, W + ".json": content}).splitlines()
+        assert told.startswith(f"{W}.json: was changed after it was exported: its own digest does not match")
 
     @pytest.mark.parametrize(
         ("keys", "words"),
@@ -214,12 +200,12 @@ class TestTampered:
             ({"rig_sha256": "0"}, r"contains another rig than the one of its digest \(rig_sha256\)"),
             ({"device_sha256": "0"}, "contains another device than the one of its digest"),
             ({"device": {"name": "x"}}, "contains another device than the one of its digest"),
-            ({"drive_sha256": None}, "warming-step.csv: is not the file that was exported with warming-step.json"),
+            ({"drive_sha256": None}, f"{W}.csv: is not the file that was exported with {W}.json"),
             ({"rig": {"document": {}}}, "contains another rig"),
         ],
     )
     def test_a_sidecar_sealed_anew(self, pair: dict[str, bytes], keys: dict[str, Any], words: str) -> None:
-        assert re.search(words, said({**pair, "warming-step.json": changed(pair["warming-step.json"], **keys)}))
+        assert re.search(words, said({**pair, W + ".json": changed(pair[W + ".json"], **keys)}))
 
 
 class TestHostile:
@@ -260,27 +246,17 @@ class TestCommand:
         assert f"{out}: 2 drives and their sidecars belong together" in " ".join(done.stdout.split())
         assert done.stderr == "note: README.txt: does not belong to an export and was not checked\n"
 
-    def test_what_is_wrong_is_named_with_the_cure(self, cli: Cli, out: Path) -> None:
-        text = (out / "warming-step.csv").read_text()
-        (out / "warming-step.csv").write_text(text.replace("rest", "Rest", 1))
+    @pytest.mark.parametrize(("name", "belong"), [(W + ".csv", ["yes", "NO"]), ("play_icons.py", ["NO", "NO"])])
+    def test_what_is_wrong_is_named_with_the_cure(self, cli: Cli, out: Path, name: str, belong: list[str]) -> None:
+        with (out / name).open("a") as file:
+            file.write("# mine")
         done = cli("export", "--verify", out)
         assert done.exit_code == 1
-        rows = {line.split()[0]: line.split()[-1] for line in done.stdout.splitlines() if ".csv" in line}
-        assert rows == {"cooling-step.csv": "yes", "warming-step.csv": "NO"}
-        assert (
-            "wrong: warming-step.csv: is not the file that was exported with warming-step.json: its digest differs; "
-            "put the file back as it was exported, or export again\n"
-        ) in done.stderr
-        assert done.stderr.endswith("1 thing does not belong together\n")
-
-    def test_no_drive_belongs_to_another_player(self, cli: Cli, out: Path) -> None:
-        with (out / "play_icons.py").open("a") as player:
-            player.write("# mine")
-        done = cli("export", "--verify", out)
-        assert done.exit_code == 1
-        assert {line.split()[-1] for line in done.stdout.splitlines() if "-step.csv" in line} == {"NO"}
+        assert [line.split()[-1] for line in done.stdout.splitlines() if "-step.csv" in line] == belong
         assert done.stderr.count("wrong: ") == 1
-        assert "wrong: play_icons.py: is not the file" in done.stderr
+        for words in (f"wrong: {name}: is not the file that was exported", "its digest differs", "export again\n"):
+            assert words in done.stderr
+        assert done.stderr.endswith("1 thing does not belong together\n")
 
     def test_an_export_verifies_itself(self, cli: Cli, two: Path, tmp_path: Path) -> None:
         out = tmp_path / "drives"
@@ -307,36 +283,8 @@ class TestCommand:
         assert done.exit_code == 1
         assert "\x1b" not in done.stdout + done.stderr
 
-    @pytest.mark.parametrize(
-        ("arguments", "words", "code"),
-        [
-            (("six-icons", "--verify", "out"), "leave out the file six-icons", 2),
-            (("--verify", "out", "--to", "csv"), "leave out --to", 2),
-            (("--verify", "out", "-o", "out"), "leave out -o", 2),
-            (("--verify", "out", "--force"), "leave out --force", 2),
-            ((), "Missing argument 'FILE'", 2),
-            (("--verify", "nowhere"), "cannot verify nowhere: there is no such folder", 1),
-            (("--verify", "two.cue"), "cannot verify two.cue: it is a file; give the folder of an export", 1),
-        ],
-    )
-    def test_what_cannot_be(
-        self, cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], words: str, code: int
-    ) -> None:
-        monkeypatch.chdir(two.parent)
-        done = cli("export", *arguments)
-        assert done.exit_code == code
-        assert words in " ".join(done.stderr.replace("│", " ").split())
-
     def test_an_export_that_was_ended_between_two_renames_is_told(self, cli: Cli, tmp_path: Path) -> None:
         (tmp_path / "out.before").mkdir()
         done = cli("export", "--verify", tmp_path / "out")
         assert done.exit_code == 1
         assert "there is no such folder; an export was interrupted, and the folder as it was is" in done.stderr
-
-
-def test_verifying_is_quick(pair: dict[str, bytes]) -> None:
-    verify(pair)
-    start = time.monotonic()
-    for _ in range(5):
-        assert verifying.verify(pair).well
-    assert time.monotonic() - start < 5.0

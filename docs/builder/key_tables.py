@@ -1,4 +1,4 @@
-"""Keys of a file with their values and defaults as a table of Markdown, from the schema that checks the file."""
+"""Keys of rig, device and study files with their values and defaults as tables, from the schemas that check them."""
 
 from __future__ import annotations
 
@@ -57,6 +57,28 @@ def device_quantities_table() -> str:
         units = [UNITS[quantity]] if quantity in UNITS else sorted(set(UNITS_BY_DRIVE[quantity].values()))
         rows.append(f"| `{quantity}` | {' or '.join(units)} | {low:g} to {high:g} |")
     return "\n".join(["| quantity | unit | from, to |", "|---|---|---|", *rows])
+
+
+def study_keys_table() -> str:
+    """Return every key of a study file with its values, its default and its meaning, as a table of Markdown."""
+    rows = [f"| `{key}` | {values} | {default} | {meaning} |" for key, values, default, meaning in _study_rows()]
+    return "\n".join(["| key | values | default | meaning |", "|---|---|---|---|", *rows])
+
+
+def _study_rows() -> Iterator[tuple[str, str, str, str]]:
+    from thermicon.notebooks.study.keys import TABLES, Study
+
+    yield from _of(Study, "", [name for name in Study.model_fields if name not in TABLES])
+    for name, table in TABLES.items():
+        yield from _of(table, f"{name}.", list(table.model_fields))
+
+
+def _of(table: type[BaseModel], prefix: str, names: list[str]) -> Iterator[tuple[str, str, str, str]]:
+    properties = table.model_json_schema()["properties"]
+    for name in names:
+        field = table.model_fields[name]
+        default = "needed" if field.is_required() else default_of(field.default)
+        yield prefix + name, values_of(properties[name]), default, str(field.description)
 
 
 def _table(model: type[BaseModel]) -> str:

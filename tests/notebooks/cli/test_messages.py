@@ -1,0 +1,70 @@
+"""What the commands say is data: one message for everything that can be wrong, no traceback, nothing half-written."""
+
+from __future__ import annotations
+
+import shlex
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+Cli = Callable[..., Any]
+SAID = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+FILES: dict[str, bytes] = {name: text.encode() for name, text in SAID["files"].items()} | {
+    "empty.cue": b"",
+    "picture.cue": b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR",
+    "enormous.cue": b"cue 1\n" + b"# filler\n" * 6_000_000,
+    "latin.cue": b"cue 1\nicon a { warm by 4 \xb0C at 1 \xb0C/s }\n",
+    "wide.csv": b"time_s," + b"x" * 200_000 + b"\n0,30\n1,30\n",
+}
+CODES = {"said": 0, "bad": 1, "usage": 2}
+
+
+def held(folder: Path) -> dict[str, bytes]:
+    """Every file of a folder, and every folder in it, with what it holds."""
+    return {str(path): b"" if path.is_dir() else path.read_bytes() for path in folder.rglob("*")}
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "words"), [(line, code, SAID[kind][line]) for kind, code in CODES.items() for line in SAID[kind]]
+)
+def test_a_command_says_what_it_must_and_leaves_nothing(
+    cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, line: str, code: int, words: str | list[str]
+) -> None:
+    folder = two.parent
+    for name, content in FILES.items():
+        if name in shlex.split(line.replace("taken.toml", "taken.csv")):  # what --keep would replace
+            (folder / name).write_bytes(content)
+    monkeypatch.chdir(folder)
+    before = held(folder)
+    said = cli(*shlex.split(line))
+    told = " ".join(f"{said.stdout} {said.stderr}".replace("│", " ").split())
+    assert said.exit_code == code, told
+    assert code == 0 or said.stdout == ""
+    assert "Traceback" not in told
+    assert [word for word in ([words] if isinstance(words, str) else words) if word not in told] == [], told
+    assert held(folder) == before
+
+
+def test_a_command_line_alone_shows_how_it_is_used(cli: Cli) -> None:
+    said = cli()
+    assert (said.exit_code, "Usage" in said.stdout + said.stderr) == (2, True)
+    said = cli("rank", "six-icons", "--seed", "9" * 5000)
+    assert (said.exit_code, "has too many digits to be read" in said.stderr) == (2, True)
+
+
+def test_a_drive_that_may_not_be_read_is_bad_input(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "drive.csv"
+    path.write_text("time_s,current_A\n0,0.1\n1,0.1\n")
+
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr("os.access", lambda *_: False)  # what the parser of the command line would ask
+    for reader in ("read_text", "read_bytes", "open"):
+        monkeypatch.setattr(Path, reader, refuse)
+    said = cli("simulate", "--current", path)
+    assert (said.exit_code, said.stdout) == (1, "")
+    assert "drive.csv" in said.stderr and "ermission" in said.stderr
