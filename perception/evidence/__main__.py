@@ -24,8 +24,7 @@ from .chains import require_extra
 from .fit import write_fit
 from .learning import CHAINS
 from .left_out_table import LEFT_OUT, complete, leave_each_out
-from .posterior import Posterior
-from .posterior_tables import scores_sentence, summarise
+from .posterior import Posterior, summarise
 from .results import write_rows
 from .sampling import LEAST_STEPS, Sampled, sample
 
@@ -120,7 +119,8 @@ def leave_out(asked: argparse.Namespace) -> int:
     if asked.output is not None:
         asked.output.mkdir(exist_ok=True)
         write_rows(rows, LEFT_OUT, "leave-out", asked.output)
-    sys.stdout.write(f"\n{scores_sentence(rows)}\n")
+    inside = sum(each.covered(0.95) for each in rows)
+    sys.stdout.write(f"\n{inside} of {len(rows)} rows lie inside their 95 % interval\n")
     return 0
 
 

@@ -26,7 +26,7 @@ from thermicon.icons.atomic import complete_or_absent
 from ..arrays import Array
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
-from ..observer.prior_file import LABORATORIES, load_priors
+from ..observer.priors import LABORATORIES, load_priors
 from .chains import ESS, R_HAT, Chain, Diagnostics, Reference, diagnose, extend
 from .learning import CHAIN_STEPS, CHAINS, Points, Recorder, fitted, learn, misses_at
 from .maximum import Maximum, maximise

@@ -16,9 +16,9 @@ from ..arrays import Array
 from ..experiments.measure import ADAPTIVE, Condition, Setting, logs_of
 from ..observer.channels import CHANNELS, USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
+from .measurement_likelihood import measuring
 from .measurements import Measurements
 from .playing import Confusions, stage
-from .simulated_measurements import measuring
 from .states import OFFSETS, SEEDS, Laboratories, LaboratoryPrior
 from .trials import Trials
 

@@ -17,15 +17,16 @@ from thermicon.perception.pilot.conditioning import Conditioned, condition
 from thermicon.perception.pilot.data import Measured
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
+    Predicted,
     groups_of,
     log_errors,
     log_likelihood,
     person_covariance,
+    predicted,
     shared_covariance,
 )
 from thermicon.perception.pilot.measurements import Measurements
 from thermicon.perception.pilot.observed import observed
-from thermicon.perception.pilot.simulated_measurements import Predicted, predicted
 from thermicon.perception.pilot.states import OFFSETS, LaboratoryPrior
 from thermicon.perception.pilot.synthetic import USUAL, synthetic_measurements
 
