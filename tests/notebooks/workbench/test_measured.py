@@ -97,7 +97,7 @@ def test_an_upload_is_read_by_the_same_reader_and_another_icon_keeps_the_log(log
         ("1,2,3\n4,5,6\n", "not the names of columns"),
         ("time_s,display_K\n" + "".join(f"{k},305\n" for k in range(30)), "display_K should be display_C"),
         ("time_s,displayC\n" + "".join(f"{k},32\n" for k in range(30)), "did you mean display_C"),
-        ("time_s,display_C\n0,32\n1,warm\n", "rig.csv:3: display_C is 'warm', not a number"),
+        ("time_s,display_C\n0,32\n1,warm\n", "rig.csv:3: display_C is 'warm', not a finite number"),
         ("time_s,display_C\n" + "".join(f"{k},305.15\n" for k in range(30)), "kelvin|273.15"),
     ],
 )
