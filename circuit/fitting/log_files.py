@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import re
 from collections import Counter
@@ -19,7 +20,6 @@ from thermicon.icons.near_words import nearest_words
 from ..arrays import Array
 from ..inputs import quoted, read_bytes, table_fault, text_of
 from .log import DRIVES, MEASURED, MOST_ROWS, Log, LogError, is_known
-from .log_tdms import read_tdms
 
 MOST_MB, MOST_SIDECAR_MB = 200.0, 1.0
 OTHER_UNIT = {
@@ -45,6 +45,9 @@ OTHER_NAMES = {
     "skin_C": ("skin", "skin_temp"),
 }
 """Names that people give to columns of a log, in lower case; none is taken for the other without being asked."""
+
+INCREMENT, OFFSET = "wf_increment", "wf_start_offset"
+"""Properties by which a TDMS channel tells its times."""
 
 SESSION_TIME = ("time_s", "onset", "time", "t")
 
@@ -82,7 +85,7 @@ def read_log(path: str | Path) -> Log:
     data = read_bytes(where, "log", MOST_MB, LogError)
     digest = hashlib.sha256(data).hexdigest()
     if where.suffix.lower() == ".tdms":
-        return Log.of(where.name, read_tdms(data, where.name), sha256=digest)
+        return Log.of(where.name, _read_tdms(data, where.name), sha256=digest)
     return _from_text(where, text_of(data, where, "log", LogError), digest)
 
 
@@ -170,3 +173,47 @@ def _session(values: Mapping[str, Array]) -> dict[str, Array] | None:
     if time is None or not zones["display_C"]:
         return None
     return {"time_s": time, **{name: np.mean(columns, axis=0) for name, columns in zones.items() if columns}}
+
+
+def _read_tdms(data: bytes, name: str) -> dict[str, Array]:
+    """Return the columns of a TDMS file by channel name; times come from a channel `time_s` or from `wf_increment`.
+
+    Raises LogError where npTDMS is not installed, and for a file without one common clock.
+    """
+    try:
+        from nptdms import TdmsFile
+    except ImportError:
+        raise LogError(
+            f'{name}: TDMS needs npTDMS, which is not installed: pip install "thermicon[hardware]"'
+        ) from None
+    try:
+        file = TdmsFile.read(io.BytesIO(data))
+        channels = {channel.name: channel for group in file.groups() for channel in group.channels()}
+        columns = {
+            key: np.asarray(channel[:], dtype=np.float64)
+            for key, channel in channels.items()
+            if np.issubdtype(channel.dtype, np.number)
+        }
+    except Exception as problem:  # npTDMS raises whatever a broken file leads it to
+        raise LogError(f"{name}: cannot be read as TDMS ({str(problem) or type(problem).__name__})") from None
+    if not channels:
+        raise LogError(f"{name}: cannot be read as TDMS (no channel in it); save the log again")
+    if not columns:
+        raise LogError(f"{name}: no channel with numbers; found {', '.join(channels) or 'no channel'}")
+    lengths = {key: len(column) for key, column in columns.items()}
+    if len(set(lengths.values())) > 1:
+        listed = ", ".join(f"{key} {count}" for key, count in lengths.items())
+        raise LogError(f"{name}: channels of unequal lengths ({listed} samples); save each clock as a file of its own")
+    if "time_s" in columns:
+        return columns
+    clocks = {
+        key: (channels[key].properties.get(INCREMENT), channels[key].properties.get(OFFSET, 0.0)) for key in columns
+    }
+    missing = [key for key, (step, _) in clocks.items() if not step]
+    if missing:
+        raise LogError(f"{name}: channel {missing[0]} has neither {INCREMENT} nor a channel time_s beside it")
+    if len({(round(float(step), 12), float(start)) for step, start in clocks.values()}) > 1:
+        raise LogError(f"{name}: channels with different {INCREMENT}; save each clock as a file of its own")
+    step, start = next(iter(clocks.values()))
+    count = next(iter(lengths.values()))
+    return {"time_s": float(start) + float(step) * np.arange(count, dtype=np.float64), **columns}
