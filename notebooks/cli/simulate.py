@@ -208,7 +208,9 @@ def _beside(log: Log | None, trace: Trace, output: Path | None) -> None:
     """Report how far a log lies from the trace: on stdout, or beside a trace on stderr."""
     if log is None:
         return
-    beside = log.beside(trace)
+    from thermicon.circuit.fitting.overlay import overlay
+
+    beside = overlay(trace, log)
     lines = [f"measured − simulated ({log.name}, shifted by {number(beside.shift_s, 3)} s)"]
     for each in beside.columns:
         words, _, unit = each.column.rpartition("_")
