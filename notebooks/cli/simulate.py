@@ -11,7 +11,7 @@ import typer
 
 from thermicon.icons.number_text import number, signed, span
 
-from ..figures.trace_overview import FELT_TAIL_S, draw_overview
+from ..figures.overview import FELT_TAIL_S, draw_overview
 from ..files.outputs import (
     STDOUT,
     SUBCIRCUIT_SUFFIXES,

@@ -200,10 +200,10 @@ class Workbench:
 
             return scene_figure(self.scene)
         if view == "set":
-            from ..figures.overview import set_figure
+            from ..figures.set_figures import set_figure
 
             return set_figure(self.ranking())
-        from ..figures.export_plot import export_figure
+        from ..figures.compare_figure import export_figure
         from ..files.exporting import prepare_icon
 
         icons = self.icons  # raises for a bad text, of which the icon before it is drawn still
