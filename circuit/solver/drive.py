@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.icons.model.cleaning import clean_line
+from thermicon.icons.model.context import clean_line
 
 from ..arrays import Array
 from ..inputs import InputError, quoted, read_text

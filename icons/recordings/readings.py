@@ -11,7 +11,7 @@ from pathlib import Path
 from ..files.input_files import bytes_of
 from ..language.source import utf8_of
 from ..model.errors import whole_file
-from ..model.value_limits import HIGHEST_C, LONGEST_S, LOWEST_C, Control
+from ..model.units import HIGHEST_C, LONGEST_S, LOWEST_C, Control
 from ..model.words import nearest
 
 TIME = "time_s"
