@@ -7,7 +7,7 @@ from typing import Any
 
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 from thermicon.icons.files.table import Fault
-from thermicon.icons.model.cleaning import clean, clean_line, first_control
+from thermicon.icons.model.context import clean, clean_line, first_control
 
 TOO_DEEP = "nested too deeply; two or three levels are all that is needed"
 DEEPEST, MOST_KEYS_A_LINE, MOST_DIGITS = 10, 50, 19

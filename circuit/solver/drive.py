@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.icons.files.table import read_table
-from thermicon.icons.model.cleaning import clean_line
+from thermicon.icons.model.context import clean_line
 
 from ..arrays import Array
 from ..inputs import InputError, read_text, table_fault

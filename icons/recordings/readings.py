@@ -10,7 +10,7 @@ from ..files.input_files import bytes_of
 from ..files.table import Table, read_table
 from ..language.source import utf8_of
 from ..model.errors import CueErrors, whole_file
-from ..model.value_limits import HIGHEST_C, LONGEST_S, LOWEST_C, Control
+from ..model.units import HIGHEST_C, LONGEST_S, LOWEST_C, Control
 from ..model.words import nearest
 
 TIME = "time_s"

@@ -12,7 +12,7 @@ import typer
 from thermicon.icons.atomic import complete_or_absent
 from thermicon.icons.number_text import number, signed, span
 
-from ..figures.trace_overview import FELT_TAIL_S, draw_overview
+from ..figures.overview import FELT_TAIL_S, draw_overview
 from ..files.outputs import STDOUT, SUBCIRCUIT_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import note, usage
 from .cues import pick, read_set, warn_of_site
