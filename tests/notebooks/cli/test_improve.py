@@ -182,7 +182,7 @@ def test_search_says_what_a_goal_lacks_and_what_would_help(
         ),
         (("--goal", "speed >= 5"), 1, "there is no quantity 'speed'"),
         (("--intervals", 1), 2, "1 draw has no interval"),
-        (("--goal", "time <= 0.1 s"), 1, "the 2 with the least time take"),
+        (("--goal", "time <= 0.1 s"), 1, "the totals: a total of 0.1 s (the 2 shortest last"),
     ],
 )
 def test_bad_limits_of_a_search(cli: Cli, families: Path, options: tuple[object, ...], code: int, told: str) -> None:
