@@ -18,6 +18,7 @@ from ..drawn import Drawn
 from ..identification.confusion import confuse
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.measures import information_bits, proportion_correct
+from ..identification.population import identify
 from ..identification.run_end import RATE_HZ
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
@@ -25,7 +26,7 @@ from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..progress import Progress, step_counter
 from ..ranking.batches import Execution, Job, PooledResult, collect_batches
-from .appraise import identified
+from .appraise import population_response
 from .goal import Goal
 from .goal_result import GoalResult, SetOutcome, judge_goal
 from .pick import SubsetChoice, pick
@@ -274,8 +275,8 @@ def _point(
     places = list(picked.chosen)
     few, own = pool.some(places), pooled.d_prime[:, places][:, :, places]
     if job.norm == "naming":  # what is named directly is felt again
-        alone = identified(few.icons, job.rig, crowd, job.tracking, job.norm, seed=job.seed, observer=model.nominal)
-        named = alone[1].probability
+        felt, _ = population_response(few.icons, job.rig, crowd, job.tracking, observer=model.nominal)
+        named = identify(felt, job.norm, crowd, model.nominal, job.seed)[1].probability
     else:
         named = confuse(own, lapse=crowd.lapse, seed=job.seed).probability
     each, middle = proportion_correct(named), np.median(own, axis=0)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.from_memory import dprimes_from_memory
+from ..identification.episodes import dprimes_from_memory
 from ..identification.run_end import run_end_s
 from ..observer.observer import Norm, Observer
 from ..ranking.assemble import energy_J, objection

@@ -1,4 +1,4 @@
-"""Which of two sets is better when people, contact, ambient and rig vary.
+"""How probably one set is better than another by its worst pair, when people, contact, ambient and rig vary.
 
 Each draw is one virtual person on one rig: contact and skin are the person's, ambient, module and heat sink are drawn
 about the rig. Both sets meet the same draws and the same noise, so that what differs is the set.
@@ -13,16 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
-from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import PopulationResponse, identify, memory_dprime
-from ..identification.task import USUAL
-from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, Observer, check_norm
-from ..observer.people import People, draw_people
-from .appraise import population_response
+from ..observer.people import draw_people
+from .appraise import population_dprime
 from .request import ChoiceError
-from .subset_identification import OBJECTIVES, Objective
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -48,9 +41,7 @@ class SetComparison:
     standard_error
         Standard error of `probability`.
     gain
-        Median gain of A over B, in units of the objective.
-    objective
-        What is compared.
+        Median gain of A over B in the d′ of the worst pair.
     draws
         Number of persons and rigs.
 
@@ -62,13 +53,12 @@ class SetComparison:
     probability: float
     standard_error: float
     gain: float
-    objective: Objective
     draws: int
 
     def __repr__(self) -> str:
         return (
-            f"SetComparison(P(A better by {self.objective}) = {self.probability:.2f} ± {self.standard_error:.2f}, "
-            f"median gain {self.gain:+.3g}, {self.draws} draws)"
+            f"SetComparison(P(A better) = {self.probability:.2f} ± {self.standard_error:.2f}, "
+            f"median gain d′ {self.gain:+.3g}, {self.draws} draws)"
         )
 
 
@@ -77,11 +67,8 @@ def compare_sets(
     b: Sequence[Icon] | IconSet,
     rig: Rig,
     *,
-    objective: Objective = "worst",
     draws: int = DRAWS,
     seed: int = 0,
-    tracking: str | None = None,
-    norm: str = USUAL_NORM,
 ) -> SetComparison:
     """Predict how probably set A is better than set B for a person and a rig drawn at random.
 
@@ -91,16 +78,10 @@ def compare_sets(
         The sets.
     rig
         The nominal rig; contact and skin are each person's, ambient, module and heat sink vary about it.
-    objective
-        What is compared: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
     draws
         Number of persons and rigs.
     seed
         Seed of the draws.
-    tracking
-        What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
-    norm
-        How episodes are remembered: `episodes` or `naming`.
 
     Returns
     -------
@@ -111,8 +92,6 @@ def compare_sets(
     ------
     ChoiceError
         For a set of fewer than two icons, and for no draws.
-    ValueError
-        For an unknown norm.
 
     Examples
     --------
@@ -123,10 +102,6 @@ def compare_sets(
     >>> compare_sets(few, six, Rig.load("thenar"), draws=8).probability
     1.0
     """
-    from thermicon.circuit.solver.simulate import duration_s
-
-    if objective not in OBJECTIVES:
-        raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
     if draws < 1:
         raise ChoiceError(f"at least one draw is needed, not {draws}")
     pool: list[Icon] = []
@@ -134,15 +109,14 @@ def compare_sets(
         if len(each) < 2:
             raise ChoiceError(f"{name} has only {len(each)} icon: at least two are needed to be distinguished")
         pool += [icon for icon in each if icon not in pool]
-    durations = np.array([duration_s(icon, rig) for icon in pool])
-    crowd, chosen = draw_people(draws, seed), check_norm(norm)
-    felt, _ = population_response(pool, rig, crowd, tracking, chosen, rigs=drawn_rigs(crowd.rigs(rig), seed))
+    crowd = draw_people(draws, seed)
+    apart, _ = population_dprime(pool, rig, crowd, rigs=drawn_rigs(crowd.rigs(rig), seed))
     rows = ([pool.index(icon) for icon in each] for each in (a, b))
-    first, second = (_values(felt.of(some), crowd, chosen, durations[some], objective, seed) for some in rows)
+    first, second = (apart[:, some][:, :, some][:, *np.triu_indices(len(some), 1)].min(axis=1) for some in rows)
     gains = first - second
     p = float(np.mean(gains > TIED)) + 0.5 * float(np.mean(np.abs(gains) <= TIED))
     error = math.sqrt(max(p * (1.0 - p), 0.0) / draws)
-    return SetComparison(p, error, float(np.median(gains)), objective, draws)
+    return SetComparison(p, error, float(np.median(gains)), draws)
 
 
 def drawn_rigs(rigs: Sequence[Rig], seed: int) -> list[Rig]:
@@ -170,19 +144,3 @@ def _pump_drawn(rig: Rig, sink: float, gain: float) -> dict[str, float]:
         "heat_sink.resistance_K_per_W": rig.heat_sink.resistance_K_per_W * math.exp(SINK_SD * sink),
         "module.seebeck_V_per_K": rig.module.seebeck_V_per_K * math.exp(GAIN_SD * gain),
     }
-
-
-def _values(
-    felt: PopulationResponse, crowd: People, norm: Norm, durations_s: Array, objective: Objective, seed: int
-) -> Array:
-    """The objective (people,) of icons that are a set of their own."""
-    observer = Observer.load()
-    if objective == "worst":
-        own = memory_dprime(felt, norm, crowd.memory, observer, USUAL)
-        least: Array = own[:, *np.triu_indices(own.shape[-1], 1)].min(axis=1)
-        return least
-    probability = identify(felt, norm, crowd, observer, seed)[1].probability
-    if objective == "correct":
-        return proportion_correct(probability)
-    bits = information_bits(probability)
-    return bits if objective == "bits" else bits / float(durations_s.mean())
