@@ -16,8 +16,7 @@ from thermicon.circuit import Rig
 from ..arrays import Array
 from ..observer.observer import Observer, load_thresholds
 from ..observer.variants import Variable
-from ..sensation.receptors import receptor_drive
-from ..sensation.sensation import sensation
+from ..sensation.sensation import receptor_drive, sensation
 from .predicted import DRAWS, Asked, Predicted, predict
 
 RADIANT_S = 3.0

@@ -1,7 +1,7 @@
 """The shipped results of the inference: constants, predictions in and out of the fit, and the ablation.
 
-The first two are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the shipped
-evidence and priors. All are CSV tables, so that a spreadsheet opens them.
+The first two are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the
+shipped evidence and priors. All are CSV tables, so that a spreadsheet opens them.
 """
 
 from __future__ import annotations
