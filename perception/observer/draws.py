@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,15 +23,15 @@ from thermicon.icons.near_words import did_you_mean
 from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Channel
 from .draws_file import DrawsHeader, read_draws, shipped_file
-from .memory import BAR, MISSING, NOISE, SHARE, Ratings
-from .observer import Observer, Receptor, variant_records
+from .memory import NOISE, OF_MEMORY, Ratings
+from .observer import INFERRED, OF_BOTH, OF_CHANNEL, Observer, Receptor, variant_records
 from .people import People, draw_people
 from .variants import Variable, check_variable, source_of
 
 BETWEEN_LABORATORIES = "sensitivity between laboratories"
 NEGLIGIBLE = 1e-3
 """Spread between laboratories (ln) below which draws are those of one: published ones differ by some tenths."""
-INFERRED = "inferred from published evidence"
+FROM_EVIDENCE = "inferred from published evidence"
 """How the source of a record begins whose value a draw replaces."""
 
 
@@ -133,7 +134,7 @@ class PosteriorDraws:
             if remembered in self.memory_names:
                 records.append(replace(record, value=values[remembered], low=None, high=None))
                 continue
-            if not record.source.startswith(INFERRED):
+            if not record.source.startswith(FROM_EVIDENCE):
                 records.append(record)
                 continue
             quantity = record.quantity.removesuffix(variant) if variant else record.quantity
@@ -187,56 +188,29 @@ def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
     (3.0, 33.0, True)
     """
 
-    def value(name: str, own: float) -> float:
-        return values.get(name, own)
+    def given(fields: Mapping[str, str], channel: str = "") -> dict[str, Any]:
+        names = {field: f"{channel} {name}".strip() for field, name in fields.items()}
+        return {field: values[name] for field, name in names.items() if name in values}
 
     def receptor(channel: Channel) -> Receptor:
-        own = base.receptor(channel)
-        return replace(
-            own,
-            adaptation_s=value("slow adaptation time", own.adaptation_s),
-            threshold_drive=value(f"{channel} threshold drive", own.threshold_drive),
-            velocity_m_per_s=value(f"{channel} conduction velocity", own.velocity_m_per_s),
-            area_exponent=value(f"{channel} area exponent", own.area_exponent),
-            limit_C=None if own.limit_C is None else value(f"{channel} limit", own.limit_C),
-            softness_K=value("softness of the limits", own.softness_K),
-            forearm_factor=value(f"{channel} threshold on the forearm", own.forearm_factor),
-        )
+        own, moved = base.receptor(channel), given(OF_BOTH) | given(OF_CHANNEL, channel)
+        if own.limit_C is None:
+            moved.pop("limit_C", None)
+        return replace(own, **moved)
 
-    gain_noise = value("gain noise", base.gain_noise)
+    constants, memory = given(INFERRED), base.memory
+    gain_noise = constants.get("gain_noise", base.gain_noise)
 
     def ratings(channel: Channel) -> Ratings:
-        own = base.memory.ratings(channel)
-        exponent = value(f"{channel} rating exponent", own.exponent)
+        own = memory.ratings(channel)
+        exponent = values.get(f"{channel} rating exponent", own.exponent)
         # What repeated ratings scatter by, without the part that gain noise makes of it.
         scatter = math.sqrt(max(own.scatter**2 - (own.exponent * own.rated * base.gain_noise) ** 2, 0.0))
-        whole = math.hypot(value("scatter of ratings", scatter), exponent * own.rated * gain_noise)
-        return Ratings(value(f"{channel} rating at threshold", own.at_threshold), exponent, own.rated, whole)
+        whole = math.hypot(values.get("scatter of ratings", scatter), exponent * own.rated * gain_noise)
+        return Ratings(values.get(f"{channel} rating at threshold", own.at_threshold), exponent, own.rated, whole)
 
-    own = base.memory
-    return replace(
-        base,
-        cold=receptor("cold"),
-        warm=receptor("warm"),
-        integration_s=value("integration time", base.integration_s),
-        a=value("slope of sensation", base.a),
-        p=value("transducer exponent", base.p),
-        gain_noise=gain_noise,
-        criterion=value("criterion of speeded answers", base.criterion),
-        noise_correlation_s=value("noise correlation time", base.noise_correlation_s),
-        decision_s=value("decision time", base.decision_s),
-        choice_s=value("choice time", base.choice_s),
-        decision_noise=value("decision time between trials", base.decision_noise),
-        memory=replace(
-            own,
-            timing=value(NOISE, own.timing),
-            share=value(SHARE, own.share),
-            missing=value(MISSING, own.missing),
-            bar=value(BAR, own.bar),
-            cold=ratings("cold"),
-            warm=ratings("warm"),
-        ),
-    )
+    remembered = replace(memory, cold=ratings("cold"), warm=ratings("warm"), **given(OF_MEMORY))
+    return replace(base, cold=receptor("cold"), warm=receptor("warm"), memory=remembered, **constants)
 
 
 def laboratory_with(
