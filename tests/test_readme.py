@@ -198,7 +198,7 @@ def draw_images(folder: Path) -> None:
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import read_cue
     from thermicon.notebooks import overview
-    from thermicon.notebooks.figures.overview import set_figure
+    from thermicon.notebooks.figures.set_figures import set_figure
     from thermicon.perception import perceive, rank
 
     rig = Rig.load("thenar")

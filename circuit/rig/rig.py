@@ -142,7 +142,6 @@ class Rig:
         ------
         RigError
             With every fault of the file on a line of its own, or the nearest name where there is no such rig.
-
         """
         path, names = Path(source), rig_names()
         if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
@@ -171,7 +170,6 @@ class Rig:
         ------
         RigError
             For another ending, a path that cannot be written, and a rig that no rig file may describe.
-
         """
         where = Path(path)
         if where.suffix != ".toml":
@@ -278,7 +276,6 @@ class Rig:
         >>> rig = Rig.load("thenar")
         >>> rig.with_(**{"skin.layer.dermis.thickness_mm": 1.2}, contact={"area_cm2": 4}).changes
         ('skin.layer.dermis.thickness_mm=1.2', 'contact.area_cm2=4')
-
         """
         document, changes = json.loads(self.document), flattened(changes)
         put_all(document, changes)

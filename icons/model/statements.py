@@ -5,7 +5,7 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Literal, get_args
 
 from .shapes import Heading, Pulse, Step, Wave
-from .value_limits import MOST_REPEATS, Span, prove_given, prove_number, prove_one_of
+from .units import MOST_REPEATS, Kind, Span, prove, prove_given, prove_one_of
 
 if TYPE_CHECKING:
     from .icon import Icon
@@ -36,10 +36,8 @@ class Ramp:
             raise ValueError(f'Ramp.direction must be "warm", "cool" or "change", not {self.direction!r}')
         prove_one_of(self, "by_K", "to_C")
         prove_one_of(self, "rate_K_per_s", "duration_s")
-        prove_number(self, "by_K", "change" if self.direction == "change" else "difference")
-        prove_number(self, "to_C", "absolute")
-        prove_number(self, "rate_K_per_s", "rate")
-        prove_number(self, "duration_s", "time")
+        size: Kind = "change" if self.direction == "change" else "difference"
+        prove(self, by_K=size, to_C="absolute", rate_K_per_s="rate", duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +55,8 @@ class Current:
 
     def __post_init__(self) -> None:
         prove_one_of(self, "rate_A_per_s", "duration_s")
-        prove_given(self, "to_A", "current")
-        prove_number(self, "rate_A_per_s", "current_rate")
-        prove_number(self, "duration_s", "time")
+        prove_given(self, to_A="current")
+        prove(self, rate_A_per_s="current_rate", duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +71,7 @@ class Hold:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        prove_given(self, "duration_s", "time")
+        prove_given(self, duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +86,7 @@ class Rest:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        prove_given(self, "duration_s", "time")
+        prove_given(self, duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,8 +103,7 @@ class Return:
 
     def __post_init__(self) -> None:
         prove_one_of(self, "rate_per_s", "duration_s")
-        prove_number(self, "rate_per_s", "rate")
-        prove_number(self, "duration_s", "time")
+        prove(self, rate_per_s="rate", duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +121,7 @@ class Total:
     def __post_init__(self) -> None:
         if self.bound not in get_args(Bound):
             raise ValueError(f'Total.bound must be "exactly", "at most" or "at least", not {self.bound!r}')
-        prove_given(self, "duration_s", "time")
+        prove_given(self, duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)

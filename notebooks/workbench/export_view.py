@@ -238,7 +238,7 @@ def pause_of(typed: str) -> float | None:
 
 def export_svg(made: Export, place: int) -> str:
     """The figure of one icon, in the colours of the page's theme."""
-    from ..figures.export_plot import export_figure
-    from ..figures.vector import themed_svg
+    from ..figures.compare_figure import export_figure
+    from ..figures.inline import themed_svg
 
     return themed_svg(export_figure(made, place, (8.6, 5.0)))

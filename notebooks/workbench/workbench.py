@@ -200,12 +200,12 @@ class Workbench:
 
             return scene_figure(self.scene)
         if view == "set":
-            from ..figures.overview import set_figure
+            from ..figures.set_figures import set_figure
 
             return set_figure(self.ranking())
         from thermicon.circuit import export
 
-        from ..figures.export_plot import export_figure
+        from ..figures.compare_figure import export_figure
 
         icons = self.icons  # raises for a bad text, of which the icon before it is drawn still
         shown = icons.find(self.scene.icon or "") or icons.icons[0]

@@ -18,7 +18,7 @@ from typing import Any
 
 import pytest
 
-from tests.owndraws import few_draws
+from tests.builders import few_draws
 from thermicon.notebooks.cli import lab
 from thermicon.notebooks.workbench.workbench import Workbench
 

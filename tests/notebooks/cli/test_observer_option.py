@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from tests.owndraws import few_draws
+from tests.builders import few_draws
 from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]

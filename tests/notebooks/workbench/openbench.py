@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from pathlib import Path
 
+from tests.builders import messages
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
-SAID = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+SAID = messages(__file__)
 TEXT = "cue 1\n\nicon a { cool by 3 K at 2 K/s; return at 2 K/s }\n\nicon b { hold for 1 s }\n"
 TYPED = TEXT.replace("3 K", "4 K")
 
@@ -27,8 +27,3 @@ def said(bar: DocumentBar) -> str:
 
 def title(bar: DocumentBar) -> str:
     return re.sub(r"<[^>]*>", "", bar.title.value)
-
-
-def missing(words: str | list[str], told: str) -> list[str]:
-    """Key words that are not in what was said."""
-    return [word for word in ([words] if isinstance(words, str) else words) if word not in told]

@@ -12,7 +12,8 @@ from IPython.core.interactiveshell import InteractiveShell
 from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 
-from tests.notebooks.workbench.openbench import SAID, missing
+from tests.builders import missing
+from tests.notebooks.workbench.openbench import SAID
 from thermicon.icons import Icon, IconSet, parse
 
 GOOD = "icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }\n"

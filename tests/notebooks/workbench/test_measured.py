@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.notebooks.workbench.openbench import SAID, missing, said
+from tests.builders import missing
+from tests.notebooks.workbench.openbench import SAID, said
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse

@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from tests.notebooks.workbench.openbench import SAID, missing
-from tests.owndraws import few_draws
+from tests.builders import few_draws, missing
+from tests.notebooks.workbench.openbench import SAID
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.editing.apply_edit import with_edit
