@@ -14,13 +14,13 @@ from thermicon.notebooks.study.study_file import StudyError, labels_of, parse_st
 
 FAULTS = [
     ("repetitions = 2", "repetitions = 0", r"trials\.repetitions = 0: must be at least 1"),
-    ("repetitions = 2", "repetitions = 2.5", r"trials\.repetitions = 2\.5: must be a whole number without quotes"),
+    ("repetitions = 2", "repetitions = 2.5", r"trials\.repetitions = 2\.5: must be a whole number"),
     ("repetitions = 2", "repetition = 2", r"trials\.repetition: unknown key; did you mean repetitions\?"),
     ("blocks = 2", "blocks = 2\ngap_s = 3", r"trials\.gap_s: unknown key; it belongs to \[timing\]"),
     ("gap_s = 10", "gap_s = -1", r"timing\.gap_s = -1 s: must be at least 0 s"),
     ("gap_s = 10", "gap_s = 601", r"timing\.gap_s = 601 s: must be at most 600 s"),
     ("gap_s = 10", "gap_s = nan", r"timing\.gap_s = nan s?: must be|timing\.gap_s = nan: must be"),
-    ("landing_s = 30", 'landing_s = "30"', r"timing\.landing_s = '30': must be a number without quotes, in s"),
+    ("landing_s = 30", 'landing_s = "30"', r"timing\.landing_s = '30': must be a number in s, without quotes"),
     ('labels = ["A", "B"]', 'labels = ["A", "a"]', r"participants\.labels: a appears 2 times"),
     (
         'labels = ["A", "B"]',
