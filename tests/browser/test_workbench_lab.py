@@ -153,41 +153,25 @@ def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server, shot:
     assert (lab.folder / "workbench.ipynb").stat().st_size < MOST_SAVED
     wait_until_drawn(bench)
     expect_text(bench, TWO)
-    type_text(bench, TWO.replace("icon near ", "icon nigh "))
-    expect(root(bench)).to_have_attribute("data-icon", "nigh")
+    slider = bench.locator(".thermicon-knob").filter(has_text="contact area").locator(".noUi-handle")
+    slider.focus()
+    bench.keyboard.press("ArrowRight")
+    expect(bench.locator(".thermicon-knob .changed")).to_have_text("contact area (cm²) · rig 9 cm²")
 
     restart_kernel(bench)
-    type_text(bench, TWO)
+    typed = TWO.replace("icon near ", "icon nigh ")
+    type_text(bench, typed)
     banner = root(bench).locator(".tm-banner")
-    expect(banner).to_contain_text("run the cell again", timeout=15_000)
-    assert text_of(bench) == TWO
+    expect(banner).to_contain_text("run the cell again to go on; your text is saved in this page", timeout=15_000)
+    assert text_of(bench) == typed
+    icons = "all => all.filter((one) => getComputedStyle(one, '::before').content !== 'none').length"
+    lost = bench.locator(".thermicon.jupyter-widgets-disconnected, .thermicon .jupyter-widgets-disconnected")
+    assert lost.count() > 10
+    assert lost.evaluate_all(icons) == 0, "nothing is out of place"
     shot("lab-kernel-restarted")
     run_all(bench)
     wait_until_drawn(bench)
     expect(banner).to_be_hidden()
-    type_text(bench, TWO)
-    expect(root(bench)).to_have_attribute("data-icon", "near")
-    save(bench)
-
-
-def test_after_a_restart_the_text_is_taken_back_and_nothing_is_out_of_place(bench: Page, shot: Shot) -> None:
-    slider = bench.locator(".thermicon-knob").filter(has_text="contact area").locator(".noUi-handle")
-    slider.focus()
-    bench.keyboard.press("ArrowRight")
-    changed = bench.locator(".thermicon-knob .changed")
-    expect(changed).to_have_text("contact area (cm²) · rig 9 cm²")
-    type_text(bench, TWO)
-    expect(root(bench)).to_have_attribute("data-icon", "near")
-    restart_kernel(bench)
-    typed = TWO.replace("icon near ", "icon nigh ")
-    type_text(bench, typed)
-    expect(root(bench).locator(".tm-banner")).to_contain_text("your text is saved in this page", timeout=15_000)
-    icons = "all => all.filter((one) => getComputedStyle(one, '::before').content !== 'none').length"
-    lost = bench.locator(".thermicon.jupyter-widgets-disconnected, .thermicon .jupyter-widgets-disconnected")
-    assert lost.count() > 10
-    assert lost.evaluate_all(icons) == 0
-    run_all(bench)
-    wait_until_drawn(bench)
     shot("lab-text-kept")
     bench.get_by_role("button", name="Restore it").click()
     expect(root(bench)).to_have_attribute("data-icon", "nigh")
