@@ -204,11 +204,6 @@ def save(page: Page) -> None:
     command(page, "docmanager:save")
 
 
-def set_cell(page: Page, place: int, text: str) -> None:
-    """Write another text into the cell at a place, counted from 0, as pasting over it does."""
-    page.evaluate(f"([place, text]) => {PANEL}.content.widgets[place].model.sharedModel.setSource(text)", [place, text])
-
-
 def errors_in(page: Page) -> list[str]:
     """What the cells that ended with an error say: name, value and traceback."""
     outputs = page.evaluate(f"() => {PANEL}.content.widgets.flatMap(cell => cell.model.outputs?.toJSON() ?? [])")

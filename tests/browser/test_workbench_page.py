@@ -9,11 +9,9 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import Server
 from tests.browser.onbench import (
-    SETTLES_MS,
     TWO,
     click_a_confusion,
     expect_text,
-    open_tab,
     root,
     type_below_the_first_screen,
     type_drag_and_err,
@@ -79,41 +77,3 @@ def test_unsaved_text_of_a_closed_tab_is_offered_and_saved_to_its_file(
     expect(again.locator(".thermicon-project")).to_contain_text("saved alerts.cue")
     assert file.read_text(encoding="utf-8") == typed
     assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]
-
-
-def test_a_goal_a_version_and_a_log_on_the_page(
-    page: Page, serve_page: Serve, tmp_path: Path, shot: Callable[[str], Path]
-) -> None:
-    file, log = tmp_path / "alerts.cue", tmp_path / "rig.csv"
-    file.write_text(TWO, encoding="utf-8")
-    rows = (f"{k / 10:.1f},{32 + min(4.0, 0.2 * k) * (k < 50):.2f}" for k in range(120))
-    log.write_text("time_s,display_C\n" + "\n".join(rows) + "\n", encoding="utf-8")
-    page.goto(serve_page(file).url)
-    wait_until_drawn(page)
-    open_tab(page, "Versions")
-    page.get_by_role("button", name="Keep this version").click()
-    open_tab(page, "Design")
-    type_text(page, TWO.replace("3.6 °C", "6 °C"))
-    page.get_by_role("button", name="Log", exact=True).click()
-    with page.expect_file_chooser() as chooser:
-        page.locator(".thermicon-panel").get_by_role("button", name="Upload").click()
-    chooser.value.set_files(log)
-    expect(page.locator(".tm-measured")).to_contain_text("rig.csv: display rms")
-    expect(page.locator('.tm-entry[data-series="measured display_C"]')).to_be_visible()
-    page.get_by_role("button", name="Log", exact=True).click()
-    shot("page-measured")
-    open_tab(page, "Set")
-    page.get_by_label("goal").fill("correct >= 90 % for")
-    page.get_by_label("goal").press("Enter")
-    expect(page.locator(".thermicon-goal")).to_contain_text("it ends too early")
-    page.get_by_label("goal").fill("count 3, time <= 2 s")
-    page.get_by_label("goal").press("Enter")
-    expect(page.locator(".thermicon-goal")).to_contain_text("goal not met", timeout=SETTLES_MS)
-    expect(page.locator(".thermicon-goal")).to_contain_text("s over; ")
-    open_tab(page, "Versions")
-    versions = page.locator(".thermicon-versions")
-    expect(versions.locator(".changes")).to_contain_text("+ icon nearer { warm by 6 °C", use_inner_text=True)
-    shot("page-versions")
-    page.get_by_label("kept").focus()
-    page.get_by_role("button", name="Restore", exact=True).click()
-    expect_text(page, TWO)
