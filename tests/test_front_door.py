@@ -29,10 +29,11 @@ def listed(package: str) -> dict[str, str]:
 def test_every_name_is_the_one_that_type_checkers_see(package: str) -> None:
     door = import_module(package)
     names = listed(package)
-    assert set(door.__all__) == set(names)
+    assert sorted(door.__all__) == sorted(names)
     for name, module in names.items():
         assert getattr(door, name) is getattr(import_module(module), name)
     assert set(door.__all__) <= set(dir(door))
+    assert (ROOT / package.rpartition(".")[2] / "py.typed").is_file()
 
 
 @pytest.mark.parametrize("package", DOORS)

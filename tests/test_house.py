@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import doctest
 import importlib
 import io
@@ -18,7 +17,6 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 FLOW = ("icons", "circuit", "perception", "notebooks")
-MAY_IMPORT = {package: FLOW[: i + 1] for i, package in enumerate(FLOW)}
 LINES_AT_MOST = 400
 GENERATED = {"build", "dist", "__pycache__", "node_modules"}
 
@@ -56,34 +54,6 @@ def project_files() -> Iterator[Path]:
             and not (Path(folder) / name / "pyvenv.cfg").exists()
         ]
         yield from (Path(folder) / name for name in names if name != ".git")  # in a second checkout, a file
-
-
-def imported_names(path: Path) -> Iterator[tuple[int, str]]:
-    """Line and full name of everything a file imports, relative imports resolved."""
-    parts = path.relative_to(ROOT).with_suffix("").parts
-    here = ("thermicon", *(parts[:-1]))
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"), filename=str(path))):
-        if isinstance(node, ast.Import):
-            yield from ((node.lineno, alias.name) for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = here[: len(here) - node.level + 1] if node.level else ()
-            full = ".".join((*base, *filter(None, [node.module])))
-            yield node.lineno, full
-            if full == "thermicon":
-                yield from ((node.lineno, f"thermicon.{alias.name}") for alias in node.names)
-
-
-@pytest.mark.parametrize("package", FLOW)
-def test_imports_point_upstream(package: str) -> None:
-    wrong = []
-    for path in sorted((ROOT / package).rglob("*.py")):
-        for line, name in imported_names(path):
-            first, _, rest = name.partition(".")
-            bare = first in FLOW
-            downstream = first == "thermicon" and rest and rest.split(".")[0] not in MAY_IMPORT[package]
-            if bare or downstream:
-                wrong.append(f"{path.relative_to(ROOT)}:{line} imports {name}")
-    assert not wrong, f"{package} may import only {', '.join(MAY_IMPORT[package])} of ours:\n" + "\n".join(wrong)
 
 
 def test_no_bare_package_is_imported() -> None:
@@ -134,31 +104,6 @@ def test_no_file_mentions(what: str) -> None:
             if match := pattern.search(line):
                 found.append(f"{path.relative_to(ROOT)}:{number} {match[0]}")
     assert not found, f"{what} does not belong in the project:\n" + "\n".join(found)
-
-
-@pytest.mark.parametrize("package", FLOW)
-def test_package_is_typed_and_lists_its_names(package: str) -> None:
-    module = importlib.import_module(f"thermicon.{package}")
-    assert (ROOT / package / "py.typed").is_file()
-    names = list(module.__all__)
-    assert names
-    assert len(names) == len(set(names)), f"a name stands twice in thermicon.{package}.__all__"
-    missing = [name for name in names if not hasattr(module, name)]
-    assert not missing, f"thermicon.{package}.__all__ names what is not there: {missing}"
-
-
-@pytest.mark.parametrize(
-    ("package", "order"),
-    [
-        ("icons", ("parse", "Icon")),
-        ("circuit", ("Rig", "read_drive", "simulate", "gate")),
-        ("perception", ("perceive", "Ranking")),
-    ],
-)
-def test_names_are_listed_in_the_order_of_the_flow(package: str, order: tuple[str, ...]) -> None:
-    stub = (ROOT / package / "__init__.pyi").read_text(encoding="utf-8")
-    positions = [stub.index(f"{name} as {name}") for name in order]
-    assert positions == sorted(positions)
 
 
 def test_the_version_is_the_same_everywhere() -> None:

@@ -1,4 +1,4 @@
-"""The ladder of rooms: inside a package a room imports only from rooms below it, lazy imports included.
+"""The ladder: a package imports only what is upstream, and inside it a room only from rooms below, lazily too.
 
 Imports for types alone (under ``TYPE_CHECKING``) are not executed and do not count: drawing rooms stand at the bottom
 and name the objects that they draw by type only.
@@ -41,22 +41,20 @@ def type_only(tree: ast.Module) -> set[int]:
     }
 
 
-def own_imports(package: str, path: Path) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Line and path inside the package of everything that a module imports from its own package."""
+def imports_of(package: str, path: Path, with_types: bool = True) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Line and full name of everything that a module imports, relative imports resolved."""
     tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
-    here, unread = ("thermicon", package, *path.relative_to(ROOT / package).parts[:-1]), type_only(tree)
+    here = ("thermicon", package, *path.relative_to(ROOT / package).parts[:-1])
+    unread = set() if with_types else type_only(tree)
     for node in ast.walk(tree):
         if id(node) in unread:
             continue
         if isinstance(node, ast.Import):
-            names = [tuple(alias.name.split(".")) for alias in node.names]
+            yield from ((node.lineno, tuple(alias.name.split("."))) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             base = here[: len(here) - node.level + 1] if node.level else ()
             module = (*base, *(node.module.split(".") if node.module else ()))
-            names = [(*module, alias.name) for alias in node.names]
-        else:
-            continue
-        yield from ((node.lineno, name[2:]) for name in names if name[:2] == ("thermicon", package))
+            yield from ((node.lineno, (*module, alias.name)) for alias in node.names)
 
 
 def room_named(package: str, name: tuple[str, ...]) -> str | None:
@@ -80,6 +78,19 @@ def modules(package: str) -> list[Path]:
 
 
 @pytest.mark.parametrize("package", LADDER)
+def test_a_package_imports_only_itself_and_what_is_upstream(package: str) -> None:
+    """Type checkers' imports too; the bare names of the folders belong to other distributions."""
+    downstream = list(LADDER)[list(LADDER).index(package) + 1 :]
+    wrong = [
+        f"{path.relative_to(ROOT)}:{line} imports {'.'.join(name)}"
+        for path in sorted((ROOT / package).rglob("*.py"))
+        for line, name in imports_of(package, path)
+        if name[0] in LADDER or (name[0] == "thermicon" and len(name) > 1 and name[1] in downstream)
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("package", LADDER)
 def test_a_room_imports_from_rooms_below_it(package: str) -> None:
     floor = {"": -1} | {room: k for k, room in enumerate(LADDER[package])}
     wrong = []
@@ -87,7 +98,10 @@ def test_a_room_imports_from_rooms_below_it(package: str) -> None:
         if path.stem == "drawn":  # the one place that asks the room of pictures, when a picture is made
             continue
         room = room_of(package, path)
-        for line, name in own_imports(package, path):
+        for line, full in imports_of(package, path, with_types=False):
+            if full[:2] != ("thermicon", package):
+                continue
+            name = full[2:]
             target = room_named(package, name)
             if target is None or (target != room and floor[target] >= floor[room]):
                 wrong.append(f"{path.relative_to(ROOT)}:{line} imports {'.'.join(name)}")

@@ -21,12 +21,12 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.perception.evidence import posterior_tables as tables
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "docs" / "builder"))
 
 import key_tables  # noqa: E402
+import posterior_tables  # noqa: E402
 
 README = ROOT / "README.md"
 INDEX = ROOT / "docs" / "README.md"
@@ -37,7 +37,7 @@ FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)``
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
 TABLES = {
-    **tables.TABLES,
+    **posterior_tables.TABLES,
     "study keys": key_tables.study_keys_table,
     "rig keys": key_tables.rig_keys_table,
     "modules": key_tables.modules_table,
@@ -225,9 +225,8 @@ def draw_mechanisms(folder: Path) -> None:
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import load_library
     from thermicon.perception import Observer, perceive
-    from thermicon.perception.evidence.frozen import load_ablation
     from thermicon.perception.evidence.magnitudes import onset_stages
-    from thermicon.perception.evidence.results import load_constants, load_predictions
+    from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
     from thermicon.perception.identification.episodes import remembered
 
     drawn = {f"mechanism-{name}": plot_effect(effect()) for name, effect in EFFECTS.items()} | {

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
+from thermicon.icons.atomic import complete_or_absent
+
 from ..figures.style import SCREEN, Look, read_width_mm
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, complete_or_absent
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
 from ..messages import DEFAULT_RIG, check_changes, check_draws, load_observer, load_rig, note, usage
 
 if TYPE_CHECKING:

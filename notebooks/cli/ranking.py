@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate
+from thermicon.icons.atomic import check_folder
+
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
 from ..report.rank_text import show_ranking
 from .cues import MOST_ICONS, read_set, warn_of_frames

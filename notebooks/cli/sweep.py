@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from thermicon.icons.atomic import complete_or_absent
 from thermicon.icons.number_text import percent, span
 
-from ..files.outputs import STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
+from ..files.outputs import STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import Progress, fail, note, progress_bar, usage
 from ..report.sweep_text import swept_table
 from ..report.tables import show

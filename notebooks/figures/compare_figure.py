@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from thermicon.circuit import Export
     from thermicon.circuit.arrays import Array
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
 
-    from ..files.exporting import PreparedExport
 
 FIRST = ("skin_C", "display_C", "cold_receptor_C", "warm_receptor_C", "heat_flow_skin_W_per_m2", "current_A")
 COLORS = {"cold_receptor_C": COOL, "warm_receptor_C": WARM}
@@ -98,14 +98,13 @@ def _draw(ax: Axes, time: Array, values: Array, name: str, *, color: str, lw: fl
     ax.plot(time, values, color=color, lw=lw, drawstyle=style, solid_capstyle="butt")
 
 
-def export_figure(ready: PreparedExport, place: int = 0, size: tuple[float, float] = (8.0, 6.4)) -> Figure:
+def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.0, 6.4)) -> Figure:
     """Return a matplotlib Figure of one of the prepared icons: as designed and as its device delivers it.
 
-    >>> from thermicon.circuit import Rig
+    >>> from thermicon.circuit import export
     >>> from thermicon.icons import load_library
-    >>> from thermicon.notebooks.files.exporting import prepare_icon
     >>> icon = load_library("six-icons")["cooling-step"]
-    >>> export_figure(prepare_icon(icon, Rig.load("thenar"))).get_suptitle()
+    >>> export_figure(export(icon, "thenar")).get_suptitle()
     'cooling-step on dac-16, safety green'
     """
     from matplotlib.figure import Figure

@@ -14,7 +14,8 @@ from pathlib import Path
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any
 
-from ..files.outputs import complete_or_absent
+from thermicon.icons.atomic import complete_or_absent
+
 from .style import MM, NARROW_MM, SCREEN, Look
 
 if TYPE_CHECKING:

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from thermicon.circuit.cores import cores
 from thermicon.circuit.records import RecordError
+from thermicon.icons.atomic import complete_or_absent
 
 from ..observer.draws_file import to_text, variant_named
 from .calibrate import write_observer
@@ -23,8 +24,7 @@ from .chains import require_extra
 from .fit import write_fit
 from .learning import CHAINS
 from .left_out_table import LEFT_OUT, complete, leave_each_out
-from .posterior import Posterior
-from .posterior_tables import scores_sentence, summarise
+from .posterior import Posterior, summarise
 from .results import write_rows
 from .sampling import LEAST_STEPS, Sampled, sample
 
@@ -92,9 +92,8 @@ def sample_posterior(asked: argparse.Namespace) -> int:
         sys.stderr.write("nothing was written: give more --steps and --keep DIR, or --force to write it marked\n")
         return REFUSED
     if asked.output is not None:
-        draft = asked.output.with_name(f"{asked.output.name}.part")
-        draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
-        draft.replace(asked.output)
+        with complete_or_absent(asked.output) as draft:
+            draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
     return 0
 
 
@@ -120,7 +119,8 @@ def leave_out(asked: argparse.Namespace) -> int:
     if asked.output is not None:
         asked.output.mkdir(exist_ok=True)
         write_rows(rows, LEFT_OUT, "leave-out", asked.output)
-    sys.stdout.write(f"\n{scores_sentence(rows)}\n")
+    inside = sum(each.covered(0.95) for each in rows)
+    sys.stdout.write(f"\n{inside} of {len(rows)} rows lie inside their 95 % interval\n")
     return 0
 
 

@@ -9,14 +9,16 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table, dump_records
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import steady_state
 
 from ..identification.rate_task import memory_noise, memory_record
 from ..observer.channels import CHANNELS, Channel
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import DATA, Observer, load_thresholds
-from ..observer.variants import VARIABLES, Variable, source_of
-from ..sensation.fits import neutral_flux
+from ..observer.variants import VARIABLES, Variable, receptor_column, source_of
 from .results import UNMOVED_SD, Constant, load_constants
 from .statistics import load_evidence
 
@@ -34,7 +36,7 @@ def calibrate(thresholds: Table | None = None) -> Table:
     known = Table(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
     shared = (
         *_taken_over(known),
-        *(neutral_flux(known, channel) for channel in CHANNELS),
+        *(_neutral_flux(known, channel) for channel in CHANNELS),
         *(record for variant in VARIABLES for record in _inferred(variant)),
     )
     noise = [_memory(known, shared, variant) for variant in VARIABLES]
@@ -126,6 +128,30 @@ def _rounded(record: Record) -> Record:
         return None if number is None else float(f"{number:.{DIGITS}g}")
 
     return replace(record, value=short(record.value), low=short(record.low), high=short(record.high))
+
+
+RIG = "thenar"
+
+
+def _neutral_flux(known: Table, channel: Channel) -> Record:
+    """Heat flow at receptor depth while the skin rests at the ends of complete adaptation."""
+    zone = known.one("complete adaptation")
+    rig = Rig.load(RIG)
+    network, column = network_of(rig), receptor_column("heat flow", channel)
+    low, high = (network.read(steady_state(rig, "skin", level)[1], column) for level in zone.interval)
+    return Record(
+        quantity="neutral heat flow",
+        unit="W/m²",
+        source=f"computed from the neutral zone ({zone.source})",
+        low=low,
+        high=high,
+        channel=channel,
+        site=RIG,
+        method=f"steady heat flow into the skin at receptor depth on the {RIG} rig",
+        conditions=f"skin held at {zone.interval[0]:g} and {zone.interval[1]:g} °C",
+        confidence="low",
+        use="calibrate",
+    )
 
 
 def write_observer() -> None:

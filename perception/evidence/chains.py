@@ -20,6 +20,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from thermicon.circuit.records import RecordError
+from thermicon.icons.atomic import complete_or_absent
 
 from ..arrays import Array
 from .surrogate import Surrogate
@@ -83,11 +84,10 @@ class Chain:
 
     def save(self, path: Path) -> None:
         """Write the chain completely or not at all."""
-        draft = path.with_suffix(".part")
         kind, keys, place, has_gauss, gauss = self.random
-        with draft.open("wb") as file:
+        with complete_or_absent(path) as draft:
             np.savez(
-                file,
+                draft,
                 white=self.white,
                 log_posterior=self.log_posterior,
                 accepted=self.accepted,
@@ -96,7 +96,6 @@ class Chain:
                 gauss=gauss,
                 kind=kind,
             )
-        draft.replace(path)
 
     @classmethod
     def load(cls, path: Path) -> Chain:

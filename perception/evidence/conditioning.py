@@ -14,13 +14,14 @@ from typing import Any
 
 from ..observer.mechanisms import ALL_OFF, find_mechanism
 from ..observer.priors import WITHIN_95
-from .frozen import AblatedRow, load_ablation
 from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude, OnsetStages, magnitudes, stages_of_six
 from .posterior import Posterior
 from .results import (
     UNMOVED_SD,
+    AblatedRow,
     Constant,
     PredictedRow,
+    load_ablation,
     load_constants,
     load_predictions,
 )

@@ -13,7 +13,7 @@ import numpy as np
 
 from thermicon.circuit import Rig
 
-from ..experiments.classical import yes_no
+from ..experiments.on_bench import yes_no
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.observer import Observer, load_thresholds
 from ..observer.variants import Variable
@@ -82,7 +82,7 @@ def first_and_return(
     def returned(channel: Channel, observer: Observer) -> float:
         bench = _thenar("skin")
         asked = replace(observer, criterion=criterion_of(alarms, observer.noise_correlation_s, hold_s))
-        size = float(yes_no(asked, bench, channel, hold_s=hold_s).each[0])
+        size = yes_no(asked, bench, channel, hold_s=hold_s)
         start = round(size + hold_s, 2)
         played = bench.play([ramp(channel, size, 1.0, hold_s, back=True)], start + hold_s + 2.0)
         cold, warm = (psi[0, 0] for psi in played.felt(asked))

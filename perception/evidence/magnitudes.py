@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from thermicon.circuit import Rig
 
 from ..observer.channels import CHANNELS, Channel
-from ..observer.delays import SPINAL_M_PER_S, SPINE_M
 from ..observer.observer import Observer
+from ..observer.receptor import SPINAL_M_PER_S, SPINE_M
 from ..observer.variants import VARIABLES, Variable
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.percept import perceive

@@ -12,7 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..experiments.measured import quantile_felt
+from ..arrays import Array
 from ..identification.drawn_laboratories import DrawnLaboratories
 from ..kernels.parallel import in_order
 from ..observer.channels import USUAL_NORM
@@ -97,6 +97,18 @@ def predict(
             )
         )
     return tuple(made)
+
+
+def quantile_felt(ordered: Array, share: float) -> float | None:
+    """Value that a share of numbers (n,), in rising order, lies below; None where it lies among those not felt (inf).
+
+    >>> quantile_felt(np.array([1.0, 2.0, np.inf]), 0.25), quantile_felt(np.array([1.0, 2.0, np.inf]), 0.75)
+    (1.5, None)
+    """
+    place = share * (ordered.size - 1)
+    low, high = float(ordered[int(np.floor(place))]), float(ordered[int(np.ceil(place))])
+    found = low if low == high else low + (place - np.floor(place)) * (high - low)
+    return float(found) if np.isfinite(found) else None
 
 
 def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:

@@ -1,7 +1,7 @@
-"""The shipped results of the inference: constants, and predictions in and out of the fit.
+"""The shipped results of the inference: constants, predictions in and out of the fit, and the ablation.
 
-Written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the shipped evidence and
-priors. All are CSV tables, so that a spreadsheet opens them.
+The first two are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the shipped
+evidence and priors. All are CSV tables, so that a spreadsheet opens them.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..observer.prior_file import load_priors
+from ..observer.priors import load_priors
 from ..observer.variants import Variable
 from .rows import load_rows
 from .statistics import DATA
 
 UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
-CONSTANTS, PREDICTIONS = "constants.csv", "predictions.csv"
+CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +68,22 @@ class PredictedRow:
     log_score: float
 
 
+@dataclass(frozen=True, slots=True)
+class AblatedRow:
+    """A variant without a mechanism: `difference` is its log evidence minus that of the variant with every mechanism.
+
+    A difference under about 2 says nothing. A mechanism stays if it has a source or a gain.
+    """
+
+    variable: str
+    without: str
+    log_evidence: float
+    difference: float
+    squares: float
+    worst: str
+    worst_sd: float
+
+
 @lru_cache(maxsize=4)
 def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
     """Constants of a variant at its maximum.
@@ -82,6 +98,12 @@ def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
 def load_predictions() -> tuple[PredictedRow, ...]:
     """Predictions of every row."""
     return tuple(read_rows(PREDICTIONS, PredictedRow))
+
+
+@lru_cache(maxsize=1)
+def load_ablation() -> tuple[AblatedRow, ...]:
+    """What each mechanism is worth, a finished comparison: its first line says which version made it."""
+    return tuple(read_rows(ABLATION, AblatedRow))
 
 
 def constant(name: str) -> Constant:

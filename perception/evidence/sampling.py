@@ -21,11 +21,12 @@ import numpy as np
 
 from thermicon.circuit.cores import quiet_blas
 from thermicon.circuit.records import RecordError
+from thermicon.icons.atomic import complete_or_absent
 
 from ..arrays import Array
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
-from ..observer.prior_file import LABORATORIES, load_priors
+from ..observer.priors import LABORATORIES, load_priors
 from .chains import ESS, R_HAT, Chain, Diagnostics, Reference, diagnose, extend
 from .learning import CHAIN_STEPS, CHAINS, Points, Recorder, fitted, learn, misses_at
 from .maximum import Maximum, maximise
@@ -252,16 +253,14 @@ def _save_learned(keep: Path | None, reference: Reference, points: Points, begun
         return
     for number, chain in enumerate(begun):
         chain.save(keep / f"warm-{number}.npz")
-    draft = keep / "points.part"
-    with draft.open("wb") as file:
+    with complete_or_absent(keep / POINTS) as draft:
         np.savez(
-            file,
+            draft,
             middle=reference.middle,
             factor=reference.factor,
             vectors=points.vectors,
             misses=points.misses,
         )
-    draft.replace(keep / POINTS)
 
 
 def load_vectors(keep: Path, reference: Reference) -> Array:

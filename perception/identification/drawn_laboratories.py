@@ -14,8 +14,7 @@ from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
 from ..observer.variants import Variable
-from ..sensation.memory_parameters import memory_parameters
-from ..sensation.parameters import latin
+from ..sensation.parameters import latin, memory_parameters
 
 OFFSETS = ("laboratory, cold", "laboratory, warm")
 

@@ -22,7 +22,7 @@ from ..arrays import Array, own_arrays
 from .channels import CHANNELS
 from .draws_file import DrawsHeader, read_draws, shipped_file
 from .from_draw import observer_with
-from .memory_constants import NOISE
+from .memory import NOISE
 from .observer import Observer, variant_records
 from .variants import Variable, check_variable, source_of
 

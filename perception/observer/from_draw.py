@@ -7,8 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from .channels import Channel
-from .memory import Ratings
-from .memory_constants import with_memory
+from .memory import BAR, MISSING, NOISE, SHARE, Ratings
 from .observer import Observer, Receptor
 
 
@@ -48,7 +47,8 @@ def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
         whole = math.hypot(value("scatter of ratings", scatter), exponent * own.rated * gain_noise)
         return Ratings(value(f"{channel} rating at threshold", own.at_threshold), exponent, own.rated, whole)
 
-    moved = replace(
+    own = base.memory
+    return replace(
         base,
         cold=receptor("cold"),
         warm=receptor("warm"),
@@ -61,6 +61,13 @@ def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
         decision_s=value("decision time", base.decision_s),
         choice_s=value("choice time", base.choice_s),
         decision_noise=value("decision time between trials", base.decision_noise),
-        memory=replace(base.memory, cold=ratings("cold"), warm=ratings("warm")),
+        memory=replace(
+            own,
+            timing=value(NOISE, own.timing),
+            share=value(SHARE, own.share),
+            missing=value(MISSING, own.missing),
+            bar=value(BAR, own.bar),
+            cold=ratings("cold"),
+            warm=ratings("warm"),
+        ),
     )
-    return with_memory(moved, values)

@@ -19,11 +19,10 @@ from thermicon.circuit.records import RecordError, Table, load_records
 
 from ..arrays import Array
 from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
-from .delays import Conduction
 from .mechanisms import check_without, find_mechanism
 from .memory import EpisodeMemory, Ratings
 from .observer_file import check_complete, read_observer_file
-from .receptor import Receptor
+from .receptor import Conduction, Receptor
 from .transducer import Transducer
 from .variants import VARIABLES, Variable, check_variable, drive_unit, source_of
 

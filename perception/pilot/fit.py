@@ -16,12 +16,12 @@ from itertools import combinations
 import numpy as np
 
 from ..arrays import Array
+from ..experiments.measure import Condition
 from .answers import plugin_information
-from .measurement_likelihood import log_errors, person_covariance, shared_covariance
-from .measurements import Condition, Measurements
+from .measurement_likelihood import Predicted, log_errors, person_covariance, shared_covariance
+from .measurements import Measurements
 from .playing import Confusions
 from .prediction import COVER, Three, median_three
-from .simulated_measurements import Predicted
 from .trials import Trials
 
 EXPERIMENTS = 1000

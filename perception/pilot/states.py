@@ -24,10 +24,8 @@ from ..observer.from_draw import observer_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, draw_people
-from ..observer.prior_file import priors_of
-from ..observer.priors import Prior
-from ..sensation.memory_parameters import memory_parameters
-from ..sensation.parameters import ObserverParameter, latin
+from ..observer.priors import Prior, priors_of
+from ..sensation.parameters import ObserverParameter, latin, memory_parameters
 
 LEAST_VARIANCE = 1e-12
 """Directions in which draws vary less, such as a constant that is the same in all, are left as they are."""

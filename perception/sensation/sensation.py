@@ -1,4 +1,13 @@
-"""Receptor drive → sensation, through area, site and transducer. Sensory noise is the unit: ψ = 1 is d′ = 1."""
+"""Receptor drive → sensation, through area, site and transducer. Sensory noise is the unit: ψ = 1 is d′ = 1.
+
+Spatial summation has two ends:
+
+    A_eff = (√A + √A_rf)²,   A_sum = A_eff/√(1 + (A_eff/A_end)²),   sensitivity ∝ A_sum^n
+
+Below the area of a receptive field a smaller contact stimulates the same receptors (Campero et al. 2001: human cold
+units respond to spots under 5 mm); above about 200 cm² a larger one adds nothing (Hardy & Oppel 1937: 100 and 225 cm²
+of radiant heat differ, 225 and 400 do not). Areas that do not touch add like one.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +20,13 @@ from ..arrays import Array, as_rows
 from ..kernels.parallel import over_rows
 from ..observer.channels import Channel
 from ..observer.observer import Observer
-from .summation import END_CM2, FIELD_CM2, area_factor
 
 CM2 = 1e-4
 """A square centimetre in m²."""
+FIELD_CM2 = 0.25
+"""Area of a receptive field 5 mm wide, as a square (Campero et al. 2001)."""
+END_CM2 = 200.0
+"""Area where summation ends; between 100 and 400 (Hardy & Oppel 1937)."""
 
 
 def sensation(
@@ -82,3 +94,31 @@ def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, sit
     ends = (0.0, math.inf) if "ends of summation" in observer.without else (FIELD_CM2, END_CM2)
     exponent = observer.receptor(channel).area_exponent
     return area_factor(area_m2 / CM2, observer.reference_area_m2 / CM2, exponent, *ends) / factor
+
+
+def summed_area_cm2(area_cm2: float, field_cm2: float = FIELD_CM2, end_cm2: float = END_CM2) -> float:
+    """The area that counts, in cm²; ``math.inf`` as `end_cm2` and 0 as `field_cm2` turn the two ends off.
+
+    >>> [round(summed_area_cm2(area), 2) for area in (0.01, 9.0, 18000.0)]
+    [0.36, 12.23, 199.99]
+    """
+    if not area_cm2 > 0.0:
+        raise ValueError(f"the area of contact must be above 0 cm², not {area_cm2:g} cm²")
+    touched = (math.sqrt(area_cm2) + math.sqrt(field_cm2)) ** 2
+    return touched / math.hypot(1.0, touched / end_cm2)
+
+
+def area_factor(
+    area_cm2: float,
+    reference_cm2: float,
+    exponent: float,
+    field_cm2: float = FIELD_CM2,
+    end_cm2: float = END_CM2,
+) -> float:
+    """Sensitivity at an area over that at a reference area.
+
+    >>> round(area_factor(18.0, 9.0, 0.7), 3)
+    1.525
+    """
+    ratio = summed_area_cm2(area_cm2, field_cm2, end_cm2) / summed_area_cm2(reference_cm2, field_cm2, end_cm2)
+    return math.pow(ratio, exponent)

@@ -18,10 +18,6 @@ FAMILY = (
     "cue 1\nicon ramp(amount in 0.1..10 step 0.1 °C, rate in 0.1..10 step 0.1 °C/s, pause in 1..10 step 1 s)\n"
     '  means "{amount} at {rate}"\n{ change by amount at rate; hold for pause; return at rate }'
 )
-WAVES = (
-    "cue 1\nicon wave(size in 0.01..5 step 0.01 K, time in 0.1..20 step 0.1 s)\n"
-    "{ sine by size every time for 20 s cut; step to 26 °C; hold for 1 s }"
-)
 ROW = (
     'icon row-{} means "a row" {{ cool by 6 K at 3 K/s; '
     "repeat 3 {{ hold for .5 s; pulse warm by 1 K for 1 s }}; return over 2 s }} # c\n"
@@ -54,14 +50,6 @@ def test_members_are_checked_no_slower_than_one_by_one(benchmark: BenchmarkFixtu
     took = benchmark.stats["min"]
     print(f"\n100,000 members checked and counted in {took:.1f} s; one by one {alone:.1f} s, {alone / took:.1f} times")
     assert took < alone
-
-
-def test_waves_are_checked_as_well(benchmark: BenchmarkFixture) -> None:
-    icons = benchmark.pedantic(lambda: parse(WAVES), rounds=1)
-    assert len(icons) == 100_000
-    print(f"\n100,000 members with a sine checked and counted in {benchmark.stats['min']:.1f} s")
-    # A wave costs more than a ramp, but not many times as much.
-    assert benchmark.stats["min"] < 4 * 20 * best_of(lambda: one_by_one(5_000))
 
 
 def test_a_check_follows_every_member_once(benchmark: BenchmarkFixture) -> None:

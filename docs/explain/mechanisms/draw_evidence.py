@@ -12,8 +12,7 @@ from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from thermicon.perception.evidence.frozen import AblatedRow
-    from thermicon.perception.evidence.results import Constant, PredictedRow
+    from thermicon.perception.evidence.results import AblatedRow, Constant, PredictedRow
 
 GREY, INK = "#9a9a9a", "#222222"
 SAYS_NOTHING = 2.0

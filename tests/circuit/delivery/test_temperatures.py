@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Rig, simulate_current
 from thermicon.circuit.delivery.deliver import deliver, traces_until
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.spread import open_loop_spread
 from thermicon.circuit.records import Record

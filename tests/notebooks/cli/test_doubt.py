@@ -7,8 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import pytest
-
 Cli = Callable[..., Any]
 QUICK = ("--doubt", "--people", 3, "--intervals", 64)
 
@@ -41,25 +39,3 @@ def test_a_what_if(cli: Cli, two: Path) -> None:
     printed = cli("rank", two, *QUICK, "--set", "contact.area_cm2=4")
     words = " ".join(printed.stdout.split())
     assert "on the thenar rig with contact.area_cm2=4 (seed 0, episodes norm)" in words
-
-
-@pytest.mark.parametrize(
-    ("options", "told"),
-    [
-        (("--intervals", 2), "'--intervals': 2 draws are too few for --doubt: give 64 or more"),
-        (("--tracking", "ideal"), "'--tracking': belongs to a ranking; leave it out, or --doubt"),
-        (("--figure", "figures"), "'--figure': with --doubt there is one figure"),
-    ],
-)
-def test_bad_options_are_usage_errors(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
-    said = cli("rank", two, "--doubt", *options)
-    assert (said.exit_code, said.stdout) == (2, "")
-    assert told in " ".join(said.stderr.replace("│", " ").split())
-
-
-def test_one_icon_is_bad_input(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "one.cue"
-    path.write_text("cue 1\nicon only { warm by 2 °C at 1 °C/s }\n", encoding="utf-8")
-    said = cli("rank", path, "--doubt")
-    assert said.exit_code == 1
-    assert said.stderr == f"{path}: --doubt needs at least two icons, since one alone is never confused\n"

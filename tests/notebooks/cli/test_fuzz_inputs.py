@@ -16,6 +16,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,7 +25,20 @@ from typing import Any
 
 import pytest
 
+from thermicon.circuit import Device, Rig, read_drive, simulate_current
+from thermicon.circuit.delivery.samples import rate_of
+from thermicon.circuit.fitting.log_files import read_log
+from thermicon.circuit.safety.sessionplan import read_order
+from thermicon.icons import load_library, parse
+from thermicon.icons.recordings.readings import read_readings
+from thermicon.notebooks.cli.compare import Comparison, _shifted, show_comparison
+from thermicon.notebooks.figures.differences import align
+from thermicon.notebooks.files.trace_files import read_curves
 from thermicon.notebooks.messages import is_ours
+from thermicon.notebooks.study.study_file import parse_study, study_text
+from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.pilot.measurements_file import read_measurements
+from thermicon.perception.pilot.trials_file import read_trials
 
 COUNT, CHUNKS = int(os.environ.get("THERMICON_FUZZ", "50000")), 50
 COMMANDS = 200
@@ -105,133 +119,72 @@ def mutate(text: str, rng: random.Random) -> str:
     return "".join(words)
 
 
-def read_cue(data: bytes, path: Path) -> None:
-    from thermicon.icons import parse
-
-    parse(data, "a.cue")
-
-
-def read_rig(data: bytes, path: Path) -> None:
-    from thermicon.circuit import Rig
-
-    path = path.with_suffix(".toml")
-    path.write_bytes(data)
+def use_rig(path: Path) -> None:
     rig = Rig.load(path)
     str(rig), rig.warnings, rig.about()
 
 
-def read_device(data: bytes, path: Path) -> None:
-    from thermicon.circuit import Device
-    from thermicon.circuit.delivery.samples import rate_of
-
-    path = path.with_suffix(".toml")
-    path.write_bytes(data)
+def use_device(path: Path) -> None:
     device = Device.load(path)
     if device.driven_by != "set-points":
         device.scale(1.0)
         rate_of(device, 100.0, 8.0)
 
 
-def read_drive(data: bytes, path: Path) -> None:
-    from thermicon.circuit import Rig, read_drive, simulate_current
-
-    path.write_bytes(data)
-    simulate_current(read_drive(path), Rig.load("thenar"), rate_Hz=10.0)
-
-
-def read_setting(data: bytes, path: Path) -> None:
-    from thermicon.circuit import Rig
-
-    Rig.load("thenar").with_set([data.decode("utf-8", "replace")])
-
-
-def read_log_file(data: bytes, path: Path) -> None:
-    from thermicon.circuit.fitting.log_files import read_log
-
-    path.write_bytes(data)
-    read_log(path)
-
-
-def read_curves_aligned(data: bytes, path: Path) -> None:
-    from thermicon.notebooks.cli.compare import Comparison, _shifted, show_comparison
-    from thermicon.notebooks.figures.differences import align
-    from thermicon.notebooks.files.trace_files import read_curves
-
-    path.write_bytes(data)
+def use_curves(path: Path) -> None:
     other = path.with_name("sound.csv")
     other.write_text(LOG)
     first, second = read_curves(str(other)), read_curves(str(path))
     show_comparison(Comparison("", align(first, _shifted(first, second)[0])))
 
 
-def read_recording(data: bytes, path: Path) -> None:
-    from thermicon.icons.recordings.readings import read_readings
+@dataclass(frozen=True)
+class Kind:
+    """Sound texts of a kind of input, how often one is damaged, what reads its file, and a command that does."""
 
-    path.write_bytes(data)
-    read_readings(path, "skin_C")
-
-
-def read_answers(data: bytes, path: Path) -> None:
-    from thermicon.perception.pilot.trials_file import read_trials
-
-    path.write_bytes(data)
-    read_trials(path, ["dip", "glow"])
+    texts: list[str]
+    weight: int
+    file: str
+    read: Callable[[Path], object]
+    words: str = ""  # what else reads tables takes minutes
 
 
-def read_values(data: bytes, path: Path) -> None:
-    from thermicon.circuit import Rig
-    from thermicon.perception.pilot.measurements_file import read_measurements
-
-    path.write_bytes(data)
-    read_measurements(path, Rig.load("thenar"))
-
-
-def read_plan(data: bytes, path: Path) -> None:
-    from thermicon.circuit.safety.sessionplan import read_order
-    from thermicon.icons import load_library
-
-    path.write_bytes(data)
-    read_order(path, load_library("six-icons"))
-
-
-def read_observer(data: bytes, path: Path) -> None:
-    from thermicon.perception.observer.observer_model import ObserverModel
-
-    path = path.with_suffix(".csv" if b"written by thermicon" in data else ".toml")
-    path.write_bytes(data)
-    ObserverModel.load(path)
-
-
-def read_study_file(data: bytes, path: Path) -> None:
-    from thermicon.notebooks.study.study_file import parse_study, study_text
-
-    path = path.with_suffix(".toml")
-    path.write_bytes(data)
-    parse_study(study_text(path), "study.toml")
-
-
-KINDS: list[tuple[list[str], Callable[[bytes, Path], None], int]] = [
-    (CUES, read_cue, 3),
-    (RIGS, read_rig, 3),
-    (DEVICES, read_device, 3),
-    (DRIVES, read_drive, 2),
-    (SETTINGS, read_setting, 2),
-    (LOGS, read_log_file, 2),
-    (LOGS, read_curves_aligned, 2),
-    (LOGS, read_recording, 1),
-    (TRIALS, read_answers, 1),
-    (VALUES, read_values, 1),
-    (ORDERS, read_plan, 1),
-    (OBSERVERS, read_observer, 1),
-    (DRAWS, read_observer, 1),
-    (STUDIES, read_study_file, 1),
+KINDS = [
+    Kind(CUES, 3, "a.cue", lambda path: parse(path.read_bytes(), "a.cue"), "check a.cue"),
+    Kind(RIGS, 3, "a.toml", use_rig, "check six-icons --rig a.toml"),
+    Kind(DEVICES, 3, "a.toml", use_device, "export short.cue --to csv --device a.toml -o out --force"),
+    Kind(
+        DRIVES,
+        2,
+        "a.csv",
+        lambda path: simulate_current(read_drive(path), Rig.load("thenar"), rate_Hz=10.0),
+        "simulate --current a.csv",
+    ),
+    Kind(
+        SETTINGS,
+        2,
+        "a.txt",
+        lambda path: Rig.load("thenar").with_set([path.read_bytes().decode("utf-8", "replace")]),
+        "check six-icons --set",
+    ),
+    Kind(LOGS, 2, "a.csv", read_log, "simulate six-icons --icon warming-step --measured a.csv"),
+    Kind(LOGS, 2, "a.csv", use_curves, "compare a.csv a.csv --align"),
+    Kind(LOGS, 1, "a.csv", lambda path: read_readings(path, "skin_C"), "convert a.csv --column skin_C -o b.cue"),
+    Kind(TRIALS, 1, "a.csv", lambda path: read_trials(path, ["dip", "glow"])),
+    Kind(VALUES, 1, "a.csv", lambda path: read_measurements(path, Rig.load("thenar"))),
+    Kind(
+        ORDERS, 1, "a.csv", lambda path: read_order(path, load_library("six-icons")), "simulate six-icons --order a.csv"
+    ),
+    Kind(OBSERVERS, 1, "a.toml", ObserverModel.load),
+    Kind(DRAWS, 1, "a.csv", ObserverModel.load),
+    Kind(STUDIES, 1, "a.toml", lambda path: parse_study(study_text(path), "study.toml")),
 ]
 
 
-def mutated(rng: random.Random) -> tuple[bytes, Callable[[bytes, Path], None]]:
-    """A damaged input, and what reads it."""
-    corpus, reader, _ = rng.choices(KINDS, [weight for *_, weight in KINDS])[0]
-    text = rng.choice(corpus)
+def mutated(rng: random.Random) -> tuple[bytes, Kind]:
+    """A damaged input, and its kind."""
+    (kind,) = rng.choices(KINDS, [kind.weight for kind in KINDS])
+    text = rng.choice(kind.texts)
     for _ in range(rng.choice([1, 1, 1, 2, 3, 6])):
         text = mutate(text, rng)
     data = text.encode("utf-8", "surrogatepass")
@@ -239,7 +192,12 @@ def mutated(rng: random.Random) -> tuple[bytes, Callable[[bytes, Path], None]]:
         spoilt = bytearray(data or b"x")
         spoilt[rng.randrange(len(spoilt))] = rng.randrange(256)
         data = bytes(spoilt)
-    return data, reader
+    return data, kind
+
+
+def read(data: bytes, kind: Kind, folder: Path) -> None:
+    (folder / kind.file).write_bytes(data)
+    kind.read(folder / kind.file)
 
 
 class TooSlow(Exception):
@@ -272,21 +230,22 @@ def examine(chunk: int) -> tuple[float, str, float, list[str], int]:
     rng = random.Random(f"inputs {chunk}")
     slowest, wrong, taken = (0.0, ""), [], 0
     with TemporaryDirectory() as folder:
-        read_drive(DRIVES[0].encode(), Path(folder) / "warm.csv")  # compiled before it is timed
+        read(DRIVES[0].encode(), KINDS[3], Path(folder))  # compiled before it is timed
         start = memory()
         for number in range(COUNT // CHUNKS):
-            data, reader = mutated(rng)
+            data, kind = mutated(rng)
+            shown = f"{kind.file}: {data[:3000]!r}"
             begin = time.process_time()
             try:
                 with limited():
-                    reader(data, Path(folder) / "input.csv")
+                    read(data, kind, Path(folder))
                 taken += 1
             except Exception as error:
                 if not is_ours(error):
-                    wrong.append(f"{reader.__name__} {number} of chunk {chunk}: {error!r} from {data[:3000]!r}")
+                    wrong.append(f"{number} of chunk {chunk}: {error!r} from {shown}")
                 elif any(ord(char) < 32 and char not in "\n\t" for char in str(error)):
-                    wrong.append(f"{reader.__name__} {number} of chunk {chunk}: control character in {str(error)!r}")
-            slowest = max(slowest, (time.process_time() - begin, f"{reader.__name__}: {data[:3000]!r}"))
+                    wrong.append(f"{number} of chunk {chunk}: control character in {str(error)!r}")
+            slowest = max(slowest, (time.process_time() - begin, shown))
     return *slowest, memory() - start, wrong, taken
 
 
@@ -309,23 +268,12 @@ def test_damaged_inputs_through_the_command(process: Callable[..., Any], tmp_pat
     rng = random.Random("commands")
     (tmp_path / "short.cue").write_text(SHORT, encoding="utf-8")
     for _ in range(COMMANDS):
-        data, reader = mutated(rng)
-        words = {
-            "read_cue": ("check", "a.cue"),
-            "read_rig": ("check", "six-icons", "--rig", "a.toml"),
-            "read_device": ("export", "short.cue", "--to", "csv", "--device", "a.toml", "-o", "out", "--force"),
-            "read_drive": ("simulate", "--current", "a.csv"),
-            "read_log_file": ("simulate", "six-icons", "--icon", "warming-step", "--measured", "a.csv"),
-            "read_curves_aligned": ("compare", "a.csv", "a.csv", "--align"),
-            "read_recording": ("convert", "a.csv", "--column", "skin_C", "-o", "b.cue"),
-            "read_plan": ("simulate", "six-icons", "--order", "a.csv"),
-            "read_setting": ("check", "six-icons", "--set", data.decode("utf-8", "replace").replace("\0", "")),
-        }.get(reader.__name__, ())  # what else reads tables takes minutes
-        for name in words:
-            if name in ("a.cue", "a.toml", "a.csv"):
-                (tmp_path / name).write_bytes(data)
-        if not words:
+        data, kind = mutated(rng)
+        if not (words := kind.words.split()):
             continue
+        if words[-1] == "--set":
+            words.append(data.decode("utf-8", "replace").replace("\0", ""))
+        (tmp_path / kind.file).write_bytes(data)
         said = process(*words, cwd=tmp_path)
         assert said.exit_code in (0, 1, 2, 3), (words, data, said)
         assert "Traceback" not in said.stderr, (words, data, said.stderr)
@@ -335,10 +283,10 @@ def test_a_handful_of_damaged_inputs(tmp_path: Path) -> None:
     rng = random.Random("a handful")
     refused = 0
     for _ in range(60):
-        data, reader = mutated(rng)
+        data, kind = mutated(rng)
         try:
-            reader(data, tmp_path / "input.csv")
+            read(data, kind, tmp_path)
         except Exception as error:
-            assert is_ours(error), (reader.__name__, data, error)
+            assert is_ours(error), (kind.file, data, error)
             refused += 1
     assert refused > 20

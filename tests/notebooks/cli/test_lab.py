@@ -18,7 +18,7 @@ from typing import Any
 
 import pytest
 
-from tests.owndraws import few_draws
+from tests.builders import few_draws
 from thermicon.notebooks.cli import lab
 from thermicon.notebooks.workbench.workbench import Workbench
 
@@ -96,19 +96,6 @@ def test_any_other_file_of_that_name_is_kept(cli: Cli, tmp_path: Path, text: str
     assert (tmp_path / FIRST).read_text(encoding="utf-8") == text
 
 
-def test_a_file_is_no_folder(cli: Cli, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("mine")
-    said = cli("lab", tmp_path / "file", "--files-only")
-    assert said.exit_code == 1
-    assert said.stderr == f"cannot write into {tmp_path / 'file'}: it is a file; give the name of a folder\n"
-
-
-def test_the_folder_above_must_be_there(cli: Cli, tmp_path: Path) -> None:
-    said = cli("lab", tmp_path / "no" / "mine", "--files-only")
-    assert said.exit_code == 1
-    assert "does not exist; make it first" in said.stderr
-
-
 @pytest.mark.skipif(sys.platform == "win32" or os.geteuid() == 0, reason="nothing is unwritable here")
 def test_an_unwritable_folder_is_told(cli: Cli, tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
@@ -142,25 +129,7 @@ def test_without_voila_the_cure_is_told_and_nothing_written(
     assert not (tmp_path / "mine").exists()
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (("--page", "--files-only"), "no page can be served"),
-        (("--port", "70000"), "70000 is outside 1 to 65535"),
-        (("--page", "--allow-root"), "nothing else refuses to run as root"),
-        (("--files-only", "--allow-root"), "nothing else refuses to run as root"),
-    ],
-)
-def test_what_makes_no_sense_is_bad_usage(cli: Cli, tmp_path: Path, words: tuple[str, ...], told: str) -> None:
-    said = cli("lab", tmp_path / "mine", *words)
-    assert said.exit_code == 2
-    assert told in " ".join(said.stderr.replace("│", " ").split())
-    assert not (tmp_path / "mine").exists()
-
-
-def test_a_page_of_one_file_knows_file_rig_and_folder(
-    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_page_knows_file_rig_folder_and_observer(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     served: list[tuple[list[str], dict[str, str]]] = []
     monkeypatch.setattr(lab, "find_spec", lambda _: True)
     monkeypatch.setattr(lab, "serve", lambda command, program, told: served.append((command, dict(told))))
@@ -169,60 +138,17 @@ def test_a_page_of_one_file_knows_file_rig_and_folder(
     said = cli("lab", "--page", file, "--rig", "fingertip", "--no-browser")
     assert (said.exit_code, said.stdout) == (0, "")
     command, told = served[0]
-    assert told == {
-        "THERMICON_PAGE_FOLDER": str(tmp_path),
-        "THERMICON_PAGE_FILE": str(file),
-        "THERMICON_PAGE_RIG": "fingertip",
-    }
+    page = {"THERMICON_PAGE_FOLDER": str(tmp_path), "THERMICON_PAGE_FILE": str(file)}
+    assert told == {**page, "THERMICON_PAGE_RIG": "fingertip"}
     assert str(tmp_path / "workbench.ipynb") not in command
     assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]
-
-
-def test_a_page_predicts_with_the_observer_it_is_given(
-    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    served: list[dict[str, str]] = []
-    monkeypatch.setattr(lab, "find_spec", lambda _: True)
-    monkeypatch.setattr(lab, "serve", lambda command, program, told: served.append(dict(told)))
-    file = tmp_path / "alerts.cue"
-    file.write_text("cue 1; icon a { hold for 1 s }", encoding="utf-8")
     own = few_draws(tmp_path / "lab.csv", 2, "by weights from 4 laboratories", "hand-dorsum")
     said = cli("lab", "--page", file, "--observer", own, "--no-browser")
     assert said.exit_code == 0
     assert "lab.csv was conditioned on the hand-dorsum rig, not on thenar" in said.stderr
-    assert served[0]["THERMICON_PAGE_OBSERVER"] == str(own)
-    assert "THERMICON_PAGE_RIG" not in served[0]
+    assert served[1][1] == {**page, "THERMICON_PAGE_OBSERVER": str(own)}
     monkeypatch.setenv("THERMICON_PAGE_OBSERVER", str(own))
     assert Workbench(file).ranking(2).observer == "lab.csv"
-    (bad := tmp_path / "bad.csv").write_text("a,b\n", encoding="utf-8")
-    said = cli("lab", "--page", file, "--observer", bad, "--no-browser")
-    assert said.exit_code == 1
-    assert "this is not a table of posterior draws" in said.stderr
-    assert len(served) == 1
-    said = cli("lab", tmp_path / "mine", "--observer", own)
-    assert said.exit_code == 2
-    assert "is for --page; in a notebook, write Workbench(observer=...)" in " ".join(
-        said.stderr.replace("│", " ").split()
-    )
-
-
-def test_a_page_of_a_file_or_rig_that_is_not_there_is_not_served(cli: Cli, tmp_path: Path) -> None:
-    said = cli("lab", "--page", tmp_path / "none.cue", "--no-browser")
-    assert (said.exit_code, said.stderr) == (1, f"{tmp_path / 'none.cue'}: no such cue file\n")
-    said = cli("lab", "--page", tmp_path / "mine", "--rig", "thenr")
-    assert said.exit_code == 1
-    assert "thenar" in said.stderr
-    assert not (tmp_path / "mine").exists()
-    said = cli("lab", tmp_path / "mine", "--rig", "thenar")
-    assert said.exit_code == 2
-    assert "is for --page" in " ".join(said.stderr.replace("│", " ").split())
-
-
-def test_the_name_of_a_file_is_no_folder(cli: Cli, tmp_path: Path) -> None:
-    said = cli("lab", tmp_path / "alerts.cue", "--files-only")
-    assert said.exit_code == 2
-    assert "is the name of a file, not of a folder" in " ".join(said.stderr.replace("│", " ").split())
-    assert not (tmp_path / "alerts.cue").exists()
 
 
 def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -120,20 +120,6 @@ def test_joined_files_without_titles_have_none(cli: Cli, tmp_path: Path) -> None
     assert said.stderr == ""
 
 
-@pytest.mark.parametrize("command", [("rank", "--people", 2), ("simulate",)])
-def test_another_site_is_warned_about(cli: Cli, two: Path, command: tuple[str, ...]) -> None:
-    two.write_text(two.read_text(encoding="utf-8").replace("site thenar", "site forearm"), encoding="utf-8")
-    said = cli(command[0], two, *command[1:])
-    assert said.exit_code == 0
-    assert said.stderr.startswith(f"warning: {two} is for the site forearm, the rig thenar is for thenar\n")
-
-
-def test_a_sweep_warns_of_another_site(cli: Cli, two: Path) -> None:
-    two.write_text(two.read_text(encoding="utf-8").replace("site thenar", "site forearm"), encoding="utf-8")
-    said = cli("sweep", two, "--vary", "contact.area_cm2=4:9:2", "-o", "-")
-    assert "is for the site forearm" in said.stderr
-
-
 @pytest.mark.slow
 def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "rank.json"
@@ -161,19 +147,6 @@ def test_one_person_has_no_spread(cli: Cli, two: Path) -> None:
     assert "95 % of people" in cli("rank", two, "--people", 2).stdout
 
 
-def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "hard.cue"
-    path.write_text(
-        "cue 1\nset s { control current }\n"
-        "icon burn { to -3 A at 20 A/s; hold for 20 s; return at 20 A/s }\n"
-        "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n",
-        encoding="utf-8",
-    )
-    words = " ".join(cli("rank", path, "--people", 1, "--intervals", 0).stdout.split())
-    assert "burn is NOT SAFE and not reached: " in words
-    assert "jolt is not reached: the drive needs 1.6 A" in words
-
-
 @pytest.mark.slow
 def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "cold.cue"
@@ -191,9 +164,6 @@ def test_a_set_is_ranked_by_rules_alone(cli: Cli) -> None:
     assert result.exit_code == 0, result.stderr
     assert "Set: 15 of 15 pairs distinguishable by the rules" in result.stdout
     assert "virtual" not in result.stdout
-    refused = cli("rank", "six-icons", "--by", "rules", "--doubt")
-    assert refused.exit_code == 2
-    assert "leave out --by rules" in refused.stderr
 
 
 def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
@@ -264,19 +234,6 @@ def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path)
     assert f"     mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}\n" in said.stdout
     assert f"     in a new laboratory (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
     assert "over the range" not in cli("rank", two, "--people", 8, "--intervals", 0).stdout
-
-
-@pytest.mark.parametrize(
-    ("options", "told"),
-    [
-        (("--intervals", 1), "'--intervals': 1 draw has no interval; give 2 or more, or 0 for none"),
-        (("--intervals", -1), "'--intervals': -1 is outside 0 to 10000"),
-    ],
-)
-def test_bad_options_are_usage_errors(cli: Cli, two: Path, options: tuple[object, ...], told: str) -> None:
-    said = cli("rank", two, *options)
-    assert (said.exit_code, said.stdout) == (2, "")
-    assert told in " ".join(said.stderr.replace("│", " ").split())
 
 
 @pytest.mark.slow

@@ -22,30 +22,12 @@ def test_workers_change_no_byte_and_parts_are_kept_where_asked(cli: Cli, two: Pa
     assert len(list((tmp_path / "kept").glob("*/*.npz"))) == 1
 
 
-@pytest.mark.parametrize("number", ["0", "-2", "5000"])
-def test_a_number_of_workers_that_makes_no_sense(cli: Cli, two: Path, number: str) -> None:
-    said = cli("rank", two, "--workers", number)
-    assert said.exit_code == 2
-    assert f"{number} is outside 1 to 1024" in said.stderr
-
-
-def test_no_people(cli: Cli, two: Path) -> None:
-    assert "0 is outside 1 to 100000" in cli("rank", two, "--people", 0).stderr
-
-
 def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:
     pytest.importorskip("distributed")
     said = cli("rank", two, "--people", 2, "--workers", "nowhere")
     assert said.exit_code == 1
     assert "'nowhere' is not the address of a scheduler" in said.stderr
     assert "Traceback" not in said.stderr
-
-
-def test_a_folder_for_parts_that_is_a_file(cli: Cli, two: Path, tmp_path: Path) -> None:
-    (tmp_path / "kept").write_text("")
-    said = cli("rank", two, "--people", 2, "--keep", tmp_path / "kept")
-    assert said.exit_code == 1
-    assert "is a file; give the name of a folder" in said.stderr
 
 
 @pytest.mark.slow

@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
 
+from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.cli import validation
 from thermicon.notebooks.cli.validation import COMPUTED, KEPT, executed_notebook, json_text, show_report, write_report
-from thermicon.notebooks.files.outputs import OutputError
 from thermicon.notebooks.report.conditioning_text import TITLE
 from thermicon.perception.evidence.validate import ValidationReport, validate
 
+Cli = Callable[..., Any]
 NOTEBOOK = Path(__file__).parents[3] / "notebooks/07_validation.ipynb"
 PICTURES = 12
 MOST_SAVED = 1_000_000
@@ -72,19 +74,16 @@ def test_the_same_numbers_give_the_same_notebook_also_without_draws() -> None:
 
 
 def test_json_to_a_file_or_to_stdout(
-    report: ValidationReport, cli: Callable[..., object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    report: ValidationReport, cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("thermicon.perception.evidence.validate.validate", lambda **_: report)
     said = cli("validate", "--json", tmp_path / "v.json")
-    assert said.exit_code == 0  # type: ignore[attr-defined]
-    assert "wrote" in said.stderr  # type: ignore[attr-defined]
-    assert TITLE in said.stdout  # type: ignore[attr-defined]
+    assert said.exit_code == 0
+    assert "wrote" in said.stderr
+    assert TITLE in said.stdout
     printed = cli("validate", "--json", "-")
-    assert printed.stdout == (tmp_path / "v.json").read_text(encoding="utf-8")  # type: ignore[attr-defined]
-    assert set(json.loads(printed.stdout)) >= {"targets", "conditioning"}  # type: ignore[attr-defined]
-    missing = cli("validate", "--json", tmp_path / "nowhere" / "v.json")
-    assert missing.exit_code == 1  # type: ignore[attr-defined]
-    assert "nowhere" in missing.stderr  # type: ignore[attr-defined]
+    assert printed.stdout == (tmp_path / "v.json").read_text(encoding="utf-8")
+    assert set(json.loads(printed.stdout)) >= {"targets", "conditioning"}
 
 
 def test_it_is_complete_or_absent(report: ValidationReport, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -100,12 +99,12 @@ def test_it_is_complete_or_absent(report: ValidationReport, tmp_path: Path, monk
 
 
 def test_without_the_parts_of_jupyter_the_cure_is_said_before_anything_is_computed(
-    cli: Callable[..., object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(validation, "find_spec", lambda name: None if name == "nbclient" else object())
     said = cli("validate", "-o", tmp_path / "report")
-    assert said.exit_code == 1  # type: ignore[attr-defined]
-    assert "needs nbclient: pip install nbclient" in " ".join(said.stderr.split())  # type: ignore[attr-defined]
+    assert said.exit_code == 1
+    assert "needs nbclient: pip install nbclient" in " ".join(said.stderr.split())
     assert not (tmp_path / "report").exists()
 
 
@@ -121,22 +120,6 @@ def test_the_table_on_a_terminal(report: ValidationReport, capsys: pytest.Captur
     assert max(len(line) for line in said.splitlines()) <= 80
 
 
-def test_bad_usage(cli: Callable[..., object], tmp_path: Path) -> None:
-    for arguments, message in (
-        (("--people", 1), "1 is outside 2 to 2000"),
-        (("--draws", -1), "-1 is outside 0 to 1000"),
-        (("--draws", 1), "1 draw has no interval"),
-        (("--seed", -1), "-1 is outside 0 to"),
-    ):
-        said = cli("validate", *arguments)
-        assert said.exit_code == 2  # type: ignore[attr-defined]
-        assert message in " ".join(said.stderr.split())  # type: ignore[attr-defined]
-    (tmp_path / "file").write_text("")
-    said = cli("validate", "-o", tmp_path / "file")
-    assert said.exit_code == 1  # type: ignore[attr-defined]
-    assert "it is a file; give the name of a folder" in " ".join(said.stderr.split())  # type: ignore[attr-defined]
-
-
 def test_one_cell_of_the_notebook_computes_and_can_be_replaced() -> None:
     code = [cell for cell in nbformat.read(NOTEBOOK, as_version=4).cells if cell.cell_type == "code"]
     assert all(not cell.outputs and cell.execution_count is None for cell in code)
@@ -146,8 +129,8 @@ def test_one_cell_of_the_notebook_computes_and_can_be_replaced() -> None:
 
 
 @pytest.mark.slow
-def test_the_command_writes_the_report_within_its_time(process: Callable[..., object], tmp_path: Path) -> None:
+def test_the_command_writes_the_report_within_its_time(process: Cli, tmp_path: Path) -> None:
     said = process("validate", "-o", tmp_path / "report", "--people", "20", "--draws", "8")
-    assert said.exit_code == 0  # type: ignore[attr-defined]
-    assert "wrote" in said.stderr  # type: ignore[attr-defined]
+    assert said.exit_code == 0
+    assert "wrote" in said.stderr
     assert (tmp_path / "report/07_validation.ipynb").exists()

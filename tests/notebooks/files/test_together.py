@@ -17,7 +17,7 @@ import pandas as pd
 import pytest
 
 from tests.circuit.surerig import SURE
-from thermicon.notebooks.files.outputs import stopped_cleanly
+from thermicon.icons.atomic import stopped_cleanly
 
 KILLS, MANY_KILLS = 20, 200
 posix = pytest.mark.skipif(os.name != "posix", reason="signals work differently there")
@@ -64,7 +64,7 @@ SERVER = """
 import os, signal, sys
 from pathlib import Path
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a background shell has its children ignore it
-from thermicon.notebooks.files import export_folder as exportfolder
+from thermicon.circuit.delivery import export_folder as exportfolder
 real = exportfolder.publish
 def serve(files, folder, replace=False, how=""):
     for line in sys.stdin:
@@ -76,7 +76,7 @@ def serve(files, folder, replace=False, how=""):
         os.waitpid(child, 0)
         print("ended", flush=True)
     os._exit(0)
-import thermicon.notebooks.files.exporting as exporting
+import thermicon.circuit.delivery.export as exporting
 exporting.publish = serve
 from thermicon.notebooks.cli.main import main
 sys.argv = ["thermicon", "export", "six-icons", "--to", "csv", "-o", *sys.argv[1:]]

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from tests.builders import messages
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
+SAID = messages(__file__)
 TEXT = "cue 1\n\nicon a { cool by 3 K at 2 K/s; return at 2 K/s }\n\nicon b { hold for 1 s }\n"
 TYPED = TEXT.replace("3 K", "4 K")
 

@@ -4,8 +4,6 @@ import base64
 import gzip
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -96,12 +94,6 @@ def test_codemirror_is_packed_whole_with_its_licences():
 def test_an_impossible_view_is_refused():
     with pytest.raises(Exception, match="'design', 'traces', 'heat'"):
         Canvas(view="desing")
-
-
-def test_the_package_does_not_bring_anywidget():
-    code = "import sys, thermicon.notebooks; print('anywidget' in sys.modules, 'ipywidgets' in sys.modules)"
-    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert said.stdout.split() == ["False", "False"]
 
 
 def test_the_dark_colours_are_the_same_with_and_without_jupyterlab():

@@ -16,31 +16,42 @@ from thermicon.circuit import Rig
 from thermicon.notebooks.workbench.canvas import Canvas
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.direct_line import HERE, MOST_BYTES, DirectLine, packed
+from thermicon.notebooks.workbench.knobs import knobs_of
 
 DIP = "cue 1; icon dip { cool by 3 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }"
+KNOB = next(knob for knob in knobs_of(Rig.load("thenar")) if not knob.options)
 Result = TypeVar("Result")
-PAGE = "http://localhost:8888"
+Line = tuple[Canvas, DesignModel, list[dict[str, Any]]]
 
 
 async def page_on(port: int, path: str, **headers: str) -> WebSocketClientConnection:
     """A connection as a page of Jupyter's server on this machine asks for it, but for some headers."""
-    asked = HTTPRequest(f"ws://{HERE}:{port}/{path}", headers={"Origin": PAGE, **headers})
+    asked = HTTPRequest(f"ws://{HERE}:{port}/{path}", headers={"Origin": "http://localhost:8888", **headers})
     return await websocket_connect(asked)
 
 
-def on_line(line: DirectLine, talk: Callable[[WebSocketClientConnection], Awaitable[Result]]) -> Result:
-    """Open a line, talk on it, close it."""
+def on_line(line: DirectLine, talk: Callable[[int, str], Awaitable[Result]]) -> Result:
+    """Open a line, talk to its port with its token, close it."""
 
     async def go() -> Result:
         port, token = line.open()
-        socket = await page_on(port, token)
         try:
-            return await asyncio.wait_for(talk(socket), 20)
+            return await asyncio.wait_for(talk(port, token), 20)
         finally:
-            socket.close()
             line.close()
 
     return asyncio.run(go())
+
+
+def answered(line: DirectLine, message: str | bytes, **headers: str) -> Any:
+    """The answer to a message of a page; None where the line is ended instead."""
+
+    async def talk(port: int, token: str) -> Any:
+        socket = await page_on(port, token, **headers)
+        await socket.write_message(message, binary=isinstance(message, bytes))
+        return await socket.read_message()
+
+    return on_line(line, talk)
 
 
 def unpacked(data: bytes) -> tuple[dict[str, Any], list[bytes]]:
@@ -54,9 +65,10 @@ def unpacked(data: bytes) -> tuple[dict[str, Any], list[bytes]]:
     return meta, buffers
 
 
-def canvas_of(model: DesignModel) -> tuple[Canvas, list[dict[str, Any]]]:
+@pytest.fixture
+def line() -> Line:
     """A canvas with a model behind it, and the messages that it sends by Jupyter."""
-    canvas, sent = Canvas(), list[dict[str, Any]]()
+    canvas, model, sent = Canvas(), DesignModel(DIP, Rig.load("thenar")), list[dict[str, Any]]()
     canvas.send = lambda content, buffers=None: sent.append(content)
 
     def receive(message: Any) -> None:
@@ -65,7 +77,7 @@ def canvas_of(model: DesignModel) -> tuple[Canvas, list[dict[str, Any]]]:
 
     canvas.on_message(receive)
     receive({"type": "hello", "seq": 1})
-    return canvas, sent
+    return canvas, model, sent
 
 
 def test_a_frame_survives_its_packing_and_its_buffers_are_aligned():
@@ -77,45 +89,26 @@ def test_a_frame_survives_its_packing_and_its_buffers_are_aligned():
     assert size % 4 == 0
 
 
-def test_a_step_of_a_drag_is_answered_on_the_line_alone():
-    canvas, sent = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+def test_a_step_of_a_drag_is_answered_on_the_line_alone(line: Line):
+    canvas, _, sent = line
     before = len(sent)
-
-    async def talk(socket: WebSocketClientConnection) -> Any:
-        await socket.write_message(
-            json.dumps({"type": "drag", "handle": 0, "t": 2.0, "y": 28.0, "end": False, "seq": 9})
-        )
-        return await socket.read_message()
-
-    meta, buffers = unpacked(on_line(canvas._line, talk))
+    step = {"type": "drag", "handle": 0, "t": 2.0, "y": 28.0, "end": False, "seq": 9}
+    meta, buffers = unpacked(answered(canvas._line, json.dumps(step)))
     assert (meta["type"], meta["seq"], meta["lengths"]) == ("frame", 9, [len(each) for each in buffers])
     assert meta["text"] == DIP.replace("3 °C", "4 °C")
     assert meta["panels"][0]["key"] == "temperature"
     assert len(sent) == before
 
 
-def test_a_step_of_a_slider_is_drawn_and_the_slider_itself_draws_nothing_anew():
-    model = DesignModel(DIP, Rig.load("thenar"))
-    canvas, _ = canvas_of(model)
-    knob = _knobs(model)[0]
-    step = {"type": "turn", "key": knob.key, "value": knob.low, "seq": 4}
-
-    async def talk(socket: WebSocketClientConnection) -> Any:
-        await socket.write_message(json.dumps(step))
-        return await socket.read_message()
-
-    meta, _ = unpacked(on_line(canvas._line, talk))
+def test_a_step_of_a_slider_is_drawn_and_the_slider_itself_draws_nothing_anew(line: Line):
+    canvas, model, _ = line
+    step = {"type": "turn", "key": KNOB.key, "value": KNOB.low, "seq": 4}
+    meta, _ = unpacked(answered(canvas._line, json.dumps(step)))
     drawn = model.scene
-    assert (meta["seq"], model.values) == (4, {knob.key: knob.low})
-    whole = model.turn({knob.key: knob.low})
+    assert (meta["seq"], model.values) == (4, {KNOB.key: KNOB.low})
+    whole = model.turn({KNOB.key: KNOB.low})
     assert model.scene is drawn
     assert whole.meta["time"]["n"] >= meta["time"]["n"]
-
-
-def _knobs(model: DesignModel) -> list[Any]:
-    from thermicon.notebooks.workbench.knobs import knobs_of
-
-    return [knob for knob in knobs_of(model.nominal) if not knob.options]
 
 
 @pytest.mark.parametrize(
@@ -130,41 +123,18 @@ def _knobs(model: DesignModel) -> list[Any]:
         b"\xff\xfe",
     ],
 )
-def test_anything_else_ends_the_line_and_changes_nothing(message):
-    model = DesignModel(DIP, Rig.load("thenar"))
-    canvas, _ = canvas_of(model)
-
-    async def talk(socket: WebSocketClientConnection) -> Any:
-        await socket.write_message(message, binary=isinstance(message, bytes))
-        return await socket.read_message()
-
-    assert on_line(canvas._line, talk) is None
+def test_anything_else_ends_the_line_and_changes_nothing(line: Line, message: str | bytes):
+    canvas, model, _ = line
+    assert answered(canvas._line, message) is None
     assert model.text == DIP
 
 
-def test_a_knob_that_does_not_exist_or_is_out_of_range_is_said_and_stays():
-    model = DesignModel(DIP, Rig.load("thenar"))
-    for key, value in (("nothing", 1.0), (_knobs(model)[0].key, 1e9), (_knobs(model)[0].key, "wide")):
+def test_a_knob_that_does_not_exist_or_is_out_of_range_is_said_and_stays(line: Line):
+    _, model, _ = line
+    for key, value in (("nothing", 1.0), (KNOB.key, 1e9), (KNOB.key, "wide")):
         frame = model.receive({"type": "turn", "key": key, "value": value, "seq": 2})
         assert f"no slider goes to {key} = {value}" in frame.meta["notes"][0]
     assert model.values == {}
-
-
-def test_without_the_token_nobody_gets_in():
-    line = DirectLine(lambda message: ({}, []))
-
-    async def go() -> None:
-        port, token = line.open()
-        try:
-            for path in ("", "x" * len(token), token[:-1], f"{token}/more"):
-                with pytest.raises(HTTPClientError, match="403"):
-                    await page_on(port, path)
-        finally:
-            line.close()
-
-    asyncio.run(go())
-    assert len(line.token) >= 32
-    assert DirectLine(line.answer).token != line.token
 
 
 STRANGERS = [
@@ -184,57 +154,43 @@ STRANGERS = [
 ]
 
 
-@pytest.mark.parametrize("headers", STRANGERS, ids=lambda headers: " ".join(*headers.items()))
-def test_with_the_token_only_a_page_of_this_machine_gets_in(headers):
+def test_only_a_page_of_this_machine_that_has_the_token_gets_in():
     line = DirectLine(lambda message: ({}, []))
 
-    async def go() -> None:
-        port, token = line.open()
-        try:
-            with pytest.raises(HTTPClientError, match="403"):
-                await page_on(port, token, **{key: text.format(port=port) for key, text in headers.items()})
-        finally:
-            line.close()
+    async def talk(port: int, token: str) -> None:
+        tries: list[tuple[str, dict[str, str]]] = [(token, headers) for headers in STRANGERS]
+        for path, headers in [*tries, *((path, {}) for path in ("", "x" * len(token), token[:-1], f"{token}/more"))]:
+            try:
+                await page_on(port, path, **{key: text.format(port=port) for key, text in headers.items()})
+            except HTTPClientError as error:
+                assert error.code == 403
+            else:
+                raise AssertionError(f"{path} {headers} got in")
 
-    asyncio.run(go())
+    on_line(line, talk)
+    assert len(line.token) >= 32
+    assert DirectLine(line.answer).token != line.token
 
 
 @pytest.mark.parametrize("origin", ["http://localhost:8866", "https://127.0.0.1", "http://[::1]:8888"])
-def test_pages_of_any_server_of_this_machine_get_in(origin):
+def test_pages_of_any_server_of_this_machine_get_in_and_the_token_stands_in_no_log(
+    caplog: pytest.LogCaptureFixture, origin: str
+):
     line = DirectLine(lambda message: ({"seq": 1}, []))
-
-    async def go() -> None:
-        port, token = line.open()
-        try:
-            socket = await page_on(port, token, Origin=origin)
-            await socket.write_message("{}")
-            assert await socket.read_message() is not None
-            socket.close()
-        finally:
-            line.close()
-
-    asyncio.run(go())
-
-
-def test_the_token_stands_in_no_log(caplog):
-    line = DirectLine(lambda message: ({"seq": 1}, []))
-
-    async def talk(socket: WebSocketClientConnection) -> None:
-        await socket.write_message("{}")
-        assert await socket.read_message() is not None
-        with pytest.raises(HTTPClientError, match="403"):
-            await page_on(line.port, f"{line.token}-no")
-
     with caplog.at_level(logging.DEBUG):
-        on_line(line, talk)
+        assert answered(line, "{}", Origin=origin) is not None
+        with pytest.raises(HTTPClientError, match="403"):
+            on_line(line, lambda port, token: page_on(port, f"{token}-no"))
     assert line.token not in caplog.text
 
 
-def test_a_closed_canvas_answers_nobody():
-    canvas, _ = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+def test_a_closed_canvas_answers_nobody(line: Line):
+    canvas, _, _ = line
+    step = json.dumps({"type": "turn", "key": "contact", "value": 2.0, "seq": 2})
 
-    async def talk(socket: WebSocketClientConnection) -> object:
-        await socket.write_message(json.dumps({"type": "turn", "key": "contact", "value": 2.0, "seq": 2}))
+    async def talk(port: int, token: str) -> object:
+        socket = await page_on(port, token)
+        await socket.write_message(step)
         assert await socket.read_message() is not None
         canvas.close()
         return await socket.read_message()
@@ -242,8 +198,8 @@ def test_a_closed_canvas_answers_nobody():
     assert on_line(canvas._line, talk) is None
 
 
-def test_the_page_is_told_where_the_line_is_and_which_sliders_it_takes():
-    canvas, sent = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+def test_the_page_is_told_where_the_line_is_and_which_sliders_it_takes(line: Line):
+    canvas, _, sent = line
 
     async def go() -> None:
         canvas.follow({"contact": "id-1"})
@@ -258,8 +214,8 @@ def test_the_page_is_told_where_the_line_is_and_which_sliders_it_takes():
     assert lines[0]["port"] == lines[1]["port"] > 0
 
 
-def test_a_kernel_that_may_open_no_port_goes_on_without(monkeypatch):
-    canvas, sent = canvas_of(DesignModel(DIP, Rig.load("thenar")))
+def test_a_kernel_that_may_open_no_port_goes_on_without(line: Line, monkeypatch: pytest.MonkeyPatch):
+    canvas, _, sent = line
 
     def no_port(line: DirectLine) -> tuple[int, str]:
         raise PermissionError("not allowed")

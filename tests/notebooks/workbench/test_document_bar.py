@@ -1,4 +1,7 @@
-"""The life of a document in the workbench, without a browser: files, icons, rigs, unsaved text, and what goes wrong."""
+"""The life of a document in the workbench, without a browser: files, icons, rigs, unsaved text, and what goes wrong.
+
+What a document does by itself is tested in `tests/notebooks/files/test_document.py`.
+"""
 
 from __future__ import annotations
 
@@ -10,53 +13,111 @@ import pytest
 
 from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.circuit import Rig
+from thermicon.icons.atomic import OutputError
+from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.start_folder import FILE, RIG, VARIABLE
+from thermicon.notebooks.workbench.document_bar import DocumentBar
 
 
-def test_text_goes_back_to_the_file_it_came_from(path: Path) -> None:
-    bench, bar = opened(path)
-    assert title(bar) == "alerts.cue"
-    assert bar.buttons["Save"].disabled
-    bench.text = TYPED
-    assert title(bar) == "alerts.cue, unsaved changes"
-    bar.buttons["Save"].click()
-    assert path.read_text(encoding="utf-8") == TYPED
-    assert said(bar) == "saved alerts.cue"
-    assert title(bar) == "alerts.cue"
-    assert [each.name for each in path.parent.iterdir()] == ["alerts.cue"]
-
-
-def test_a_shipped_set_asks_for_a_name_and_a_name_that_is_there_for_consent(path: Path) -> None:
-    bench, bar = opened("wave-shapes")
-    bench.text = TYPED
-    assert title(bar) == "wave-shapes (not saved to a file)"
-    bar.buttons["Save"].click()
-    assert bar.shown == "save"
-    bar.name.value = "alerts"
-    bar._safely(bar._save_as)
-    assert "alerts.cue already exists and was kept" in said(bar)
-    assert path.read_text(encoding="utf-8") == TEXT
-    bar.overwrite.value = True
-    bar._safely(bar._save_as)
-    assert path.read_text(encoding="utf-8") == TYPED
-    assert title(bar) == "alerts.cue"
-
-
-def test_files_and_shipped_sets_are_opened_and_undo_stays_within_one(path: Path) -> None:
-    bench, bar = opened(None)
-    bar.buttons["Open"].click()
-    assert bar.files.options[0] == "alerts.cue"
-    assert "shipped: six-icons" in bar.files.options
-    bar.files.value = "shipped: wave-shapes"
-    assert "sine" in bar.preview.value
-    bar.files.value = "alerts.cue"
+def open_file(bar: DocumentBar, name: str) -> None:
+    bar.path.value = name
     bar._safely(bar._open_selected)
-    assert bench.text == TEXT
-    assert bar.buttons["Undo"].disabled
-    bar.path.value = "nothing.cue"
-    bar._safely(bar._open_selected)
-    assert "nothing.cue: no such cue file" in said(bar)
-    assert bench.text == TEXT
+
+
+def downloads(bar: DocumentBar) -> dict[str, bytes]:
+    """Files that the bar offers, by name."""
+    bar.buttons["Download"].click()
+    found = re.findall(r'download="([^"]+)" href="data:[a-z/+]+;base64,([^"]+)"', bar.links.value)
+    return {name: b64decode(data) for name, data in found}
+
+
+class TestFiles:
+    """Where text comes from and goes to."""
+
+    def test_text_goes_back_to_the_file_it_came_from(self, path: Path) -> None:
+        bench, bar = opened(path)
+        assert title(bar) == "alerts.cue"
+        assert bar.buttons["Save"].disabled
+        bench.text = TYPED
+        assert title(bar) == "alerts.cue, unsaved changes"
+        bar.buttons["Save"].click()
+        assert path.read_text(encoding="utf-8") == TYPED
+        assert said(bar) == "saved alerts.cue"
+        assert title(bar) == "alerts.cue"
+        assert [each.name for each in path.parent.iterdir()] == ["alerts.cue"]
+
+    def test_ctrl_s_in_the_text_saves(self, path: Path) -> None:
+        bench, _ = opened(path)
+        assert bench.design_view is not None
+        canvas = bench.design_view.canvas
+        canvas._receive(canvas, {"type": "text", "seq": 7, "text": TYPED}, [])
+        canvas._receive(canvas, {"type": "save", "seq": 8}, [])
+        assert path.read_text(encoding="utf-8") == TYPED
+        assert canvas._newest is not None
+        assert canvas._newest[0]["seq"] == 8
+
+    def test_a_shipped_set_asks_for_a_name_and_a_name_that_is_there_for_consent(self, path: Path) -> None:
+        bench, bar = opened("wave-shapes")
+        bench.text = TYPED
+        assert title(bar) == "wave-shapes (not saved to a file)"
+        bar.buttons["Save"].click()
+        assert bar.shown == "save"
+        bar.name.value = "alerts"
+        bar._safely(bar._save_as)
+        assert "alerts.cue already exists and was kept" in said(bar)
+        assert path.read_text(encoding="utf-8") == TEXT
+        bar.overwrite.value = True
+        bar._safely(bar._save_as)
+        assert path.read_text(encoding="utf-8") == TYPED
+        assert title(bar) == "alerts.cue"
+        assert "alerts.cue" in downloads(bar)
+
+    def test_files_and_shipped_sets_are_opened_and_undo_stays_within_one(self, path: Path) -> None:
+        (path.parent / "sub").mkdir()
+        (path.parent / "sub" / "deep.cue").write_text(TYPED, encoding="utf-8")
+        bench, bar = opened(None)
+        bar.buttons["Open"].click()
+        assert bar.files.options[0] == "alerts.cue"
+        assert "shipped: six-icons" in bar.files.options
+        bar.files.value = "shipped: wave-shapes"
+        assert "sine" in bar.preview.value
+        bar.files.value = "alerts.cue"
+        bar._safely(bar._open_selected)
+        assert bench.text == TEXT
+        assert bar.buttons["Undo"].disabled
+        open_file(bar, "nothing.cue")
+        assert "nothing.cue: no such cue file" in said(bar)
+        assert bench.text == TEXT
+        open_file(bar, "sub/deep.cue")
+        bar.buttons["Save as"].click()
+        assert (bench.text, bar.name.value) == (TYPED, "deep.cue")
+
+    def test_a_page_opens_and_saves_only_below_its_folder(
+        self, path: Path, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
+    ) -> None:
+        outside = path.parent.parent / "outside.cue"
+        for name, value in ((VARIABLE, str(path.parent)), (FILE, str(path)), (RIG, "fingertip")):
+            monkeypatch.setenv(name, value)
+        bench, bar = opened(None)
+        assert (bench.text, bench.rig.name, title(bar)) == (TEXT, "fingertip", "alerts.cue")
+        bar.name.value = str(outside)
+        bar._safely(bar._save_as)
+        assert "is outside the folder of this page" in said(bar)
+        assert not outside.exists()
+        open_file(bar, "../../etc/passwd")
+        assert "is outside the folder of this page" in said(bar)
+        monkeypatch.setenv(VARIABLE, str(tmp_path_factory.mktemp("elsewhere")))
+        bench, bar = opened(path)  # a link out of the folder
+        assert bench.text == TEXT
+        bar.buttons["Open"].click()
+        assert bar.files.options[0].startswith("shipped: ")
+
+    @pytest.mark.slow
+    def test_what_is_downloaded_is_the_text_the_rig_and_pictures(self, path: Path) -> None:
+        _, bar = opened(path)
+        found = downloads(bar)
+        assert list(found) == ["alerts.cue", "thenar.toml", "a-on-thenar.png", "a-on-thenar.svg", "a-on-thenar.pdf"]
+        assert found["a-on-thenar.png"][1:4] == b"PNG"
 
 
 def test_icons_are_added_copied_renamed_and_deleted_each_as_one_step(path: Path) -> None:
@@ -79,127 +140,166 @@ def test_icons_are_added_copied_renamed_and_deleted_each_as_one_step(path: Path)
     assert said(bar) == "there is an icon called b already"
 
 
-def test_a_rig_is_picked_by_name_and_from_a_file_and_brings_its_knobs(path: Path) -> None:
-    Rig.load("fingertip").with_(**{"contact.area_cm2": 2}).save(path.with_name("mine.toml"))
+def test_open_panels_follow_the_text_and_the_icon_that_is_shown(path: Path) -> None:
     bench, bar = opened(path)
-    bar.rig.value = "fingertip"
-    assert bench.rig.name == "fingertip"
+    bar.buttons["Icon"].click()
     assert bench.design_view is not None
-    assert bench.design_view.sliders["site"].value == "fingertip"
-    assert "mine.toml" in bar.rig.options
-    bar.rig.value = "mine.toml"
-    assert bench.rig.contact.area_m2 == pytest.approx(2e-4)
-    path.with_name("mine.toml").write_text("nonsense = ", encoding="utf-8")
-    bar.rig.value = "thenar"
-    bar.rig.value = "mine.toml"
-    assert "mine.toml" in said(bar)
-    assert bench.rig.name == "thenar"
-
-
-def test_unsaved_text_is_offered_when_the_file_is_opened_again(path: Path) -> None:
-    first, _ = opened(path)
-    first.text = TYPED
-    second, bar = opened(path)
-    assert second.text == TEXT
-    assert bar.offer.layout.display == ""
-    assert "Unsaved text of alerts.cue was typed a moment ago" in bar.offered.value
-    bar._safely(bar._restore)
-    assert second.text == TYPED
-    assert bar.offer.layout.display == "none"
-    assert "the unsaved text is in the editor" in said(bar)
-    bar.buttons["Undo"].click()
-    assert second.text == TEXT
-
-
-def test_unsaved_text_is_dropped_only_on_request(path: Path) -> None:
-    first, _ = opened(path)
-    first.text = TYPED
-    for _ in range(2):
-        _, bar = opened(path)
-        assert bar.offer.layout.display == ""
-    bar._safely(bar.discard)
-    assert opened(path)[1].offer.layout.display == "none"
-
-
-def test_two_workbenches_on_one_file_lose_nothing(path: Path) -> None:
-    first, first_bar = opened(path)
-    second, second_bar = opened(path)
-    first.text = TYPED
-    first_bar.save()
-    second.text = TEXT + "# second\n"
-    assert "alerts.cue has changed on disk since it was opened here" in said(second_bar)
-    second_bar.buttons["Save"].click()
-    assert "has changed on disk since it was opened here" in said(second_bar)
-    assert path.read_text(encoding="utf-8") == TYPED
-    second_bar.buttons["Save"].click()
-    assert path.read_text(encoding="utf-8") == TEXT + "# second\n"
-
-
-def test_text_that_cannot_be_kept_anywhere_is_told_and_not_left(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*given: object, **named: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    bench, bar = opened(path)
-    monkeypatch.setattr("os.open", full)
+    bench.design_view._receive({"type": "icon", "name": "b", "seq": 1})
+    assert ">b<" in bar.about.value
+    assert downloads(bar)["alerts.cue"].decode() == TEXT
+    assert bar.panel.children
     bench.text = TYPED
-    assert "unsaved text is not kept" in said(bar)
-    bar.buttons["Save"].click()
-    assert "No space left on device" in said(bar)
-    bar.path.value = "alerts.cue"
-    bar._safely(bar._open_selected)
-    assert "save it first, or undo the changes; nothing was opened" in said(bar)
-    assert bench.text == TYPED
+    assert not bar.panel.children
+    assert downloads(bar)["alerts.cue"].decode() == TYPED
 
 
-def test_a_page_opens_and_saves_only_below_its_folder(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    outside = path.parent.parent / "outside.cue"
-    monkeypatch.setenv(VARIABLE, str(path.parent))
-    monkeypatch.setenv(FILE, str(path))
-    monkeypatch.setenv(RIG, "fingertip")
-    bench, bar = opened(None)
-    assert (bench.text, bench.rig.name, title(bar)) == (TEXT, "fingertip", "alerts.cue")
-    bar.name.value = str(outside)
-    bar._safely(bar._save_as)
-    assert "is outside the folder of this page" in said(bar)
-    assert not outside.exists()
-    bar.path.value = "../../etc/passwd"
-    bar._safely(bar._open_selected)
-    assert "is outside the folder of this page" in said(bar)
+class TestRig:
+    """The rig that is picked is the one that is used, with its knobs."""
+
+    def test_by_name_and_from_a_file(self, path: Path) -> None:
+        mine = path.with_name("mine.toml")
+        Rig.load("fingertip").with_(**{"contact.area_cm2": 2}).save(mine)
+        bench, bar = opened(path)
+        bar.rig.value = "fingertip"
+        assert bench.rig.name == "fingertip"
+        assert bench.design_view is not None
+        sliders = bench.design_view.sliders
+        assert sliders["site"].value == "fingertip"
+        bar.rig.value = "mine.toml"
+        assert bench.rig.contact.area_m2 == pytest.approx(2e-4)
+        bar.rig.value = "thenar"
+        mine.write_text("nonsense = ", encoding="utf-8")
+        for _ in range(2):
+            bar.rig.value = "mine.toml"
+            assert "mine.toml" in said(bar)
+            assert bar.rig.value == bench.rig.name == "thenar"
+            mine.unlink(missing_ok=True)
+        sliders["contact"].value = 2.0
+        open_file(bar, "alerts.cue")
+        usual = Rig.load("thenar").contact.resistance_m2K_per_W
+        assert bench.rig.contact.resistance_m2K_per_W == pytest.approx(2 * usual)
+
+    def test_one_of_another_folder_can_be_picked_again_and_its_site_is_shown_as_text(
+        self, path: Path, tmp_path_factory: pytest.TempPathFactory
+    ) -> None:
+        file = tmp_path_factory.mktemp("rigs") / "own.toml"
+        text = Rig.load("thenar").with_(**{"contact.area_cm2": 2}).toml.replace('name = "thenar"', 'name = "own"', 1)
+        file.write_text(text.replace('site = "thenar"', 'site = "<b>palm</b>"'), encoding="utf-8")
+        bench = Workbench(path, rig=file)
+        assert bench.page is not None
+        assert bench.bar is not None
+        assert bench.bar.rig.value == "own"
+        bench.bar.rig.value = "thenar"
+        bench.bar.rig.value = "own"
+        assert bench.rig.contact.area_m2 == pytest.approx(2e-4)
+        assert said(bench.bar) == ""
+        assert bench.design_view is not None
+        bench.design_view.sliders["site"].value = "thenar"
+        assert "site · rig &lt;b&gt;palm&lt;/b&gt;" in bench.design_view._labels["site"].value
 
 
-@pytest.mark.slow
-def test_what_is_downloaded_is_the_text_the_rig_and_pictures(path: Path) -> None:
-    _, bar = opened(path)
-    bar.buttons["Download"].click()
-    found = dict(re.findall(r'download="([^"]+)" href="data:[a-z/+]+;base64,([^"]+)"', bar.links.value))
-    assert list(found) == ["alerts.cue", "thenar.toml", "a-on-thenar.png", "a-on-thenar.svg", "a-on-thenar.pdf"]
-    assert b64decode(found["alerts.cue"]).decode() == TEXT
-    assert b64decode(found["a-on-thenar.png"])[1:4] == b"PNG"
+class TestUnsaved:
+    """Text that was never saved is offered, and nothing that somebody else wrote is lost."""
 
+    def test_it_is_offered_until_it_is_restored_or_dropped(self, path: Path) -> None:
+        first, _ = opened(path)
+        first.text = TYPED
+        for _ in range(2):
+            second, bar = opened(path)
+            assert second.text == TEXT
+            assert bar.offer.layout.display == ""
+        assert "Unsaved text of alerts.cue was typed a moment ago" in bar.offered.value
+        bar._safely(bar._restore)
+        assert second.text == TYPED
+        assert bar.offer.layout.display == "none"
+        assert "the unsaved text is in the editor" in said(bar)
+        bar.buttons["Undo"].click()
+        assert second.text == TEXT
 
-def test_ctrl_s_in_the_text_saves(path: Path) -> None:
-    bench, _ = opened(path)
-    assert bench.design_view is not None
-    canvas = bench.design_view.canvas
-    canvas._receive(canvas, {"type": "text", "seq": 7, "text": TYPED}, [])
-    canvas._receive(canvas, {"type": "save", "seq": 8}, [])
-    assert path.read_text(encoding="utf-8") == TYPED
-    assert canvas._newest is not None
-    assert canvas._newest[0]["seq"] == 8
+    def test_it_is_dropped_only_on_request(self, path: Path) -> None:
+        first, _ = opened(path)
+        first.text = TYPED
+        _, bar = opened(path)
+        bar._safely(bar.discard)
+        assert opened(path)[1].offer.layout.display == "none"
 
+    def test_what_the_page_kept_is_offered_before_what_the_kernel_wrote(self, path: Path) -> None:
+        first, _ = opened(path)
+        first.text = TYPED
+        bench, bar = opened(path)
+        assert bench.design_view is not None
+        canvas = bench.design_view.canvas
+        for text in (TYPED, TEXT):
+            canvas._receive(canvas, {"type": "left", "seq": 0, "text": text}, [])
+        assert [each.text for each in bench.document.versions.others] == [TYPED]
+        canvas._receive(canvas, {"type": "left", "seq": 0, "text": TYPED + "# in the page\n"}, [])
+        assert bar.offer.layout.display == ""
+        bar._safely(bar._restore)
+        assert bench.text == TYPED + "# in the page\n"
+        assert bar.offer.layout.display == "none"
+        assert [each.text for each in bench.document.versions.others] == [TYPED]
 
-def test_what_the_page_kept_is_offered_before_what_the_kernel_wrote(path: Path) -> None:
-    first, _ = opened(path)
-    first.text = TYPED
-    bench, bar = opened(path)
-    assert bench.design_view is not None
-    canvas = bench.design_view.canvas
-    for text in (TYPED, TEXT):
-        canvas._receive(canvas, {"type": "left", "seq": 0, "text": text}, [])
-    assert [each.text for each in bench.document.versions.others] == [TYPED]
-    canvas._receive(canvas, {"type": "left", "seq": 0, "text": TYPED + "# in the page\n"}, [])
-    assert bar.offer.layout.display == ""
-    bar._safely(bar._restore)
-    assert bench.text == TYPED + "# in the page\n"
-    assert bar.offer.layout.display == "none"
-    assert [each.text for each in bench.document.versions.others] == [TYPED]
+    def test_restoring_leaves_another_text_that_is_unsaved_among_the_versions(self, path: Path) -> None:
+        first, second = opened(path)[0], opened(path)[0]
+        second.text = TEXT + "# other\n"
+        first.text = TYPED
+        third, bar = opened(path)
+        bar._safely(bar._restore)
+        assert third.text == TYPED
+        assert [each.text for each in third.document.versions.others] == [TEXT + "# other\n"]
+        assert bar.offer.layout.display == "none"
+        assert "# other" in opened(path)[0].document.versions.others[0].text
+
+    def test_opening_another_file_leaves_unsaved_text_and_versions_with_the_one_before(self, path: Path) -> None:
+        bench, bar = opened(path)
+        kept = bench.document.keep()
+        bench.text = TYPED
+        open_file(bar, "shipped: six-icons")
+        assert bench.document.versions.others == ()
+        open_file(bar, "alerts.cue")
+        assert bench.text == TEXT
+        assert bar.offer.layout.display == ""
+        assert kept in bench.document.versions.others
+
+    def test_text_that_cannot_be_kept_anywhere_is_told_and_not_left(
+        self, path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def full(*given: object, **named: object) -> None:
+            raise OSError(28, "No space left on device")
+
+        bench, bar = opened(path)
+        monkeypatch.setattr("os.open", full)
+        bench.text = TYPED
+        assert "unsaved text is not kept" in said(bar)
+        bar.buttons["Save"].click()
+        assert "No space left on device" in said(bar)
+        open_file(bar, "alerts.cue")
+        assert "save it first, or undo the changes; nothing was opened" in said(bar)
+        assert bench.text == TYPED
+
+    def test_only_a_refusal_that_was_read_lets_save_write_over_a_changed_file(
+        self, path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        def refuse(*_: object) -> None:
+            raise OutputError("the disk is full")
+
+        bench, bar = opened(path)
+        bench.text = TYPED
+        with monkeypatch.context() as full:
+            full.setattr("thermicon.notebooks.files.document.Document._write", refuse)
+            bar.buttons["Save"].click()
+        assert said(bar) == "the disk is full"
+        path.write_text("cue 1 # of another window\n", encoding="utf-8")
+        bench.text = TYPED + "# mine\n"
+        assert "alerts.cue has changed on disk since it was opened here" in said(bar)
+        bar.buttons["Save"].click()
+        assert "has changed on disk since it was opened here" in said(bar)
+        assert path.read_text(encoding="utf-8") == "cue 1 # of another window\n"
+        bar.buttons["Save"].click()
+        assert path.read_text(encoding="utf-8") == TYPED + "# mine\n"
+        path.unlink()
+        bench.text = TYPED
+        assert said(bar).startswith("alerts.cue was removed on disk since it was opened here: Save as writes")
+        bar.buttons["Save as"].click()
+        bar._safely(bar._save_as)
+        assert path.read_text(encoding="utf-8") == TYPED

@@ -73,12 +73,6 @@ def turned(bench: Workbench, key: str, value: float | str) -> dict[str, Any]:
     return dict(bench.design_view.canvas._newest[0])
 
 
-def test_an_icon_that_is_not_there_is_an_error() -> None:
-    with pytest.raises(ValueError, match=r"no icon is called 'cooling-stap'; did you mean cooling-step\?"):
-        Workbench("six-icons", icon="cooling-stap")
-    assert Workbench("six-icons", icon="double-dip").icon.name == "double-dip"  # type: ignore[union-attr]
-
-
 @pytest.mark.slow
 def test_too_many_icons_are_not_ranked() -> None:
     text = "cue 1; icon ramp(a in 1..6 step 0.01 °C, b in 1..3 step 0.2 °C/s) { cool by a at b; return at b }"
@@ -96,12 +90,7 @@ def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send)
     assert bench.trace.skin_C.min() < 28.5
     assert bench.percept is not None
     assert bench.percept.channel == "cold"
-
-
-def test_a_page_that_is_opened_later_gets_the_text_as_it_is(bench: Workbench, send: Send) -> None:
-    typed = DIP.replace("4 °C", "5 °C")
-    send(type="text", text=typed)
-    assert send(type="hello")["text"] == typed
+    assert send(type="hello")["text"] == bench.text, "a page that is opened later"
 
 
 def test_an_error_is_named_under_its_line_and_the_drawing_stays(bench: Workbench, send: Send) -> None:
@@ -128,6 +117,10 @@ def test_a_drag_is_one_step_and_undo_and_redo_carry_the_text(bench: Workbench, s
     assert not undone["can_undo"]
     assert "cool by 5 °C" in send(type="redo")["text"]
     assert "nothing to redo" in send(type="redo")["notes"][0]
+    bench.text = DIP.replace("dip", "sip")
+    assert bench.icon is not None
+    assert bench.icon.name == "sip"
+    assert "cool by 5 °C" in send(type="undo")["text"]
 
 
 def test_a_drag_that_cannot_be_says_why_and_leaves_the_text(bench: Workbench, send: Send) -> None:
@@ -210,13 +203,6 @@ def test_a_cue_that_is_not_reached_says_so(send: Send) -> None:
     assert any(panel["spans"] for panel in answer["panels"])
 
 
-def test_python_sets_the_text_as_one_step(bench: Workbench, send: Send) -> None:
-    bench.text = DIP.replace("dip", "sip")
-    assert bench.icon is not None
-    assert bench.icon.name == "sip"
-    assert send(type="undo")["text"] == DIP
-
-
 def test_nothing_in_the_kernel_takes_long_for_a_frame() -> None:
     design = DesignModel(document_of(None).text, Rig.load("thenar"))
     spent = []
@@ -260,30 +246,21 @@ def test_what_a_workbench_can_be_made_of(tmp_path: Path) -> None:
     assert Workbench("wave-shapes").icons == load_library("wave-shapes")
     assert Workbench(None, Rig.load("fingertip"), icon="double-dip").scene.icon == "double-dip"
     assert "# Known" in Workbench().text
-    with pytest.raises(CueErrors, match="no such"):
-        Workbench("six-icon")
-    with pytest.raises(RigError, match="thenar"):
-        Workbench(rig="thenr")
-
-
-@pytest.mark.slow
-def test_a_file_that_cannot_be_edited_is_refused_with_the_cure(tmp_path: Path) -> None:
-    path = tmp_path / "own.cue"
     path.write_bytes(DIP.encode("utf-16"))
-    with pytest.raises(ValueError, match=r"own\.cue: it is not UTF-8 text; convert it first"):
-        Workbench(path)
+    for given, error, words in (
+        ({"text": "six-icon"}, CueErrors, "no such"),
+        ({"rig": "thenr"}, RigError, "thenar"),
+        ({"text": "six-icons", "icon": "cooling-stap"}, ValueError, "'cooling-stap'; did you mean cooling-step"),
+        ({"text": path}, ValueError, r"own\.cue: it is not UTF-8 text; convert it first"),
+    ):
+        with pytest.raises(error, match=words):
+            Workbench(**given)
 
 
 def test_without_a_kernel_it_is_text_and_a_picture(bench: Workbench) -> None:
     shown = bench._repr_mimebundle_()
     assert shown["text/plain"] == repr(bench) == "Workbench('dip' of 2 on thenar, green)"
     assert shown["image/png"][1:4] == b"PNG"
-
-
-def test_the_package_is_imported_without_widgets() -> None:
-    code = "import sys, thermicon.notebooks; print([m for m in ('ipywidgets', 'anywidget') if m in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
 
 
 @pytest.mark.slow

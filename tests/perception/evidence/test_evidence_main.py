@@ -86,7 +86,7 @@ def test_finished_parts_are_summed_up_and_written(
     out = tmp_path / "tables"
     assert main(["leave-out", "--keep", str(finished), "-o", str(out)]) == 0
     said = capsys.readouterr().out
-    assert "rows lie inside their 50 % interval" in said
+    assert "of 54 rows lie inside their 95 % interval" in said
     head, *rows = (out / "left-out.csv").read_text(encoding="utf-8").splitlines()
     old, *shipped = (DATA / "left-out.csv").read_text(encoding="utf-8").splitlines()
     assert rows == shipped

@@ -1,4 +1,4 @@
-"""Left-out predictions: weights against algebra, scores against closed forms, the naive baseline and stacking."""
+"""Left-out predictions: weights against algebra, scores against closed forms and the naive baseline."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.frozen import stacking_weights
 from thermicon.perception.evidence.left_out import Predictive
 from thermicon.perception.evidence.left_out_table import KINDS, LeftOutRow, naive_log_score
 from thermicon.perception.evidence.rows import Row, load_rows
@@ -44,10 +43,3 @@ def test_the_naive_baseline_knows_the_other_experiments_alone() -> None:
     assert math.isfinite(naive_log_score(limits))
     assert math.isnan(naive_log_score(rows["E2", "rating_mean_5strip", "cold"]))
     assert {key[1] for key in rows} >= set(KINDS)
-
-
-def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
-    logs = np.log(np.array([[0.9, 0.9, 0.1], [0.1, 0.1, 0.9]]))
-    weights = stacking_weights(logs)
-    assert weights.sum() == pytest.approx(1.0)
-    assert 0.5 < weights[0] < 0.9

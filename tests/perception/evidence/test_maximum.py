@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.frozen import load_ablation
 from thermicon.perception.evidence.maximum import LeftOut, maximise
 from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.results import load_constants
+from thermicon.perception.evidence.results import load_ablation, load_constants
 from thermicon.perception.evidence.rows import Row
 
 

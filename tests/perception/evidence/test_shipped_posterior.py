@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,14 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.frozen import variant_weights
 from thermicon.perception.evidence.left_out_table import LEFT_OUT, load_left_out
-from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.posterior_tables import TABLES, summarise
+from thermicon.perception.evidence.posterior import Posterior, summarise
 from thermicon.perception.evidence.results import inputs_digest, load_constants
 from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.evidence.statistics import DATA
-from thermicon.perception.evidence.tables import TABLES as INFERRED
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.draws_file import current_inputs
 
@@ -68,18 +64,6 @@ def test_summaries_say_what_was_not_moved() -> None:
     assert found["softness of the limits"].unmoved
     assert not found["warm threshold drive"].unmoved
     assert found["warm threshold drive"].narrowed < 0.4
-
-
-def test_temperature_predicts_best_of_the_variants() -> None:
-    weights = variant_weights()
-    assert max(weights, key=lambda each: weights[each]) == "temperature"
-
-
-@pytest.mark.parametrize("name", sorted(set(TABLES) - set(INFERRED)))
-def test_a_table_has_one_width_and_no_exponents(name: str) -> None:
-    text = TABLES[name]()
-    assert len({line.count(" | ") for line in text.splitlines()}) == 1
-    assert not re.search(r"\d[eE][+-]?\d", text)
 
 
 def parted(text: str) -> tuple[dict[str, str], list[str], np.ndarray]:

@@ -15,12 +15,12 @@ from thermicon.icons import read_cue
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE
 from thermicon.perception.pilot.likelihood import (
+    PooledLikelihood,
     effective,
     log_likelihoods,
     normalised_weights,
 )
 from thermicon.perception.pilot.playing import Confusions, stage
-from thermicon.perception.pilot.pooled_answers import PooledLikelihood
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
 from thermicon.perception.pilot.synthetic import answers_of, spread
 

@@ -9,11 +9,11 @@ from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
 from thermicon.circuit.cores import quiet_blas
 from thermicon.icons import read_cue
+from thermicon.perception.experiments.measure import Setting
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
-from thermicon.perception.pilot.measurement_likelihood import log_likelihood
+from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
 from thermicon.perception.pilot.playing import stage
-from thermicon.perception.pilot.simulated_measurements import Setting, predicted
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
 from thermicon.perception.pilot.synthetic import USUAL, measurements_of
 

@@ -1,62 +1,97 @@
-"""Tables of the sampled posterior as Markdown: what it says of each constant, left-out predictions, variants."""
+"""Tables of the sampled posterior as Markdown: what it says of each constant, left-out predictions, variants.
+
+Log scores of the variants and of forms of memory are finished comparisons: tables whose first line says by which
+version and from what they were made.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from evidence_tables import TABLES as INFERRED
 
-from ..observer.draws import PosteriorDraws
-from .frozen import load_forms, variant_log_scores, variant_weights
-from .left_out import FROM_WEIGHTS
-from .left_out_table import LeftOutRow, load_left_out
-from .posterior import Posterior
-from .results import UNMOVED_SD, load_constants
-from .rows import load_rows
-from .table_text import UNITS, markdown, number, signed, span
-from .tables import TABLES as INFERRED
-
-UNMOVED_SHIFT = 0.3
-"""A constant that keeps more than `UNMOVED_SD`, with its median moved by fewer SDs of the prior, was not moved."""
-EDGE = 1.96
-"""A median so many SDs of the prior away from its middle lies at the edge of the prior."""
+from thermicon.perception.arrays import Array
+from thermicon.perception.evidence.left_out import FROM_WEIGHTS
+from thermicon.perception.evidence.left_out_table import LeftOutRow, load_left_out
+from thermicon.perception.evidence.posterior import UNMOVED_SHIFT, Summary, summarise
+from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
+from thermicon.perception.evidence.rows import load_rows
+from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.variants import VARIABLES, Variable
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
-    """One constant in its own unit: median and 95 % interval; `narrowed` and `shift` are in SDs of its prior."""
+class VariantScores:
+    """Log scores of one left-out row by each variant: log densities of the published number on the row's scale."""
 
-    name: str
-    unit: str
-    median: float
+    experiment: str
+    statistic: str
+    channel: str
+    temperature: float
+    heat_flow: float
+
+
+@dataclass(frozen=True, slots=True)
+class FormScore:
+    """One published row as one form of memory predicts it: value, 95 % of draws, and log score."""
+
+    norm: str
+    row: str
+    published: str
+    predicted: float
     low: float
     high: float
-    narrowed: float
-    shift: float
-
-    @property
-    def unmoved(self) -> bool:
-        """Whether the posterior is the prior, as good as."""
-        return self.narrowed > UNMOVED_SD and abs(self.shift) < UNMOVED_SHIFT
-
-    @property
-    def at_edge(self) -> bool:
-        """Whether evidence and prior disagree so much that the median lies at the end of the prior's 95 %."""
-        return abs(self.shift) > EDGE
+    log_score: float
 
 
-def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
-    """Every constant of a posterior, in the order of the table."""
-    priors = Posterior(draws.variable).priors
-    rows = []
-    for prior in priors.each:
-        values = draws.values(prior.name)
-        places = (np.array([prior.to_place(value) for value in values.tolist()]) - prior.middle) / prior.sd
-        low, median, high = draws.interval(prior.name)
-        rows.append(Summary(prior.name, prior.unit, median, low, high, float(places.std()), float(np.median(places))))
-    return tuple(rows)
+SCORES, FORMS = "variant-scores.csv", "memory_forms.csv"
+
+
+@lru_cache(maxsize=1)
+def load_forms() -> tuple[FormScore, ...]:
+    """Scores of forms of memory, form by form."""
+    return tuple(read_rows(FORMS, FormScore))
+
+
+@lru_cache(maxsize=1)
+def variant_log_scores() -> Array:
+    """Log scores (variants, rows) in the order of VARIABLES and of the likelihood.
+
+    >>> variant_log_scores().shape
+    (2, 54)
+    """
+    rows = list(read_rows(SCORES, VariantScores))
+    return np.array([[row.temperature for row in rows], [row.heat_flow for row in rows]])
+
+
+def variant_weights() -> dict[Variable, float]:
+    """Weights of the variants that predict the left-out rows best as a mixture.
+
+    >>> round(sum(variant_weights().values()), 6)
+    1.0
+    """
+    return dict(zip(VARIABLES, stacking_weights(variant_log_scores()).tolist(), strict=True))
+
+
+def stacking_weights(log_scores: Array, rounds: int = 2000) -> Array:
+    """Weights (variants,) that sum to 1 and maximise the log score of the mixture, from log scores (variants, rows).
+
+    Expectation–maximisation, which rises with every round (Yao, Vehtari, Simpson & Gelman 2018).
+
+    >>> stacking_weights(np.array([[0.0, 0.0], [-9.0, -9.0]])).round(2)
+    array([1., 0.])
+    """
+    densities = np.exp(log_scores - log_scores.max(axis=0))
+    weights = np.full(len(densities), 1.0 / len(densities))
+    for _ in range(rounds):
+        shares = weights[:, None] * densities
+        weights = (shares / shares.sum(axis=0)).mean(axis=1)
+    return weights
 
 
 def posterior_table() -> str:

@@ -8,16 +8,22 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from thermicon.circuit.records import Record
-
-from ..observer.mechanisms import ALL_OFF, find_mechanism
-from ..observer.observer import load_thresholds
-from ..observer.people import people_records
-from ..observer.priors import WITHIN_95
-from .frozen import AblatedRow, load_ablation
-from .results import UNMOVED_SD, Constant, PredictedRow, load_constants, load_predictions
-from .rows import PEOPLE_WRIST, load_rows
-from .statistics import load_evidence
-from .table_text import UNITS, markdown, number, signed, span
+from thermicon.perception.evidence.results import (
+    UNMOVED_SD,
+    AblatedRow,
+    Constant,
+    PredictedRow,
+    load_ablation,
+    load_constants,
+    load_predictions,
+)
+from thermicon.perception.evidence.rows import PEOPLE_WRIST, load_rows
+from thermicon.perception.evidence.statistics import load_evidence
+from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
+from thermicon.perception.observer.mechanisms import ALL_OFF, find_mechanism
+from thermicon.perception.observer.observer import load_thresholds
+from thermicon.perception.observer.people import people_records
+from thermicon.perception.observer.priors import WITHIN_95
 
 GROUPS = {
     "receptors": ("depth", "skin", "quality", "adaptation"),

@@ -1,13 +1,19 @@
 """Tables of the inference for the pages of docs/: every row of the data files, and numbers a person can read."""
 
 import re
+import sys
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from thermicon.perception.evidence import tables
-from thermicon.perception.evidence.frozen import load_ablation
-from thermicon.perception.evidence.results import load_constants, load_predictions
+from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
 from thermicon.perception.evidence.rows import load_rows
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "builder"))
+
+import evidence_tables as tables
+from posterior_tables import TABLES, stacking_weights, variant_weights
 
 
 def body(table: str) -> list[list[str]]:
@@ -41,9 +47,17 @@ def test_ablation_and_predictions_are_complete() -> None:
     assert tables.coverage_sentence().startswith(f"{len(predicted) - missed} of {len(predicted)} rows")
 
 
-@pytest.mark.parametrize("name", tables.TABLES)
+def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
+    weights = stacking_weights(np.log(np.array([[0.9, 0.9, 0.1], [0.1, 0.1, 0.9]])))
+    assert weights.sum() == pytest.approx(1.0)
+    assert 0.5 < weights[0] < 0.9
+    shipped = variant_weights()
+    assert max(shipped, key=lambda each: shipped[each]) == "temperature"
+
+
+@pytest.mark.parametrize("name", TABLES)
 def test_a_table_has_one_width_and_no_exponents(name: str) -> None:
-    text = tables.TABLES[name]()
+    text = TABLES[name]()
     lines = text.splitlines()
     assert len({line.count(" | ") for line in lines}) == 1
     assert not re.search(r"\d[eE][+-]?\d", re.sub(r"[^|]*(Ho & Jones)[^|]*", "", text))

@@ -14,7 +14,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
-from .outputs import MARK, OutputError, check_folder, kept_text, stopped_cleanly
+from thermicon.icons.atomic import MARK, OutputError, check_folder, kept_text, stopped_cleanly
+
+from .claims import LONGEST, claims_of
 
 CURE = "give a folder of its own, such as -o drives"
 HOW = "--force replaces it"
@@ -103,8 +105,6 @@ def _listed(folder: Path) -> list[str]:
 
 def _check_owned(folder: Path) -> None:
     """Raise OutputError where a folder that goes holds a file that no export wrote."""
-    from thermicon.circuit.delivery.claims import LONGEST, claims_of
-
     known: set[str] = set()
     for path in folder.glob("*.json"):
         claims = claims_of(path.read_bytes()) if path.stat().st_size <= LONGEST else None

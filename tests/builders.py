@@ -1,0 +1,35 @@
+"""What tests of several rooms build: key words of messages, and the observer file of a laboratory."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
+from thermicon.perception.observer.draws_file import to_text
+
+
+def messages(beside: str) -> dict[str, Any]:
+    """The table of messages beside a test file, given as its ``__file__``."""
+    return tomllib.loads(Path(beside).with_name("messages.toml").read_text(encoding="utf-8"))
+
+
+def missing(words: str | list[str], told: str) -> list[str]:
+    """Key words that are not in what was said."""
+    return [word for word in ([words] if isinstance(words, str) else words) if word not in told]
+
+
+def few_draws(path: Path, count: int, resampled: str = "", rig: str = "") -> Path:
+    """Write the first draws of the shipped posterior to a file, as ``pilot --keep`` writes one.
+
+    They are those of one laboratory where ``resampled`` says how they were obtained.
+    """
+    shipped = PosteriorDraws.load()
+    values = shipped.draws[:count].copy()
+    if resampled:
+        values[:, shipped.names.index(BETWEEN_LABORATORIES)] = 1e-6
+    header = replace(shipped.header, resampled=resampled, rig=rig)
+    path.write_text(to_text(header, shipped.names, values), encoding="utf-8")
+    return path
