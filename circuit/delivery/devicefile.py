@@ -12,11 +12,10 @@ from thermicon.icons.number_text import signed
 
 from ..inputs import (
     LONGEST_NAME,
-    TEXT_FAULT,
     InputError,
+    fault_in_words,
     one_line,
     paragraph,
-    quoted,
     read_toml,
 )
 from ..records import Record, RecordError
@@ -239,20 +238,5 @@ def _interval_fault(record: RecordTable) -> str | None:
 
 
 def _in_words(error: ErrorDetails) -> str:
-    key = ".".join(str(part) for part in error["loc"])
-    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
-    if kind == TEXT_FAULT:
-        return f"{subject}: {context['fault']}"
-    if kind == "extra_forbidden":
-        table = RecordTable if error["loc"][0] == "record" else DeviceTable
-        return f"{key}: unknown key; {did_you_mean(str(error['loc'][-1]), table.model_fields)}"
-    if kind == "missing":
-        return f"{key} is missing; add it"
-    if kind == "literal_error":
-        return f"{subject}: must be {context.get('expected')}"
-    if kind in ("float_type", "finite_number"):
-        return f"{subject}: must be a finite number without quotes or unit"
-    if kind == "bool_type":
-        return f"{subject}: must be true or false"
-    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+    table = RecordTable if error["loc"][0] == "record" else DeviceTable
+    return fault_in_words(error, "", did_you_mean(str(error["loc"][-1]), table.model_fields))

@@ -13,7 +13,8 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import TEXT_FAULT, InputError, quoted, read_text, read_toml
+from thermicon.circuit.inputs import InputError, fault_in_words, quoted, read_text, read_toml
+from thermicon.circuit.rig.keyunits import unit_of
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from .keys import TABLES, Study, Table
@@ -22,8 +23,6 @@ LIMIT_MB = 1.0
 SHIPPED = "example-study.toml"
 SHIPPED_NAMES = ("example", "example.toml", SHIPPED)
 """What the shipped study answers to where no file has that name."""
-
-UNITS = {"_s": "s", "_K": "K", "_K_per_s": "K/s"}
 
 
 class StudyError(InputError):
@@ -139,28 +138,9 @@ def _in_words(error: ErrorDetails) -> str:
     """One fault of a key in a sentence with the limit and its unit."""
     place = list(error["loc"])
     key, last = ".".join(map(str, place)), str(place[-1]) if place else ""
-    unit = next((f" {unit}" for end, unit in reversed(UNITS.items()) if last.endswith(end)), "")
-    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
-    if kind == "extra_forbidden":
-        return f"{key}: unknown key; {_nearest(place)}"
-    if kind == TEXT_FAULT:
-        return f"{subject}: {context['fault']}"
-    if kind == "missing":
-        return f"{key} is missing; add it"
-    if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
-        limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
-        words = {"greater_than": "above", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
-        return f"{subject}{unit}: must be {words} {limit:g}{unit}"
-    if kind == "literal_error":
-        return f"{subject}: must be {context.get('expected')}"
-    if kind == "string_pattern_mismatch":
-        return f"{subject}: {_shape(last, place)}"
-    if kind in ("float_type", "int_type", "finite_number", "int_from_float"):
-        return (
-            f"{subject}: must be a {'whole ' if 'int' in kind[:4] else ''}number without quotes{unit and f', in{unit}'}"
-        )
-    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+    if error["type"] == "string_pattern_mismatch":
+        return f"{key} = {quoted(error['input'])}: {_shape(last)}"
+    return fault_in_words(error, unit_of(last), _nearest(place))
 
 
 def _nearest(place: list[Any]) -> str:
@@ -174,7 +154,7 @@ def _nearest(place: list[Any]) -> str:
     return did_you_mean(word, known.model_fields)
 
 
-def _shape(last: str, place: list[Any]) -> str:
+def _shape(last: str) -> str:
     if last == "marker":
         return "must be none, serial:PORT, parallel:ADDRESS or ni:LINES"
     if last.endswith("_key"):
