@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from thermicon.circuit.fitting.overlay import Overlay
 
-    from ..editing.cue_check import Trouble
     from .scene import Drawing, Scene
 
     Floats = NDArray[np.float32]
@@ -129,16 +128,11 @@ def _said(scene: Scene) -> dict[str, Any]:
     return {
         "icons": list(scene.names),
         "icon": scene.icon,
-        "troubles": [_trouble(each) for each in scene.troubles],
+        "troubles": [asdict(each) for each in scene.troubles],
         "stale": scene.stale,
         "badge": {"colour": badge.colour, "text": badge.text, "more": list(badge.more)},
         "notes": list(scene.notes),
     }
-
-
-def _trouble(trouble: Trouble) -> dict[str, Any]:
-    names = ("line", "column", "end_column", "code", "headline", "hint", "suggestion")
-    return {name: getattr(trouble, name) for name in names}
 
 
 def _temperature(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
