@@ -12,8 +12,8 @@ from tests.builders import few_draws, missing
 from tests.notebooks.workbench.openbench import SAID
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.notebooks.editing.apply_edit import with_edit
 from thermicon.notebooks.editing.icon_edits import CannotEdit, only
+from thermicon.notebooks.editing.number_literals import with_edit
 from thermicon.notebooks.report.rank_text import number_lines
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
