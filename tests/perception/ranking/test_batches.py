@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
+from thermicon.icons.atomic import MARK
 from thermicon.perception import rank
 from thermicon.perception.ranking import batches as under_test
 from thermicon.perception.ranking.batch_store import BatchStore, BatchStoreError
@@ -71,12 +72,12 @@ def test_a_kept_batch_is_read_back_to_the_bit(tmp_path: Path) -> None:
     again = store.get(0)
     assert again is not None
     assert same(found, BatchResult(**again))
-    assert not list(store.folder.glob(".*.part"))
+    assert not list(store.folder.glob(f".*{MARK}*"))
 
 
 def test_what_a_killed_run_left_half_written_goes_and_what_is_being_written_stays(tmp_path: Path) -> None:
     store = BatchStore.of("key", tmp_path)
-    left, now = store.folder / ".000001.17.18.part", store.folder / ".000002.19.20.part"
+    left, now = store.folder / f".000001.17.{MARK}.npz", store.folder / f".000002.19.{MARK}.npz"
     for draft in (left, now):
         draft.write_bytes(b"half")
     os.utime(left, (0.0, 0.0))
