@@ -8,8 +8,8 @@ from thermicon.icons.number_text import number, percent, percent_span, seconds
 
 from ..report.blocks import fragment
 from ..report.choices import choice_lines, laboratory
-from ..report.rank_notes import outside_lines, trouble_lines
-from ..report.rank_text import caveat, rival
+from ..report.rank_notes import caveat, outside_lines, trouble_lines
+from ..report.rank_report import rival
 from ..timeline.terms import SIMULATED, terms_of
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ def chosen_html(made: SetReport) -> str:
     if made.choice is None:
         return ""
     first, *rest = choice_lines(made.choice.to_dict(), _where(made.ranking))
-    return fragment("chosen", first, [line.removeprefix("  - ") for line in rest])
+    return fragment("chosen", first, rest)
 
 
 def _where(ranking: Ranking) -> str:

@@ -153,15 +153,16 @@ def read_log_file(data: bytes, path: Path) -> None:
 
 
 def read_curves_aligned(data: bytes, path: Path) -> None:
-    from thermicon.notebooks.cli.compare import Comparison, _shifted, show_comparison
+    from thermicon.notebooks.cli.compare import _shifted
     from thermicon.notebooks.figures.differences import align
     from thermicon.notebooks.files.trace_files import read_curves
+    from thermicon.notebooks.report.compare_report import Comparison, compare_report
 
     path.write_bytes(data)
     other = path.with_name("sound.csv")
     other.write_text(LOG)
     first, second = read_curves(str(other)), read_curves(str(path))
-    show_comparison(Comparison("", align(first, _shifted(first, second)[0])))
+    compare_report(Comparison("", align(first, _shifted(first, second)[0])))
 
 
 def read_recording(data: bytes, path: Path) -> None:

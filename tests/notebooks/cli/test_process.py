@@ -183,11 +183,10 @@ def test_the_library_is_listed_with_its_source(cli: Cli) -> None:
 
 
 def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
-    from thermicon.notebooks.report.tables import show, table
+    from thermicon.notebooks.report.blocks import grid
+    from thermicon.notebooks.report.terminal import show
 
-    made = table("icon")
-    made.add_row("[red]loud[/red]")
-    show(made, "[b]plain[/b]")
+    show([grid(["icon"], [["[red]loud[/red]"]]), "[b]plain[/b]"])
     assert "[b]plain[/b]" in (said := capsys.readouterr().out)
     assert "[red]loud[/red]" in said
 

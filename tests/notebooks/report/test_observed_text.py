@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from thermicon.notebooks.report.answers_text import USEFUL_PEOPLE, observed_sentences
+from thermicon.notebooks.report.answers_report import USEFUL_PEOPLE, observed_sentences
 from thermicon.perception.pilot.answers import score_person, score_pooled
 from thermicon.perception.pilot.trials import Trials
 

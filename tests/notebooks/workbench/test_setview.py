@@ -13,7 +13,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.editing.apply_edit import with_edit
 from thermicon.notebooks.editing.icon_edits import CannotEdit, only
-from thermicon.notebooks.report.rank_text import number_lines
+from thermicon.notebooks.report.rank_details import number_points
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
@@ -320,7 +320,7 @@ def test_scores_name_the_laboratory_in_the_words_of_rank(laboratory: ObserverMod
     made = rank_set(TWO, Rig.load("thenar"), 4, 128, observer=laboratory)
     result = ranking_file(made.ranking, mapped=False)
     words = "your laboratory, lab.csv"
-    assert any(f"people in {words} (95 %): " in line for line in number_lines(result))
+    assert any(f"people in {words} (95 %): " in line for line in number_points(result))
     scores = scores_html(made.report)
     assert scores.count(f"{words}: ") == 2
     assert "new laboratory" not in scores
