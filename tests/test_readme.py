@@ -12,6 +12,7 @@ import io
 import os
 import re
 import shlex
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,17 +21,13 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.notebooks.report.schema_table import (
-    device_keys_table,
-    device_quantities_table,
-    modules_table,
-    rig_keys_table,
-)
-from thermicon.notebooks.study.keys_table import keys_table
 from thermicon.perception.evidence import posterior_tables as tables
 from thermicon.perception.evidence.memory_forms import forms_table
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "docs" / "builder"))  # a program and not a package
+from key_tables import KEY_TABLES  # noqa: E402
+
 README = ROOT / "README.md"
 INDEX = ROOT / "docs" / "README.md"
 PAGES = (README, *sorted((ROOT / "docs").rglob("*.md")))
@@ -42,11 +39,7 @@ BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 TABLES = {
     **tables.TABLES,
     "forms of memory": forms_table,
-    "study keys": keys_table,
-    "rig keys": rig_keys_table,
-    "modules": modules_table,
-    "device keys": device_keys_table,
-    "device quantities": device_quantities_table,
+    **KEY_TABLES,
 }
 TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
 """Tables that are generated from data files, between comments that GitHub does not show."""

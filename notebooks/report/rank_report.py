@@ -53,6 +53,7 @@ def rank_report(
     where = laboratory(result["observer"], result["set"]["own_laboratory"])
     chosen = list(choice_lines(result["chosen"], where)) if result["chosen"] else []
     said = [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]
+    short = f"Predicted, not measured: {crowd_text(result)}."
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
@@ -64,16 +65,8 @@ def rank_report(
         *(Text(note, "note" if note.startswith("Outside") else "warn") for note in notes),
         icon_table(icons, result),
         *(detail_blocks(result) if details or not model else []),
-        Text(
-            caveat(result)
-            if details or not model
-            else _short_caveat(result, "--details" if following else "rank --details")
-        ),
+        Text(caveat(result) if details or not model else f"{short} More: {'rank ' * (not following)}--details"),
     ]
-
-
-def _short_caveat(result: Mapping[str, Any], more: str) -> str:
-    return f"Predicted, not measured: {crowd_text(result)}. More: {more}"
 
 
 def cards(result: Mapping[str, Any], where: str) -> tuple[tuple[str, str], ...]:
