@@ -178,6 +178,15 @@ def as_html(blocks: Sequence[Block], title: str) -> str:
     return environment().get_template("page.html.j2").render(title=title, blocks=blocks, address=address) + "\n"
 
 
+def shown(*blocks: Block) -> str:
+    """Render single blocks for the workbench, in its style; the `kind` of a text is one of its classes `th-…`.
+
+    >>> shown(Heading("5 < 6"), Text("so it is", "soft"))
+    '<div class="th-head">5 &lt; 6</div>\\n<div class="th-soft">so it is</div>'
+    """
+    return fragment("shown", blocks)
+
+
 def as_markdown(blocks: Sequence[Block]) -> str:
     """Write the blocks as Markdown, as a code host or a notebook shows it; without pictures.
 
@@ -221,7 +230,7 @@ def _marked(text: str) -> str:
 def fragment(name: str, *values: object) -> str:
     """Render a macro of the workbench's template: a small piece of HTML, with every value escaped.
 
-    >>> fragment("notes", ["5 < 6"])
+    >>> fragment("block", "5 < 6", "th-note")
     '<div class="th-note">5 &lt; 6</div>'
     """
     macro = getattr(environment().get_template("workbench.html.j2").module, name)
