@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from thermicon.notebooks.cli import examine, self_test
-from thermicon.notebooks.cli.finding import Finding
+from thermicon.notebooks.cli.packages import Finding
 
 Cli = Callable[..., Any]
 

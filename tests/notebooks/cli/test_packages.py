@@ -10,21 +10,9 @@ from pathlib import Path
 import pytest
 
 from thermicon.notebooks.cli import packages
-from thermicon.notebooks.cli.finding import Finding
 
 ROOT = Path(__file__).resolve().parents[3]
 ONLY_FOR_DEVELOPERS = {"test", "docs"}
-
-
-def test_a_finding_is_one_line_with_its_cure() -> None:
-    with pytest.raises(ValueError, match="state 'bad' is not one of ok, note, fault"):
-        Finding("x", "bad", "y")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="x: fault without a cure"):
-        Finding("x", "fault", "y")
-    with pytest.raises(ValueError, match="x: ok with a cure"):
-        Finding("x", "ok", "y", "z")
-    with pytest.raises(ValueError, match="x: a finding is one line"):
-        Finding("x", "ok", "y\nz")
 
 
 @pytest.mark.parametrize(
