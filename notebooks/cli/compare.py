@@ -197,10 +197,8 @@ def _matrix(first: str, second: str, request: Request, figure: Path | None) -> N
 
 
 def _sets(first: str, second: str, request: Request) -> list[Comparison]:
-    sets = [read_set([name]) for name in (first, second)]
+    sets, common = [read_set([name]) for name in (first, second)], _common(first, second)
     names = [[icon.name for icon in icons] for icons in sets]
-    known = set(names[1])
-    common = [name for name in names[0] if name in known]
     if request.icon is not None:
         common = [pick(icons, request.icon)[0].name for icons in sets][:1]
     alone = [f"{name} ({file})" for k, file in enumerate((first, second)) for name in names[k] if name not in common]

@@ -53,7 +53,8 @@ def rank_report(
     where = laboratory(result["observer"], result["set"]["own_laboratory"])
     chosen = list(choice_lines(result["chosen"], where)) if result["chosen"] else []
     said = [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]
-    short = f"Predicted, not measured: {crowd_text(result)}."
+    by = "" if result["observer"] == "shipped" else f", observer {result['observer']}"
+    short = f"Predicted, not measured: {crowd_text(result)}{by}."
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
