@@ -23,10 +23,10 @@ from typer.testing import CliRunner
 from thermicon.notebooks.cli.main import app
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "docs" / "builder"))
+sys.path.insert(0, str(ROOT / "docs" / "builder"))  # a program and not a package
 
-import key_tables  # noqa: E402
 import posterior_tables  # noqa: E402
+from key_tables import KEY_TABLES  # noqa: E402
 
 README = ROOT / "README.md"
 INDEX = ROOT / "docs" / "README.md"
@@ -38,11 +38,7 @@ BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
 TABLES = {
     **posterior_tables.TABLES,
-    "study keys": key_tables.study_keys_table,
-    "rig keys": key_tables.rig_keys_table,
-    "modules": key_tables.modules_table,
-    "device keys": key_tables.device_keys_table,
-    "device quantities": key_tables.device_quantities_table,
+    **KEY_TABLES,
 }
 TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
 """Tables that are generated from data files, between comments that GitHub does not show."""

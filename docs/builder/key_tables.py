@@ -1,4 +1,4 @@
-"""Keys of rig, device and study files with their values and defaults as tables, from the schemas that check them."""
+"""Tables of the docs: keys of files with values and defaults, from the schemas that check the files."""
 
 from __future__ import annotations
 
@@ -7,29 +7,23 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from thermicon.circuit.delivery.devicefile import LIMITS, UNITS, UNITS_BY_DRIVE, DeviceTable
+from thermicon.circuit.rig.modules import build_of, module_table
+from thermicon.circuit.rig.rigfile import RigTable
+from thermicon.notebooks.study.keys import TABLES as STUDY_TABLES
+from thermicon.notebooks.study.keys import Study
+
 BOUNDS = {"minimum": "≥ {:g}", "exclusiveMinimum": "> {:g}", "maximum": "≤ {:g}", "exclusiveMaximum": "< {:g}"}
 KINDS = {"integer": "whole number", "number": "number", "string": "text", "boolean": "true or false"}
 
 
 def rig_keys_table() -> str:
-    """Return every key of a rig file with its values and its default, as a table of Markdown.
-
-    >>> [line for line in rig_keys_table().splitlines() if "area_cm2" in line]
-    ['| `contact.area_cm2` | number ≥ 0.01, ≤ 10000 | needed |']
-    """
-    from thermicon.circuit.rig.rigfile import RigTable
-
+    """Every key of a rig file with its values and its default."""
     return _table(RigTable)
 
 
 def modules_table() -> str:
-    """Return the modules on record, a line for each data sheet, as a table of Markdown.
-
-    >>> [line for line in modules_table().splitlines() if "TEC1-12706" in line][0]
-    '| `TEC1-12706` | 40 × 40 mm | 4.6 | 25 | 6.4 | 14.4 | 50 | 66 |'
-    """
-    from thermicon.circuit.rig.modules import build_of, module_table
-
+    """The modules on record, a line for each data sheet."""
     rows = []
     for record in sorted(module_table(), key=lambda record: (str(record.get("module")), float(record.get("t_hot_C")))):
         printed, name = dict(record.extra), str(record.get("module"))
@@ -43,15 +37,11 @@ def modules_table() -> str:
 
 def device_keys_table() -> str:
     """Return every key of a device file with its values and its default, as a table of Markdown."""
-    from thermicon.circuit.delivery.devicefile import DeviceTable
-
     return _table(DeviceTable)
 
 
 def device_quantities_table() -> str:
     """Return the quantities that a device may state, with the limits of their values, as a table of Markdown."""
-    from thermicon.circuit.delivery.devicefile import LIMITS, UNITS, UNITS_BY_DRIVE
-
     rows = []
     for quantity, (low, high) in LIMITS.items():
         units = [UNITS[quantity]] if quantity in UNITS else sorted(set(UNITS_BY_DRIVE[quantity].values()))
@@ -60,25 +50,17 @@ def device_quantities_table() -> str:
 
 
 def study_keys_table() -> str:
-    """Return every key of a study file with its values, its default and its meaning, as a table of Markdown."""
-    rows = [f"| `{key}` | {values} | {default} | {meaning} |" for key, values, default, meaning in _study_rows()]
+    """Every key of a study file with its values, its default and its meaning."""
+    rows = []
+    tables = {"": (Study, [name for name in Study.model_fields if name not in STUDY_TABLES])}
+    tables |= {f"{name}.": (table, list(table.model_fields)) for name, table in STUDY_TABLES.items()}
+    for prefix, (table, names) in tables.items():
+        properties = table.model_json_schema()["properties"]
+        for name in names:
+            field = table.model_fields[name]
+            default = "needed" if field.is_required() else default_of(field.default)
+            rows.append(f"| `{prefix}{name}` | {values_of(properties[name])} | {default} | {field.description} |")
     return "\n".join(["| key | values | default | meaning |", "|---|---|---|---|", *rows])
-
-
-def _study_rows() -> Iterator[tuple[str, str, str, str]]:
-    from thermicon.notebooks.study.keys import TABLES, Study
-
-    yield from _of(Study, "", [name for name in Study.model_fields if name not in TABLES])
-    for name, table in TABLES.items():
-        yield from _of(table, f"{name}.", list(table.model_fields))
-
-
-def _of(table: type[BaseModel], prefix: str, names: list[str]) -> Iterator[tuple[str, str, str, str]]:
-    properties = table.model_json_schema()["properties"]
-    for name in names:
-        field = table.model_fields[name]
-        default = "needed" if field.is_required() else default_of(field.default)
-        yield prefix + name, values_of(properties[name]), default, str(field.description)
 
 
 def _table(model: type[BaseModel]) -> str:
@@ -128,3 +110,13 @@ def default_of(value: object) -> str:
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
     return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
+
+
+KEY_TABLES = {
+    "study keys": study_keys_table,
+    "rig keys": rig_keys_table,
+    "modules": modules_table,
+    "device keys": device_keys_table,
+    "device quantities": device_quantities_table,
+}
+"""The tables by the names that mark their places in the pages."""

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.icons.number_text import number, percent
+from thermicon.icons.number_text import number
 
-from ..figures.differences import Aligned, align, differences, quantity, with_unit
+from ..figures.differences import align, quantity
 from ..files.outputs import check_separate
 from ..files.trace_files import Curves, LogError, curves_of, read_curves
 from ..messages import DEFAULT_RIG, load_rig, note, usage
-from ..report.compare_inputs import Request, check_request, kind_of_both
-from ..report.set_matrix import FEWEST, show_matrix
-from ..report.tables import show, table
+from ..report.blocks import Text
+from ..report.compare_report import Comparison, compare_report, comparison_line, matrix_report
+from ..report.terminal import show
 from .cues import pick, read_set
 from .options import FigureOptions, IconName, RigOptions
 from .simulate import headline
@@ -24,21 +24,35 @@ from .simulate import headline
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
-    from thermicon.perception.selection.robust import SetComparison
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
-MOST_IN_A_SET = 30
+FEWEST, MOST_IN_A_SET = 2, 30
 """Larger sets are compared icon by icon alone; `thermicon.perception.selection.robust.compare_sets` takes them."""
+TABLES = (".csv", ".parquet")
+NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
+HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or .parquet"
+
+APPLIES = {
+    "--file": (("rig",), "belongs to two rigs; two sets are A and B"),
+    "--icon": (("rig", "set", "table"), "the two icons are A and B"),
+    "--rig": (("icon", "set"), "the two rigs are A and B; traces and logs are compared as they are"),
+    "--set": (("rig", "icon", "set"), "traces and logs are compared as they are"),
+    "--rigs": (("set",), "belongs to two sets"),
+    "--align": (("table",), "belongs to a trace and a log, which have clocks of their own"),
+}
+"""The kinds that an option applies to, and what is said for others."""
 
 
 @dataclass(frozen=True, slots=True)
-class Comparison:
-    """One pair of curves with a title, the outcomes of A and B, and a closing sentence."""
+class Request:
+    """Options of ``compare``: the file with icons for two rigs, one icon only, the rig with its changes, alignment."""
 
-    title: str
-    both: Aligned
-    outcomes: tuple[str, str] = ("", "")
-    after: str = ""
+    file: str | None = None
+    icon: str | None = None
+    rig: str | None = None
+    changes: tuple[str, ...] = ()
+    align: bool = False
+    rigs: tuple[str, ...] = ()
 
 
 def compare_command(
@@ -78,23 +92,65 @@ def compare_command(
 
         pairs = [(each.title, each.both) for each in made]
         figure.write(compare_figure(pairs, across=figure.look.across(3)))
-    for place, each in enumerate(made):
-        if place:
-            show("")
-        show_comparison(each)
+    show([block for each in made for block in compare_report(each)])
 
 
-def show_comparison(made: Comparison) -> None:
-    """Print one table of differences with the meaning of A and B and the times of the comparison."""
-    both = made.both
-    rows = table("B − A", "largest", "at", "rms", "mean", numbers=("largest", "at", "rms", "mean"))
-    for _, row in differences(both).iterrows():
-        written = [with_unit(float(row[name]), row["unit"]) for name in ("largest", "rms", "mean")]
-        rows.add_row(quantity(row["column"]), written[0], f"{row['largest_s']:.2f} s", *written[1:])
-    sides = zip("AB", (both.name_a, both.name_b), made.outcomes, strict=True)
-    heads = [f"{letter}  {name}{f': {outcome}' if outcome else ''}" for letter, name, outcome in sides]
-    after = ["", made.after] if made.after else []
-    show(*([made.title] if made.title else []), *heads, "", rows, "", both.said, *after)
+def kind_of(text: str, option: str) -> str:
+    """Return what an argument names, a rig, icon, set or table; a usage error if that is not clear.
+
+    >>> [kind_of(text, "A") for text in ("thenar", "my.toml", "six-icons:double-dip", "my.cue", "log.csv")]
+    ['rig', 'rig', 'icon', 'set', 'table']
+    """
+    from thermicon.circuit.rig.rig import rig_names
+    from thermicon.icons.files.shipped import library_names
+
+    suffix = Path(text).suffix.lower()
+    file, colon, _ = text.rpartition(":")
+    matches = {
+        "rig": suffix == ".toml" or text in rig_names(),
+        "set": suffix == ".cue" or text in library_names(),
+        "table": suffix in TABLES,
+        "icon": bool(colon) and (Path(file).suffix.lower() == ".cue" or file in library_names()),
+    }
+    kinds = [kind for kind, is_match in matches.items() if is_match]
+    if len(kinds) == 1:
+        return kinds[0]
+    if kinds:
+        both = " and ".join(NAMES[kind] for kind in kinds)
+        raise usage(f"{text} is the name of {both}; give the one you mean as a file", option)
+    if Path(text).exists():
+        raise usage(f"{text}: its name does not show what it is; {HOW}", option)
+    from thermicon.icons.near_words import did_you_mean
+
+    raise usage(f"{text} cannot be compared; {did_you_mean(text, (*rig_names(), *library_names()))} ({HOW})", option)
+
+
+def kind_of_both(first: str, second: str) -> str:
+    """Return the kind that both are; a usage error where they differ."""
+    kinds = kind_of(first, "A"), kind_of(second, "B")
+    if kinds[0] == kinds[1]:
+        return kinds[0]
+    raise usage(
+        f"{first} is {NAMES[kinds[0]]} and {second} is {NAMES[kinds[1]]}; both must be of the same kind"
+        f"{_cure(set(kinds))}",
+        "B",
+    )
+
+
+def _cure(kinds: set[str]) -> str:
+    if kinds == {"icon", "set"}:
+        return ": write the one icon of the set as FILE:ICON"
+    if "table" in kinds:
+        return ": write a trace first with thermicon simulate FILE --icon NAME -o trace.csv"
+    return f" ({HOW})"
+
+
+def check_request(kind: str, request: Request) -> None:
+    """Fail with a usage error for an option that does not apply to this kind."""
+    given = (request.file, request.icon, request.rig, request.changes, request.rigs, request.align)
+    for (option, (kinds, why)), value in zip(APPLIES.items(), given, strict=True):
+        if value not in (None, (), False) and kind not in kinds:
+            raise usage(why, option)
 
 
 def _rigs(first: str, second: str, request: Request) -> list[Comparison]:
@@ -132,19 +188,17 @@ def _matrix(first: str, second: str, request: Request, figure: Path | None) -> N
         if not FEWEST <= len(icons) <= MOST_IN_A_SET:
             raise LogError(f"{name}: sets of {FEWEST} to {MOST_IN_A_SET} icons are compared, this one has {len(icons)}")
     names = request.rigs or (request.rig or DEFAULT_RIG,)
-    show_matrix(sets, {Path(name).name: load_rig(name, request.changes) for name in names})
+    told = matrix_report(sets, {Path(name).name: load_rig(name, request.changes) for name in names})
     if len(names) == 1:
         one, other = sets.values()
         sentence = compare_identification(one, other, load_rig(names[0], request.changes))
-        if sentence:
-            show("", f"A {next(iter(sets))}, B {list(sets)[1]}", sentence)
+        told += [Text(f"A {next(iter(sets))}, B {list(sets)[1]}\n{sentence}")] if sentence else []
+    show(told)
 
 
 def _sets(first: str, second: str, request: Request) -> list[Comparison]:
-    sets = [read_set([name]) for name in (first, second)]
+    sets, common = [read_set([name]) for name in (first, second)], _common(first, second)
     names = [[icon.name for icon in icons] for icons in sets]
-    known = set(names[1])
-    common = [name for name in names[0] if name in known]
     if request.icon is not None:
         common = [pick(icons, request.icon)[0].name for icons in sets][:1]
     alone = [f"{name} ({file})" for k, file in enumerate((first, second)) for name in names[k] if name not in common]
@@ -215,24 +269,3 @@ def compare_identification(first: IconSet, second: IconSet, rig: Rig) -> str | N
     if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (first, second)):
         return None
     return comparison_line(compare_sets(first, second, rig))
-
-
-def comparison_line(found: SetComparison) -> str:
-    """Report how often A is identified better than B, and by how much.
-
-    >>> from thermicon.perception.selection.robust import SetComparison
-    >>> comparison_line(SetComparison(0.93, 0.02, 0.41, 100))
-    'predicted: the icons of A are easier to distinguish than those of B in 93 % of 100 draws of person, contact, room \
-and rig; the d′ of its worst pair is larger by 0.4 (median)'
-    """
-    share, better = (found.probability, "A") if found.probability >= 0.5 else (1.0 - found.probability, "B")
-    other = "B" if better == "A" else "A"
-    drawn = f"{found.draws} draws of person, contact, room and rig"
-    if share < 0.5 + 2.0 * found.standard_error:
-        return f"predicted: no difference between A and B in how well their icons are distinguished, within {drawn}"
-    gain = abs(found.gain)
-    return (
-        f"predicted: the icons of {better} are easier to distinguish than those of {other} in {percent(share)} of "
-        f"{drawn}; "
-        f"the d′ of its worst pair is larger by {number(gain)} (median)"
-    )

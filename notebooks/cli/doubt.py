@@ -8,11 +8,12 @@ from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import percent
+from thermicon.icons.number_text import count_of, percent
 
 from ..files.outputs import STDOUT
 from ..messages import check_draws, fail, progress_bar, usage
-from ..report.tables import show, table
+from ..report.blocks import Block, Bullets, Heading, Text, grid
+from ..report.terminal import show
 from .cues import read_set, warn_of_frames
 from .options import CrowdOptions, RigOptions, write_text
 
@@ -66,43 +67,34 @@ def doubt_about(
     if figure.figure is not None:
         figure.write(found.plot().figure)
     if json != STDOUT:
-        show_doubt(found, icons.title)
+        show(doubt_report(found, icons.title))
 
 
-def show_doubt(found: Sensitivity, title: str) -> None:
-    """Print one row per constant that counts, the most important first, and what to measure first."""
-    made = table(
-        "constant",
-        "95 % of draws",
-        "correct",
-        "bits",
-        "correct low–high",
-        numbers=("correct", "bits", "correct low–high"),
-    )
-    for effect in found.effects[:SHOWN]:
-        unit = "" if effect.unit in ("", "1") else f" {effect.unit}"
-        made.add_row(
+def doubt_report(found: Sensitivity, title: str) -> list[Block]:
+    """Report one row per constant that counts, the most important first, and what to measure first."""
+    numbers = ("correct", "bits", "correct low–high")
+    rows = [
+        (
             effect.constant,
-            f"{effect.low:.3g} to {effect.high:.3g}{unit}",
+            f"{effect.low:.3g} to {effect.high:.3g}{'' if effect.unit in ('', '1') else f' {effect.unit}'}",
             percent(effect.proportion_correct),
             percent(effect.information_bits),
             f"{percent(effect.at_low)} – {percent(effect.at_high)}",
         )
-    heading = [title, ""] if title else []
-    show(*heading, made, "", *sentences(found))
-
-
-def sentences(found: Sensitivity) -> list[str]:
-    """Return what to measure first, what the numbers are, and what they were computed from."""
+        for effect in found.effects[:SHOWN]
+    ]
     what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
-    crowd = "1 virtual person" if found.people == 1 else f"{found.people} virtual people"
+    crowd = count_of(found.people, "virtual person", "virtual people")
     lead = "Measure first, by the share of the variance of the proportion correct that would go:"
     return [
-        lead if found.first else "No measurement would narrow the prediction noticeably.",
-        *(f"  - {percent(each.proportion_correct)}: {each.measurement}" for each in found.first),
-        "",
-        "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that shares "
-        "need not add up to 100 %. Beside them the proportion correct expected at both ends of the interval. "
-        f"{found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, {found.norm} norm): "
-        "contact and outermost layer of the skin vary too, unlike in the intervals of rank.",
+        *([Heading(title, 1)] if title else []),
+        grid(("constant", "95 % of draws", *numbers), rows, numbers),
+        Text(lead if found.first else "No measurement would narrow the prediction noticeably."),
+        Bullets(tuple(f"{percent(each.proportion_correct)}: {each.measurement}" for each in found.first)),
+        Text(
+            "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that "
+            "shares need not add up to 100 %. Beside them the proportion correct expected at both ends of the "
+            f"interval. {found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, "
+            f"{found.norm} norm): contact and outermost layer of the skin vary too, unlike in the intervals of rank."
+        ),
     ]

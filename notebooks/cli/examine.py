@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from itertools import chain
 
-from .finding import Finding, first_line
-from .packages import PROGRAM, installed_version
+from .packages import PROGRAM, Finding, first_line, installed_version
 
 CHECKS = (
     ("Python", "packages", "check_python"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -11,11 +11,9 @@ from thermicon.circuit.inputs import LONGEST_NAME, line_fault
 
 from ..files.outputs import check_output, check_separate
 from ..messages import note, usage
+from ..report.fit_report import fit_report, plan_report
+from ..report.terminal import show
 from .options import FigureOptions, RigOptions, write_text
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.circuit.fitting.rig_fit import RigFit
 
 OFFSET_K, MOST_OFFSET_K = 0.1, 10.0
 """As in `thermicon.circuit.fitting.fit`, repeated here to avoid its imports."""
@@ -98,7 +96,9 @@ def fit_command(
     if name is not None and (fault := line_fault(name, LONGEST_NAME)):
         raise usage(fault, "--name")
     if plan:
-        show_plan(rig.load(), keys, offset, fixed_skin)
+        from thermicon.circuit.fitting.laboratory import plan as expect
+
+        show(plan_report(expect(rig.load(), keys, offset_K=offset, fixed_skin=fixed_skin)))
         return
     if not logs:
         raise usage("give a LOG, or --plan to see what a log would identify", "LOG")
@@ -115,29 +115,6 @@ def fit_command(
         from thermicon.circuit.fitting.fit_figure import fit_figure
 
         figure.write(fit_figure(fitted, 1 if figure.look.narrow else 2))
-    show_fit(fitted, where)
-
-
-def show_fit(fitted: RigFit, before: Rig) -> None:
-    """Print parameters, residuals, what was not identified, and the uncertainty that the rig gets."""
-    from ..report.fit_text import doubts, parameter_table, residual_table, uncertainty_line
-    from ..report.tables import show
-
-    show(parameter_table(fitted), "", residual_table(fitted))
-    for line in doubts(fitted):
-        show("", line)
-    if uncertain := uncertainty_line(fitted, before):
-        show("", uncertain)
+    show(fit_report(fitted, where))
     for sentence in fitted.notes:
         note(f"note: {sentence}")
-
-
-def show_plan(rig: Rig, free: tuple[str, ...], offset_K: float, fixed_skin: bool) -> None:
-    """Print how well each choice of sensors will identify the keys."""
-    from thermicon.circuit.fitting.laboratory import plan
-
-    from ..report.fit_text import PLAN_HEAD, plan_table
-    from ..report.tables import show
-
-    expected = plan(rig, free, offset_K=offset_K, fixed_skin=fixed_skin)
-    show(PLAN_HEAD, "", plan_table(expected))

@@ -10,10 +10,12 @@ import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import progress_bar, usage
+from ..report.frontier_report import frontier_report
+from ..report.rank_report import rank_report
+from ..report.terminal import show
 from .cues import read_set, warn_of_frames
-from .frontier import show_frontier
 from .options import CrowdOptions, FigureOptions, FileNames, RigOptions, out, write_text
-from .ranking import cures, report_of, show
+from .ranking import cures, report_of
 from .search_result import FoundSet
 from .sweep import write_frame
 
@@ -153,7 +155,7 @@ def choose_icons(
     for path in outputs:
         write_text(found.to_json() + "\n", path)
     if STDOUT not in outputs:
-        show(found, icons, cures(found.ranking, icons, rig))
+        show(rank_report(found, icons.title, cures(found.ranking, icons, rig)))
 
 
 def tabulate(
@@ -170,7 +172,7 @@ def tabulate(
         else:
             write_frame(found.to_frame(), path)
     if STDOUT not in outputs:
-        show_frontier(found, icons.title)
+        show(frontier_report(found, icons.title))
 
 
 def search_set(
@@ -200,4 +202,4 @@ def search_set(
     for path in outputs:
         write_text(str(found.found), path)
     if STDOUT not in outputs:
-        FoundSet.ranked(found, icons, rig, must, how).show(icons.title, rig.name, evaluations)
+        show(FoundSet.ranked(found, icons, rig, must, how).report(icons.title, rig.name, evaluations))

@@ -12,7 +12,8 @@ from thermicon.icons.number_text import number
 
 from ..files.outputs import check_output
 from ..messages import usage
-from ..report.tables import show, table
+from ..report.blocks import grid
+from ..report.terminal import show
 from .cues import read_set, warn_of_site
 from .options import RigOptions, write_text
 
@@ -49,7 +50,8 @@ def list_command(
     else:
         shown = {"icons": show_icons, "rigs": show_rigs, "devices": show_devices, "formats": show_formats}
         for place, each in enumerate([what] if what else shown):
-            show(*([""] if place else []))
+            if place:
+                typer.echo("")
             shown[each]()
 
 
@@ -101,14 +103,17 @@ def show_rigs() -> None:
     from thermicon.circuit.rig.rig import rig_names
 
     numbers = ("rest °C", "blood °C", "flux W/m²")
-    made = table("name", "title", "site", *numbers, numbers=numbers)
-    notes = []
-    for name in rig_names():
-        rig = Rig.load(name)
-        flux = number(rig.resting_flux_W_per_m2, 0)
-        made.add_row(name, rig.title, rig.site, number(rig.skin.rest_C), number(rig.blood_C, 2), flux)
-        notes += [f"{name}: {warning}" for warning in rig.warnings]
-    show(made, "", "flux: heat flow into bare skin at rest; negative because skin loses heat.", *notes)
+    rigs = [Rig.load(name) for name in rig_names()]
+    rows = [
+        (
+            *(rig.name, rig.title, rig.site, number(rig.skin.rest_C)),
+            *(number(rig.blood_C, 2), number(rig.resting_flux_W_per_m2, 0)),
+        )
+        for rig in rigs
+    ]
+    notes = [f"{rig.name}: {warning}" for rig in rigs for warning in rig.warnings]
+    said = "flux: heat flow into bare skin at rest; negative because skin loses heat."
+    show([grid(("name", "title", "site", *numbers), rows, numbers), "\n".join([said, *notes])])
 
 
 def show_icons() -> None:
@@ -117,20 +122,17 @@ def show_icons() -> None:
     from thermicon.icons.files.shipped import library_names, load_library
 
     for position, name in enumerate(library_names()):
-        icons = load_library(name)
-        made = table("", "", "")
-        made.show_header = False
+        icons, rows = load_library(name), []
         for icon in icons.entries:
             tags = f"({', '.join(icon.metadata.tags)})" if icon.metadata.tags else ""
             count = f", {len(icon):,} icons" if isinstance(icon, Family) else ""
-            made.add_row(f"  {icon.name}{count}", icon.metadata.means or "", tags)
+            rows.append((f"  {icon.name}{count}", icon.metadata.means or "", tags))
         source = "; ".join(text for text in (icons.metadata.by, icons.metadata.doi) if text)
-        show(
-            *([""] if position else []),
-            f"{name}: {icons.title}" if icons.title else name,
-            f"  controls {PRESCRIBES[icons.context.control]}; source: {source or 'not stated'}",
-            made,
-        )
+        if position:
+            typer.echo("")
+        controls = f"  controls {PRESCRIBES[icons.context.control]}; source: {source or 'not stated'}"
+        show([f"{name}: {icons.title}\n{controls}" if icons.title else f"{name}\n{controls}"])
+        show([grid(("", "", ""), rows)])
 
 
 def show_devices() -> None:
@@ -138,8 +140,8 @@ def show_devices() -> None:
     from thermicon.circuit import Device
     from thermicon.circuit.delivery.device import device_names
 
-    made = table("device", "driven by", "range", "resolution", "rate")
     devices = [Device.load(name) for name in device_names()]
+    rows = []
     for device in devices:
         low, high = device.interval("set-point range" if device.unit == "°C" else "output range")
         unit = {"V": "V", "°C": "°C"}.get(device.unit, "A")
@@ -149,28 +151,20 @@ def show_devices() -> None:
             (_rate(device.most(name)) for name in ("update rate", "carrier frequency") if device.record(name)),
             f"{device.most('tick') * 1e3:g} ms ticks",
         )
-        made.add_row(device.name, device.driven_by, f"{number(low)} to {number(high)} {unit}", steps, fastest)
+        rows.append((device.name, device.driven_by, f"{number(low)} to {number(high)} {unit}", steps, fastest))
     played = [device.name for device in devices if device.played]
     tested = f"Tested on hardware: {', '.join(played)}." if played else "None of them has been tested on hardware yet."
-    show(
-        made,
-        "",
-        *(f"{device.name}: {device.title}" for device in devices),
-        "",
-        tested,
-        "Describe your own device in a .toml file like the shipped ones (--copy), with a source for each number.",
-    )
+    own = "Describe your own device in a .toml file like the shipped ones (--copy), with a source for each number."
+    titles = "\n".join(f"{device.name}: {device.title}" for device in devices)
+    show([grid(("device", "driven by", "range", "resolution", "rate"), rows), titles, f"{tested}\n{own}"])
 
 
 def show_formats() -> None:
     """Print the file formats of drives, and the device that each is for."""
     from thermicon.circuit.delivery.formats import format_names, load_format
 
-    forms = table("format", "content", "default device")
-    for name in format_names():
-        form = load_format(name)
-        forms.add_row(name, form.title, form.device)
-    show(forms)
+    forms = [(name, load_format(name)) for name in format_names()]
+    show([grid(("format", "content", "default device"), [(name, form.title, form.device) for name, form in forms])])
 
 
 def _rate(value_Hz: float) -> str:

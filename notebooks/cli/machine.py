@@ -9,8 +9,7 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
 
-from .finding import Finding
-from .packages import pip
+from .packages import Finding, pip
 
 KERNEL = "python3"
 """The kernel that the shipped notebooks name."""

@@ -9,11 +9,12 @@ import platform
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
+from typing import Literal
 
 from ..startup import hidden_by, installed_folders
-from .finding import Finding, State
 
 PROGRAM = "thermicon"
 REPORTED = ("numpy", "scipy", "pandas", "matplotlib", "numba", "pydantic", "typer", "jupyterlab", "ipywidgets")
@@ -31,6 +32,52 @@ EXTRAS = {
 
 PIP_ENDS_S = 120.0
 """Seconds after which pip is given up."""
+State = Literal["ok", "note", "fault"]
+"""A note costs something that can be done without; a fault keeps thermicon from working or from being right."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What a check found: one sentence without a full stop, and the cure exactly where the state is not ``ok``.
+
+    >>> print(Finding("voila", "note", "not installed", 'pip install "thermicon[page]"').line)
+    note   voila: not installed; pip install "thermicon[page]"
+    """
+
+    check: str
+    state: State
+    text: str
+    cure: str | None = None
+
+    @property
+    def line(self) -> str:
+        """The finding as one line of text."""
+        cure = "" if self.cure is None else f"; {self.cure}"
+        return readable(f"{self.state:<5}  {self.check}: {self.text}{cure}")
+
+    def to_dict(self) -> dict[str, str | None]:
+        """The finding as plain data, for JSON."""
+        cure = None if self.cure is None else readable(self.cure)
+        return {"check": self.check, "state": self.state, "text": readable(self.text), "cure": cure}
+
+
+def readable(text: str) -> str:
+    """Return text with the letters of paths that Python read without knowing their encoding, as with LC_ALL=C.
+
+    >>> readable("/home/Gr\\udcc3\\udcb6")
+    '/home/Grö'
+    """
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+
+
+def first_line(error: BaseException) -> str:
+    """Return the kind of an error and the first line of its text.
+
+    >>> first_line(ImportError("no module\\nmore words"))
+    'ImportError: no module'
+    """
+    words = str(error).strip().splitlines()
+    return f"{type(error).__name__}: {words[0].strip()}" if words else type(error).__name__
 
 
 def pip() -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
+from thermicon.icons.number_text import percent
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
@@ -122,7 +123,8 @@ def pilot_command(
     check_separate(files, [json])
     from thermicon.perception.pilot.plan import plan
 
-    from ..report.plan_text import show_plan
+    from ..report.plan_report import plan_report
+    from ..report.terminal import show
 
     sets, where = [read_set([name]) for name in files], rig.load()
     model = crowd.load(where, NEEDS)
@@ -145,7 +147,7 @@ def pilot_command(
     if json is not None:
         write_text(found.to_json() + "\n", json)
     if json != STDOUT:
-        show_plan(found, [Path(name).name for name in files])
+        show(plan_report(found, [Path(name).name for name in files]))
 
 
 def condition(
@@ -172,7 +174,8 @@ def condition(
     from thermicon.perception.pilot.observed import observed
     from thermicon.perception.pilot.trials_file import read_trials
 
-    from ..report.observed_text import show_observed
+    from ..report.observed_report import observed_report
+    from ..report.terminal import show
 
     (icons, *others), where = [read_set([name]) for name in files], rig.load()
     model = crowd.load(where, NEEDS)
@@ -194,13 +197,13 @@ def condition(
         from ..figures.observed_figure import observed_figure
 
         figure.write(observed_figure(found, stacked=figure.look.narrow))
-    last = [KEEP_IT]
+    last = KEEP_IT
     if keep is not None and drawn is not None:
         _keep(found, keep, drawn)
-        last = _rank_lines(files[0], icons, where, replace(crowd, seed=0, observer=drawn), rig)
+        last = _ranked(files[0], icons, where, replace(crowd, seed=0, observer=drawn), rig)
     if json == STDOUT:
         return
-    show_observed(found, files, last)
+    show(observed_report(found, files, last))
 
 
 def _keep(found: Observed[Any, Any], keep: Path, drawn: Path) -> None:
@@ -212,15 +215,16 @@ def _keep(found: Observed[Any, Any], keep: Path, drawn: Path) -> None:
     note(f"wrote {keep} and {drawn}")
 
 
-def _rank_lines(file: str, icons: IconSet, where: Rig, crowd: ObserverOptions, rig: RigOptions) -> list[str]:
-    """The command that ranks the set with the laboratory that was kept, and the per cent correct that it shows."""
+def _ranked(file: str, icons: IconSet, where: Rig, crowd: ObserverOptions, rig: RigOptions) -> str:
+    """The per cent correct that rank shows for the laboratory that was kept, and the command that does."""
     from thermicon.perception import rank
-
-    from ..report.observed_text import rank_lines
 
     with progress_bar("ranking") as progress:
         ranking = rank(icons, where, **crowd.asked, parameters=0, observer=crowd.observer, progress=progress)
-    return rank_lines(command_text([file], rig, crowd, paths=True), ranking.proportion_correct, ranking.people)
+    return (
+        f"rank shows {percent(ranking.proportion_correct)} correct for this laboratory: {ranking.people} other people "
+        f"at the first of the kept draws.\n  {command_text([file], rig, crowd, paths=True)}"
+    )
 
 
 def _numbers(text: str, option: str, least: int, most: int) -> tuple[int, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -15,7 +15,8 @@ from thermicon.icons.atomic import check_folder
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
-from ..report.rank_text import show_ranking
+from ..report.rank_report import MOST_LINES, next_step, rank_report
+from ..report.terminal import show
 from .cues import MOST_ICONS, read_set, warn_of_frames
 from .options import CrowdOptions, FigureOptions, FileNames, Json, Options, RigOptions, out, write_text
 
@@ -141,9 +142,14 @@ def rank_command(
     rig: RigOptions,
     figure: SetFigureOptions,
     json: Json = None,
-    report: Annotated[Path | None, out("OUT.html", "Write a self-contained HTML report.", "--report")] = None,
+    report: Annotated[
+        Path | None, out("OUT", "Write a report: one .html file, or .md without pictures.", "--report")
+    ] = None,
     doubt: Annotated[
         bool, typer.Option("--doubt", help="Instead: which constants carry the doubt, and what to measure first.")
+    ] = False,
+    details: Annotated[
+        bool, typer.Option("--details", help="Also reasons, intervals of people, assumptions, and all notes.")
     ] = False,
     workers: Annotated[
         str | None,
@@ -152,17 +158,16 @@ def rank_command(
             help="Number of CPU cores, or a dask cluster by the address of its scheduler.  [default: all cores]",
         ),
     ] = None,
-    keep: Annotated[
-        Path | None, out("DIR", "Folder for finished parts, so that an interrupted run continues.", "--keep")
-    ] = None,
 ) -> None:
     """Rank a set of icons: predict detection, onset times, confusions and the information that the set carries.
 
-    Several files are joined into one set. With --doubt, the set is predicted with many draws of the posterior (--people
-    24 is enough) as new laboratories would see it, and the table says which constants their differences come from.
+    Several files are joined into one set. The numbers, the pair that is confused most often, its cheapest edit, and the
+    command that helps most come first; --details, --report and --json have the rest. With --doubt, the set is predicted
+    with many draws of the posterior (--people 24 is enough) as new laboratories would see it, and the table says which
+    constants their differences come from.
     """
     if report is not None:
-        check_output(report, (".html", ".htm"), "a report")
+        check_output(report, (".html", ".htm", ".md"), "a report")
         if report == STDOUT:
             raise usage("- is not a file; give the name of a page, such as report.html", "--report")
     if json is not None:
@@ -174,7 +179,7 @@ def rank_command(
             raise usage("is about predictions for people: leave out --by rules", "--doubt")
         from .doubt import doubt_about
 
-        given = {"--task": task.task, "--report": report, "--workers": workers, "--keep": keep}
+        given = {"--task": task.task, "--report": report, "--workers": workers, "--details": details}
         doubt_about(files, crowd, rig, figure, json, {**given, "--tracking": crowd.tracking})
         return
     icons = read_set(files)
@@ -187,8 +192,6 @@ def rank_command(
     warnings = (*where.warnings, *warn_of_frames(files, icons, where))
     model = crowd.load(where)
     draws = crowd.draws(model)
-    if keep is not None:
-        check_folder(keep)
     _say_if_first()
     found = report_of(
         icons,
@@ -201,7 +204,6 @@ def rank_command(
         trials=task.trials,
         task=task.load(),
         observer=model,
-        keep=keep,
     )
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
@@ -211,13 +213,25 @@ def rank_command(
         write_figures(found.ranking, icons, where, figure.figure, figure.look)
     near = cures(found.ranking, icons, where) if report is not None or json != STDOUT else {}
     if report is not None:
-        from ..report.report import report as page
+        from ..report.rank_page import report as page
 
-        write_text(page(found, icons, where, command_text(files, rig, crowd, task), near), report)
+        command = command_text(files, rig, crowd, task)
+        write_text(page(found, icons, where, command, near, as_text=report.suffix.lower() == ".md"), report)
     if json == STDOUT:
         typer.echo(found.to_json())
     else:
-        show(found, icons, near)
+        following = "" if crowd.norm == "rules" else _following(found.ranking, icons, files, rig, crowd)
+        told = rank_report(found, icons.title, near, following, details)
+        show(told, None if details else MOST_LINES)
+
+
+def _following(ranking: Ranking, icons: IconSet, files: Sequence[str], rig: RigOptions, crowd: CrowdOptions) -> str:
+    """The command that helps most, to be copied: with this rig, and where it predicts with these people."""
+    from thermicon.icons import Family
+
+    step = next_step(ranking, any(isinstance(each, Family) for each in getattr(icons, "entries", ())))
+    groups = (rig, crowd) if step.command in ("rank", "improve") else (rig,)
+    return f"{command_text(files, *groups, paths=True, command=step.command)} {shlex.join(step.options)}".rstrip()
 
 
 def report_of(
@@ -266,12 +280,6 @@ def report_of(
     return SetReport(ranking, choice, reached, edited(), warnings)
 
 
-def show(found: SetReport, icons: IconSet, near: Mapping[str, str]) -> None:
-    """Print a ranking with what was asked of it; `near` are cures of icons that the rig does not reach."""
-    names = [row["icon"] for row in found.ranking.rows()]
-    show_ranking(found.to_dict(mapped=False), names, icons.title, near)
-
-
 def read_workers(text: str | None) -> int | str | None:
     """Number of cores, or address of a cluster.
 
@@ -304,7 +312,7 @@ def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
     return {name: found.sentence for name, found in near.items() if found is not None}
 
 
-def command_text(files: Sequence[str], *groups: Options, paths: bool = False) -> str:
+def command_text(files: Sequence[str], *groups: Options, paths: bool = False, command: str = "rank") -> str:
     """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
 
     Files are named without their folders, or, with ``paths``, as they were given.
@@ -312,5 +320,5 @@ def command_text(files: Sequence[str], *groups: Options, paths: bool = False) ->
     >>> command_text(["/home/a/two icons.cue"], RigOptions(), CrowdOptions(people=20))
     "thermicon rank 'two icons.cue' --people 20"
     """
-    words = ["thermicon", "rank", *(name if paths else Path(name).name for name in files)]
+    words = ["thermicon", command, *(name if paths else Path(name).name for name in files)]
     return shlex.join([*words, *(word for group in groups for word in group.words(paths=paths))])

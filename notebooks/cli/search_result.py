@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from ..messages import progress_bar
+from ..report.blocks import Block, Bullets, Heading, Text, grid
 from ..report.choices import NAMES, goal_lines, goal_value, laboratory
+from ..report.rank_report import BARELY
 from ..report.set_report import SetReport
-from ..report.tables import show, table
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -21,8 +22,6 @@ if TYPE_CHECKING:
 
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.evaluator`, repeated here to avoid its imports."""
-BARELY = 0.75
-"""An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_TRIALS = 3
 MOST_LISTED, NEARLY = 400, 0.8
 """Listed icons that a search starts from, as `SAMPLED` in `thermicon.perception.selection.search_run`; and the share of
@@ -73,40 +72,33 @@ class FoundSet:
                 )
         return cls(found, before, after, advice)
 
-    def show(self, title: str, rig: str, wanted: int) -> None:
-        """Print the improved set, its scores next to those of the initial set, and the caveat.
+    def report(self, title: str, rig: str, wanted: int) -> list[Block]:
+        """Report the improved set, its scores next to those of the initial set, and the caveat.
 
         `wanted` is how many icons were to be tried.
         """
         found = self.found
-        made = table("", "before", "after", numbers=("before", "after"))
-        for what, before, after in self._rows():
-            made.add_row(what, before, after)
         crowd = count_of(self.after.ranking.people, "virtual person", "virtual people")
         icons = [
-            f"  - {icon.name}: {icon.metadata.tags[-1]}"
-            for icon in found.found
-            if "found by search" in icon.metadata.tags
+            f"{icon.name}: {icon.metadata.tags[-1]}" for icon in found.found if "found by search" in icon.metadata.tags
         ]
-        show(
-            *([title, ""] if title else []),
-            "Found:",
-            *icons,
-            "",
-            made,
-            "",
-            *self._remarks(),
-            f"After: worst pair {' and '.join(found.after.worst_pair)}",
-            f"Before: {', '.join(icon.name for icon in found.start)}",
-            "",
+        names = f"Before: {', '.join(icon.name for icon in found.start)}"
+        return [
+            *([Heading(title, 1)] if title else []),
+            Text("Found:"),
+            Bullets(tuple(icons)),
+            grid(("", "before", "after"), self._rows(), ("before", "after")),
+            Text("\n".join([*self._remarks(), f"After: worst pair {' and '.join(found.after.worst_pair)}", names])),
             *self._goal(),
-            f"{found.evaluations} icons were tried on a nominal person"
-            f"{in_any_case(found.evaluations, wanted)} and {found.refined} on {REFINING_PEOPLE} people, whatever "
-            f"--people is; what they maximised was {NAMES[found.objective]}{self._last_climb()} "
-            f"(seed {found.seed}). {self._winner()} Before and after are for {crowd} on the {rig} rig.",
-            "These are predictions of a model, not measurements, and the set was optimised for that same model: "
-            "expect lower scores from people.",
-        )
+            Text(
+                f"{found.evaluations} icons were tried on a nominal person"
+                f"{in_any_case(found.evaluations, wanted)} and {found.refined} on {REFINING_PEOPLE} people, whatever "
+                f"--people is; what they maximised was {NAMES[found.objective]}{self._last_climb()} "
+                f"(seed {found.seed}). {self._winner()} Before and after are for {crowd} on the {rig} rig.\n"
+                "These are predictions of a model, not measurements, and the set was optimised for that same model: "
+                "expect lower scores from people."
+            ),
+        ]
 
     def _last_climb(self) -> str:
         """What the last climb went by, where a goal is for a share of people."""
@@ -165,16 +157,12 @@ class FoundSet:
             if icon.detected_probability < BARELY:
                 yield f"{icon.name} is detected in {percent(icon.detected_probability)} of trials only"
 
-    def _goal(self) -> Iterator[str]:
+    def _goal(self) -> list[Block]:
         goal = self.after.goal
         if goal is None:
-            return
-        yield from goal_lines(goal.to_dict())
-        if goal.met:
-            yield ""
-            return
-        yield from advice_lines(self.advice)
-        yield ""
+            return []
+        verdict = Text("\n".join(goal_lines(goal.to_dict())))
+        return [verdict] if goal.met else [verdict, *advice_blocks(self.advice)]
 
 
 def in_any_case(tried: int, wanted: int) -> str:
@@ -188,35 +176,35 @@ def in_any_case(tried: int, wanted: int) -> str:
     return f" (not {wanted}: what the families list is tried in any case, {MOST_LISTED} icons at most)"
 
 
-def advice_lines(advice: Advice | None) -> Iterator[str]:
+def advice_blocks(advice: Advice | None) -> list[Block]:
     """Which changes bring a goal nearer that this search did not reach, and which were tried in vain.
 
-    >>> list(advice_lines(None))
-    ['  Not reached by this search, and no change could be tried.']
+    >>> advice_blocks(None)[0].text
+    'Not reached by this search, and no change could be tried.'
     """
     if advice is None or not advice.trials:
-        yield "  Not reached by this search, and no change could be tried."
-        return
-    helpful, idle = advice.helpful, advice.idle
+        return [Text("Not reached by this search, and no change could be tried.")]
+
+    def named(trials: Sequence[Trial]) -> list[str]:
+        return [f"{trial.words} ({trial.change})" for trial in trials]
+
+    helpful, more = advice.helpful[:MOST_TRIALS], named(advice.helpful[MOST_TRIALS:])
     if helpful:
-        yield (
-            f"  Not reached by this search. What would bring it nearer, for {REFINING_PEOPLE} people, each against the "
+        head = (
+            f"Not reached by this search. What would bring it nearer, for {REFINING_PEOPLE} people, each against the "
             "best set of the rig as it is:"
         )
-        yield from (f"  - {trial.words} ({trial.change}): {_nearer(trial, advice)}" for trial in helpful[:MOST_TRIALS])
-        more = helpful[MOST_TRIALS:]
-        if more:
-            yield f"  Nearer by less: {'; '.join(f'{trial.words} ({trial.change})' for trial in more)}"
-        if idle:
-            yield f"  Tried and no nearer: {'; '.join(f'{trial.words} ({trial.change})' for trial in idle)}"
+        points = [f"{said}: {_nearer(trial, advice)}" for said, trial in zip(named(helpful), helpful, strict=True)]
+        points += [f"nearer by less: {'; '.join(more)}"] * bool(more)
+        points += [f"tried and no nearer: {'; '.join(named(advice.idle))}"] * bool(advice.idle)
     else:
-        yield "  Not reached by this search. None of the changes tried brings it nearer:"
-        yield from (f"  - {trial.words} ({trial.change})" for trial in idle)
+        head, points = "Not reached by this search. None of the changes tried brings it nearer:", named(advice.idle)
     if advice.again > LEAST_AGAIN:
-        yield (
-            f"  Searching again alone came nearer by {100.0 * advice.again:.0f} % of what is wanted: give more "
-            "--evaluations, or another --seed."
+        points.append(
+            f"searching again alone came nearer by {100.0 * advice.again:.0f} % of what is wanted: give more "
+            "--evaluations, or another --seed"
         )
+    return [Text(head), Bullets(tuple(points))]
 
 
 def _nearer(trial: Trial, advice: Advice) -> str:

@@ -16,8 +16,7 @@ from dataclasses import dataclass
 from importlib import resources
 from time import perf_counter
 
-from .finding import Finding
-from .packages import run_program
+from .packages import Finding, run_program
 
 STORED = "self-test.toml"
 WAITS_S = 600.0

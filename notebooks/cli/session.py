@@ -7,8 +7,12 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thermicon.icons.number_text import number, span
+
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
 from ..messages import note, progress_bar
+from ..report.blocks import Block, Text, grid
+from ..report.terminal import show
 from .cues import read_set, warn_of_site
 from .export import CAUTION
 from .options import FigureOptions, write_text
@@ -63,7 +67,8 @@ def session_file(
         from ..figures.session_figure import session_figure
 
         figure.write(session_figure(session))
-    show_session(session)
+    show(session_report(session))
+    note(CAUTION)
 
 
 def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
@@ -78,19 +83,11 @@ def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
     return json.dumps(facts, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def show_session(session: Session) -> None:
-    """Print the verdict, a summary of the session, and one row per play."""
-    from thermicon.icons.number_text import number, span
-
-    from ..report.tables import show, table
-
-    rows = table(
-        *("play", "icon", "start", "skin", "display", "baseline", "safety"),
-        numbers=("play", "start", "baseline"),
-        names=("icon",),
-    )
-    for place, play in enumerate(session.plays[:MOST_SHOWN], 1):
-        rows.add_row(
+def session_report(session: Session) -> list[Block]:
+    """Report the verdict, a summary of the session, and one row per play."""
+    columns = ("play", "icon", "start", "skin", "display", "baseline", "safety")
+    rows = [
+        (
             str(place),
             play.icon,
             f"{number(play.start_s, 2)} s",
@@ -99,16 +96,18 @@ def show_session(session: Session) -> None:
             f"{number(play.drift_K, 2)} K",
             play.verdict,
         )
+        for place, play in enumerate(session.plays[:MOST_SHOWN], 1)
+    ]
     more = len(session.plays) - MOST_SHOWN
-    left = [f"and {more} more plays; -o OUT.json lists all"] if more > 0 else []
-    show(*summary_lines(session), "", rows, *left)
-    note(CAUTION)
+    return [
+        Text("\n".join(summary_lines(session))),
+        grid(columns, rows, ("play", "start", "baseline"), ("icon",)),
+        *([Text(f"and {more} more plays; -o OUT.json lists all")] if more > 0 else []),
+    ]
 
 
 def summary_lines(session: Session) -> list[str]:
     """The summary of a session, line by line."""
-    from thermicon.icons.number_text import number, span
-
     trace, plan = session.trace, session.plan
     plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"
     shuffled = "" if plan.seed is None else f", shuffled with seed {plan.seed}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -22,7 +23,6 @@ from .options import LARGEST_SEED, LONGEST_TAIL_S, FigureOptions, IconName, NoFi
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.circuit.fitting.log import Log
-    from thermicon.icons import Icon
 
 LONGEST_GAP_S, MOST_PLAYS = 3600.0, 5000
 """Those of `thermicon.circuit.SessionPlan`, repeated here to avoid its imports."""
@@ -121,7 +121,7 @@ def simulate_command(
     if (file is None) == (current is None):
         raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
     if current is not None:
-        simulate_drive(current, hold, rig.load(), rate, output, figure, measured)
+        simulate_drive(current, hold, rig.load(), rate, Wanted(output, figure, measured))
     elif file is not None and circuit and output is not None:
         netlist_file(file, icon, rig.load(), tail or 0.0, output)
     elif file is not None and session:
@@ -129,7 +129,7 @@ def simulate_command(
 
         session_file(file, rig.load(), order, random, 10.0 if gap is None else gap, seed or 0, tracking, output, figure)
     elif file is not None:
-        simulate_file(file, icon, rig.load(), rate, tail, output, figure, measured)
+        simulate_file(file, icon, rig.load(), rate, tail, Wanted(output, figure, measured))
 
 
 def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
@@ -139,69 +139,90 @@ def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
             raise usage(why, option)
 
 
-def simulate_file(
-    file: str,
-    icon: str | None,
-    rig: Rig,
-    rate_Hz: float,
-    tail_s: float | None,
-    output: Path | None,
-    figure: FigureOptions,
-    measured: Path | None,
-) -> None:
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is to be made of a run: the trace in a file, the overview, and a measured log beside it."""
+
+    output: Path | None
+    figure: FigureOptions
+    measured: Path | None
+
+    def check(self, read: str | Path, names: Sequence[str]) -> list[Path]:
+        """Fail where a file cannot be written or would replace what is read; return a picture's path for each run."""
+        picture = self.figure.figure
+        pictures = [] if picture is None else [picture]
+        if picture is not None and len(names) > 1:
+            pictures = [picture.with_name(f"{picture.stem}-{name}{picture.suffix}") for name in names]
+        check_separate([read], [self.output, *pictures])
+        if self.output is not None:
+            check_output(self.output, TRACE_SUFFIXES, "a trace")
+        return pictures
+
+    def log(self) -> Log | None:
+        """The measured log, if there is one; what is to be known of it goes to stderr."""
+        if self.measured is None:
+            return None
+        from thermicon.circuit.fitting.log_files import read_log
+
+        log = read_log(self.measured)
+        for sentence in log.notes:
+            note(f"note: {sentence}")
+        return log
+
+    def tell(self, traces: Sequence[Trace], rig: Rig, pictures: Sequence[Path], cures: Sequence[str | None]) -> None:
+        """Warnings and files on stderr, then a summary or the traces on stdout, whose reader may not wait for files."""
+        if self.output is not None and self.output != STDOUT:
+            write_traces(traces, self.output)
+        for trace in traces:
+            for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
+                if warning not in rig.warnings:  # already reported when the rig was loaded
+                    note(f"warning: {trace.icon or 'drive'}: {warning}")
+        if self.output is not None:
+            for trace, better in zip(traces, cures, strict=True):
+                note(headline(trace) + (f"; {better}" if better else ""))
+        for path in (self.output, *pictures):
+            if path not in (None, STDOUT):
+                note(f"wrote {path}")
+        if self.output is None:
+            for trace, better in zip(traces, cures, strict=True):
+                typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
+        elif self.output == STDOUT:
+            write_traces(traces, STDOUT)
+
+
+def simulate_file(file: str, icon: str | None, rig: Rig, rate_Hz: float, tail_s: float | None, wanted: Wanted) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
-    from thermicon.circuit import simulate
+    from thermicon.circuit import nearest_reachable, simulate
 
     whole = read_set([file])
     icons = pick(whole, icon)
-    if measured is not None and len(icons) > 1:
+    if wanted.measured is not None and len(icons) > 1:
         raise usage(f"belongs to one icon, {file} has {len(icons)}: name it with --icon", "--measured")
-    log = None if measured is None else _log(measured)
-    pictures = _figure_paths(figure.figure, [each.name for each in icons])
-    _check(file, output, pictures)
+    log, pictures = wanted.log(), wanted.check(file, [each.name for each in icons])
     warn_of_site(file, whole, rig)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
-    _write(traces, output)
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes, log, figure.look, settled=tail_s is None)
-    cures = [cure(each, trace, rig) for each, trace in zip(icons, traces, strict=True)]
-    _report(traces, rig, output, pictures, cures)
-    _beside(log, traces[0], output)
+        draw_overview(played, picture, rig.changes, log, wanted.figure.look, settled=tail_s is None)
+    near = [
+        None if trace.reachable else nearest_reachable(each, rig) for each, trace in zip(icons, traces, strict=True)
+    ]
+    wanted.tell(traces, rig, pictures, [None if found is None else found.sentence for found in near])
+    _beside(log, traces[0], wanted.output)
 
 
-def simulate_drive(
-    drive: Path,
-    hold: bool,
-    rig: Rig,
-    rate_Hz: float,
-    output: Path | None,
-    figure: FigureOptions,
-    measured: Path | None,
-) -> None:
+def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, wanted: Wanted) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
     from thermicon.circuit.solver.drive import read_drive
     from thermicon.circuit.solver.simulate import simulate_current
 
-    pictures = _figure_paths(figure.figure, [""])
-    _check(drive, output, pictures)
-    log = None if measured is None else _log(measured)
+    pictures, log = wanted.check(drive, [""]), wanted.log()
     played = read_drive(drive, hold=hold)
     trace = simulate_current(played, rig, rate_Hz=rate_Hz)
-    _write([trace], output)
     for picture in pictures:
-        draw_overview(simulate_current(played, rig), picture, rig.changes, log, figure.look)
-    _report([trace], rig, output, pictures, [None])
-    _beside(log, trace, output)
-
-
-def _log(path: Path) -> Log:
-    from thermicon.circuit.fitting.log_files import read_log
-
-    log = read_log(path)
-    for sentence in log.notes:
-        note(f"note: {sentence}")
-    return log
+        draw_overview(simulate_current(played, rig), picture, rig.changes, log, wanted.figure.look)
+    wanted.tell([trace], rig, pictures, [None])
+    _beside(log, trace, wanted.output)
 
 
 def _beside(log: Log | None, trace: Trace, output: Path | None) -> None:
@@ -217,66 +238,7 @@ def _beside(log: Log | None, trace: Trace, output: Path | None) -> None:
         unit = "K" if unit == "C" else unit
         largest = f"{signed(each.largest, '.3g')} {unit} at {number(each.largest_s, 1)} s"
         lines.append(f"  {words.replace('_', ' '):<9} rms {each.rms:.3g} {unit}, largest {largest}")
-    for line in lines:
-        if output == STDOUT:
-            note(line)
-        else:
-            typer.echo(line)
-
-
-def cure(icon: Icon, trace: Trace, rig: Rig) -> str | None:
-    """Return how the icon could be changed so that the rig reaches it; None where it is reached or nothing helps."""
-    from thermicon.circuit import nearest_reachable
-
-    if trace.reachable:
-        return None
-    near = nearest_reachable(icon, rig)
-    return None if near is None else near.sentence
-
-
-def _figure_paths(figure: Path | None, names: Sequence[str]) -> list[Path]:
-    if figure is None:
-        return []
-    if len(names) == 1:
-        return [figure]
-    return [figure.with_name(f"{figure.stem}-{name}{figure.suffix}") for name in names]
-
-
-def _check(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
-    check_separate([read], [output, *pictures])
-    if output is not None:
-        check_output(output, TRACE_SUFFIXES, "a trace")
-
-
-def _write(traces: Sequence[Trace], output: Path | None) -> None:
-    """Write the traces to their file before printing, since the reader of a pipe may not wait."""
-    if output is not None and output != STDOUT:
-        write_traces(traces, output)
-
-
-def _report(
-    traces: Sequence[Trace],
-    rig: Rig,
-    output: Path | None,
-    pictures: Sequence[Path],
-    cures: Sequence[str | None],
-) -> None:
-    """Report warnings and written files on stderr, then print a summary or the traces on stdout."""
-    for trace in traces:
-        for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
-            if warning not in rig.warnings:  # already reported when the rig was loaded
-                note(f"warning: {trace.icon or 'drive'}: {warning}")
-    if output is not None:
-        for trace, better in zip(traces, cures, strict=True):
-            note(headline(trace) + (f"; {better}" if better else ""))
-    for path in (output, *pictures):
-        if path not in (None, STDOUT):
-            note(f"wrote {path}")
-    if output is None:
-        for trace, better in zip(traces, cures, strict=True):
-            typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
-    elif output == STDOUT:
-        write_traces(traces, output)
+    (note if output == STDOUT else typer.echo)("\n".join(lines))
 
 
 def unsafe(trace: Trace) -> list[str]:

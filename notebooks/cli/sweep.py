@@ -16,8 +16,8 @@ from thermicon.icons.number_text import percent, span
 
 from ..files.outputs import STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import Progress, fail, note, progress_bar, usage
-from ..report.sweep_text import swept_table
-from ..report.tables import show
+from ..report.sweep_report import sweep_report
+from ..report.terminal import show
 from .cues import pick, read_set, warn_of_site
 from .options import FigureOptions, FileName, IconName, Intervals, People, RigOptions, Seed, Table, Tail, write_text
 
@@ -258,7 +258,7 @@ def sweep_command(
     if output is not None:
         write_frame(frame, output)
     elif what:
-        show(swept_table(frame, keys, what))
+        show(sweep_report(frame, keys, what))
 
 
 def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Sequence[str]) -> Figure:

@@ -19,9 +19,8 @@ from ..messages import fail, note, progress_bar, usage
 from .options import Json, Seed, out, write_text
 
 if TYPE_CHECKING:
-    from thermicon.perception.evidence.validate import Judged, Line, ValidationReport
+    from thermicon.perception.evidence.validate import ValidationReport
 
-HEADS = ("temp.", "flow")
 NOTEBOOK, DATA = "07_validation.ipynb", "validation.json"
 COMPUTED = "data = report_file("
 """How the cell of the notebook begins that computes the numbers; a report has them in its file."""
@@ -69,51 +68,10 @@ def validate_command(
         for name in (NOTEBOOK, DATA):
             note(f"wrote {output / name}")
     elif json != STDOUT:
-        show_report(report)
+        from ..report.terminal import show
+        from ..report.validate_report import validate_report
 
-
-def show_report(report: ValidationReport) -> None:
-    """Print every number, published and predicted, and how many agree."""
-    from thermicon.perception.observer.variants import VARIABLES
-
-    from ..report.conditioning_text import show_conditioning
-    from ..report.tables import show, table
-
-    show_conditioning(report.conditioning)
-    mark = {"holds": "✓", "misses": "✗", "shown": " "}
-    for section in report.sections:
-        made = table("", "published", *HEADS, numbers=HEADS)
-        for line in section.lines:
-            cells = [f"{number_text(line, one)} {mark[one.verdict.word]}" for one in line.judged]
-            unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
-            made.add_row(f"{line.row.label}{',' if unit else ''}{unit}", line.published.text, *cells)
-        show(f"{section.target.number} {section.target.title}", made, "")
-    held = [report.counts(k) for k in range(len(VARIABLES))]
-    counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(VARIABLES, held, strict=True))
-    show(
-        f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.",
-        "temp.: receptors respond to temperature; flow: to heat flow. All are "
-        "predictions, not measurements; rows marked fitted are among the experiments above. -o DIR "
-        "writes sources, intervals, sizes of the misses, suspected mechanisms and figures.",
-    )
-
-
-def number_text(line: Line, one: Judged) -> str:
-    """Format a prediction."""
-    from thermicon.perception.evidence.verdicts import value_text
-
-    if one.predicted.value is None:
-        return "not felt"
-    return value_text(line.row, one.predicted.value, line.published)
-
-
-def unit_text(unit: str) -> str:
-    """Format the unit that follows a number; empty for pure numbers and proportions.
-
-    >>> unit_text("s"), unit_text("proportion")
-    (' s', '')
-    """
-    return "" if unit in ("", "1", "proportion") else f" {unit}"
+        show(validate_report(report))
 
 
 def write_report(report: ValidationReport, folder: Path) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import stat
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import typer
 
@@ -12,10 +11,8 @@ from thermicon.circuit.delivery.export_folder import before_of
 from thermicon.icons.atomic import OutputError
 
 from ..messages import BAD_INPUT, note
-from ..report.tables import show, table
-
-if TYPE_CHECKING:
-    from thermicon.circuit.delivery.verify import Verification
+from ..report.blocks import grid
+from ..report.terminal import show
 
 LARGEST = 2**30
 """Bytes; a larger file is no drive of any format's device, and is not read."""
@@ -28,7 +25,11 @@ def verify_folder(folder: Path) -> None:
     files, others = _read(folder)
     found = verify(files)
     if found.claims:
-        _show(found)
+        rows = [
+            (_clean(claims.drive), _clean(sidecar), "yes" if found.belongs(sidecar) else "NO")
+            for sidecar, claims in found.claims.items()
+        ]
+        show([grid(("drive", "sidecar", "belongs"), rows, names=("drive", "sidecar"))])
     for name, what in others:
         note(f"note: {_clean(name)} is a {what} and was not checked")
     for finding in found.findings:
@@ -40,12 +41,9 @@ def verify_folder(folder: Path) -> None:
     if wrong:
         note(f"{folder}: {len(wrong)} {'thing does' if len(wrong) == 1 else 'things do'} not belong together")
         raise typer.Exit(BAD_INPUT)
-    drives = (
-        "1 drive and its sidecar belong"
-        if len(found.claims) == 1
-        else f"{len(found.claims)} drives and their sidecars belong"
-    )
-    show(f"{folder}: {drives} together")
+    count = len(found.claims)
+    drives = "1 drive and its sidecar belong" if count == 1 else f"{count} drives and their sidecars belong"
+    show([f"{folder}: {drives} together"])
 
 
 def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
@@ -66,13 +64,6 @@ def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
         else:
             files[path.name] = path.read_bytes()
     return files, others
-
-
-def _show(found: Verification) -> None:
-    rows = table("drive", "sidecar", "belongs", names=("drive", "sidecar"))
-    for sidecar, claims in found.claims.items():
-        rows.add_row(_clean(claims.drive), _clean(sidecar), "yes" if found.belongs(sidecar) else "NO")
-    show(rows)
 
 
 def _clean(text: str) -> str:

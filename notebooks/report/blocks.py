@@ -1,13 +1,14 @@
-"""Pages as blocks of text, tables and figures, rendered by Jinja2 as one self-contained HTML file.
+"""What a result says, as blocks of text, tables and figures: `terminal`, `as_html` and `as_markdown` render the same.
 
-Nothing is fetched from anywhere, there are no scripts and no dates, and equal blocks give equal bytes.
+In HTML nothing is fetched from anywhere, there are no scripts and no dates, and equal blocks give equal bytes.
 """
 
 from __future__ import annotations
 
 import base64
+import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -30,7 +31,7 @@ class Heading:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """A paragraph; ``kind`` is ``lead``, ``note``, ``warn`` or empty."""
+    """A paragraph, or one line below another; ``kind`` is ``lead``, ``note``, ``warn`` or empty."""
 
     type: ClassVar[str] = "text"
     text: str
@@ -47,7 +48,7 @@ class Code:
 
 @dataclass(frozen=True, slots=True)
 class Bullets:
-    """A list of points; an empty one leaves no trace in HTML."""
+    """A list of points; an empty one leaves no trace."""
 
     type: ClassVar[str] = "bullets"
     points: tuple[str, ...]
@@ -63,12 +64,18 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """A table; every row has one cell per column, and the columns in ``numbers`` are flush right."""
+    """A table; every row has one cell per column, and the columns in ``numbers`` are flush right.
+
+    Columns in ``names`` wrap only on a narrow terminal. A line parts the rows from number ``apart`` on, where it is not
+    0; without headings, nothing stands above the first row.
+    """
 
     type: ClassVar[str] = "grid"
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     numbers: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+    apart: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,14 +120,20 @@ class Row:
 Block = Heading | Text | Code | Bullets | Grid | Facts | Cards | Picture | Row
 
 
-def grid(columns: Sequence[str], rows: Sequence[Sequence[str | Cell]], numbers: Sequence[str] = ()) -> Grid:
+def grid(
+    columns: Sequence[str],
+    rows: Iterable[Sequence[str | Cell]],
+    numbers: Sequence[str] = (),
+    names: Sequence[str] = (),
+    apart: int = 0,
+) -> Grid:
     """Make a table from texts and cells.
 
     >>> grid(("a", "b"), [("1", Cell("2", "strong"))]).rows
     ((Cell(text='1', kind=''), Cell(text='2', kind='strong')),)
     """
     cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
-    return Grid(tuple(columns), cells, tuple(numbers))
+    return Grid(tuple(columns), cells, tuple(numbers), tuple(names), apart)
 
 
 def visible(text: str) -> str:
@@ -165,10 +178,59 @@ def as_html(blocks: Sequence[Block], title: str) -> str:
     return environment().get_template("page.html.j2").render(title=title, blocks=blocks, address=address) + "\n"
 
 
+def shown(*blocks: Block) -> str:
+    """Render single blocks for the workbench, in its style; the `kind` of a text is one of its classes `th-…`.
+
+    >>> shown(Heading("5 < 6"), Text("so it is", "soft"))
+    '<div class="th-head">5 &lt; 6</div>\\n<div class="th-soft">so it is</div>'
+    """
+    return fragment("shown", blocks)
+
+
+def as_markdown(blocks: Sequence[Block]) -> str:
+    """Write the blocks as Markdown, as a code host or a notebook shows it; without pictures.
+
+    >>> print(as_markdown([Heading("Icons", 2), grid(("a", "n"), [("x|y", "2")], ("n",))]), end="")
+    ## Icons
+    <BLANKLINE>
+    | a | n |
+    |---|--:|
+    | x\\|y | 2 |
+    """
+    return "\n\n".join(text for block in blocks if (text := _markdown(block))) + "\n"
+
+
+def _markdown(block: Block) -> str:
+    if isinstance(block, Heading):
+        return f"{'#' * block.level} {_marked(block.text)}"
+    if isinstance(block, Text):
+        return "  \n".join(_marked(line.strip()) for line in block.text.split("\n"))
+    if isinstance(block, Code):
+        return f"```\n{block.text}\n```"
+    if isinstance(block, Bullets):
+        return "\n".join(f"- {_marked(point)}" for point in block.points)
+    if isinstance(block, Row):
+        return "\n\n".join(filter(None, map(_markdown, block.blocks)))
+    if isinstance(block, Picture):
+        return ""
+    if isinstance(block, (Facts, Cards)):
+        rows = block.rows if isinstance(block, Facts) else block.cards
+        block = grid(("", ""), rows)
+    rules = ["--:" if column in block.numbers else "---" for column in block.columns]
+    cells = [[_marked(cell.text) for cell in row] for row in block.rows]
+    lines = [" | ".join(row) for row in ([_marked(column) for column in block.columns], *cells)]
+    return "\n".join([f"| {lines[0]} |", f"|{'|'.join(rules)}|", *(f"| {line} |" for line in lines[1:])])
+
+
+def _marked(text: str) -> str:
+    """Text whose letters Markdown does not take for its own marks."""
+    return re.sub(r"([\\`*_\[\]<>#|])", r"\\\1", visible(text))
+
+
 def fragment(name: str, *values: object) -> str:
     """Render a macro of the workbench's template: a small piece of HTML, with every value escaped.
 
-    >>> fragment("notes", ["5 < 6"])
+    >>> fragment("block", "5 < 6", "th-note")
     '<div class="th-note">5 &lt; 6</div>'
     """
     macro = getattr(environment().get_template("workbench.html.j2").module, name)

@@ -76,39 +76,39 @@ def choice_lines(chosen: dict[str, Any], where: str = "a new laboratory") -> Ite
     """
     objective, count = chosen["objective"], len(chosen["icons"])
     yield f"Best {count} of {chosen['pool']}, by {NAMES[objective]}: {', '.join(chosen['icons'])}"
-    score = f"  - within the range of all {chosen['pool']}: {scored(objective, chosen['value'])}"
+    score = f"within the range of all {chosen['pool']}: {scored(objective, chosen['value'])}"
     if objective == "worst":
         score += f" ({' and '.join(chosen['worst_pair'])})"
     yield score
     if chosen["optimal"]:
-        yield f"  - no other choice is better: {_searched(chosen)}"
+        yield f"no other choice is better: {_searched(chosen)}"
     else:
         yield (
-            f"  - the best choice found; none exceeds {scored(objective, chosen['bound'])}, a bound that may be loose "
+            f"the best choice found; none exceeds {scored(objective, chosen['bound'])}, a bound that may be loose "
             f"({count_of(chosen['looked_at'], 'choice')} examined)"
         )
     own = chosen["at_own_range"]
     yield (
-        f"  - as a set of their own: {scored('worst', own['d_prime'])} ({' and '.join(own['worst_pair'])}), "
+        f"as a set of their own: {scored('worst', own['d_prime'])} ({' and '.join(own['worst_pair'])}), "
         f"{scored('correct', own['proportion_correct'])}, {scored('bits', own['information_bits'])}, "
         f"{scored('bits-per-s', own['bits_per_s'])}"
     )
     if own["proportion_correct_interval_new_laboratory"]:
         low, high = own["proportion_correct_interval_new_laboratory"]
         least, most = own["information_bits_interval_new_laboratory"]
-        yield (f"  - for {where} (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits")
+        yield f"for {where} (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits"
     energy = "" if chosen["total_J"] is None else f", total energy {number(chosen['total_J'])} J"
-    yield f"  - total duration {number(chosen['total_s'])} s{energy}"
+    yield f"total duration {number(chosen['total_s'])} s{energy}"
     if chosen["best_for_people"] is not None:
         people = count_of(min(chosen["people"], ONE_BY_ONE), "individual person", "individual people")
         yield (
-            f"  - also the best choice for {percent(chosen['best_for_people'])} of {people}; "
+            f"also the best choice for {percent(chosen['best_for_people'])} of {people}; "
             f"a choice for one person alone would gain d′ {chosen['median_loss']:.2f} (median)"
         )
     for icon in chosen["excluded"][:MOST_EXCLUDED]:
-        yield f"  - excluded: {icon['icon']} {icon['reason']}"
+        yield f"excluded: {icon['icon']} {icon['reason']}"
     if len(chosen["excluded"]) > MOST_EXCLUDED:
-        yield f"  - and {len(chosen['excluded']) - MOST_EXCLUDED} more excluded; --json lists all"
+        yield f"and {len(chosen['excluded']) - MOST_EXCLUDED} more excluded; --json lists all"
 
 
 NAMES = {"worst": "the worst pair", "correct": "proportion correct", "bits": "bits", "bits-per-s": "bits per second"}

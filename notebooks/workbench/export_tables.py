@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 from thermicon.icons.number_text import number, percent
 
 from ..cli.export import CAUTION, steps_of
-from ..report.blocks import fragment
+from ..report.blocks import Bullets, Cell, Facts, Text, fragment, grid, shown
 from ..report.gate_words import gate_words, short_scenario
 
 if TYPE_CHECKING:
@@ -30,23 +30,25 @@ def delivered_html(ready: Export, remarks: Sequence[str] = ()) -> str:
     whose = ", ".join(dict.fromkeys(change.detected_by for change in felt.values()))
     detected = f"detected by {whose}" if whose else "detected"
     columns = ("icon", "duration", "rate", "receptors within", "rms", detected, "d′ changes by", "safety")
-    rows = [_delivered(icon, felt.get(icon.delivery.icon.name)) for icon in ready.prepared]
     names: dict[str, list[str]] = {}  # one line for all icons that share a warning
     for icon in ready.prepared:
         for warning in icon.warnings:
             names.setdefault(warning, []).append(icon.delivery.icon.name)
     warnings = [f"{', '.join(icons)}: {warning}" for warning, icons in names.items()]
     told = dict.fromkeys(line.removeprefix("warning: ") for line in (*remarks, *warnings))
-    refusals = [f"{name}: {refusal}" for name, refusal in ready.refused]
-    return fragment("delivered", columns, rows, gate_words(ready.prepared), refusals, list(told))
+    return shown(
+        grid(columns, [_delivered(icon, felt.get(icon.delivery.icon.name)) for icon in ready.prepared]),
+        Facts(tuple(gate_words(ready.prepared))),
+        *(Text(f"{name}: {refusal}", "note th-bad") for name, refusal in ready.refused),
+        *(Text(line, "note") for line in told),
+    )
 
 
-def _delivered(icon: Prepared, felt: PerceivedChange | None) -> tuple[tuple[str, ...], str, str]:
-    """Cells of an icon but the last, and the gate's colour with its style."""
+def _delivered(icon: Prepared, felt: PerceivedChange | None) -> tuple[str | Cell, ...]:
     delivery, receptors = icon.delivery, [place for place in icon.deviation.places if "receptor" in place.place]
     largest = max((abs(place.largest_K), place.at_s) for place in receptors)
     moved = max(((abs(c.delivered - c.designed), other) for other, c in felt.d_prime), default=None) if felt else None
-    cells = (
+    return (
         delivery.icon.name,
         f"{number(delivery.file_s, 2)} s",
         steps_of(delivery).removeprefix("at ").removeprefix("in "),
@@ -54,8 +56,8 @@ def _delivered(icon: Prepared, felt: PerceivedChange | None) -> tuple[tuple[str,
         f"{number(1e3 * max(place.rms_K for place in receptors))} mK",
         f"{percent(felt.detection.designed)} → {percent(felt.detection.delivered)}" if felt else "–",
         f"{number(moved[0], 2)} from {moved[1]}" if moved else "–",
+        Cell(icon.verdict.colour, COLOURS[icon.verdict.colour]),
     )
-    return cells, icon.verdict.colour, COLOURS[icon.verdict.colour]
 
 
 def gate_html(icon: Prepared) -> str:
@@ -101,5 +103,15 @@ def _check(check: Check, source_number: int) -> dict[str, object]:
 def written_html(ready: Export, folder: Path, before: Path | None) -> str:
     """Which files were written, where the folder as it was before stands, and how to play the drives."""
     drives = "1 drive with its sidecar" if len(ready.prepared) == 1 else f"{len(ready.prepared)} drives with sidecars"
-    sentence = f"wrote {drives} into {folder.resolve()}"
-    return fragment("written", sentence, list(ready.files), before, f"to play: {ready.form.how}", CAUTION)
+    return shown(
+        Text(f"wrote {drives} into {folder.resolve()}", "good"),
+        Bullets(tuple(ready.files)),
+        *(
+            Text(line, "soft")
+            for line in (
+                "" if before is None else f"the folder as it was before is {before}",
+                f"to play: {ready.form.how}",
+                CAUTION,
+            )
+        ),
+    )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
-from ..report.blocks import fragment
+from ..report.blocks import Text, grid, shown
 from ..report.choices import goal_value
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class GoalField:
             self.verdict.value = ""
         else:
             waits = WITHOUT_DRAWS if refined else FOR_DRAWS if self.goal.single_people else "not judged yet"
-            self.verdict.value = fragment("block", f"{self.goal.text}: {waits}", "th-soft")
+            self.verdict.value = shown(Text(f"{self.goal.text}: {waits}", "soft"))
 
     def _read(self, typed: str) -> None:
         from thermicon.perception.selection.goal import Goal, GoalError
@@ -82,24 +82,24 @@ class GoalField:
             self.said.value = ""
         except GoalError as wrong:
             self.goal = None
-            self.said.value = fragment("block", str(wrong), "th-note th-bad")
+            self.said.value = shown(Text(str(wrong), "note th-bad"))
         self.show(None)
         self._changed()
 
 
 def verdict_html(reached: GoalResult) -> str:
     """Return whether a goal is met, and of every part the prediction, how far it is from the limit, and what binds."""
-    word, kind = ("goal met", "th-good") if reached.met else ("goal not met", "th-bad")
-    return fragment("goal", word, kind, [goal_row(part) for part in reached.parts])
+    word, kind = ("goal met", "good") if reached.met else ("goal not met", "bad")
+    return shown(Text(word, kind), grid(("", "", "", ""), [goal_row(part) for part in reached.parts]))
 
 
-def goal_row(part: GoalPartResult) -> tuple[str, str, str, str, str]:
-    """Mark, text, prediction, distance and obstacle of one part of a goal.
+def goal_row(part: GoalPartResult) -> tuple[str, str, str, str]:
+    """Mark, text, prediction, and distance with the obstacle of one part of a goal.
 
     >>> from thermicon.perception.selection.goal_result import GoalPartResult
     >>> from thermicon.perception.selection.goal import Goal
     >>> goal_row(GoalPartResult(Goal.parse("time <= 10 s").parts[0], 12.5, False, "dip takes most"))
-    ('✗', 'time <= 10 s', '12.5 s', '2.5 s over', 'dip takes most')
+    ('✗', 'time <= 10 s', '12.5 s', '2.5 s over; dip takes most')
     """
     plain = part.to_dict()
     value, gap = goal_value(plain)
@@ -110,4 +110,4 @@ def goal_row(part: GoalPartResult) -> tuple[str, str, str, str, str]:
         distance = "exactly"
     else:
         distance = f"{gap} {words}" if gap else ""
-    return "✓" if part.met else "✗", part.part.text, value, distance, part.binding
+    return "✓" if part.met else "✗", part.part.text, value, "; ".join(filter(None, (distance, part.binding)))

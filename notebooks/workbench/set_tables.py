@@ -1,15 +1,16 @@
-"""The set view's tables as HTML: the ranking, the set's numbers, a pair and its cheapest edit."""
+"""The set view's blocks as HTML: the ranking, the set's numbers, a pair and its cheapest edit."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import number, percent, percent_span, seconds
+from thermicon.icons.number_text import number, percent
 
-from ..report.blocks import fragment
+from ..report.blocks import Bullets, Cards, Heading, Text, fragment, shown
 from ..report.choices import choice_lines, laboratory
-from ..report.rank_notes import outside_lines, trouble_lines
-from ..report.rank_text import caveat, rival
+from ..report.rank_details import edit_text
+from ..report.rank_notes import caveat, outside_lines, trouble_lines
+from ..report.rank_report import cards, icon_table
 from ..timeline.terms import SIMULATED, terms_of
 
 if TYPE_CHECKING:
@@ -19,68 +20,29 @@ if TYPE_CHECKING:
 
     from ..report.set_report import SetReport
 
-TITLED = {"detected": "detected", "onset": "onset", "as": "felt", "correct": "proportion correct"}
-"""Columns with a word of the glossary as their tooltip."""
 ALONE = "The set has only one icon, so there are no distances to show."
 
 
 def ranking_table(ranking: Ranking, result: dict[str, Any]) -> str:
-    """One row per icon, the best first; those that are unsafe or out of reach in a group of their own below.
+    """One row per icon, the best first; those that are unsafe or out of reach below.
 
     ``result`` is the ranking as plain data.
     """
     icons = {icon["name"]: icon for icon in result["icons"]}
-    labels = result["confusion"]["labels"]
-    chosen = set(result["chosen"]["icons"]) if result["chosen"] else set()
-    order = [icons[row["icon"]] for row in ranking.rows()]
-
-    def row(icon: dict[str, Any]) -> tuple[tuple[str, ...], bool]:
-        name = icon["name"]
-        cells = (
-            f"✓ {name}" if name in chosen else name,
-            percent(icon["detected_probability"]),
-            seconds(icon["onset_s"]),
-            icon["channel"] or "–",
-            percent(icon["proportion_correct"]),
-            rival(result["confusion"], labels.index(name)),
-        )
-        return cells, name in chosen
-
-    playable = [row(icon) for icon in order if icon["safe"] and icon["reachable"]]
-    others = [row(icon) for icon in order if not (icon["safe"] and icon["reachable"])]
-    heading = "past a limit of this simulation, or not reached:" if playable else "none of the icons can be played:"
-    columns = ("icon", "detected", "onset", "as", "correct", "confused with")
-    meanings = {column: meaning for column, (_, meaning) in zip(TITLED, terms_of(*TITLED.values()), strict=True)}
-    return fragment("ranking", columns, (1, 2, 4), playable, others, heading, meanings)
+    return shown(icon_table([icons[row["icon"]] for row in ranking.rows()], result))
 
 
 def notes_html(result: dict[str, Any]) -> str:
     """Why icons are unsafe or out of reach, what is amber, and where the prediction leaves the range of the data."""
     icons = result["icons"]
-    return fragment("notes", [*trouble_lines(icons, {}), *outside_lines(icons)])
+    return shown(*(Text(line, "note") for line in (*trouble_lines(icons, {}), *outside_lines(icons))))
 
 
-def scores_html(made: SetReport) -> str:
-    """Proportion correct and bits with both intervals, between people and for the laboratory that is predicted."""
-    ranking = made.ranking
-    if len(ranking.icons) == 1:
-        return fragment("notes", [ALONE])
-    draws, where = ranking.new_laboratory, _where(ranking)
-    low, high = ranking.proportion_correct_interval
-    correct = [f"middle 95 % of people: {percent_span(low, high)}"]
-    least, most = ranking.information_bits_interval
-    bits = [f"middle 95 % of people: {least:.2f}–{most:.2f}"]
-    if draws is not None:
-        correct.append(f"{where}: {percent_span(*draws.proportion_correct)}")
-        bits.append(f"{where}: {draws.information_bits[0]:.2f}–{draws.information_bits[1]:.2f}")
-    if made.choice is not None:
-        correct.append(f"{where}: see the chosen icons")
-    shown: tuple[tuple[str, list[str]], ...] = (
-        (f"{percent(ranking.proportion_correct)} correct", correct),
-        (f"{ranking.information_bits:.2f} bits", bits),
-        (f"{ranking.bits_per_s:.2f} bits/s", []),
-    )
-    return fragment("scores", shown)
+def scores_html(result: dict[str, Any]) -> str:
+    """The numbers that are asked first, with the interval of the laboratory that is predicted."""
+    if len(result["icons"]) == 1:
+        return shown(Text(ALONE, "note"))
+    return shown(Cards(cards(result, laboratory(result["observer"], result["set"]["own_laboratory"]))))
 
 
 def caveat_html(result: dict[str, Any]) -> str:
@@ -91,19 +53,19 @@ def caveat_html(result: dict[str, Any]) -> str:
     simulated = f"Limits of this simulation: {limits}; export judges worst cases."
     by = "" if result["observer"] == "shipped" else f" Predicted with the observer of {result['observer']}."
     known = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "middle 95 % of people", SIMULATED)
-    words = fragment("terms", terms_of(*known))
-    return fragment("block", f"{meaning} {caveat(result)}{by} {simulated}", "th-soft") + words
+    said = Text(f"{meaning} {caveat(result)}{by} {simulated}", "soft")
+    return shown(said) + fragment("terms", terms_of(*known))
 
 
 def pair_html(pair: PairScore) -> str:
     """Which two icons form a pair, and how often they are confused."""
     sentence = f"confused in {percent(pair.confused_probability)} of trials, d′ {number(pair.d_prime)}"
-    return fragment("pair", pair.a, pair.b, sentence)
+    return shown(Heading(f"{pair.a} and {pair.b}"), Text(sentence))
 
 
 def why_html(pair: PairScore) -> str:
     """Why a pair is confused, or is not."""
-    return fragment("points", pair.why)
+    return shown(Bullets(pair.why))
 
 
 def edit_html(edit: Edit | NoEdit | None) -> str:
@@ -111,20 +73,16 @@ def edit_html(edit: Edit | NoEdit | None) -> str:
     from thermicon.perception.selection.edit_result import NoEdit
 
     if edit is None:
-        return fragment("marked", "looking for the cheapest edit …", "th-status")
+        return shown(Text("looking for the cheapest edit …", "status"))
     if isinstance(edit, NoEdit):
-        return fragment("marked", f"no edit: {edit.reason}", "th-soft")
-    longer = f", {number(edit.added_s)} s longer" if edit.added_s >= 0.05 else ""
-    return fragment("edit", edit.icon, longer, number(edit.d_prime), edit.old, edit.new)
+        return shown(Text(f"no edit: {edit.reason}", "soft"))
+    return shown(Text(edit_text({"edit": edit.to_dict()})))
 
 
 def chosen_html(made: SetReport) -> str:
     """Which icons were chosen, and how certain that choice is."""
     if made.choice is None:
         return ""
-    first, *rest = choice_lines(made.choice.to_dict(), _where(made.ranking))
-    return fragment("chosen", first, [line.removeprefix("  - ") for line in rest])
-
-
-def _where(ranking: Ranking) -> str:
-    return laboratory(ranking.observer, ranking.own_laboratory)
+    where = laboratory(made.ranking.observer, made.ranking.own_laboratory)
+    first, *rest = choice_lines(made.choice.to_dict(), where)
+    return shown(Heading(first), Bullets(tuple(rest)))

@@ -226,7 +226,7 @@ class SetView(LiveView[SetRequest]):
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
         result = made.report.to_dict(mapped=False)  # the map exists already, aligned with the one before
-        said["scores"].value = scores_html(made.report)
+        said["scores"].value = scores_html(result)
         said["table"].value = ranking_table(ranking, result)
         said["notes"].value = notes_html(result)
         said["caveat"].value = caveat_html(result)

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from thermicon.notebooks.cli import examine, machine, packages, self_test
-from thermicon.notebooks.cli.finding import Finding
+from thermicon.notebooks.cli.packages import Finding
 
 Cli = Callable[..., Any]
 ROOT = Path(__file__).resolve().parents[3]

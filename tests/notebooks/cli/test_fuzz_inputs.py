@@ -31,10 +31,11 @@ from thermicon.circuit.fitting.log_files import read_log
 from thermicon.circuit.safety.sessionplan import read_order
 from thermicon.icons import load_library, parse
 from thermicon.icons.recordings.readings import read_readings
-from thermicon.notebooks.cli.compare import Comparison, _shifted, show_comparison
+from thermicon.notebooks.cli.compare import _shifted
 from thermicon.notebooks.figures.differences import align
 from thermicon.notebooks.files.trace_files import read_curves
 from thermicon.notebooks.messages import is_ours
+from thermicon.notebooks.report.compare_report import Comparison, compare_report
 from thermicon.notebooks.study.study_file import parse_study, study_text
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.measurements_file import read_measurements
@@ -135,7 +136,7 @@ def use_curves(path: Path) -> None:
     other = path.with_name("sound.csv")
     other.write_text(LOG)
     first, second = read_curves(str(other)), read_curves(str(path))
-    show_comparison(Comparison("", align(first, _shifted(first, second)[0])))
+    compare_report(Comparison("", align(first, _shifted(first, second)[0])))
 
 
 @dataclass(frozen=True)

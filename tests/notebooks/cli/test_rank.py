@@ -5,12 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
 from thermicon.icons.number_text import percent_span
 from thermicon.notebooks.cli import ranking
+from thermicon.notebooks.report.blocks import Bullets, Heading
+from thermicon.notebooks.report.rank_report import Step, next_step
 
 Cli = Callable[..., Any]
 TOP = {
@@ -83,13 +88,48 @@ def test_json_on_stdout_is_nothing_but_json(cli: Cli, two: Path) -> None:
 
 
 def test_the_table_reads_well_in_a_pipe(process: Cli, two: Path) -> None:
-    said = process("rank", two, "--people", 20)
+    said = process("rank", two, "--people", 20, "--details")
     assert said.exit_code == 0, said.stderr
     assert "\x1b" not in said.stdout
-    assert max(len(line) for line in said.stdout.splitlines()) <= 80
+    lines = [line for line in said.stdout.splitlines() if not line.startswith("Next: ")]  # whole, to be copied
+    assert max(map(len, lines)) <= 80
     for word in ("detected", "onset", "channel", "most confused with", "bits/s", "Worst pair: ", "48-trial experiment"):
         assert word in said.stdout
     assert "not measurements" in " ".join(said.stdout.split())
+
+
+def test_what_is_asked_first_stands_in_twenty_lines(process: Cli) -> None:
+    said = process("rank", "wave-confusions", "--people", 4, "--intervals", 0).stdout.splitlines()
+    assert len(said) <= 20
+    assert [line.split()[0] for line in said[2:6]] == [said[2].split()[0], said[3].split()[0], said[4].split()[0], "d′"]
+    assert any(line.startswith("Next: thermicon improve wave-confusions --people 4 --intervals 0 ") for line in said)
+    assert any(line.startswith("and ") and line.endswith(" more") for line in said)
+
+
+@pytest.mark.parametrize(
+    ("d_primes", "detected", "playable", "families", "step"),
+    [
+        ((3.0, 3.0, 3.0), 0.9, 3, False, Step("export", ("--to", "csv", "-o", "drives"))),
+        ((1.0, 3.0, 3.0), 0.9, 3, False, Step("improve", ("--choose", "2"))),
+        ((1.0, 3.0, 3.0), 0.9, 3, True, Step("improve")),
+        ((1.0, 1.0, 1.0), 0.9, 3, False, Step("improve", ("--edits",))),
+        ((1.0, 3.0, 3.0), 0.5, 3, False, Step("rank", ("--set", "contact.area_cm2=18"))),
+        ((3.0, 3.0, 3.0), 0.9, 2, False, Step("improve", ("--choose", "2"))),
+        ((3.0, 3.0, 3.0), 0.9, 0, False, Step("simulate")),
+    ],
+)
+def test_the_next_command_is_chosen_by_what_was_found(
+    d_primes: tuple[float, ...], detected: float, playable: int, families: bool, step: Step
+) -> None:
+    icons = [
+        SimpleNamespace(name=name, playable=place < playable, detected_probability=detected)
+        for place, name in enumerate("abc")
+    ]
+    names = (("a", "b"), ("a", "c"), ("b", "c"))
+    pairs = [SimpleNamespace(a=a, b=b, d_prime=d) for (a, b), d in zip(names, d_primes, strict=True)]
+    job = SimpleNamespace(icons=tuple(load_library("six-icons")), rig=Rig.load("thenar"))
+    ranking: Any = SimpleNamespace(icons=icons, pairs=pairs, job=job)
+    assert next_step(ranking, families) == step
 
 
 def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -116,7 +156,7 @@ def test_joined_files_without_titles_have_none(cli: Cli, tmp_path: Path) -> None
         path.write_text(f"cue 1\nicon {name} {{ {verb} by 2 °C at 1 °C/s; return at 1 °C/s }}\n", encoding="utf-8")
         files.append(path)
     said = cli("rank", *files, "--people", 2, "--intervals", 0)
-    assert said.stdout.startswith("icon ")
+    assert "named correctly" in said.stdout.splitlines()[0]
     assert said.stderr == ""
 
 
@@ -124,7 +164,7 @@ def test_joined_files_without_titles_have_none(cli: Cli, tmp_path: Path) -> None
 def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "rank.json"
     options = ("--people", 2, "--norm", "naming", "--set", "driver.current_limit_A=0.3", "--json", out)
-    said = cli("rank", two, *options)
+    said = cli("rank", two, *options, "--details")
     assert said.exit_code == 0, said.stderr
     assert json.loads(out.read_text(encoding="utf-8"))["rig_changes"] == ["driver.current_limit_A=0.3"]
     words = " ".join(said.stdout.split())
@@ -133,18 +173,37 @@ def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path
     assert "cool-step is not reached: misses its target by " in words
     assert "; it is reached with its " in words
     assert f"wrote {out}" in said.stderr
-    plain = " ".join(cli("rank", two, "--people", 2).stdout.split())
-    assert "on the thenar rig (seed 0, display tracking)." in plain
+    brief = cli("rank", two, *options[:2]).stdout
+    assert brief.endswith("\n\nPredicted, not measured: 2 virtual people on the thenar rig. More: --details\n")
 
 
 @pytest.mark.slow
 def test_one_person_has_no_spread(cli: Cli, two: Path) -> None:
-    said = cli("rank", two, "--people", 1, "--task", "trials=1")
+    said = cli("rank", two, "--people", 1, "--task", "trials=1", "--details")
     assert "95 % of people" not in said.stdout
     assert "% correct\n" in said.stdout
     assert " bits\n" in said.stdout
     assert "a 1-trial experiment would report" in said.stdout
-    assert "95 % of people" in cli("rank", two, "--people", 2).stdout
+    assert "95 % of people" in cli("rank", two, "--people", 2, "--details").stdout
+
+
+def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Path) -> None:
+    path = tmp_path / "hard.cue"
+    path.write_text(
+        "cue 1\nset s { control current }\n"
+        "icon burn { to -3 A at 20 A/s; hold for 20 s; return at 20 A/s }\n"
+        "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n",
+        encoding="utf-8",
+    )
+    options = ("rank", path, "--people", 1, "--intervals", 0)
+    words = " ".join(cli(*options, "--details").stdout.split())
+    assert "burn is NOT SAFE and not reached: " in words
+    assert "jolt is not reached: the drive needs 1.6 A" in words
+    lines = cli(*options).stdout.splitlines()
+    assert len(lines) <= 20
+    assert "burn is NOT SAFE and not reached: " in " ".join(lines)
+    assert any(line.endswith(" more notes: thermicon rank --details") for line in lines)
+    assert f"Next: thermicon simulate {path}" in lines
 
 
 @pytest.mark.slow
@@ -152,7 +211,7 @@ def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "cold.cue"
     cue = "{ cool by 12 °C at 2 °C/s; hold for 9 s; return at 2 °C/s }"
     path.write_text(f"cue 1\nset s {{ control display }}\nicon a {cue}\nicon b {cue}\n", encoding="utf-8")
-    words = " ".join(cli("rank", path, "--people", 1, "--intervals", 0).stdout.split())
+    words = " ".join(cli("rank", path, "--people", 1, "--intervals", 0, "--details").stdout.split())
     assert "Caution: a, b exceed a soft safety limit: of a, skin surface reaches " in words
     assert words.count("skin surface") == 1
     assert "NOT SAFE" not in words
@@ -162,8 +221,11 @@ def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
 def test_a_set_is_ranked_by_rules_alone(cli: Cli) -> None:
     result = cli("rank", "six-icons", "--by", "rules")
     assert result.exit_code == 0, result.stderr
-    assert "Set: 15 of 15 pairs distinguishable by the rules" in result.stdout
-    assert "virtual" not in result.stdout
+    assert "- 15 of 15 pairs distinguishable by the rules" in result.stdout
+    assert "named correctly" not in result.stdout
+    refused = cli("rank", "six-icons", "--by", "rules", "--doubt")
+    assert refused.exit_code == 2
+    assert "leave out --by rules" in refused.stderr
 
 
 def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
@@ -173,7 +235,7 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
     ]
     path.write_text("cue 1\nset s { control display }\n" + "".join(cues), encoding="utf-8")
     out = tmp_path / "rank.json"
-    words = " ".join(cli("rank", path, "--people", 2, "--intervals", 0, "--json", out).stdout.split())
+    words = " ".join(cli("rank", path, "--people", 2, "--intervals", 0, "--json", out, "--details").stdout.split())
     found = json.loads(out.read_text(encoding="utf-8"))["set"]["rules_disagree"]
     assert len(found) > 5
     assert words.index("Worst pair") < words.index("Rules and model disagree: rules compare two icons ")
@@ -183,13 +245,14 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
 
 
 def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
-    from thermicon.notebooks.report.rank_text import disagreement_lines
+    from thermicon.notebooks.report.rank_details import disagreement_blocks
 
     found = [{"icon": "a", "text": "a: rules say felt, the model 0.42 detected (felt from 0.5)"}]
-    said = list(disagreement_lines(found))
-    assert said == [
-        "Rules and model disagree: rules require a change and a rate, the model a report in half of the trials",
-        "  - a: rules say felt, the model 0.42 detected (felt from 0.5)",
+    assert disagreement_blocks({"set": {"rules_disagree": found}, "chosen": None}) == [
+        Heading(
+            "Rules and model disagree: rules require a change and a rate, the model a report in half of the trials", 3
+        ),
+        Bullets(("a: rules say felt, the model 0.42 detected (felt from 0.5)",)),
     ]
 
 
@@ -224,15 +287,15 @@ def test_figures_go_into_a_folder_that_is_made(cli: Cli, two: Path, tmp_path: Pa
 
 def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "rank.json"
-    said = cli("rank", two, "--people", 8, "--intervals", 8, "--json", out)
+    said = cli("rank", two, "--people", 8, "--intervals", 8, "--json", out, "--details")
     assert said.exit_code == 0, said.stderr
     found = json.loads(out.read_text(encoding="utf-8"))["set"]
     (low, high), (least, most) = (
         found[f"{k}_interval_new_laboratory"] for k in ("proportion_correct", "information_bits")
     )
     people = found["new_laboratory_people"]
-    assert f"     mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}\n" in said.stdout
-    assert f"     in a new laboratory (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
+    assert f"  - mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}\n" in said.stdout
+    assert f"  - in a new laboratory (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
     assert "over the range" not in cli("rank", two, "--people", 8, "--intervals", 0).stdout
 
 
@@ -242,7 +305,7 @@ def test_icons_outside_the_data_are_told(cli: Cli, tmp_path: Path) -> None:
     cues = "".join(f"icon {n} {{ cool by {k} °C at 6 °C/s; return at 6 °C/s }}\n" for n, k in (("a", 4), ("b", 2)))
     path.write_text(f"cue 1\nset s {{ control skin }}\n{cues}", encoding="utf-8")
     options = ("--people", 1, "--intervals", 0, "--rig", "fingertip")
-    words = " ".join(cli("rank", path, *options).stdout.split())
+    words = " ".join(cli("rank", path, *options, "--details").stdout.split())
     assert "Outside the data: all icons: no detection threshold is on record for the fingertip: those of " in words
     assert "Outside the data" not in cli("rank", path, "--people", 1, "--intervals", 0).stdout
 

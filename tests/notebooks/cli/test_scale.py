@@ -1,4 +1,4 @@
-"""``thermicon rank`` on more or fewer cores, on a cluster that is not there, and going on where it was ended."""
+"""``thermicon rank`` on more or fewer cores, and on a cluster that is not there."""
 
 from __future__ import annotations
 
@@ -12,14 +12,13 @@ import pytest
 Cli = Callable[..., Any]
 
 
-def test_workers_change_no_byte_and_parts_are_kept_where_asked(cli: Cli, two: Path, tmp_path: Path) -> None:
+def test_workers_change_no_byte(cli: Cli, two: Path, tmp_path: Path) -> None:
     outs = []
-    for extra in ((), ("--workers", 1), ("--workers", 3, "--keep", tmp_path / "kept"), ("--keep", tmp_path / "kept")):
+    for extra in ((), ("--workers", 1), ("--workers", 3)):
         outs.append(tmp_path / f"{len(outs)}.json")
         said = cli("rank", two, "--people", 5, "--intervals", 0, "--json", outs[-1], *extra)
         assert said.exit_code == 0, said.stderr
     assert len({out.read_bytes() for out in outs}) == 1
-    assert len(list((tmp_path / "kept").glob("*/*.npz"))) == 1
 
 
 def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:

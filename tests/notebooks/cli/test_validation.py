@@ -12,8 +12,9 @@ import pytest
 
 from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.cli import validation
-from thermicon.notebooks.cli.validation import COMPUTED, KEPT, executed_notebook, json_text, show_report, write_report
-from thermicon.notebooks.report.conditioning_text import TITLE
+from thermicon.notebooks.cli.validation import COMPUTED, KEPT, executed_notebook, json_text, write_report
+from thermicon.notebooks.report.terminal import show
+from thermicon.notebooks.report.validate_report import TITLE, validate_report
 from thermicon.perception.evidence.validate import ValidationReport, validate
 
 Cli = Callable[..., Any]
@@ -109,7 +110,7 @@ def test_without_the_parts_of_jupyter_the_cure_is_said_before_anything_is_comput
 
 
 def test_the_table_on_a_terminal(report: ValidationReport, capsys: pytest.CaptureFixture[str]) -> None:
-    show_report(report)
+    show(validate_report(report))
     said = capsys.readouterr().out
     for section in report.sections:
         assert f"{section.target.number} {section.target.title}" in said

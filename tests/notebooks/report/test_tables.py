@@ -6,11 +6,11 @@ import re
 from collections import Counter
 
 import pytest
-from rich.table import Table
 
 from thermicon.icons import load_library
 from thermicon.icons.files.shipped import library_names
-from thermicon.notebooks.report.tables import rendered, table
+from thermicon.notebooks.report.blocks import Grid, grid
+from thermicon.notebooks.report.terminal import lines as rendered
 
 NAMES = ("icon", "most confused with")
 RANK = ("icon", "detected", "onset", "channel", "correct", "most confused with")
@@ -22,33 +22,30 @@ def letters(text: str) -> Counter[str]:
     return Counter(re.sub(r"[\s─]", "", STYLE.sub("", text)))
 
 
-def ranked() -> tuple[Table, str]:
-    made = table(*RANK, numbers=RANK[1:3], names=RANK)
+def ranked() -> tuple[Grid, str]:
     names = [icon.name for icon in load_library("wave-confusions")]
     rows = [(name, "100 %", "0.92 s", "cold", "91 %", f"{name} 24 %") for name in names]
-    for row in rows:
-        made.add_row(*row)
-    return made, "".join(("".join(RANK), *("".join(row) for row in rows)))
+    return grid(RANK, rows, RANK[1:3], RANK), "".join(("".join(RANK), *("".join(row) for row in rows)))
 
 
 @pytest.mark.parametrize("width", [80, 60, 40])
 def test_no_letter_of_a_name_or_a_heading_is_lost(width: int) -> None:
     made, text = ranked()
-    lines = rendered(made, width)
+    lines = rendered([made], width)
     assert max(len(STYLE.sub("", line)) for line in lines) <= width
     assert letters("".join(lines)) == letters(text)
 
 
 def test_at_80_columns_the_names_of_shipped_sets_stay_on_one_line() -> None:
     made, _ = ranked()
-    shown = [STYLE.sub("", line) for line in rendered(made, 80)]
+    shown = [STYLE.sub("", line) for line in rendered([made], 80)]
     for name in (icon.name for icon in load_library("wave-confusions")):
         assert sum(name in line for line in shown) >= 1
 
 
 def test_a_pipe_gets_one_line_per_row() -> None:
     made, _ = ranked()
-    assert len(rendered(made, 40, is_terminal=False)) == 2 + 12
+    assert len(rendered([made], 40, is_terminal=False)) == 2 + 12
 
 
 @pytest.mark.parametrize("width", [80, 60])
@@ -67,7 +64,6 @@ def test_listings_fit(width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytes
 
 @pytest.mark.parametrize("width", [80, 60])
 def test_a_session_keeps_every_heading(width: int) -> None:
-    made = table(*SESSION, numbers=("play", "start", "baseline"), names=("icon",))
     row = ("12", "triangle-unipolar-8s", "1234.25 s", "29.5–33.8 °C", "28.5–34.8 °C", "−0.25 K", "amber")
-    made.add_row(*row)
-    assert letters("".join(rendered(made, width))) == letters("".join((*SESSION, *row)))
+    made = grid(SESSION, [row], ("play", "start", "baseline"), ("icon",))
+    assert letters("".join(rendered([made], width))) == letters("".join((*SESSION, *row)))

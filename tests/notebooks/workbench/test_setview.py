@@ -14,7 +14,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.editing.icon_edits import CannotEdit, only
 from thermicon.notebooks.editing.number_literals import with_edit
-from thermicon.notebooks.report.rank_text import number_lines
+from thermicon.notebooks.report.rank_details import number_points
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
@@ -87,7 +87,7 @@ def ranked() -> Bench:
 
 def test_a_set_is_ranked_with_its_intervals_and_worst_pair(ranked: Bench) -> None:
     assert "24 people" in ranked.said("status")
-    assert "a new laboratory: " in ranked.said("scores")
+    assert "in a new laboratory (95 %): " in ranked.said("scores")
     assert ranked.said("table").count("<tr>") == 4
     assert "near" in ranked.said("pair")
     assert "nearer" in ranked.said("pair")
@@ -205,7 +205,7 @@ def test_a_set_of_one_says_that_it_is_never_confused() -> None:
 def test_what_cannot_be_played_stands_apart_with_its_reason() -> None:
     bench = Bench(THREE.replace("cool by 4 °C at 2 °C/s", "cool by 14 °C at 9 °C/s"))
     table = bench.said("table")
-    assert table.index("past a limit of this simulation, or not reached:") < table.index("far")
+    assert table.index('<tr class="apart">') < table.index("far *")
     assert "far is not reached" in bench.said("notes")
 
 
@@ -293,19 +293,19 @@ def test_scores_name_the_laboratory_in_the_words_of_rank(laboratory: ObserverMod
     made = rank_set(TWO, Rig.load("thenar"), 4, 128, observer=laboratory)
     result = ranking_file(made.ranking, mapped=False)
     words = "your laboratory, lab.csv"
-    assert any(f"people in {words} (95 %): " in line for line in number_lines(result))
-    scores = scores_html(made.report)
-    assert scores.count(f"{words}: ") == 2
+    assert any(f"people in {words} (95 %): " in line for line in number_points(result))
+    scores = scores_html(result)
+    assert scores.count(f"in {words} (95 %): ") == 2
     assert "new laboratory" not in scores
     assert "Predicted with the observer of lab.csv." in caveat_html(result)
     new = rank_set(TWO, Rig.load("thenar"), 4, 2)
-    assert scores_html(new.report).count("a new laboratory: ") == 2
-    assert "observer of" not in caveat_html(ranking_file(new.ranking, mapped=False))
+    result = ranking_file(new.ranking, mapped=False)
+    assert scores_html(result).count("in a new laboratory (95 %): ") == 2
+    assert "observer of" not in caveat_html(result)
 
 
 def test_a_choice_names_the_laboratory(laboratory: ObserverModel) -> None:
     made = rank_set(THREE, Rig.load("thenar"), 4, 2, Selection(2, "worst"), observer=laboratory)
-    assert "your laboratory, lab.csv: see the chosen icons" in scores_html(made.report)
     assert "for your laboratory, lab.csv (95 %): " in chosen_html(made.report)
 
 
@@ -324,7 +324,7 @@ def test_the_laboratory_of_a_workbench_predicts_in_every_view(laboratory: Observ
     view.renew(0.0)
     assert view.worker.wait()
     assert view.editor.wait()
-    assert "your laboratory, lab.csv: " in view.said["scores"].value
+    assert "in your laboratory, lab.csv (95 %): " in view.said["scores"].value
     assert view.made is not None
     assert view.made.ranking.proportion_correct == bench.ranking(24).proportion_correct
 

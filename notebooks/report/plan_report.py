@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` prints of a plan: sizes of experiments, what each gives, and the icons to pilot."""
+"""What ``thermicon pilot`` says of a plan: sizes of experiments, what each gives, and the icons to pilot."""
 
 from __future__ import annotations
 
@@ -7,11 +7,9 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, percent, percent_span
 
-from .tables import show, table
+from .blocks import Block, Bullets, Grid, Text, grid
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from thermicon.perception.pilot.plan import Design, Plan
 
 MOST_LISTED = 12
@@ -19,9 +17,10 @@ CLEAR = 2.0
 """A list is called better than random ones where it is so many SDs of them better."""
 
 
-def show_plan(found: Plan, names: Sequence[str]) -> None:
-    """Print predictions, designs, the one to take, and the pilot."""
-    show(*prediction_lines(found, names), "", designs_table(found), "", *design_lines(found), "", *pilot_lines(found))
+def plan_report(found: Plan, names: Sequence[str]) -> list[Block]:
+    """Report predictions, designs, the one to take, and the pilot."""
+    predicted, designed = (Text("\n".join(lines)) for lines in (prediction_lines(found, names), design_lines(found)))
+    return [predicted, designs_table(found), designed, *pilot_blocks(found)]
 
 
 def prediction_lines(found: Plan, names: Sequence[str]) -> list[str]:
@@ -36,15 +35,15 @@ def prediction_lines(found: Plan, names: Sequence[str]) -> list[str]:
     return lines
 
 
-def designs_table(found: Plan) -> Table:
+def designs_table(found: Plan) -> Grid:
     """Participants down, trials across: width of the interval, or share of experiments that distinguish the sets."""
     trials = sorted({each.trials for each in found.designs})
     headings = [f"{each} trials" for each in trials]
-    made = table("participants", *headings, numbers=headings)
+    rows = []
     for people in sorted({each.participants for each in found.designs}):
         own = {each.trials: each for each in found.designs if each.participants == people}
-        made.add_row(str(people), *(_cell(found, own[each]) for each in trials))
-    return made
+        rows.append((str(people), *(_cell(found, own[each]) for each in trials)))
+    return grid(("participants", *headings), rows, headings)
 
 
 def _cell(found: Plan, design: Design) -> str:
@@ -84,19 +83,19 @@ def design_lines(found: Plan) -> list[str]:
     return lines
 
 
-def pilot_lines(found: Plan) -> list[str]:
+def pilot_blocks(found: Plan) -> list[Block]:
     """The trial list of the pilot, and what it is expected to be worth."""
     pilot, what = found.pilot, "difference" if found.difference is not None else "per cent correct"
     named = list(pilot.presented.items())
-    lines = [f"Pilot with one participant, {pilot.length} presentations in random order:"]
-    lines += [f"  - {name}: {times} ×" for name, times in named[:MOST_LISTED]]
-    lines += [f"  - and {len(named) - MOST_LISTED} more icons, see --json"] * (len(named) > MOST_LISTED)
+    points = [f"{name}: {times} ×" for name, times in named[:MOST_LISTED]]
+    points += [f"and {len(named) - MOST_LISTED} more icons, see --json"] * (len(named) > MOST_LISTED)
     average, spread = pilot.sd_random
-    lines.append(
+    worth = (
         f"Expected SD of the {what} between laboratories, in points: {100 * pilot.sd_before:.2f} now, "
         f"{100 * pilot.sd:.2f} after this list, {100 * average:.2f} after a random list, {100 * pilot.sd_even:.2f} "
         "after one that presents all icons alike."
     )
     if average - pilot.sd < CLEAR * spread:
-        lines.append("The choice hardly matters here: random lists of that length narrow the answer about as much.")
-    return lines
+        worth += " The choice hardly matters here: random lists of that length narrow the answer about as much."
+    head = Text(f"Pilot with one participant, {pilot.length} presentations in random order:")
+    return [head, Bullets(tuple(points)), Text(worth)]

@@ -7,19 +7,20 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import count_of, number, percent
 
-from ..report.choices import goal_lines
-from ..report.tables import show, table
+from .blocks import Block, Heading, Text, grid
+from .choices import goal_lines
 
 if TYPE_CHECKING:
     from thermicon.perception.selection.frontier import Frontier, FrontierPoint
 
+MOST_EXCLUDED = 3
 
-def show_frontier(found: Frontier, title: str) -> None:
-    """Print one row for each number of icons, the names of the largest choices, and what was left out."""
+
+def frontier_report(found: Frontier, title: str) -> list[Block]:
+    """Report one row for each number of icons, the names of the largest choices, and what was left out."""
     heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goal)))
-    made = table(*heads, numbers=heads[:7])
-    for point in found.points:
-        made.add_row(
+    rows = [
+        (
             str(len(point.icons)) + ("" if point.optimal else " *"),
             percent(point.proportion_correct),
             f"from {percent(point.reached)}",
@@ -29,25 +30,29 @@ def show_frontier(found: Frontier, title: str) -> None:
             "–" if point.total_J != point.total_J else f"{number(point.total_J)} J",
             *([] if point.goal is None else ["✓" if point.goal.met else "✗"]),
         )
-    last = found.points[-1] if found.points else None
-    starred = any(not point.optimal for point in found.points)
+        for point in found.points
+    ]
     crowd = count_of(found.people, "virtual person", "virtual people")
     what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
-    show(
-        *([title, ""] if title else []),
-        made,
-        "",
-        *([] if last is None else [f"The {len(last.icons)}: {_named(last)}"]),
-        *(["* not proven to be the best of their number"] if starred else []),
+    more = len(found.excluded) - MOST_EXCLUDED
+    said = [
+        *(f"The {len(point.icons)}: {_named(point)}" for point in found.points[-1:]),
+        *(["* not proven to be the best of their number"] * any(not point.optimal for point in found.points)),
         *_amber(found),
         *_goal(found),
-        *(f"Left out: {name} {reason}" for name, reason in found.excluded[:3]),
-        *([f"and {len(found.excluded) - 3} more left out"] if len(found.excluded) > 3 else []),
-        "",
-        f"The best by {found.objective} of {found.pool} icons that can be {'chosen' if found.goal else 'played'}, for "
-        f"{crowd} on the {found.rig} rig{what_if} (seed {found.seed}). {_reached(found)} These are predictions of a "
-        "model, not measurements.",
-    )
+        *(f"Left out: {name} {reason}" for name, reason in found.excluded[:MOST_EXCLUDED]),
+        *([f"and {more} more left out"] if more > 0 else []),
+    ]
+    return [
+        *([Heading(title, 1)] if title else []),
+        grid(heads, rows, heads[:7]),
+        Text("\n".join(said)),
+        Text(
+            f"The best by {found.objective} of {found.pool} icons that can be {'chosen' if found.goal else 'played'}, "
+            f"for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}). {_reached(found)} These are "
+            "predictions of a model, not measurements."
+        ),
+    ]
 
 
 def _named(point: FrontierPoint) -> str:

@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` prints of answers: participants, fit, and pairs that were missed."""
+"""What ``thermicon pilot`` says of answers: participants, fit, and pairs that were missed."""
 
 from __future__ import annotations
 
@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import percent, percent_span, seconds
 
-from .tables import table
+from .blocks import Block, Bullets, Grid, Text, grid
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from thermicon.perception.pilot.data import Answered
     from thermicon.perception.pilot.fit import Fit
     from thermicon.perception.pilot.observed import Observed
@@ -29,17 +27,23 @@ LEAST_LABORATORIES = 100
 """Laboratories below which widths of intervals scatter by over 15 %, and other constants are hardly tried."""
 
 
-def people_table(data: Answered, own: Sequence[Three]) -> Table:
+def answered_blocks(found: Observed[Answered, Fit]) -> list[Block]:
+    """One row per participant and one for all, what the answers do not say, and how they fit the prediction."""
+    said = "\n".join(observed_sentences(found.data))
+    return [people_table(found.data, found.own), Text(said), Text("\n".join(fit_sentences(found))), *pairs(found.fit)]
+
+
+def people_table(data: Answered, own: Sequence[Three]) -> Grid:
     """One row per participant and one for all: trials, per cent correct, bits, median time."""
     timed = not math.isnan(data.pooled.time_s)
     columns = ["", "trials", "correct", "95 %", "bits", "95 %", "further trials"] + ["time"] * timed
-    made = table(*columns, numbers=("trials", "correct", "bits", "time"))
-    for score, further in list(zip(data.each, own, strict=True))[:MOST_PEOPLE]:
-        made.add_row(*_row(score, timed, f"{percent(further[0])} ({percent_span(*further[1:])})"))
+    rows = [
+        _row(score, timed, f"{percent(further[0])} ({percent_span(*further[1:])})")
+        for score, further in list(zip(data.each, own, strict=True))[:MOST_PEOPLE]
+    ]
     if (more := len(data.each) - MOST_PEOPLE) > 0:
-        made.add_row(f"and {more} more", *[""] * (len(columns) - 1))
-    made.add_row(*_row(data.pooled, timed, ""))
-    return made
+        rows.append([f"and {more} more", *[""] * (len(columns) - 1)])
+    return grid(columns, [*rows, _row(data.pooled, timed, "")], ("trials", "correct", "bits", "time"))
 
 
 def _row(score: AnswerScore, timed: bool, own: str) -> list[str]:
@@ -95,22 +99,23 @@ def fit_sentences(found: Observed[Answered, Fit]) -> list[str]:
     ]
     if fit.p_people is not None:
         lines.append(f"Participants differ as much or more in {percent(fit.p_people)} of simulated experiments.")
-    return lines + pair_lines(fit)
+    return lines
 
 
-def pair_lines(fit: Fit) -> list[str]:
+def pairs(fit: Fit) -> list[Block]:
     """The missed pairs as a list, and how many are expected by chance."""
     missed, chance = fit.missed, 0.05 * len(fit.pairs)
     if not missed:
-        return [f"No pair was missed: all {len(fit.pairs)} lie within their predicted 95 %."]
-    lines = [f"Pairs outside their predicted 95 % ({len(missed)} of {len(fit.pairs)}; about {chance:.1f} by chance):"]
-    for pair in missed[:MOST_PAIRS]:
-        more = "more" if pair.observed > pair.predicted else "less"
-        lines.append(
-            f"  - {pair.a} and {pair.b}: confused {more} than predicted, in {percent(pair.observed)} of {pair.trials} "
-            f"trials; predicted {percent(pair.predicted)} ({percent_span(*pair.interval)})"
-        )
-    return lines + [f"  - and {len(missed) - MOST_PAIRS} more"] * (len(missed) > MOST_PAIRS)
+        return [Text(f"No pair was missed: all {len(fit.pairs)} lie within their predicted 95 %.")]
+    points = [
+        f"{pair.a} and {pair.b}: confused {'more' if pair.observed > pair.predicted else 'less'} than predicted, in "
+        f"{percent(pair.observed)} of {pair.trials} trials; predicted {percent(pair.predicted)} "
+        f"({percent_span(*pair.interval)})"
+        for pair in missed[:MOST_PAIRS]
+    ]
+    points += [f"and {len(missed) - MOST_PAIRS} more"] * (len(missed) > MOST_PAIRS)
+    head = f"Pairs outside their predicted 95 % ({len(missed)} of {len(fit.pairs)}; about {chance:.1f} by chance):"
+    return [Text(head), Bullets(tuple(points))]
 
 
 def p_text(p: float) -> str:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.perception.ranking.swept import ALL, MEASURES, OF_THE_SET
 
-from .tables import table
+from .blocks import Grid, grid
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.table import Table
 
 PRINTED: Mapping[str, tuple[float, str, str]] = {
     "correct": (100.0, ".0f", " %"),
@@ -25,23 +24,22 @@ PRINTED: Mapping[str, tuple[float, str, str]] = {
 """By quantity: factor, format and unit in print; d′ is that of the nearest other icon."""
 
 
-def swept_table(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[str]) -> Table:
-    """One row per icon and value: each quantity with its 95 % interval for a new laboratory, where it has one.
+def sweep_report(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[str]) -> list[Grid]:
+    """Report one row per icon and value: each quantity with its 95 % interval for a new laboratory, where it has one.
 
     >>> import pandas as pd
     >>> row = {"icon": "dip", "contact.area_cm2": 4.0, "correct": 0.82, "correct_low": 0.7, "correct_high": 0.91}
-    >>> made = swept_table(pd.DataFrame([row]), ["contact.area_cm2"], ["correct"])
-    >>> [next(iter(column.cells)) for column in made.columns]
+    >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), ["contact.area_cm2"], ["correct"])[0].rows[0]]
     ['dip', '4', '82 % (70–91)']
     """
-    printed = table("icon", *keys, *quantities, numbers=keys, names=("icon", *keys, *quantities))
     of_icons = not {*quantities} <= {*OF_THE_SET}
+    rows = []
     for row in frame.to_dict("records"):
-        if not of_icons and row["icon"] != ALL:
-            continue
-        settings = [row[key] if isinstance(row[key], str) else f"{row[key]:g}" for key in keys]
-        printed.add_row(str(row["icon"]), *settings, *(_cell(row, quantity) for quantity in quantities))
-    return printed
+        if of_icons or row["icon"] == ALL:
+            settings = [row[key] if isinstance(row[key], str) else f"{row[key]:g}" for key in keys]
+            rows.append((str(row["icon"]), *settings, *(_cell(row, quantity) for quantity in quantities)))
+    columns = ("icon", *keys, *quantities)
+    return [grid(columns, rows, keys, columns)]
 
 
 def _cell(row: Mapping[Any, Any], quantity: str) -> str:

@@ -1,4 +1,4 @@
-"""What ``thermicon fit`` prints: parameters, residuals, doubts, and the table of a plan."""
+"""What ``thermicon fit`` says: parameters, residuals, doubts, and the table of a plan."""
 
 from __future__ import annotations
 
@@ -6,11 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .tables import table
+from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
-    from rich.table import Table
-
     from thermicon.circuit import Rig
     from thermicon.circuit.fitting.laboratory import Expected
     from thermicon.circuit.fitting.rig_fit import RigFit
@@ -26,32 +24,48 @@ CLOSE = 0.9
 """Correlations from here on are printed."""
 
 
-def parameter_table(fitted: RigFit) -> Table:
+def fit_report(fitted: RigFit, before: Rig) -> list[Block]:
+    """Report parameters, residuals, what was not identified, and the uncertainty that the rig gets."""
+    uncertain = uncertainty_line(fitted, before)
+    said = [Text(line) for line in (*doubts(fitted), *([uncertain] if uncertain else []))]
+    return [parameter_table(fitted), residual_table(fitted), *said]
+
+
+def plan_report(expected: Sequence[Expected]) -> list[Block]:
+    """Report how well each choice of sensors will identify the keys: a row per key, a column per choice."""
+    choices = [" ".join(LETTERS[column] for column in each.columns) for each in expected]
+    rows = [
+        (key.key, *(_width(each.half_widths[k], key.log, each.identified[k], key.key) for each in expected))
+        for k, key in enumerate(expected[0].keys)
+    ]
+    return [Text(PLAN_HEAD), grid(("key", *choices), rows, choices, ("key",))]
+
+
+def parameter_table(fitted: RigFit) -> Grid:
     """Parameters with fitted value and interval, neither where the logs do not tell; the unit ends the key."""
-    rows = table("key", "fitted", "95 % interval", "±", numbers=("fitted", "±"), names=("key",))
+    rows = []
     for item in fitted.parameters:
         if not item.identified:
-            rows.add_row(item.key, "–", "not known", "unknown")
+            rows.append((item.key, "–", "not known", "unknown"))
             continue
         digits = _digits(item.value, 0.5 * (item.high - item.low))
         ends = f"{_short(item.low, digits)} to {_short(item.high, digits)}"
-        rows.add_row(item.key, _short(item.value, digits), ends, item.interval.removeprefix("±"))
-    return rows
+        rows.append((item.key, _short(item.value, digits), ends, item.interval.removeprefix("±")))
+    return grid(("key", "fitted", "95 % interval", "±"), rows, ("fitted", "±"), ("key",))
 
 
-def residual_table(fitted: RigFit) -> Table:
+def residual_table(fitted: RigFit) -> Grid:
     """Every measured column: rms, largest residual and its time, and the sensor's offset."""
     from thermicon.circuit.fitting.left_out import milli
 
-    rows = table("measured − fitted", "rms", "largest", "at", "offset", numbers=("rms", "largest", "at", "offset"))
+    rows = []
     for each in fitted.channels:
         words = each.column.rpartition("_")[0].replace("_", " ")
+        sizes = [milli(value, each.unit) for value in (each.rms, each.largest)]
         offset = f"{_signed(each.offset_K, 3)} K" if each.unit == "K" else "–"
-        rows.add_row(
-            f"{words} ({each.file})", milli(each.rms, each.unit), milli(each.largest, each.unit),
-            f"{each.largest_s:.1f} s", offset,
-        )  # fmt: skip
-    return rows
+        rows.append((f"{words} ({each.file})", *sizes, f"{each.largest_s:.1f} s", offset))
+    numbers = ("rms", "largest", "at", "offset")
+    return grid(("measured − fitted", *numbers), rows, numbers)
 
 
 def doubts(fitted: RigFit) -> list[str]:
@@ -93,16 +107,6 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
         f"uncertainty of the fitted rig, for the person, contact and room of these logs: {', '.join(changed)}; widen "
         f"it with --set uncertainty.KEY=VALUE for other people"
     )
-
-
-def plan_table(expected: Sequence[Expected]) -> Table:
-    """A row per key, a column per choice of sensors."""
-    choices = [" ".join(LETTERS[column] for column in each.columns) for each in expected]
-    rows = table("key", *choices, numbers=choices, names=("key",))
-    for place, key in enumerate(expected[0].keys):
-        widths = [_width(each.half_widths[place], key.log, each.identified[place], key.key) for each in expected]
-        rows.add_row(key.key, *widths)
-    return rows
 
 
 def _width(width: float, log: bool, known: bool, key: str) -> str:

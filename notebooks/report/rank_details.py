@@ -1,0 +1,221 @@
+"""What stands behind a ranking: its numbers with intervals, the worst pair with its reasons, assumptions and rules."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from thermicon.icons.number_text import count_of, number, percent, percent_span
+
+from .blocks import Block, Bullets, Heading, Text
+from .choices import laboratory
+from .rank_notes import playable
+
+MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
+NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
+
+
+def detail_blocks(result: Mapping[str, Any]) -> list[Block]:
+    """The scores of the set, its worst pair, and what they depend on; by rules, the rules of the set."""
+    if result["by"] == "rules":
+        return [*rules_blocks(result), *disagreement_blocks(result)]
+    scores = [*number_points(result), *norm_points(result), *carried_points(result["icons"])]
+    found: list[Block] = [Heading("The set"), Bullets(tuple(scores))]
+    if result["set"]["worst_pair"]:
+        first, *reasons = worst_points(result)
+        found += [Heading(first), Bullets(tuple(reasons)), *edits_blocks(result)]
+    return [*found, *assumption_blocks(result["assumptions"]), *disagreement_blocks(result)]
+
+
+def number_points(result: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the scores of the set: proportion correct and information, with their intervals."""
+    whole = result["set"]
+    (low, high), bits = whole["proportion_correct_interval"], whole["information_bits"]
+    where = laboratory(result["observer"], whole["own_laboratory"])
+    yield f"{percent(whole['proportion_correct'])} correct" + _range(result, percent_span(low, high))
+    if result["observer"] != "shipped":
+        yield f"predicted with the observer of {result['observer']}"
+    if whole["proportion_correct_interval_new_laboratory"]:
+        low, high = whole["proportion_correct_interval_new_laboratory"]
+        people = count_of(whole["new_laboratory_people"], "person", "people")
+        yield f"mean of {people} in {where} (95 %): {percent_span(low, high)}"
+    elif not result["chosen"]:
+        yield _no_interval(result["observer"])
+    if bits is None:
+        return
+    least, most = whole["information_bits_interval"]
+    yield f"{bits:.2f} bits" + _range(result, f"{least:.2f}–{most:.2f} bits")
+    if (interval := whole["information_bits_interval_new_laboratory"]) is not None:
+        yield f"in {where} (95 %): {interval[0]:.2f}–{interval[1]:.2f} bits"
+    yield f"{whole['bits_per_s']:.2f} bits/s"
+    plugin = whole["information_bits_plugin"]
+    yield f"a {whole['trials']}-trial experiment would report {plugin:.2f} bits (biased upwards)"
+
+
+def _no_interval(observer: str) -> str:
+    """Why there is none: an observer without draws, or no draws asked for."""
+    if observer.lower().endswith(".toml"):
+        why = f"{observer} is one observer without draws; a table of draws (.csv) gives one"
+    else:
+        why = "--intervals 2 or more and an observer with draws give one"
+    return f"no interval for a new laboratory: {why}"
+
+
+def _range(result: Mapping[str, Any], interval: str) -> str:
+    """The interval of the middle 95 % of people, which a goal's 95 % is not; nothing for one person."""
+    return "" if result["people"] == 1 else f"; middle 95 % of people: {interval}"
+
+
+def norm_points(result: Mapping[str, Any]) -> Iterator[str]:
+    """Yield whether the order would change with another norm of memory; nothing for one icon.
+
+    >>> whole = {"norm_sensitivity": {"naming": 0.7}, "norm_changes": {"naming": [["a", "b"], ["a", "c"]]}}
+    >>> list(norm_points({"pairs": [{}], "set": whole}))
+    ['with the naming distance: 70 % correct, b before a (1 more change of order)']
+    """
+    whole = result["set"] if result["pairs"] else {"norm_sensitivity": {}}
+    for norm, share in whole["norm_sensitivity"].items():
+        changes = whole["norm_changes"][norm]
+        if not changes:
+            order = "same order"
+        else:
+            more = f" ({count_of(len(changes) - 1, 'more change')} of order)" if len(changes) > 1 else ""
+            order = f"{changes[0][1]} before {changes[0][0]}{more}"
+        yield f"with the {norm} distance: {percent(share)} correct, {order}"
+
+
+def carried_points(icons: Sequence[dict[str, Any]]) -> Iterator[str]:
+    """Yield which icon is changed most by the icon before it; nothing where all carry-over has faded."""
+    carried = [(icon["carry_over"]["d_prime"], icon["name"], icon["carry_over"]["after"]) for icon in icons
+               if icon["carry_over"]]  # fmt: skip
+    if carried:
+        d_prime, name, before = max(carried)
+        after = "a first play of itself" if before == name else before
+        yield f"carry-over: largest for {name} after {after}, d′ {number(d_prime)} from {name} alone"
+
+
+def worst_points(result: Mapping[str, Any]) -> Iterator[str]:
+    """Yield which pair is confused most often, why, what would separate it, and the nearest pair if different."""
+    pairs, fine = result["pairs"], {icon["name"] for icon in playable(result["icons"])}
+    worst = worst_pair(result)
+    confused = percent(worst["confused_probability"])
+    head = f"Worst pair: {worst['a']} and {worst['b']}"
+    yield f"{head}, confused in {confused} of trials, the mean of both ways (d′ {number(worst['d_prime'])})"
+    yield from worst["why"]
+    if edit := edit_text(worst):
+        yield edit
+    nearest = min((p for p in pairs if not fine or {p["a"], p["b"]} <= fine), key=lambda p: p["d_prime"], default=worst)
+    if nearest["d_prime"] < worst["d_prime"] - SAME_DPRIME:
+        share = percent(nearest["confused_probability"])
+        yield (
+            f"nearest in d′: {nearest['a']} and {nearest['b']}, d′ {number(nearest['d_prime'])}, confused in {share} "
+            "of trials: d′ compares these two alone, answers are spread over all names, and missed icons get any of "
+            "them"
+        )
+
+
+def worst_pair(result: Mapping[str, Any]) -> dict[str, Any]:
+    """The record of the worst pair of a set that has one."""
+    (worst,) = (pair for pair in result["pairs"] if [pair["a"], pair["b"]] == result["set"]["worst_pair"])
+    return dict(worst)
+
+
+def edits_blocks(result: Mapping[str, Any]) -> list[Block]:
+    """The cheapest edits of the other pairs, a point each."""
+    others = [pair for pair in result["pairs"] if [pair["a"], pair["b"]] != result["set"]["worst_pair"]]
+    edits = [f"{pair['a']} and {pair['b']}, d′ {number(pair['d_prime'])}: {text.removeprefix('cheapest edit: ')}"
+             for pair in others if (text := edit_text(pair))]  # fmt: skip
+    if not edits:
+        return []
+    more = [f"and {len(edits) - MOST_EDITS} more; --json lists all"] * (len(edits) > MOST_EDITS)
+    return [Heading("Cheapest edits of the other indistinguishable pairs", 3), Bullets((*edits[:MOST_EDITS], *more))]
+
+
+def edit_text(pair: Mapping[str, Any]) -> str:
+    """The cheapest edit that separates a pair, or why there is none; empty if it was not looked for or not needed."""
+    from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
+
+    if (edit := pair["edit"]) is not None:
+        added = f" ({number(edit['added_s'])} s longer)" if edit["added_s"] >= 0.05 else ""
+        return (
+            f"cheapest edit: in {edit['icon']}, {edit['old']} → {edit['new']}{added}; then d′ {number(edit['d_prime'])}"
+        )
+    return pair["no_edit"] if pair["no_edit"] and pair["d_prime"] < DISTINGUISHABLE_DPRIME else ""
+
+
+def assumption_blocks(found: Mapping[str, Any] | None) -> list[Block]:
+    """The assumptions that move the proportion correct most, what the site rests on, and what was not varied.
+
+    >>> area = {"name": "area of contact", "unit": "cm²", "low": 0.75, "high": 3.0, "source": "people",
+    ...         "correct_at_low": 0.4, "correct_at_high": 0.6, "value": 1.5}
+    >>> assumption_blocks({"moving": [area], "site": None, "not_varied": []})[1].points
+    ('area of contact: 40 % correct at 0.75 cm², 60 % at 3 cm² (1.5 cm² assumed)',)
+    """
+    if found is None or not (found["moving"] or found["site"]):
+        return []
+    head = "What this depends on (no single assumption stands out from these people and draws)"
+    if found["moving"]:
+        head = "What this depends on most, from the people and draws above"
+    points = [_moving(each) for each in found["moving"]] + ([_site(found["site"])] if found["site"] else [])
+    points += [f"not varied: {', '.join(found['not_varied'])}"] if found["not_varied"] else []
+    return [Heading(head), Bullets(tuple(points))]
+
+
+def _moving(each: Mapping[str, Any]) -> str:
+    low, high = percent(each["correct_at_low"]), percent(each["correct_at_high"])
+    if each["source"] == "draws":
+        name = NAMES.get(each["name"], each["name"])
+        return f"{name}: {low} correct at the low end of its 95 %, {high} at the high end"
+    unit = each["unit"]
+    return (
+        f"{each['name']}: {low} correct at {each['low']:.2g} {unit}, {high} at {each['high']:.2g} {unit} "
+        f"({each['value']:.2g} {unit} assumed)"
+    )
+
+
+def _site(site: Mapping[str, Any]) -> str:
+    nearest = site["nearest_recorded"]
+    near = f"the nearest site with thresholds on record is the {nearest} ({site['why']})" if nearest else site["why"]
+    used = (
+        "whose thresholds are used" if nearest == site["thresholds_of"] else f"the {site['thresholds_of']}'s are used"
+    )
+    twice = site["proportion_correct_at_twice_the_thresholds"]
+    more = "" if twice is None else f"; with twice those thresholds, {percent(twice)} correct"
+    return f"{site['site']}: {near}, {used}{more}"
+
+
+def disagreement_blocks(result: Mapping[str, Any]) -> list[Block]:
+    """Where rules and model disagree, of the chosen icons where some are, and why they may."""
+    found = result["set"]["rules_disagree"]
+    if result["chosen"]:
+        chosen = {*result["chosen"]["icons"]}
+        found = [each for each in found if {each[key] for key in ("icon", "a", "b") if key in each} <= chosen]
+    made: list[Block] = []
+    for some, why in (
+        ([each for each in found if "a" in each], "rules compare two icons played back to back, while naming one needs "
+         "memory"),
+        ([each for each in found if "a" not in each], "rules require a change and a rate, the model a report in half "
+         "of the trials"),
+    ):  # fmt: skip
+        more = len(some) - MOST_DISAGREEMENTS
+        told = [each["text"] for each in some[:MOST_DISAGREEMENTS]] + [f"and {more} more; --json lists all"] * (
+            more > 0
+        )
+        made += [Heading(f"Rules and model disagree: {why}", 3), Bullets(tuple(told))] if some else []
+    return made
+
+
+def rules_blocks(result: Mapping[str, Any]) -> list[Block]:
+    """The set by rules: distinguishable pairs, rules on the rig, and the worst pair with its rules."""
+    pairs, whole = result["pairs"], result["set"]
+    apart = sum(pair["distinguishable_by_rules"] for pair in pairs)
+    points = [f"{apart} of {count_of(len(pairs), 'pair')} distinguishable by the rules"] if pairs else []
+    made: list[Block] = [Heading("The set"), Bullets((*points, *(rule["text"] for rule in whole["rules"])))]
+    if whole["worst_pair"]:
+        worst = worst_pair(result)
+        word = "distinguishable" if worst["distinguishable_by_rules"] else "not distinguishable"
+        made += [
+            Text(f"Worst pair by rules: {worst['a']} and {worst['b']}, {word}"),
+            Bullets(tuple(rule["text"] for rule in worst["rules"])),
+        ]
+    return made

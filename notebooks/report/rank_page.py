@@ -1,0 +1,279 @@
+"""``rank --report``: one ranking as a single page that can be mailed, printed and read on a phone."""
+
+from __future__ import annotations
+
+import io
+import platform
+from collections.abc import Iterator, Mapping
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+from thermicon.icons.number_text import number, percent
+
+from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Row, Text, as_html, as_markdown, grid
+from .rank_details import worst_pair
+from .rank_notes import task_note
+from .rank_report import rank_report
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon, IconSet
+    from thermicon.perception import Ranking
+
+    from .set_report import SetReport
+
+MOST_OVERVIEWS = 24
+FEW, LARGE, SMALL = 12, 84, 66
+"""Dots an inch of overviews: large for few icons."""
+OVERVIEW_PIXELS = 700
+SALT = "thermicon"
+VECTOR_ICONS = 8
+"""Pictures of more icons are pixels, which take less room, and stand below one another."""
+MOST_PAIRS = 60
+OWN_UNITS = {"intensity": "1", "rate": "× per s", "duration": "s", "pause": "s"}
+"""Units of what single icons have of a component, where 1 is a multiple of threshold; differences are in d′."""
+LIMITS = (
+    "Everything here follows from a model of the skin and of its receptors, calibrated on published thresholds. No "
+    "experiment has confirmed it for these icons.",
+    "The order of icons is less certain than the overall level: for the six icons of the only published experiment "
+    "that it can be checked against, the model does not find the order.",
+    "Predicted onsets are later than the usually quoted windows, those of warmth most.",
+    "The skin is a stack of flat layers: no edges, no lateral heat flow, one patch at a time. Pain, adaptation over "
+    "minutes, training, attention and several simultaneous elements are outside the model.",
+    "Intervals over people cover differences between people, not errors of the model. The model uncertainty, where it "
+    "is given, covers what the data leave open, for this structure of the model.",
+)
+SAFETY = (
+    "Icons were checked against temperature limits for skin and display that are this project's own and stricter than "
+    "published ones (ISO 13732, IEC 60601-1). This is a calculation, not a medical or ethical clearance. Hardware that "
+    "touches people needs its own temperature cut-off that works without any software."
+)
+
+
+def report(
+    made: SetReport,
+    icons: IconSet,
+    rig: Rig,
+    command: str = "",
+    cures: Mapping[str, str] | None = None,
+    date: str = "",
+    as_text: bool = False,
+) -> str:
+    """Write the page as HTML text, or as Markdown without pictures: the same bytes for the same arguments.
+
+    ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
+    an icon could be reached, and a ``date`` is printed only if it is given.
+    """
+    result = made.to_dict(mapped=False)  # the map is drawn, not printed
+    title, count = icons.title or "Thermal icons", len(result["icons"])
+    lead = f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon"
+    parts: list[Block] = [
+        Heading(title, 1),
+        Text(f"{lead}: a model's, not measured", "lead"),
+        *(Text(f"warning: {line}", "warn") for line in result["warnings"]),
+        *rank_report(made, "", cures, details=True),
+        *_settings(result, rig, command, date),
+        *_components(result),
+        *view_parts(made.ranking),
+        *_pairs(result),
+        *_rules(result),
+        *icon_parts(result, icons, rig),
+        Heading("Rig file"),
+        Text("The whole rig as it was used, changes included."),
+        Code(result["rig_text"]),
+        Heading("Limits of the prediction"),
+        Bullets(LIMITS),
+        Heading("Safety"),
+        Text(SAFETY),
+    ]
+    return as_markdown(parts) if as_text else as_html(parts, f"{title}: predicted ranking")
+
+
+def _settings(result: dict[str, Any], rig: Rig, command: str, date: str) -> Iterator[Block]:
+    changes = ", ".join(result["rig_changes"]) or "none"
+    draws = result["set"]["posterior_draws"]
+    versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
+    rows = [
+        ("command", command),
+        ("date", date),
+        ("rig", f"{result['rig']}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²; changes: {changes}"),
+        ("people", f"{result['people']} virtual, seed {result['seed']}"),
+        ("same for all people", f"{result['tracking']} tracking"),
+        ("what is remembered", f"{result['norm']} norm"),
+        ("task", task_note(result["task"]).removeprefix(", ")),
+        ("draws of the posterior", str(draws) if draws else ""),
+        ("predicted experiment", f"{result['set']['trials']} trials"),
+        ("made with", f"thermicon {result['thermicon']}, Python {platform.python_version()}, {versions}"),
+        ("content hash", result["content_hash"]),
+    ]
+    yield Heading("Settings")
+    yield Facts(tuple(row for row in rows if row[1]))
+    yield Text("The hash covers the icons' text, the rig and the observer's parameters: equal hashes mean equal input.")
+
+
+def _components(result: dict[str, Any]) -> Iterator[Block]:
+    if result["by"] == "rules" or not result["set"]["worst_pair"]:
+        return
+    pair = worst_pair(result)
+    yield Heading(f"Components of the distance of {pair['a']} and {pair['b']}")
+    rows = []
+    for part in pair["parts"]:
+        own = OWN_UNITS.get(part["part"], part["unit"])
+        shown = [_sized(part[key], own if key in "ab" else part["unit"]) for key in ("a", "b", "value", "noticeable")]
+        rows.append([part["part"], *shown, "–" if part["above"] is None else "yes" if part["above"] else "no"])
+    yield grid(("component", pair["a"], pair["b"], "difference", "just noticeable", "noticeable"), rows)
+    yield Text(
+        "Intensity and rate are in multiples of threshold. Just noticeable holds for icons played back to back; naming "
+        "one from memory needs several times as much."
+    )
+
+
+def _sized(value: float | None, unit: str) -> str:
+    """Write a component with its unit; a factor has a multiplication sign.
+
+    >>> _sized(1.5, "s"), _sized(2.0, "1"), _sized(None, "s")
+    ('1.50 s', '2.00 ×', '–')
+    """
+    if value is None:
+        return "–"
+    written = "×" if unit == "1" else unit
+    return f"{value:.2f} {written}" if abs(value) < 10 else f"{value:.1f} {written}"
+
+
+def _pairs(result: dict[str, Any]) -> Iterator[Block]:
+    if result["by"] == "rules" or not result["pairs"]:
+        return
+    yield Heading("Pairs, the most confused first")
+    rows = sorted(result["pairs"], key=lambda pair: (-pair["confused_probability"], pair["a"], pair["b"]))
+    names = [part["part"] for part in rows[0]["parts"]]
+    cells = [
+        [
+            *(pair["a"], pair["b"], Cell(f"{pair['d_prime']:.1f}", "strong")),
+            f"{100 * pair['confused_probability']:.1f} %",
+            *(Cell(_sized(part["value"], part["unit"]), "strong" if part["above"] else "") for part in pair["parts"]),
+        ]
+        for pair in rows[:MOST_PAIRS]
+    ]
+    yield grid(("icon", "and", "d′", "confused", *names), cells, ("d′", "confused", *names))
+    more = f" {len(rows) - MOST_PAIRS} more pairs are in the JSON." if len(rows) > MOST_PAIRS else ""
+    yield Text(f"Components in bold are above the just noticeable difference of icons played back to back.{more}")
+
+
+def _rules(result: dict[str, Any]) -> Iterator[Block]:
+    yield Heading("Rules of thumb")
+    rules = [(icon["name"], rule) for icon in result["icons"] for rule in icon["rules"]]
+    rules += [("the rig", rule) for rule in result["set"]["rules"]]
+    failed = [[name, rule["text"], rule["source"]] for name, rule in rules if not rule["pass"]]
+    apart = sum(pair["distinguishable_by_rules"] for pair in result["pairs"])
+    pairs = f" The rules alone distinguish {apart} of {len(result['pairs'])} pairs." if result["pairs"] else ""
+    yield Text(f"{len(rules) - len(failed)} of {len(rules)} rules on icons and rig pass.{pairs} The following fail:")
+    yield grid(("icon", "rule", "source"), failed) if failed else Text("none.")
+
+
+def view_parts(ranking: Ranking) -> Iterator[Block]:
+    """Yield heat maps, perceptual map and places; nothing for one icon or by rules."""
+    if ranking.by == "rules" or len(ranking.icons) < 2:
+        return
+    from thermicon.perception.identification.map import map_of
+    from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance, plot_places
+    from thermicon.perception.plots.draw_map import plot_map
+
+    vector = len(ranking.icons) <= VECTOR_ICONS
+    yield Heading("Pictures of the set")
+    confused = "Rows: the icon presented. Columns: the response. The diagonal is correct. Similar icons are adjacent."
+    maps = (
+        _drawn(plot_confusion(ranking), "answers to each icon, per cent", confused, vector),
+        _drawn(
+            plot_distance(ranking),
+            "d′ of every pair",
+            "Median over people of the d′ between two icons.",
+            vector,
+        ),
+    )
+    yield from (Row(maps),) if vector else maps
+    found = map_of(ranking)
+    bent = (
+        f"Distances in the plane approach d′ (stress {found.stress:.2f}; 0: exact). Only distances matter; directions "
+        "have no meaning."
+    )
+    if found.covariance is not None:
+        bent += f" Each ellipse holds half of {found.people} people, whose maps were rotated and shifted onto this one."
+    yield _drawn(plot_map(found), "the icons as points of a plane", bent, vector)
+    if ranking.spread is not None and ranking.people > 1:
+        places = "Each person ranks the icons by how often they are named correctly; ties share their ranks."
+        yield _drawn(plot_places(ranking), "probability of each place for each icon", places, vector)
+
+
+def _drawn(axes: Axes, said: str, caption: str, vector: bool) -> Picture:
+    figure: Any = axes.figure
+    width = round(96 * figure.get_figwidth())
+    if not vector:
+        return Picture(caption, said, "png", width, png_of(figure, 120))
+    return Picture(caption, said, "svg+xml", width, svg_of(figure))
+
+
+def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
+    """Yield every icon: what it scores, its cue text, its course and an overview of its run."""
+    from thermicon.icons.pictures.picture import picture as drawn
+
+    members = list(icons)
+    yield Heading("Icons")
+    if len(members) > MOST_OVERVIEWS:
+        yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; --figure DIR writes all of them.")
+    for place, (icon, score) in enumerate(zip(members, result["icons"], strict=True)):
+        yield Heading(icon.name, 3)
+        facts = [
+            f"{percent(score['proportion_correct'])} correct",
+            f"reported in {percent(score['detected_probability'])} of the trials of all people",
+        ]
+        peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())
+        said = [*(facts if result["by"] == "model" else []), "largest change " + ", ".join(peaks)]
+        yield Text("; ".join(said) + ".", "lead")
+        small = drawn(icon).encode("utf-8")
+        course = Picture("", f"prescribed course of {icon.name}", "svg+xml", 320, small)
+        yield Row((Code(cue_text(icon)), course))
+        if place < MOST_OVERVIEWS:
+            yield _overview(icon, rig, len(members))
+
+
+def cue_text(icon: Icon) -> str:
+    """The statement of one icon in canonical form, without the head of its file."""
+    text = str(icon)
+    return text[text.find("\nicon ") + 1 :].rstrip("\n")
+
+
+def _overview(icon: Icon, rig: Rig, count: int) -> Picture:
+    from thermicon.circuit import simulate
+    from thermicon.perception import perceive
+
+    from ..figures.overview import FELT_TAIL_S, evenly_timed, overview
+
+    trace = evenly_timed(simulate(icon, rig, tail_s=FELT_TAIL_S))
+    data = png_of(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
+    alt = f"temperatures, heat flow, current and sensation of {icon.name}"
+    return Picture("", alt, "png", OVERVIEW_PIXELS, data)
+
+
+def svg_of(figure: Figure) -> bytes:
+    """A figure as SVG, the same bytes every time: no date, and names drawn from a fixed salt."""
+    import matplotlib
+
+    held = io.BytesIO()
+    with matplotlib.rc_context({"svg.hashsalt": SALT, "svg.fonttype": "path"}):
+        figure.savefig(held, format="svg", metadata={"Date": None})
+    return held.getvalue()
+
+
+def png_of(figure: Figure, dpi: float, colours: int = 64) -> bytes:
+    """A figure as a small PNG of few colours."""
+    from PIL import Image
+
+    held, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(held, format="png", dpi=dpi)
+    held.seek(0)
+    with Image.open(held) as image:
+        image.convert("RGB").quantize(colours, dither=Image.Dither.NONE).save(small, format="png", optimize=True)
+    return small.getvalue()

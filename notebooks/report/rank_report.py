@@ -1,0 +1,180 @@
+"""A ranking as blocks: what a user asks first in twenty lines, and the rest on demand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from thermicon.icons.number_text import count_of, number, percent, percent_span, seconds
+
+from .blocks import Block, Bullets, Cards, Cell, Grid, Heading, Text, grid
+from .choices import choice_lines, goal_lines, laboratory
+from .rank_details import detail_blocks, edit_text, edits_blocks, worst_pair
+from .rank_notes import caveat, crowd_text, outside_lines, playable, trouble_lines
+
+if TYPE_CHECKING:
+    from thermicon.perception import Ranking
+
+    from .set_report import SetReport
+
+MOST_LINES = 20
+"""Lines of a ranking without details, at 80 columns."""
+BARELY = 0.75
+"""An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
+RANKED = ("icon", "detected", "onset", "channel", "correct", "most confused with")
+BY_RULES = ("icon", "score", "rules passed", "distinct pairs", "margin", "fails")
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The command that helps a set most: its name, and options behind the file and those of the ranking."""
+
+    command: str
+    options: tuple[str, ...] = ()
+
+
+def rank_report(
+    made: SetReport, title: str, cures: Mapping[str, str] | None = None, following: str = "", details: bool = False
+) -> list[Block]:
+    """Report a ranking with what was asked of it.
+
+    ``cures`` explain by the name of an icon how it could be reached, ``following`` is the command to give next. Without
+    ``details``, all but the first note, the reasons and what the numbers depend on are left out.
+    """
+    result = made.to_dict(mapped=False)  # the map is drawn, not printed
+    model = result["by"] == "model"
+    place = {row["icon"]: k for k, row in enumerate(made.ranking.rows())}
+    icons = sorted(result["icons"], key=lambda icon: place[icon["name"]])
+    notes = [*trouble_lines(result["icons"], cures or {}), *outside_lines(icons)]
+    if not details and len(notes) > 1:
+        notes = [notes[0], f"{count_of(len(notes) - 1, 'more note')}: thermicon rank --details"]
+    advice = edit_text(worst_pair(result)) if model and result["set"]["worst_pair"] else ""
+    where = laboratory(result["observer"], result["set"]["own_laboratory"])
+    chosen = list(choice_lines(result["chosen"], where)) if result["chosen"] else []
+    said = [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]
+    by = "" if result["observer"] == "shipped" else f", observer {result['observer']}"
+    short = f"Predicted, not measured: {crowd_text(result)}{by}."
+    told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
+    return [
+        *([Heading(title, 1)] if title else []),
+        *([Text("\n".join(goal_lines(result["goal"])))] if result["goal"] else []),
+        *([Cards(cards(result, where))] if model else []),
+        Text("\n".join(filter(None, said))),
+        *told,
+        *([] if details else edits_blocks(result)),
+        *(Text(note, "note" if note.startswith("Outside") else "warn") for note in notes),
+        icon_table(icons, result),
+        *(detail_blocks(result) if details or not model else []),
+        Text(caveat(result) if details or not model else f"{short} More: {'rank ' * (not following)}--details"),
+    ]
+
+
+def cards(result: Mapping[str, Any], where: str) -> tuple[tuple[str, str], ...]:
+    """The numbers that are asked first: named, bits, detected, and the worst pair; each with its interval."""
+    whole, icons = result["set"], result["icons"]
+    least = min(icons, key=lambda icon: float(icon["detected_probability"]))
+    mean = sum(icon["detected_probability"] for icon in icons) / len(icons)
+    felt = "of trials detected"
+    if len(icons) > 1:
+        felt += f"; least: {least['name']}, {percent(least['detected_probability'])}"
+    if whole["information_bits"] is None:
+        return ((percent(mean), felt),)
+    correct, bits = "named correctly", "of information"
+    if whole["proportion_correct_interval_new_laboratory"]:
+        correct += f"; in {where} (95 %): {percent_span(*whole['proportion_correct_interval_new_laboratory'])}"
+        low, high = whole["information_bits_interval_new_laboratory"]
+        bits += f"; in {where} (95 %): {low:.2f}–{high:.2f}"
+    elif result["people"] > 1:
+        correct += f"; middle 95 % of people: {percent_span(*whole['proportion_correct_interval'])}"
+        low, high = whole["information_bits_interval"]
+        bits += f"; middle 95 % of people: {low:.2f}–{high:.2f}"
+    worst = worst_pair(result)
+    pair = f"worst pair: {worst['a']} and {worst['b']}, confused in {percent(worst['confused_probability'])}"
+    return (
+        (percent(whole["proportion_correct"]), correct),
+        (f"{whole['information_bits']:.2f} bits", bits),
+        (percent(mean), felt),
+        (f"d′ {number(worst['d_prime'])}", pair),
+    )
+
+
+def icon_table(icons: Sequence[dict[str, Any]], result: Mapping[str, Any]) -> Grid:
+    """One row per icon in this order; those that are unsafe or not reached have a star and stand apart."""
+    apart = len(playable(icons))
+    if result["by"] == "rules":
+        return grid(BY_RULES, [_by_rules(icon, result["pairs"]) for icon in icons], BY_RULES[1:5], BY_RULES[:5])
+    labels, chosen = result["confusion"]["labels"], (result["chosen"] or {"icons": ()})["icons"]
+    rows: list[tuple[str | Cell, ...]] = [
+        (
+            f"{'✓ ' * (icon['name'] in chosen)}{icon['name']}{' *' * (place >= apart)}",
+            percent(icon["detected_probability"]),
+            seconds(icon["onset_s"]),
+            icon["channel"] or "–",
+            Cell(percent(icon["proportion_correct"]), "strong"),
+            rival(result["confusion"], labels.index(icon["name"])),
+        )
+        for place, icon in enumerate(icons)
+    ]
+    return grid(RANKED, rows, ("detected", "onset", "correct"), RANKED, apart)
+
+
+def rival(confusion: Mapping[str, Any], place: int) -> str:
+    """Return the icon that the one at this place is confused with most often, and how often: the mean of both ways."""
+    matrix, labels = confusion["probability"], confusion["labels"]
+    others = [(0.5 * (matrix[place][k] + matrix[k][place]), label) for k, label in enumerate(labels) if k != place]
+    if not others:
+        return "–"
+    share, label = max(others)
+    return f"{label} {percent(share)}"
+
+
+def _by_rules(icon: Mapping[str, Any], pairs: Sequence[dict[str, Any]]) -> tuple[str, ...]:
+    """Share of rules passed, distinguishable pairs, the smallest margin and what fails."""
+    rules = [rule for rule in icon["rules"] if not rule["from_model"]]
+    own = [pair for pair in pairs if icon["name"] in (pair["a"], pair["b"])]
+    return (
+        icon["name"],
+        percent(icon["rules_score"]),
+        f"{sum(rule['pass'] for rule in rules)} of {len(rules)}",
+        f"{sum(pair['distinguishable_by_rules'] for pair in own)} of {len(own)}" if own else "–",
+        margin(icon["rules_margin"]),
+        ", ".join(rule["rule"] for rule in rules if not rule["pass"]) or "–",
+    )
+
+
+def margin(share: float | None) -> str:
+    """Write a margin as a multiple of its threshold; below 1, the threshold is missed.
+
+    >>> margin(1.79), margin(-0.25), margin(None)
+    ('2.79 ×', '0.75 ×', '–')
+    """
+    return "–" if share is None else f"{1.0 + share:.3g} ×"
+
+
+def next_step(ranking: Ranking, has_families: bool) -> Step:
+    """Choose the command that helps a set most, from the records of its ranking.
+
+    What cannot be played goes first; then icons that are hardly felt get a contact twice as wide, unless a current is
+    prescribed; then come icons that are not distinguished, and at last the export.
+    """
+    from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
+
+    fine = [icon.name for icon in ranking.icons if icon.playable]
+    if not fine:
+        return Step("simulate")
+    weak = [pair for pair in ranking.pairs if pair.d_prime < DISTINGUISHABLE_DPRIME]
+    current = ranking.job.icons[0].context.control == "current"
+    if len(fine) == len(ranking.icons) and not current and min(i.detected_probability for i in ranking.icons) < BARELY:
+        return Step("rank", ("--set", f"contact.area_cm2={2e4 * ranking.job.rig.contact.area_m2:.4g}"))
+    if weak and has_families:
+        return Step("improve")
+    left = set(fine)
+    for pair in sorted(weak, key=lambda pair: pair.d_prime):
+        if {pair.a, pair.b} <= left:
+            left.remove(pair.b)
+    if len(left) == len(ranking.icons):
+        return Step("export", ("--to", "csv", "-o", "drives"))
+    if len(left) >= max(2.0, 0.5 * len(ranking.icons)):
+        return Step("improve", ("--choose", str(len(left))))
+    return Step("improve", ("--edits",))
