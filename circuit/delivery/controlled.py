@@ -19,7 +19,7 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Controller
-from ..safety.checks import Check, worst_of
+from ..safety.checks import Check, Scenario, worst_of
 from ..safety.demands import CutOff, Demands, Loop, SingleFault
 from ..safety.first_plays import polarity_check
 from ..safety.gate import Gate
@@ -115,22 +115,11 @@ def _demands(
     """
     loop, limits_A, cut = proven
     rest_s = _rest_s(under, delivery, unpowered_C)
-    duration = "10 min or more" if rest_s is None else f"{rest_s:g} s"
-    start = SingleFault(
-        "first play on a display that was without power",
-        "green",
-        f"the display is between {signed(unpowered_C[0], '.1f')} and {signed(unpowered_C[1], '.1f')} °C",
-        f"holding the baseline for {duration} before the first play",
-    )
+    start = SingleFault("unpowered loop", "green", {"display_C": unpowered_C, "rest_s": rest_s})
     faulty = module.faulty(samples_of(delivery))
     polarity, _ = polarity_check(faulty)
     _, stuck = faulty.cut_off((cut.low + BEYOND_K, cut.high - BEYOND_K))
-    lost = SingleFault(
-        "sensor lost or poles swapped: the loop runs to the driver's limit",
-        stuck.colour,
-        stuck.text,
-        f"a cut-off at {cut.low:g} and {cut.high:g} °C on a second sensor of its own, within {cut.react_within_s:g} s",
-    )
+    lost = SingleFault("loop lost", stuck.colour, {"harms": stuck.values["harms"], "cut_off": cut})
     return replace(
         verdict.demands,
         cut_off_display_C=cut,
@@ -209,4 +198,6 @@ def _swing(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, play: Sa
     gains = f"{loop.kp_A_per_K[1]:g} A/K, {loop.ki_A_per_Ks[1]:g} A/(K·s)"
     what = f"a loop of {gains} and a lag of {loop.sensor_lag_at_most_s:g} s"
     cure = "so that its cut-off would act; use a smaller controller.kp_A_per_K or a faster sensor"
-    return Check("swing of the display", "hard", value, limit, "K", float(play.time_s[-1]), since, cure, "", True, what)
+    return Check(
+        "swing of the display", "hard", value, limit, "K", float(play.time_s[-1]), since, cure, run=Scenario(what)
+    )

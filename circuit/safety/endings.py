@@ -17,6 +17,7 @@ from ..rig.rules import Limits
 from ..solver.batch_inputs import Bank, Intervals, State, run_on
 from ..solver.network import unpowered
 from ..solver.steady import state_under_current
+from .checks import Scenario
 from .ensemble import Ensemble
 from .tally import HOTTEST_C, WATCHED, Tally
 
@@ -73,7 +74,7 @@ def zero_current_C(ensemble: Ensemble) -> Array:
 
 def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
     """The steady state under zero current, checked against the limits of temperature."""
-    tally = Tally(limits, ensemble.corners, f", then {IN_THE_END}", begun_C=begun_C)
+    tally = Tally(limits, ensemble.corners, Scenario(ending=IN_THE_END), begun_C=begun_C)
     levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
     tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
     return tally

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
-
 from ..solver.drive import Drive
-from .checks import colour_of, findings_of
+from .checks import Scenario, colour_of, findings_of
 from .demands import PolarityCheck, SingleFault
 from .single_faults import Faulty
 from .tally import WATCHED, Tally
@@ -32,7 +30,6 @@ def rest_before(faulty: Faulty) -> tuple[float | None, SingleFault]:
 
     at_once = tally_after(0.0)
     findings = findings_of(at_once.checks())
-    text = "; ".join(str(check) for check in findings[:1]) or "no limit is passed"
     rest: float | None = 0.0
     if not at_once.passes():
         low, high = 0, int(LONGEST_REST_S)
@@ -40,19 +37,14 @@ def rest_before(faulty: Faulty) -> tuple[float | None, SingleFault]:
             middle = (low + high) // 2
             low, high = (low, middle) if tally_after(float(middle)).passes() else (middle, high)
         rest = float(high) if tally_after(float(high)).passes() else None
-    prevented = "nothing need be"
-    if rest is None:
-        prevented = "no rest up to 10 min; bring the display to its baseline before it touches the skin"
-    if rest:
-        prevented = f"holding the rest for {rest:g} s before the first play, without contact or with"
-    colour = colour_of(findings)
-    return rest, SingleFault("first play on a display that was without power", colour, text, prevented)
+    told = {"finding": next(iter(findings), None), "rest_s": rest}
+    return rest, SingleFault("unpowered", colour_of(findings), told)
 
 
 def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:
     """The effect of swapped poles, and the wiring check that detects them."""
     swapped = Drive(faulty.drive.time_s, -faulty.drive.current_A, faulty.drive.held)
-    tally = Tally(faulty.limits, faulty.ensemble.corners, ", poles swapped")
+    tally = Tally(faulty.limits, faulty.ensemble.corners, Scenario(way="poles swapped"))
     low, high = np.inf, -np.inf
     for (rows, values), _ in faulty.ensemble.play(swapped, faulty.ensemble.at_rest(0.0)):
         tally.add(rows, values)
@@ -64,9 +56,4 @@ def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:
     fall = float((display[:, 0] - display[:, -1]).min())
     needed = not tally.passes()
     check = PolarityCheck(needed, round(test_A, 3), TEST_S, round(0.5 * fall, 2), (round(low, 1), round(high, 1)))
-    text = f"skin {signed(low, '.1f')} … {signed(high, '.1f')} °C"
-    prevented = (
-        f"{signed(test_A, '.3g')} A for {TEST_S:g} s before the first play: the display must cool by "
-        f"{check.display_change_at_least_K:g} K or more"
-    )
-    return check, SingleFault("poles swapped", colour_of(findings_of(tally.checks())), text, prevented)
+    return check, SingleFault("swapped", colour_of(findings_of(tally.checks())), {"check": check})

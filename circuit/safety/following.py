@@ -16,6 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
+from .checks import Before, Scenario
 from .repetition import Cycle
 from .tally import Tally
 
@@ -50,7 +51,7 @@ def following_tallies(
     ensemble, corners = cycle.ensemble, cycle.ensemble.corners
     before = list(_before(cycles, starts, steady, which))
     states = State(*(np.concatenate([getattr(state, part) for state, _ in before]) for part in ("nodes_C", "sink")))
-    tallies = [Tally(limits, corners, f", {what}", begun_C=begun_C) for _, what in before]
+    tallies = [Tally(limits, corners, Scenario(before=what), begun_C=begun_C) for _, what in before]
     count = len(corners)
     for (rows, values), _ in ensemble.play(cycle.drive, states, np.tile(ensemble.lanes, len(before))):
         for k, tally in enumerate(tallies):
@@ -60,14 +61,13 @@ def following_tallies(
 
 def _before(
     cycles: Sequence[Cycle], starts: Sequence[State], steady: Sequence[State], which: int
-) -> Iterator[tuple[State, str]]:
-    """States before a play that follows another, and what they are in words."""
+) -> Iterator[tuple[State, Before]]:
+    """States before a play that follows another, and what that is."""
     for number, (cycle, start, settled) in enumerate(zip(cycles, starts, steady, strict=True)):
-        own, pause = number == which, f"{cycle.pause_s:.4g} s of pause"
-        yield cycle.after(start), f"second play after {pause}" if own else f"after another play and {pause}"
-        if own:
-            for more_s in LONGER_S:
+        if number == which:
+            for more_s in (0.0, *LONGER_S):
                 longer = replace(cycle, pause_s=cycle.pause_s + more_s)
-                yield longer.after(start), f"second play after {longer.pause_s:.4g} s of pause"
+                yield longer.after(start), Before("once", longer.pause_s)
         else:
-            yield cycle.after(settled), f"after repeated plays of another and {pause}"
+            yield cycle.after(start), Before("another", cycle.pause_s)
+            yield cycle.after(settled), Before("others", cycle.pause_s)

@@ -13,9 +13,9 @@ from ..cores import quiet_blas
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..rig.uncertainty import stated, tightened
+from ..rig.uncertainty import tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, again, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
+from .checks import Check, colour_of, findings_of, hard_of, worst_of
 from .demands import Demands
 from .endings import ENDING_S, ENDINGS
 from .ensemble import Ensemble
@@ -29,11 +29,6 @@ from .repeated import (
 )
 from .repetition import Cycle, mapped
 from .single import Single, demanded
-
-WHAT_IT_IS_NOT = (
-    "This is a calculation, not a medical or ethical clearance. Hardware that touches people needs a temperature "
-    "cut-off of its own that works without any software."
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,23 +99,28 @@ class Gate:
 
         A single play comes first: where that is not safe, repetition adds no information.
         """
-        once = hard_reason(findings_of(self.once))
-        return once or self.repeated.reason
+        from .words import hard_reason
+
+        return hard_reason(findings_of(self.once)) or self.repeated.reason
 
     @property
     def mended_by_pause(self) -> bool:
         """Whether a longer pause between plays is all that is missing."""
-        return hard_reason(findings_of(self.once)) is None and self.repeated.shortest_pause_s is not None
+        return not hard_of(findings_of(self.once)) and self.repeated.shortest_pause_s is not None
 
     @property
     def cautions(self) -> tuple[str, ...]:
         """A sentence for each soft limit exceeded."""
+        from .words import soft_cautions
+
         return soft_cautions(self.findings)
 
     @property
     def text(self) -> str:
         """The verdict as a table: every rule with its worst value, the limit, time, scenario and source."""
-        return "\n".join(_lines(self))
+        from .words import gate_lines
+
+        return "\n".join(gate_lines(self))
 
     @property
     def demanded(self) -> dict[str, object]:
@@ -129,6 +129,8 @@ class Gate:
 
     def to_dict(self) -> dict[str, object]:
         """All of it in the form of a sidecar."""
+        from .words import WHAT_IT_IS_NOT
+
         return {
             "colour": self.colour,
             "what_it_is_not": WHAT_IT_IS_NOT,
@@ -142,8 +144,8 @@ class Gate:
             "repeated": self.repeated.to_dict(),
             "recovery_s": self.repeated.recovery_s,
             "shortest_pause_s": self.repeated.shortest_pause_s,
-            "findings": [as_dict(finding) for finding in self.findings],
-            "checks": [as_dict(check) for check in self.checks],
+            "findings": [finding.to_dict() for finding in self.findings],
+            "checks": [check.to_dict() for check in self.checks],
         }
 
 
@@ -267,7 +269,7 @@ def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, p
     )  # no pause makes a play safe that is red by itself
     if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
         shortest = pause
-    judged = [again(worst_of(tally.checks() for tally in own_tallies)) for own_tallies in tallies]
+    judged = [worst_of(tally.checks() for tally in own_tallies) for own_tallies in tallies]
     display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
     with_faults, demands = demanded(singles, repeating, tallies, (min(display), max(display)), shortest)
     for single, checks, cycle, each in zip(singles, judged, cycles, demands, strict=True):
@@ -290,48 +292,4 @@ def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:
         single.drift_C,
         repeated,
         demands,
-    )
-
-
-def _lines(verdict: Gate) -> Iterator[str]:
-    unsure, again = verdict.uncertainty, verdict.repeated
-    yield (
-        f"safety {verdict.colour.upper()}: {verdict.duration_s:.4g} s on {verdict.rig_name} and {ENDING_S:g} s after, "
-        f"in {verdict.scenarios} scenarios ({stated(unsure)}; {', '.join(verdict.after_C)})"
-    )
-    yield f"repeated plays: {again.text}"
-    table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(verdict, check) for check in verdict.checks)]
-    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
-    for row in table:
-        yield "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]).rstrip()
-    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in verdict.after_C.items())
-    yield f"skin {ENDING_S:g} s after the last sample, on the rig as given: {after}"
-    if verdict.drift_C is not None:
-        yield f"zero current is not the baseline: in the end it takes the skin to {verdict.drift_C:.1f} °C"
-    if verdict.limits.changed:
-        yield f"limits changed by the rig: {'; '.join(verdict.limits.changed)}"
-    if verdict.limits.loosened:
-        yield f"limits LOOSENED: {'; '.join(verdict.limits.loosened)}. Reason given: {verdict.limits.reason}"
-    if claims := tightened(unsure):
-        yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
-    for fault in verdict.demands.faults:
-        yield f"single fault, {fault.fault}: {fault.text}; prevented by {fault.prevented_by}"
-    yield WHAT_IT_IS_NOT
-
-
-def _row(verdict: Gate, check: Check) -> tuple[str, ...]:
-    mark = "ok" if check.passed else ("RED" if check.severity == "hard" else "amber")
-    unit = "" if check.unit == "1" else f" {check.unit}"
-    late = check.time_s - verdict.duration_s
-    when = f"{check.time_s:.2f} s" + (f" ({late:.1f} s after)" if late > 0 else "")
-    side = "≤" if check.upper else "≥"
-    value, limit = check.figures
-    return (
-        mark,
-        check.quantity,
-        f"{value}{unit}",
-        f"{side} {limit}{unit} {check.severity}",
-        when,
-        check.scenario,
-        check.source,
     )

@@ -15,7 +15,7 @@ from ..rig.load import LOAD_SITES, without_skin
 from ..rig.rigfile import RigError
 from ..rig.rules import Limits
 from ..solver.trace import Trace
-from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
+from .checks import Check, colour_of, findings_of
 from .tally import WATCHED, Tally
 
 
@@ -42,16 +42,20 @@ class SafetyVerdict:
     @property
     def reason(self) -> str | None:
         """The first hard limit exceeded, in one sentence; None where there is none."""
+        from .words import hard_reason
+
         return hard_reason(self.findings)
 
     @property
     def cautions(self) -> tuple[str, ...]:
         """A sentence for each soft limit exceeded."""
+        from .words import soft_cautions
+
         return soft_cautions(self.findings)
 
     def to_dict(self) -> dict[str, object]:
         """Colour and findings in the form of a sidecar."""
-        return {"colour": self.colour, "findings": [as_dict(each) for each in self.findings]}
+        return {"colour": self.colour, "findings": [each.to_dict() for each in self.findings]}
 
 
 def judge_safety(trace: Trace) -> SafetyVerdict:

@@ -7,6 +7,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +16,7 @@ from ..arrays import Array
 from ..inputs import InputError
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
-from .checks import Check, as_dict, colour_of, findings_of, hard_reason
+from .checks import Before, Check, Scenario, colour_of, findings_of
 from .endings import ENDINGS, follow_endings
 from .ensemble import Ensemble
 from .following import following_tallies
@@ -72,9 +73,14 @@ class Repeated:
         return f"Repeated({self.colour}: {self.plays} plays with {self.pause_s:g} s between them)"
 
     @property
+    def findings(self) -> tuple[Check, ...]:
+        """The limits that repetition exceeds, the hard ones first."""
+        return findings_of(self.checks)
+
+    @property
     def colour(self) -> str:
         """Green, amber or red."""
-        return "red" if self.too_soon else colour_of(findings_of(self.checks))
+        return "red" if self.too_soon else colour_of(self.findings)
 
     @property
     def too_soon(self) -> bool:
@@ -86,30 +92,9 @@ class Repeated:
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence with its cure; None where there is none."""
-        reason = hard_reason(findings_of(self.checks))
-        if reason is None and self.too_soon:
-            reason = (
-                f"with {self.pause_s:g} s between plays a host that hangs or a driver stuck at its limit passes a hard "
-                f"limit before a watchdog or a cut-off of {PRACTICAL_S:g} s acts"
-            )
-        return None if reason is None else f"{reason}; {self.cure}"
+        from .words import repeated_reason
 
-    @property
-    def cure(self) -> str:
-        """What makes repetition safe."""
-        if self.shortest_pause_s is None:
-            return "no pause up to 10 min makes that safe: use a smaller or shorter change"
-        return f"the shortest safe pause is {self.shortest_pause_s:g} s (--pause {self.shortest_pause_s:g})"
-
-    @property
-    def text(self) -> str:
-        """Pause, plays, recovery and verdict in one line."""
-        back = "later than 10 min" if self.recovery_s is None else f"{self.recovery_s:g} s"
-        shortest = "none" if self.shortest_pause_s is None else f"{self.shortest_pause_s:g} s"
-        return (
-            f"{self.colour}, {self.plays} plays in {self.session_s / 60:g} min with {self.pause_s:g} s between them "
-            f"(back within {RECOVERED_K:g} K of rest: {back}; shortest safe pause: {shortest})"
-        )
+        return repeated_reason(self)
 
     def to_dict(self) -> dict[str, object]:
         """All of it, as a sidecar holds it."""
@@ -119,7 +104,7 @@ class Repeated:
             "pause_s": self.pause_s,
             "plays": self.plays,
             "session_s": self.session_s,
-            "findings": [as_dict(check) for check in findings_of(self.checks)],
+            "findings": [check.to_dict() for check in self.findings],
         }
 
 
@@ -156,11 +141,12 @@ class Repeating:
         cycles, steady, warm, cold = self.bounds(pause_s)
         for number, (cycle, start, state) in enumerate(zip(cycles, self.starts, steady, strict=True)):
             begun = skin_C(self.ensemble, start)
-            drive_tallies = [self._tally(cycle, state, begun, "", True)[0]]
+            drive_tallies = [self._tally(cycle, state, begun, "cycle")[0]]
             drive_tallies += following_tallies(cycles, self.starts, steady, begun, self.limits, number)
-            for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
-                tally, ended = self._tally(cycle, bounding, begun, what, False)
-                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.what) if endings else ())]
+            sides: tuple[tuple[State, Literal["warm", "cold"]], ...] = (warm, "warm"), (cold, "cold")
+            for bounding, what in sides:
+                tally, ended = self._tally(cycle, bounding, begun, what)
+                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.run) if endings else ())]
             yield drive_tallies
 
     def safe(self, pause_s: float, endings: bool = True) -> bool:
@@ -168,13 +154,14 @@ class Repeating:
         known = self._known.get((pause_s, endings)) or self._tallies(pause_s, endings)
         return all(tally.passes() for drive_tallies in known for tally in drive_tallies)
 
-    def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
-        """The tally of a play from a state with its pause, and the state at the end of the play."""
-        plays = plays_in(cycle, self.limits.session_s)
-        again = f", repeated plays with {cycle.pause_s:.4g} s of pause{what}"
+    def _tally(
+        self, cycle: Cycle, state: State, begun: Array, what: Literal["cycle", "warm", "cold"]
+    ) -> tuple[Tally, State]:
+        """The tally of a play from a state with its pause, without rates from a bound, and the state at its end."""
+        plays, again = plays_in(cycle, self.limits.session_s), Scenario(before=Before(what, cycle.pause_s))
         tally, now = Tally(self.limits, self.ensemble.corners, again, plays=plays, begun_C=begun), state
         for (rows, values), then in self.ensemble.play(cycle.drive, state):
-            tally.add(rows, values, rates=exact)
+            tally.add(rows, values, rates=what == "cycle")
             now = then
         pause = np.append(0.0, pause_rows(cycle.pause_s))
         if len(pause) > 1:
@@ -182,9 +169,11 @@ class Repeating:
             tally.add(float(cycle.drive.time_s[-1]) + pause, rested, rates=False)
         return tally, now
 
-    def _endings(self, cycle: Cycle, ended: State, begun: Array, what: str) -> list[Tally]:
+    def _endings(self, cycle: Cycle, ended: State, begun: Array, run: Scenario) -> list[Tally]:
         corners = self.ensemble.corners
-        endings = {ending: Tally(self.limits, corners, f"{what}, then {ending}", begun_C=begun) for ending in ENDINGS}
+        endings = {
+            ending: Tally(self.limits, corners, replace(run, ending=ending), begun_C=begun) for ending in ENDINGS
+        }
         end, last = float(cycle.drive.time_s[-1]), float(cycle.drive.current_A[-1])
         follow_endings(self.ensemble, ended, last, end, endings, sums=False)
         return list(endings.values())

@@ -77,7 +77,7 @@ def worst_case_of_blocks(
                 if progress is not None:
                     progress(round(before_s + float(rows[-1])), round(total_s))
             before_s += float(played.drive.time_s[-1])
-            endings = {ending: whole.fork(f"then {ending}") for ending in ENDINGS}
+            endings = {ending: whole.fork(ending) for ending in ENDINGS}
             follow_endings(ensemble, state, float(played.drive.current_A[-1]), before_s, endings)
             tallies += endings.values()
         tallies.append(judge_the_end(ensemble, limits, before_s, skin_C(ensemble, start)))

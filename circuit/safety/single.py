@@ -205,7 +205,7 @@ def _played(
     for (rows, values), then in ensemble.play(drive, start):
         played.add(rows, values)
         state = then
-    tallies = {ending: played.fork(f"then {ending}") for ending in ENDINGS}
+    tallies = {ending: played.fork(ending) for ending in ENDINGS}
     end_s, last_A = float(drive.time_s[-1]), drive.current_A[..., -1]
     after = follow_endings(ensemble, state, last_A if last_A.ndim else float(last_A), end_s, tallies)
     begun = skin_C(ensemble, start)

@@ -18,6 +18,7 @@ from ..rig.corner import perturbed
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.prescribed import FELT, SkinModes, modes_of
+from .checks import Scenario
 from .corners import Corner
 from .endings import ENDING_ROWS_S, ENDING_S, LATE_S
 from .playmap import PlayMap, least_bound
@@ -184,9 +185,9 @@ def tally_once(
 ) -> tuple[list[Tally], list[Array]]:
     """Every rule over one play and its endings, and the states at the end of the play."""
     values, ended = under.play(course, under.steady(float(course.display_C[0])))
-    played = Tally(limits, under.corners, f", {course.way}")
+    played = Tally(limits, under.corners, Scenario(way=course.way))
     played.add(course.rows_s, values, rates=rates)
-    tallies = [played.fork(f"then {ending}") for ending in DISPLAY_ENDINGS]
+    tallies = [played.fork(ending) for ending in DISPLAY_ENDINGS]
     add_endings(under, course, ended, tallies, rates=rates)
     return [played, *tallies], ended
 

@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
-
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from .checks import Check, again, colour_of, findings_of, worst_of
+from .checks import Before, Check, Scenario, findings_of, hard_of, worst_of
 from .demands import CutOff, Demands, SingleFault
 from .endings import ENDING_S
 from .gate import Gate
@@ -137,19 +135,20 @@ def _again(
     """Every rule for each drive in its steady cycle, and between the bounds on any sequence of all drives."""
     shows = [course for ways in drives for course in ways]
     begun = under.steady(float(shows[0].display_C[0]))
-    bounds = {word: under.bound(shows, pause_s, warm) for word, warm in (("warm", True), ("cold", False))}
+    sides = Before("warm", pause_s), Before("cold", pause_s)
+    bounds = {before: under.bound(shows, pause_s, before.plays == "warm") for before in sides}
     skin = under.hold(float(shows[0].display_C[0]), begun, np.array([0.0]))[0, :, 0]
     all_checks = []
     for ways in drives:
         judged = []
         for course in ways:
             cycle = under.cycle(course, pause_s)
-            judged.append(_cycle_checks(under, course, limits, pause_s, cycle, skin, "", (rates, rates)))
+            judged.append(_cycle_checks(under, course, limits, Before("cycle", pause_s), cycle, skin, (rates, rates)))
             judged += [
-                _cycle_checks(under, course, limits, pause_s, states, skin, f" ({word} bound)", (False, rates))
-                for word, states in bounds.items()
+                _cycle_checks(under, course, limits, before, states, skin, (False, rates))
+                for before, states in bounds.items()
             ]
-        all_checks.append(again(worst_of(checks for group in judged for checks in group)))
+        all_checks.append(worst_of(checks for group in judged for checks in group))
     return all_checks
 
 
@@ -157,21 +156,20 @@ def _cycle_checks(
     under: Under,
     course: DisplayCourse,
     limits: Limits,
-    pause_s: float,
+    before: Before,
     states: Sequence[Array],
     begun_C: Array,
-    what: str,
     rates: tuple[bool, bool],
 ) -> list[tuple[Check, ...]]:
     """Every rule for one play among many and for its endings; `rates`: whether they are judged in each of the two."""
-    words = f", {course.way}, repeated plays with {pause_s:.4g} s of pause{what}"
+    run, pause_s = Scenario(way=course.way, before=before), before.pause_s
     values, ended = under.play(course, states)
-    tally = Tally(limits, under.corners, words, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
+    tally = Tally(limits, under.corners, run, plays=_plays(course, pause_s, limits.session_s), begun_C=begun_C)
     tally.add(course.rows_s, values, rates=rates[0])
     rows = np.append(0.0, pause_rows(course.left_s(pause_s)))
     if len(rows) > 1:
         tally.add(course.end_s + rows, under.hold(float(course.display_C[-1]), ended, rows), rates=False)
-    endings = [Tally(limits, under.corners, f"{words}, then {ending}", begun_C=begun_C) for ending in DISPLAY_ENDINGS]
+    endings = [Tally(limits, under.corners, replace(run, ending=ending), begun_C=begun_C) for ending in DISPLAY_ENDINGS]
     add_endings(under, course, ended, endings, sums=False, rates=rates[1])
     return [tally.checks(), *(ending.checks() for ending in endings)]
 
@@ -181,7 +179,7 @@ def _plays(course: DisplayCourse, pause_s: float, session_s: float) -> int:
 
 
 def _safe(judged: Sequence[Sequence[Check]]) -> bool:
-    return all(colour_of(findings_of(checks)) != "red" for checks in judged)
+    return not any(hard_of(findings_of(checks)) for checks in judged)
 
 
 def _shortest_s(under: Under, drives: Sequence[Ways], limits: Limits, rates: bool) -> float | None:
@@ -244,31 +242,17 @@ def _demands(fault: _Faults, limits: Limits, repeated: Repeated, checks: Sequenc
         round(min(hard[True], max(display) + BEYOND_K), 1),
         round(MARGIN * react, 3),
     )
+    held_C, ends_C = ([level for level, _ in each] for each in (hangs, stuck))
     faults = (
         SingleFault(
-            "set-point hangs in mid-play",
+            "set-point hang",
             "red" if watchdog < ENDING_S else "green",
-            f"display held at {_levels(hangs)} for {ENDING_S:g} s",
-            f"a return to the baseline {watchdog:g} s after the last message from the host",
+            {"levels_C": held_C, "watchdog_s": watchdog},
         ),
         SingleFault(
-            "loop stuck at the end of its range",
+            "loop stuck",
             "red" if react < ENDING_S else "green",
-            f"display at {_levels(stuck)}; a hard limit is passed after {react:.2g} s",
-            _prevents_stuck(cut),
+            {"levels_C": ends_C, "passed_s": react, "cut_off": cut},
         ),
     )
     return Demands(watchdog, cut, None, 0.0, repeated.shortest_pause_s, None, faults)
-
-
-def _prevents_stuck(cut: CutOff) -> str:
-    if cut.react_within_s:
-        return f"the device's own cut-off at {cut.low:g} and {cut.high:g} °C, within {cut.react_within_s:g} s"
-    return (
-        f"the protection of the device's maker, which must keep the display within {cut.low:g} … {cut.high:g} °C; "
-        f"no cut-off that acts afterwards is quick enough"
-    )
-
-
-def _levels(faults: Sequence[tuple[float, float]]) -> str:
-    return " or ".join(f"{signed(level, '.1f')} °C" for level, _ in faults)

@@ -10,13 +10,13 @@ import pytest
 
 from thermicon.circuit import Drive, Gate, Limits, Rig, design, gate, simulate, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
-from thermicon.circuit.safety.checks import Check, findings_of, more_and_cure
+from thermicon.circuit.safety.checks import Check, findings_of
 from thermicon.circuit.safety.endings import ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
 from thermicon.circuit.safety.limits import checks_of, judge_safety
 from thermicon.circuit.safety.single import Single
 from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.safety.words import WHAT_IT_IS_NOT, more_and_cure
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import load_library
 
