@@ -92,6 +92,18 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
     return tuple(corners)
 
 
+def contact_corners(rig: Rig) -> tuple[Corner, ...]:
+    """The rig as given, then all combinations of contact and ambient at either end of their uncertainty."""
+    contact, ambient = rig.uncertainty.contact_resistance_relative, rig.uncertainty.ambient_K
+    spans = [(-most, most) if most else (0.0,) for most in (contact, ambient)]
+    corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    for share, shift in itertools.product(*spans):
+        if share or shift:
+            there = perturbed(rig, contact_resistance_relative=share, ambient_K=shift)
+            corners.append(Corner(share, shift, 0.0, 0.0, 0.0, 0.0, 0.0, there))
+    return tuple(corners)
+
+
 def passes_most_cooling(rig: Rig) -> bool:
     """Whether more current cools less at the driver's limit, in steady state: then neither end of the gain is coldest.
 

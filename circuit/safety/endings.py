@@ -37,32 +37,6 @@ LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
 """Rows of zero current from then on."""
 
 
-def follow_endings(
-    ensemble: Ensemble, state: State, last_A: float | Array, end_s: float, tallies: dict[str, Tally], sums: bool = True
-) -> dict[str, Array]:
-    """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
-
-    The tallies are in the same state before. `state` is that at the end of the drive, at `end_s`; `last_A` its last
-    current, or the mean of a bridge's, or one for each corner; `sums` whether doses count.
-    """
-    after = {}
-    last, zero, off = ENDINGS
-    for name, current in ((last, last_A), (zero, 0.0)):
-        values, _ = ensemble.hold(current, state, ENDING_ROWS_S)
-        tallies[name].add(end_s + ENDING_ROWS_S, values, sums=sums)
-        after[name] = values[WATCHED.index("skin_C"), :, -1]
-    if ensemble.ideal:  # without power it is the same
-        tallies[off].copy_from(tallies[zero])
-    else:
-        values = without_power(ensemble, state, ENDING_ROWS_S)[0]
-        tallies[off].add(end_s + ENDING_ROWS_S, values, sums=sums)
-    after[off] = values[WATCHED.index("skin_C"), :, -1]
-    if ensemble.ideal:
-        later, _ = ensemble.hold(0.0, state, np.concatenate([[0.0], LATE_S]))
-        tallies[zero].add(end_s + LATE_S, later[:, :, 1:], sums=sums, drift=True)
-    return after
-
-
 def zero_current_C(ensemble: Ensemble) -> Array:
     """WATCHED (4, corners) that zero current leads to without limit of time."""
     steady_C = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)

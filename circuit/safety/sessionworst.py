@@ -18,10 +18,12 @@ from ..cores import quiet_blas
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from .checks import Check, colour_of, findings_of, worst_of
-from .endings import ENDINGS, follow_endings, judge_the_end
+from .current import CurrentPlant, CurrentPlay
+from .endings import judge_the_end
 from .ensemble import Ensemble
-from .repeated import recovery_s, skin_C
+from .plant import follow
 from .sessiondrive import SessionDrive
+from .single import recovery_s
 from .tally import Tally
 
 Progress = Callable[[int, int], None]
@@ -67,20 +69,21 @@ def worst_case_of_blocks(
     """
     total_s = sum(float(played.drive.time_s[-1]) for played in blocks)
     with quiet_blas():
-        ensemble, before_s = Ensemble.of(rig), 0.0
-        whole, tallies = Tally(limits, ensemble.corners), list[Tally]()
+        plant, before_s = CurrentPlant(Ensemble.of(rig)), 0.0
+        whole, tallies = Tally(limits, plant.corners), list[Tally]()
         for played in blocks:
-            start = state = ensemble.at_rest(played.rest_A)
-            for (rows, values), then in ensemble.play(played.drive, state):
+            play = CurrentPlay(played.drive, played.rest_A)
+            start = state = plant.rest(play)
+            for (rows, values), then in plant.play(play, state):
                 whole.add(before_s + rows, values)
                 state = then
                 if progress is not None:
                     progress(round(before_s + float(rows[-1])), round(total_s))
-            before_s += float(played.drive.time_s[-1])
-            endings = {ending: whole.fork(ending) for ending in ENDINGS}
-            follow_endings(ensemble, state, float(played.drive.current_A[-1]), before_s, endings)
-            tallies += endings.values()
-        tallies.append(judge_the_end(ensemble, limits, before_s, skin_C(ensemble, start)))
+            before_s += play.end_s
+            endings = [whole.fork(ending) for ending in plant.endings]
+            follow(plant, play, state, before_s, endings)
+            tallies += endings
+        tallies.append(judge_the_end(plant.ensemble, limits, before_s, plant.now(play, start)[0]))
         checks = worst_of([each.checks() for each in (whole, *tallies)])
-        recovery = recovery_s(ensemble, played.rest_A, start, state)
-    return WorstCase(checks, len(ensemble.corners) * len(ENDINGS), recovery)
+        recovery = recovery_s(plant, play, start, state)
+    return WorstCase(checks, len(plant.corners) * len(plant.endings), recovery)

@@ -23,6 +23,7 @@ from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.limits import judge_safety
@@ -80,7 +81,9 @@ class TestWorstCase:
         )
         each = [
             Single.of(
-                Ensemble.on(RIG, (corner,), None), Drive(time_s, own, held=True), float(own[0]), RIG.limits
+                CurrentPlant(Ensemble.on(RIG, (corner,), None)),
+                CurrentPlay(Drive(time_s, own, held=True), float(own[0])),
+                RIG.limits,
             ).checks
             for corner, own in zip(corners, amps, strict=True)
         ]

@@ -11,6 +11,7 @@ import pytest
 from thermicon.circuit import Drive, Gate, Limits, Rig, design, gate, simulate, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.checks import Check, findings_of
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.endings import ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.limits import checks_of, judge_safety
@@ -93,7 +94,8 @@ def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Driv
 )  # fmt: skip
 def test_a_level_trips_its_rule(rig: Rig, control: str, level: float, time: float, words: str) -> None:
     drive = holding(rig, control, level, time)
-    once = Single.of(Ensemble.of(rig), drive, float(drive.current_A[0]), rig.limits)
+    plant = CurrentPlant(Ensemble.of(rig))
+    once = Single.of(plant, CurrentPlay(drive, float(drive.current_A[0])), rig.limits)
     told = [str(finding) for finding in findings_of(once.checks)]
     assert any(text.startswith(words) for text in told), told
     found = gate(drive, rig, pause_s=600.0)

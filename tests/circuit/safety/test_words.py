@@ -12,8 +12,8 @@ from thermicon.circuit.safety.words import CURES, check_text, more_and_cure, sce
 JUDGED = """
 import sys
 from thermicon.circuit import Drive, Rig, gate
-from thermicon.circuit.safety.thermode import DisplayCourse
-from thermicon.circuit.safety.thermode_gate import gate_shown
+from thermicon.circuit.safety.display import DisplayCourse
+from thermicon.circuit.safety.gate import gate_shown
 import numpy as np
 rig = Rig.load("thenar").with_(**{
     **{f"uncertainty.{key}_relative": 0 for key in ("contact_resistance", "gain", "seebeck", "conductance", "plates")},

@@ -1,0 +1,165 @@
+"""What hardware must prevent so that currents stay safe with a single fault, in any play after the shortest pause."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cache
+from itertools import repeat
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..rig.rules import Limits
+from ..solver.batch_inputs import State
+from ..solver.drive import Drive
+from .current import CurrentPlant, CurrentPlay
+from .demands import CutOff, Demands
+from .endings import dose_time_s
+from .first_plays import polarity_check, rest_before
+from .repeated import PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
+from .single_faults import Faulty
+from .tally import WATCHED, Tally
+
+if TYPE_CHECKING:
+    from .single import Single
+
+MOST_CORNERS = 6
+"""Corners in which single faults are simulated: the rig as given, and the worst ones."""
+
+Span = tuple[float, float]
+
+
+def demanded(
+    plant: CurrentPlant,
+    singles: Sequence[Single[CurrentPlay, State]],
+    recovered_s: Sequence[float],
+    repeating: Repeating[CurrentPlay, State],
+    tallies: Sequence[list[Tally]],
+    shortest_s: float | None,
+) -> tuple[float | None, list[Demands]]:
+    """The shortest pause after which faults can be prevented in practice, and what prevents them in any play after it.
+
+    Shorter pauses need a quicker watchdog and a quicker cut-off. Where these would be quicker than PRACTICAL_S, and are
+    not with a pause in which display and skin recover, the pause is lengthened instead. A set that no pause makes safe
+    is judged in its first plays.
+    """
+    display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
+    reach_C = min(display), max(display)
+    faults = [_Faults(plant, single, repeating.limits) for single in singles]
+    corners = [_farthest(plant, [*single.tallies, *own]) for single, own in zip(singles, tallies, strict=True)]
+    if shortest_s is None:
+        return None, [one.demands(few, few, (), reach_C, None) for one, few in zip(faults, corners, strict=True)]
+    bounds_of = cache(lambda pause_s: repeating.bounds(pause_s)[1:])
+    reach_of = cache(lambda pause_s: _joined([reach_C, *(one.shown_C(bounds_of(pause_s)) for one in faults)]))
+    every = list(range(len(plant.corners)))
+    hardest = [one.faulty(every, bounds_of(shortest_s)).hardest(reach_C, PRACTICAL_S) for one in faults]
+
+    def holds(number: int, pause_s: float, within_s: Span) -> bool:
+        if not any(within_s):
+            return True
+        faulty = faults[number].faulty(hardest[number], bounds_of(pause_s))
+        cut = CutOff(*faulty.around_C(reach_of(pause_s)), within_s[1])
+        return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
+
+    longest_s, numbers, practical = max(shortest_s, *recovered_s), range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
+    needed = [(0.0, 0.0) if holds(k, shortest_s, practical) else practical for k in numbers]
+    for number, one in enumerate(faults):
+        if not holds(number, longest_s, needed[number]):
+            few = hardest[number]
+            found = one.demands(few, few, bounds_of(longest_s), reach_of(longest_s), None).within_s
+            needed[number] = min(PRACTICAL_S, found[0]), min(PRACTICAL_S, found[1])
+    pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: all(map(holds, numbers, repeat(longer_s), needed)))
+    added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
+    while True:
+        bounds, reach, demands = bounds_of(pause_s), reach_of(pause_s), {}
+        for number in sorted(numbers, key=lambda number: not any(needed[number])):  # what may not suffice first
+            demand = faults[number].demands(corners[number], hardest[number], bounds, reach, pause_s)
+            if pause_s < longest_s and np.less(demand.within_s, needed[number]).any():
+                break
+            demands[number] = demand
+        else:
+            return pause_s, [demands[number] for number in numbers]
+        pause_s, added_s = min(longest_s, math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S), 2.0 * added_s
+
+
+class _Faults:
+    """Single faults of one drive that is safe or not in a first play."""
+
+    def __init__(self, plant: CurrentPlant, single: Single[CurrentPlay, State], limits: Limits) -> None:
+        assert isinstance(single.play.drive, Drive)
+        self.ensemble, self.single, self.limits, self.drive = plant.ensemble, single, limits, single.play.drive
+
+    def shown_C(self, bounds: Sequence[State]) -> Span:
+        """Between which temperatures in °C the display is in plays that begin between bounds."""
+        shown = [
+            values[WATCHED.index("display_C")]
+            for one in bounds
+            for (_, values), _ in self.ensemble.play(self.drive, one)
+        ]
+        return float(min(np.nanmin(one) for one in shown)), float(max(np.nanmax(one) for one in shown))
+
+    def faulty(self, corners: list[int], bounds: Sequence[State], instants: tuple[int, ...] | None = None) -> Faulty:
+        """Its single faults in some corners, in plays that begin between bounds."""
+        which, rest_A = np.array(corners), float(self.single.play.rest_A)
+        start, *between = (state.take(which) for state in (self.single.start, *bounds))
+        few = self.ensemble if len(corners) == len(self.ensemble.corners) else self.ensemble.only(corners)
+        return Faulty(few, self.drive, rest_A, start, self.limits, tuple(between), instants)
+
+    def demands(
+        self,
+        corners: list[int],
+        hardest: list[int],
+        bounds: Sequence[State],
+        reach_C: Span,
+        pause_s: float | None,
+    ) -> Demands:
+        """What the hardware must prevent; `reach_C` are extremes of displays.
+
+        The numbers of watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that
+        decided, and found again in those where they are too slow; the rest in `corners`.
+        """
+        every = list(range(len(self.ensemble.corners)))
+        for current_A in self.faulty(every, bounds).ends_A if self.ensemble.ideal else ():
+            self.ensemble.modes(current_A)  # once for all corners and icons
+        faulty = self.faulty(hardest, bounds)
+        moments = faulty.moments()
+        watchdog_s, hangs = faulty.watchdog_s(moments)
+        cut_off, stuck = faulty.cut_off(reach_C, moments, hangs=not watchdog_s)
+        far_K = faulty.beyond_K(moments, watchdog_s, cut_off)
+        worst = far_K.reshape(len(far_K), len(moments.instants), -1).max(axis=2).argmax(axis=1)
+        everywhere = self.faulty(every, bounds, tuple(np.unique(worst).tolist()))
+        moments = everywhere.moments()
+        too_slow = (everywhere.beyond_K(moments, watchdog_s, cut_off) > 0.0).any(axis=0)
+        if too_slow.any():
+            there = self.faulty(np.unique(moments.rigs[too_slow]).tolist(), bounds)
+            moments = there.moments()
+            watchdog_s, hangs = min((watchdog_s, hangs), there.watchdog_s(moments), key=lambda found: found[0])
+            cut_off, stuck = min(
+                (cut_off, stuck),
+                there.cut_off(reach_C, moments, hangs=not watchdog_s),
+                key=lambda found: found[0].react_within_s,
+            )
+        faulty = self.faulty(corners, ())
+        rest, begins = rest_before(faulty)
+        polarity, swapped = polarity_check(faulty)
+        zero, session_s = None, self.limits.session_s
+        if self.ensemble.ideal:
+            dose = self.single.tallies[0].summed("thermal dose")
+            zero = dose_time_s(self.ensemble, self.limits, self.single.end, dose, session_s)
+            zero = None if zero >= session_s else round(zero, 0)
+        return Demands(watchdog_s, cut_off, polarity, rest, pause_s, zero, (hangs, begins, swapped, stuck))
+
+
+def _farthest(plant: CurrentPlant, tallies: list[Tally]) -> list[int]:
+    """Corners that are worst by some hard rule, the rig as given first."""
+    count = len(plant.corners)
+    rows: dict[int, None] = {0: None}
+    for tally in tallies:
+        for lane in tally.worst_lanes():
+            rows.setdefault(lane % count)
+    return sorted(list(rows)[:MOST_CORNERS])
+
+
+def _joined(spans: Sequence[Span]) -> Span:
+    return min(low for low, _ in spans), max(high for _, high in spans)
