@@ -20,9 +20,9 @@ from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Controller
 from ..safety.checks import Check, Scenario, worst_of
+from ..safety.demanded import polarity_check
 from ..safety.demands import CutOff, Demands, Loop, SingleFault
 from ..safety.display import DisplayCourse, DisplayPlant
-from ..safety.first_plays import polarity_check
 from ..safety.gate import Gate, gate_shown
 from ..safety.single import recovery_s
 from ..safety.single_faults import BEYOND_K

@@ -16,16 +16,14 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import Before, Scenario
-from .corners import Corner
 from .demands import Demands
 from .endings import ENDING_ROWS_S, ENDINGS, LATE_S, judge_the_end, without_power, zero_current_C
 from .ensemble import Ensemble, LaneDrives, row_of
-from .plant import Future, Stretch
+from .plant import Future, Plant, Stretch
 from .playmap import MOST_STEPS, PlayMap, least_bound
 from .repetition import bound, steady_cycle
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
@@ -52,27 +50,21 @@ class CurrentPlay:
         return float(self.drive.time_s[-1])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CurrentPlant:
+@dataclass(frozen=True, eq=False)
+class CurrentPlant(Plant[CurrentPlay, State]):
     """An ensemble as a plant; a play of more than `most_steps` is simulated again and again, shorter ones are maps."""
 
     ensemble: Ensemble
-    most_steps: int = MOST_STEPS
+    most_steps: int
     _rests: dict[CurrentPlay, State] = field(default_factory=dict)
     _maps: dict[CurrentPlay, PlayMap] = field(default_factory=dict)
-    endings: ClassVar[tuple[str, ...]] = ENDINGS
-    rates: ClassVar[bool] = True
-    quick: ClassVar[bool] = False
+    endings = ENDINGS
+    quick = False
 
-    @property
-    def rig(self) -> Rig:
-        """The rig as given."""
-        return self.ensemble.rig
-
-    @property
-    def corners(self) -> tuple[Corner, ...]:
-        """The rig as given and the corners of its uncertainty."""
-        return self.ensemble.corners
+    @staticmethod
+    def of(ensemble: Ensemble, most_steps: int = MOST_STEPS) -> CurrentPlant:
+        """The plant of an ensemble."""
+        return CurrentPlant(ensemble.rig, ensemble.corners, True, ensemble, most_steps)
 
     @property
     def drift_C(self) -> float:
@@ -83,7 +75,8 @@ class CurrentPlant:
         """The plant in some of the corners."""
         rests = {play: state.take(np.array(corners)) for play, state in self._rests.items()}
         maps = {play: played.only(corners) for play, played in self._maps.items()}
-        return CurrentPlant(self.ensemble.only(corners), self.most_steps, rests, maps)
+        few = self.ensemble.only(corners)
+        return CurrentPlant(self.rig, few.corners, True, few, self.most_steps, rests, maps)
 
     def rest(self, play: CurrentPlay) -> State:
         """Steady states under the resting current."""
@@ -162,9 +155,9 @@ class CurrentPlant:
         free = least_bound(maps, [state.nodes_C[:, :-1] for state in known], 1.0 if warm else -1.0)
         return _at(known[0], np.nan_to_num(free, nan=HOTTEST_C if warm else COLDEST_C))
 
-    def alone(self, play: CurrentPlay, limits: Limits, begun_C: Array) -> list[Tally]:
+    def alone(self, limits: Limits, end_s: float, begun_C: Array) -> list[Tally]:
         """Where zero current leads in the end."""
-        return [judge_the_end(self.ensemble, limits, play.end_s, begun_C)]
+        return [judge_the_end(self.ensemble, limits, end_s, begun_C)]
 
     def following(
         self,

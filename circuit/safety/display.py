@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,10 +19,10 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.prescribed import FELT, SkinModes, modes_of
 from .checks import worst_of
-from .corners import Corner, contact_corners
+from .corners import contact_corners
 from .demands import CutOff, Demands, SingleFault
 from .endings import ENDING_ROWS_S, ENDING_S, LATE_S
-from .plant import Future, Stretch, left_s
+from .plant import Future, Plant, Stretch, left_s
 from .playmap import PlayMap, least_bound
 from .single_faults import BEYOND_K, MARGIN
 from .tally import WATCHED, Tally
@@ -72,34 +72,26 @@ class DisplayCourse:
         return float(self.display_C[-1])
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DisplayPlant:
-    """Skin in the corners of contact and room; states are modes (n,) of each.
+@dataclass(frozen=True, eq=False)
+class DisplayPlant(Plant[DisplayCourse, list[Array]]):
+    """Skin in the corners of contact and room; states are modes (n,) of each, in contact and under no display.
 
-    A single fault may leave the display at one of `stuck_C`, in °C. `rates` is False where a jump of the display is an
-    idealisation.
+    A single fault may leave the display at one of `stuck_C`, in °C. No rate is judged where a jump of the display is an
+    idealisation; that of another one is decided by the display, and nothing is to be added right after a play.
     """
 
-    rig: Rig
-    corners: tuple[Corner, ...]
     modes: tuple[SkinModes, ...]
     insulated: tuple[SkinModes, ...]
     stuck_C: tuple[float, float]
-    rates: bool
-    endings: ClassVar[tuple[str, ...]] = DISPLAY_ENDINGS
-    quick: ClassVar[bool] = True
-    drift_C: ClassVar[None] = None
+    endings = DISPLAY_ENDINGS
+    quick = True
 
     @staticmethod
     def of(rig: Rig, stuck_C: tuple[float, float], rates: bool = True) -> DisplayPlant:
         """All corners of a rig's contact and room."""
         corners = contact_corners(rig)
         modes, insulated = (tuple(modes_of(corner.rig, insulated=free) for corner in corners) for free in (False, True))
-        return DisplayPlant(rig, corners, modes, insulated, stuck_C, rates)
-
-    def only(self, corners: list[int]) -> DisplayPlant:
-        """The plant itself, since all corners take next to no time."""
-        return self
+        return DisplayPlant(rig, corners, rates, modes, insulated, stuck_C)
 
     def rest(self, play: DisplayCourse) -> list[Array]:
         """The first temperature held."""
@@ -160,7 +152,7 @@ class DisplayPlant:
         return [end / -np.expm1(-modes.rate_per_s * length) for modes, end in zip(self.modes, forced, strict=True)]
 
     def bound(
-        self, plays: Sequence[DisplayCourse], pause_s: float, steady: Sequence[Sequence[Array]], warm: bool
+        self, plays: Sequence[DisplayCourse], pause_s: float, steady: Sequence[list[Array]], warm: bool
     ) -> list[Array]:
         """Lump by lump: temperatures of lumps, unlike modes, only rise with each other."""
         starts = [self._lumps(state) for state in (*map(self.rest, plays), *steady)]
@@ -173,22 +165,6 @@ class DisplayPlant:
         forced = self.after(play, pause_s, self._none())
         decays = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
         return PlayMap(np.array(decays), self._lumps(forced))
-
-    def alone(self, play: DisplayCourse, limits: Limits, begun_C: Array) -> list[Tally]:
-        """Nothing: a display without control is followed in its ending."""
-        return []
-
-    def following(
-        self,
-        plays: Sequence[DisplayCourse],
-        pause_s: float,
-        steady: Sequence[Sequence[Array]],
-        begun_C: Array,
-        limits: Limits,
-        of: int,
-    ) -> list[Tally]:
-        """Nothing: the rate of skin under a display is decided by the display."""
-        return []
 
     def farthest(self, plays: Sequence[DisplayCourse], state: Sequence[Array], warm: bool) -> list[Array]:
         """States warmer (or colder), lump by lump, than at instants of plays from states, and before them."""

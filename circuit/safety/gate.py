@@ -222,7 +222,7 @@ def gate_set(
     """
     check_pause(pause_s)
     with quiet_blas():
-        plant = CurrentPlant(Ensemble.of(rig, bridge_A, averaged))
+        plant = CurrentPlant.of(Ensemble.of(rig, bridge_A, averaged))
         rules = rig.limits if limits is None else limits
         return _gated([[CurrentPlay(drive, rest)] for drive, rest in drives], plant, rules, pause_s)
 

@@ -5,9 +5,10 @@ There are two: a module that a current drives (`current.py`), and a display that
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from ..arrays import Array
 from ..rig.rig import Rig
@@ -54,68 +55,53 @@ class Future:
     drift: bool = False
 
 
-class Plant(Protocol[Played, States]):
-    """A plant in the corners of its uncertainty; the first is the rig as given."""
+@dataclass(frozen=True, eq=False)
+class Plant(ABC, Generic[Played, States]):
+    """A plant in the corners of its uncertainty, the first of which is the rig as given.
 
-    @property
-    def rig(self) -> Rig:
-        """The rig as given."""
+    `endings` are the names of what may follow a play. `rates`: whether the rate of skin is judged. `quick`: plays with
+    all their endings take next to no time in all corners, so that none is left out.
+    """
 
-    @property
-    def corners(self) -> tuple[Corner, ...]:
-        """The rig as given, and the corners of its uncertainty."""
+    rig: Rig
+    corners: tuple[Corner, ...]
+    rates: bool
+    endings: ClassVar[tuple[str, ...]]
+    quick: ClassVar[bool]
 
-    @property
-    def endings(self) -> tuple[str, ...]:
-        """Names of what may follow a play."""
-
-    @property
-    def rates(self) -> bool:
-        """Whether the rate of skin is judged."""
-
-    @property
-    def quick(self) -> bool:
-        """Whether plays with all their endings take next to no time in all corners, so that none is left out."""
-
-    @property
-    def drift_C(self) -> float | None:
-        """Skin of the rig as given in °C without current for ever; None where there is no current."""
-
+    @abstractmethod
     def rest(self, play: Played) -> States:
         """Steady states before a first play; raises RigError where the rig as given has none."""
 
+    @abstractmethod
     def now(self, play: Played, state: States) -> Array:
         """WATCHED (4, corners) before a play."""
 
+    @abstractmethod
     def begun_C(self, plays: Sequence[Played]) -> list[Array]:
         """Skin (corners,) before each of the plays, from which changes count."""
 
+    @abstractmethod
     def play(self, play: Played, state: States) -> Iterator[tuple[Stretch, States]]:
         """Play from states, in stretches, each with the states at its end."""
 
+    @abstractmethod
     def hold(self, play: Played, state: States, times_s: Array) -> Array:
         """WATCHED (4, corners, times) in the pause after a play, at times from now that begin with 0."""
 
+    @abstractmethod
     def let_go(self, play: Played, state: States) -> Iterable[tuple[Future, ...]]:
         """What follows a play in each of the endings."""
 
+    @abstractmethod
     def cycle(self, play: Played, pause_s: float) -> States:
         """States before each play of a steady cycle."""
 
+    @abstractmethod
     def bound(self, plays: Sequence[Played], pause_s: float, steady: Sequence[States], warm: bool) -> States:
         """States that are warmer (or colder) than those before any play in any order; `steady` is before each cycle."""
 
-    def only(self, corners: list[int]) -> Plant[Played, States]:
-        """The same in some of the corners, or in all."""
-
-    def alone(self, play: Played, limits: Limits, begun_C: Array) -> list[Tally]:
-        """What else a single play is judged by, of which skin began at `begun_C` (corners,)."""
-
-    def following(
-        self, plays: Sequence[Played], pause_s: float, steady: Sequence[States], begun_C: Array, limits: Limits, of: int
-    ) -> list[Tally]:
-        """Tallies of one of the plays right after each of them, where its bounds say nothing of rates."""
-
+    @abstractmethod
     def demanded(
         self,
         singles: Sequence[Sequence[Single[Played, States]]],
@@ -125,6 +111,25 @@ class Plant(Protocol[Played, States]):
         shortest_s: float | None,
     ) -> tuple[float | None, list[Demands]]:
         """The shortest pause after which single faults can be prevented in practice, and what prevents them."""
+
+    def only(self, corners: list[int]) -> Plant[Played, States]:
+        """The same in some of the corners, or in all where that takes next to no time."""
+        return self
+
+    def alone(self, limits: Limits, end_s: float, begun_C: Array) -> list[Tally]:
+        """What else a single play that ended at a time is judged by, of which skin began at `begun_C` (corners,)."""
+        return []
+
+    def following(
+        self, plays: Sequence[Played], pause_s: float, steady: Sequence[States], begun_C: Array, limits: Limits, of: int
+    ) -> list[Tally]:
+        """Tallies of one of the plays right after each of them, where its bounds say nothing of rates."""
+        return []
+
+    @property
+    def drift_C(self) -> float | None:
+        """Skin of the rig as given in °C without current for ever; None where there is no current."""
+        return None
 
 
 def left_s(play: Play, pause_s: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Generic
 
@@ -36,16 +37,29 @@ class Single(Generic[Played, States]):
     after_C: dict[str, Array]
 
     @staticmethod
-    def of(plant: Plant[Played, States], play: Played, limits: Limits) -> Single[Played, States]:
-        """Play from rest; raises RigError where the rig as given has no steady state to start from."""
+    def of(
+        plant: Plant[Played, States],
+        play: Played,
+        limits: Limits,
+        *,
+        before_s: float = 0.0,
+        sums: Tally | None = None,
+        watch: Callable[[float], None] | None = None,
+    ) -> Single[Played, States]:
+        """Play from rest; raises RigError where the rig as given has no steady state to start from.
+
+        `before_s` is how long other plays took, whose doses `sums` has; `watch` is called with the seconds played.
+        """
         start = state = plant.rest(play)
-        played = Tally(limits, plant.corners, Scenario(way=play.way))
+        played = sums or Tally(limits, plant.corners, Scenario(way=play.way))
         for (rows, values), then in plant.play(play, start):
-            played.add(rows, values, rates=plant.rates)
+            played.add(before_s + rows, values, rates=plant.rates)
             state = then
-        endings = [played.fork(ending) for ending in plant.endings]
-        after = follow(plant, play, state, play.end_s, endings)
-        more = plant.alone(play, limits, plant.now(play, start)[0])
+            if watch is not None:
+                watch(before_s + float(rows[-1]))
+        endings, end_s = [played.fork(ending) for ending in plant.endings], before_s + play.end_s
+        after = follow(plant, play, state, end_s, endings)
+        more = plant.alone(limits, end_s, plant.now(play, start)[0])
         return Single(plant, play, start, state, (played, *endings, *more), after)
 
     @property
@@ -82,4 +96,4 @@ def checks_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> t
     from .current import CurrentPlant, CurrentPlay
 
     play = CurrentPlay(drives, drives.current_A[:, 0])
-    return worst_of_lanes(Single.of(CurrentPlant(ensemble), play, limits).tallies)
+    return worst_of_lanes(Single.of(CurrentPlant.of(ensemble), play, limits).tallies)

@@ -13,7 +13,7 @@ from .timing import Gap
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Rig, Session
-    from thermicon.circuit.safety.sessionworst import WorstCase
+    from thermicon.circuit.safety.sessionplay import WorstCase
     from thermicon.icons import Icon
 
     from .keys import Study
@@ -120,7 +120,7 @@ def judge_sessions(
     """
     from thermicon.circuit import SessionPlan, play_session
     from thermicon.circuit.safety.sessiondrive import drive_of
-    from thermicon.circuit.safety.sessionworst import worst_case_of_blocks
+    from thermicon.circuit.safety.sessionplay import worst_case_of
 
     if rig.thermode is not None:
         return {}, {}, {}
@@ -137,7 +137,7 @@ def judge_sessions(
         sessions[course.label] = play_session(icons, SessionPlan(course.order, gap_s), rig, tracking=tracking)
         if course.breaks:
             blocks = [drive_of(SessionPlan(order, gap_s), known, rig, tracking) for order in course.sittings]
-            after_breaks[course.label] = worst_case_of_blocks(blocks, rig, rig.limits)
+            after_breaks[course.label] = worst_case_of(blocks, rig, rig.limits)
         if step is not None:
             step(done + 1, len(chosen))
     red = [

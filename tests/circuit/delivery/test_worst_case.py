@@ -81,7 +81,7 @@ class TestWorstCase:
         )
         each = [
             Single.of(
-                CurrentPlant(Ensemble.on(RIG, (corner,), None)),
+                CurrentPlant.of(Ensemble.on(RIG, (corner,), None)),
                 CurrentPlay(Drive(time_s, own, held=True), float(own[0])),
                 RIG.limits,
             ).checks

@@ -94,7 +94,7 @@ def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Driv
 )  # fmt: skip
 def test_a_level_trips_its_rule(rig: Rig, control: str, level: float, time: float, words: str) -> None:
     drive = holding(rig, control, level, time)
-    plant = CurrentPlant(Ensemble.of(rig))
+    plant = CurrentPlant.of(Ensemble.of(rig))
     once = Single.of(plant, CurrentPlay(drive, float(drive.current_A[0])), rig.limits)
     told = [str(finding) for finding in findings_of(once.checks)]
     assert any(text.startswith(words) for text in told), told

@@ -52,7 +52,7 @@ LONG = 20_000
 
 @pytest.mark.parametrize("most_steps", [LONG, 0])
 def test_a_steady_cycle_is_what_sixty_plays_come_to(most_steps: int) -> None:
-    plant, plain = CurrentPlant(few(), most_steps), CurrentPlant(few(), 0)
+    plant, plain = CurrentPlant.of(few(), most_steps), CurrentPlant.of(few(), 0)
     for play in PLAYS:
         assert (plant.map(play, 60.0) is None) == (most_steps == 0)
         start = state = plant.rest(play)
@@ -63,7 +63,7 @@ def test_a_steady_cycle_is_what_sixty_plays_come_to(most_steps: int) -> None:
 
 
 def test_a_steady_cycle_on_a_controlled_heat_sink_is_what_sixty_plays_come_to() -> None:
-    plant = CurrentPlant(few(CONTROLLED).only([0, 4]))
+    plant = CurrentPlant.of(few(CONTROLLED).only([0, 4]))
     assert plant.map(PLAYS[0], 60.0) is None
     state = plant.rest(PLAYS[0])
     steady, settles = steady_cycle(lambda before: plant.after(PLAYS[0], 60.0, before), state)
@@ -76,7 +76,7 @@ def test_a_steady_cycle_on_a_controlled_heat_sink_is_what_sixty_plays_come_to() 
 
 def test_short_plays_without_a_pause_still_have_their_cycle() -> None:
     """A second forgets little: a thousand plays are needed, and a few would not tell."""
-    plant, plain = CurrentPlant(few()), CurrentPlant(few(), 0)
+    plant, plain = CurrentPlant.of(few()), CurrentPlant.of(few(), 0)
     steady = plant.cycle(PLAYS[2], 0.0)
     assert steady.nodes_C.max() < HOTTEST_C, "each corner has one"
     again = plain.after(PLAYS[2], 0.0, steady)
@@ -84,13 +84,13 @@ def test_short_plays_without_a_pause_still_have_their_cycle() -> None:
 
 
 def test_what_heats_without_end_has_no_cycle() -> None:
-    plant, play = CurrentPlant(few().only([0])), CurrentPlay(Drive([0, 1], [-6.0, -6.0]), REST)
+    plant, play = CurrentPlant.of(few().only([0])), CurrentPlay(Drive([0, 1], [-6.0, -6.0]), REST)
     assert (plant.cycle(play, 0.0).nodes_C[:, :-1] == HOTTEST_C).all()
 
 
 @pytest.mark.parametrize(("pause_s", "most_steps", "near_K"), [(0.0, LONG, 15.0), (3.0, LONG, 6.0), (20.0, 0, 2.0)])
 def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, most_steps: int, near_K: float) -> None:
-    plant, plain = CurrentPlant(few(), most_steps), CurrentPlant(few(), 0)
+    plant, plain = CurrentPlant.of(few(), most_steps), CurrentPlant.of(few(), 0)
     steady, start = [plant.cycle(play, pause_s) for play in PLAYS], plant.rest(PLAYS[0])
     warm = plant.bound(PLAYS, pause_s, steady, warm=True).nodes_C
     cold = plant.bound(PLAYS, pause_s, steady, warm=False).nodes_C
@@ -112,7 +112,7 @@ def test_recovery_is_when_display_and_skin_are_back() -> None:
     ensemble = few()
     start = ensemble.at_rest(REST)
     end = ensemble.end_of(COOL, start)
-    found = recovery_s(CurrentPlant(ensemble), PLAYS[0], start, end)
+    found = recovery_s(CurrentPlant.of(ensemble), PLAYS[0], start, end)
     assert found is not None
     times = np.arange(0.0, 2 * found, 0.02)
     values = ensemble.hold(REST, end, times)[0]
@@ -140,7 +140,7 @@ def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
     once = played_thirty_times(drive, ensemble, 600.0)
     limits = Limits.of({"skin_highest_C": 40.0, "skin_highest_soft_C": 39.5})
     assert once < 39.5, "zero current leads to 39.1 °C"
-    repeating = Repeating(CurrentPlant(ensemble), [[CurrentPlay(drive, REST)]], limits)
+    repeating = Repeating(CurrentPlant.of(ensemble), [[CurrentPlay(drive, REST)]], limits)
     shortest = shortest_pause_s(repeating)
     assert shortest is not None
     assert shortest > 3.0
@@ -191,12 +191,12 @@ def test_one_drive_of_a_set_counts_for_the_others_and_a_red_one_does_not() -> No
 def test_temperatures_are_read_off_states() -> None:
     ensemble = few()
     start = ensemble.at_rest(REST)
-    begun = CurrentPlant(ensemble).now(PLAYS[0], start)
+    begun = CurrentPlant.of(ensemble).now(PLAYS[0], start)
     assert begun == pytest.approx(ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][:, :, 0])
 
 
 def test_a_bound_that_starts_where_it_ends_is_found_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    plant = CurrentPlant(few())
+    plant = CurrentPlant.of(few())
     steady = plant.cycle(PLAYS[0], 5.0)
     plant._rests[PLAYS[0]] = steady
     solved, plain = [], playmap._solved
@@ -217,7 +217,7 @@ def rate_of(tally: Tally) -> float:
 
 
 def test_a_play_that_follows_another_has_the_rates_of_both_played_on() -> None:
-    plant, plain = CurrentPlant(few()), CurrentPlant(few(), 0)
+    plant, plain = CurrentPlant.of(few()), CurrentPlant.of(few(), 0)
     steady = [plant.cycle(play, 0.5) for play in PLAYS]
     tallies = plant.following(PLAYS, 0.5, steady, plant.begun_C(PLAYS)[0], THENAR.limits, 0)
     worst = {}
