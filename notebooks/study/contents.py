@@ -50,7 +50,7 @@ def files_of(plan: Plan) -> dict[str, bytes]:
     Raises FormatError where a drive cannot be packed.
     """
     from thermicon.circuit.delivery.pack import pack
-    from thermicon.circuit.rig.rig_text import toml_text
+    from thermicon.circuit.rig.settings import toml_text
 
     materials, ready = plan.materials, plan.judged.ready
     study = materials.study
