@@ -170,3 +170,37 @@ def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
 def _farthest(same: Sequence[Check]) -> Check:
     most = max(check.beyond for check in same)
     return next(check for check in same if check.beyond >= most - LEVEL)
+
+
+class Judged:
+    """Whatever was checked against rules, by its `checks`."""
+
+    __slots__ = ()
+    checks: tuple[Check, ...]
+
+    @property
+    def findings(self) -> tuple[Check, ...]:
+        """The limits that are exceeded, one for each quantity and side, the hard ones first."""
+        return findings_of(self.checks)
+
+    @property
+    def colour(self) -> str:
+        """Green, amber (only soft limits are exceeded) or red."""
+        return colour_of(self.findings)
+
+    @property
+    def safe(self) -> bool:
+        """Whether no hard limit is exceeded."""
+        return self.colour != "red"
+
+    @property
+    def reason(self) -> str | None:
+        """The first hard limit exceeded, in one sentence; None where there is none."""
+        from .words import hard_reason
+
+        return hard_reason(self.findings)
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """A sentence for each soft limit exceeded."""
+        return tuple(str(finding) for finding in self.findings if finding.severity != "hard")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from itertools import repeat
 from typing import TYPE_CHECKING
@@ -49,36 +50,39 @@ def demanded(
     is judged in its first plays.
     """
     display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
-    reach_C = min(display), max(display)
-    faults = [_Faults(plant, single, repeating.limits) for single in singles]
+    reach_C, faults = (min(display), max(display)), [_faulty(plant, single, repeating.limits) for single in singles]
     corners = [_farthest(plant, [*single.tallies, *own]) for single, own in zip(singles, tallies, strict=True)]
     if shortest_s is None:
-        return None, [one.demands(few, few, (), reach_C, None) for one, few in zip(faults, corners, strict=True)]
+        rows = zip(faults, singles, corners, corners, strict=True)
+        return None, [_demands(*row, reach_C, None) for row in rows]
     bounds_of = cache(lambda pause_s: repeating.bounds(pause_s)[1:])
-    reach_of = cache(lambda pause_s: _joined([reach_C, *(one.shown_C(bounds_of(pause_s)) for one in faults)]))
-    every = list(range(len(plant.corners)))
-    hardest = [one.faulty(every, bounds_of(shortest_s)).hardest(reach_C, PRACTICAL_S) for one in faults]
+
+    def after(pause_s: float) -> list[Faulty]:
+        return [replace(one, bounds=bounds_of(pause_s)) for one in faults]
+
+    reach_of = cache(lambda pause_s: _joined([reach_C, *(one.shown_C for one in after(pause_s))]))
+    hardest = [one.hardest(reach_C, PRACTICAL_S) for one in after(shortest_s)]
 
     def holds(number: int, pause_s: float, within_s: Span) -> bool:
         if not any(within_s):
             return True
-        faulty = faults[number].faulty(hardest[number], bounds_of(pause_s))
+        faulty = after(pause_s)[number].at(hardest[number])
         cut = CutOff(*faulty.around_C(reach_of(pause_s)), within_s[1])
         return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
 
     longest_s, numbers, practical = max(shortest_s, *recovered_s), range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
     needed = [(0.0, 0.0) if holds(k, shortest_s, practical) else practical for k in numbers]
-    for number, one in enumerate(faults):
+    for number, one in enumerate(after(longest_s)):
         if not holds(number, longest_s, needed[number]):
             few = hardest[number]
-            found = one.demands(few, few, bounds_of(longest_s), reach_of(longest_s), None).within_s
+            found = _demands(one, singles[number], few, few, reach_of(longest_s), None).within_s
             needed[number] = min(PRACTICAL_S, found[0]), min(PRACTICAL_S, found[1])
     pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: all(map(holds, numbers, repeat(longer_s), needed)))
     added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
     while True:
-        bounds, reach, demands = bounds_of(pause_s), reach_of(pause_s), {}
+        there, reach, demands = after(pause_s), reach_of(pause_s), {}
         for number in sorted(numbers, key=lambda number: not any(needed[number])):  # what may not suffice first
-            demand = faults[number].demands(corners[number], hardest[number], bounds, reach, pause_s)
+            demand = _demands(there[number], singles[number], corners[number], hardest[number], reach, pause_s)
             if pause_s < longest_s and np.less(demand.within_s, needed[number]).any():
                 break
             demands[number] = demand
@@ -87,72 +91,55 @@ def demanded(
         pause_s, added_s = min(longest_s, math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S), 2.0 * added_s
 
 
-class _Faults:
-    """Single faults of one drive that is safe or not in a first play."""
+def _demands(
+    faulty: Faulty,
+    single: Single[CurrentPlay, State],
+    corners: list[int],
+    hardest: list[int],
+    reach_C: Span,
+    pause_s: float | None,
+) -> Demands:
+    """What the hardware must prevent in a drive, in all corners and between bounds; `reach_C` are extremes of displays.
 
-    def __init__(self, plant: CurrentPlant, single: Single[CurrentPlay, State], limits: Limits) -> None:
-        assert isinstance(single.play.drive, Drive)
-        self.ensemble, self.single, self.limits, self.drive = plant.ensemble, single, limits, single.play.drive
+    The numbers of watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that
+    decided, and found again in those where they are too slow; the rest in `corners`.
+    """
+    ensemble, limits = faulty.ensemble, faulty.limits
+    for current_A in faulty.ends_A if ensemble.ideal else ():
+        ensemble.modes(current_A)  # once for all corners and icons
+    few = faulty.at(hardest)
+    moments = few.moments()
+    watchdog_s, hangs = few.watchdog_s(moments)
+    cut_off, stuck = few.cut_off(reach_C, moments, hangs=not watchdog_s)
+    far_K = few.beyond_K(moments, watchdog_s, cut_off)
+    worst = far_K.reshape(len(far_K), len(moments.instants), -1).max(axis=2).argmax(axis=1)
+    everywhere = replace(faulty, instants=tuple(np.unique(worst).tolist()))
+    moments = everywhere.moments()
+    too_slow = (everywhere.beyond_K(moments, watchdog_s, cut_off) > 0.0).any(axis=0)
+    if too_slow.any():
+        there = faulty.at(np.unique(moments.rigs[too_slow]).tolist())
+        moments = there.moments()
+        watchdog_s, hangs = min((watchdog_s, hangs), there.watchdog_s(moments), key=lambda found: found[0])
+        cut_off, stuck = min(
+            (cut_off, stuck),
+            there.cut_off(reach_C, moments, hangs=not watchdog_s),
+            key=lambda found: found[0].react_within_s,
+        )
+    first = replace(faulty, bounds=()).at(corners)
+    rest, begins = rest_before(first)
+    polarity, swapped = polarity_check(first)
+    zero = None
+    if ensemble.ideal:
+        dose = single.tallies[0].summed("thermal dose")
+        zero = dose_time_s(ensemble, limits, single.end, dose, limits.session_s)
+        zero = None if zero >= limits.session_s else round(zero, 0)
+    return Demands(watchdog_s, cut_off, polarity, rest, pause_s, zero, (hangs, begins, swapped, stuck))
 
-    def shown_C(self, bounds: Sequence[State]) -> Span:
-        """Between which temperatures in °C the display is in plays that begin between bounds."""
-        shown = [
-            values[WATCHED.index("display_C")]
-            for one in bounds
-            for (_, values), _ in self.ensemble.play(self.drive, one)
-        ]
-        return float(min(np.nanmin(one) for one in shown)), float(max(np.nanmax(one) for one in shown))
 
-    def faulty(self, corners: list[int], bounds: Sequence[State], instants: tuple[int, ...] | None = None) -> Faulty:
-        """Its single faults in some corners, in plays that begin between bounds."""
-        which, rest_A = np.array(corners), float(self.single.play.rest_A)
-        start, *between = (state.take(which) for state in (self.single.start, *bounds))
-        few = self.ensemble if len(corners) == len(self.ensemble.corners) else self.ensemble.only(corners)
-        return Faulty(few, self.drive, rest_A, start, self.limits, tuple(between), instants)
-
-    def demands(
-        self,
-        corners: list[int],
-        hardest: list[int],
-        bounds: Sequence[State],
-        reach_C: Span,
-        pause_s: float | None,
-    ) -> Demands:
-        """What the hardware must prevent; `reach_C` are extremes of displays.
-
-        The numbers of watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that
-        decided, and found again in those where they are too slow; the rest in `corners`.
-        """
-        every = list(range(len(self.ensemble.corners)))
-        for current_A in self.faulty(every, bounds).ends_A if self.ensemble.ideal else ():
-            self.ensemble.modes(current_A)  # once for all corners and icons
-        faulty = self.faulty(hardest, bounds)
-        moments = faulty.moments()
-        watchdog_s, hangs = faulty.watchdog_s(moments)
-        cut_off, stuck = faulty.cut_off(reach_C, moments, hangs=not watchdog_s)
-        far_K = faulty.beyond_K(moments, watchdog_s, cut_off)
-        worst = far_K.reshape(len(far_K), len(moments.instants), -1).max(axis=2).argmax(axis=1)
-        everywhere = self.faulty(every, bounds, tuple(np.unique(worst).tolist()))
-        moments = everywhere.moments()
-        too_slow = (everywhere.beyond_K(moments, watchdog_s, cut_off) > 0.0).any(axis=0)
-        if too_slow.any():
-            there = self.faulty(np.unique(moments.rigs[too_slow]).tolist(), bounds)
-            moments = there.moments()
-            watchdog_s, hangs = min((watchdog_s, hangs), there.watchdog_s(moments), key=lambda found: found[0])
-            cut_off, stuck = min(
-                (cut_off, stuck),
-                there.cut_off(reach_C, moments, hangs=not watchdog_s),
-                key=lambda found: found[0].react_within_s,
-            )
-        faulty = self.faulty(corners, ())
-        rest, begins = rest_before(faulty)
-        polarity, swapped = polarity_check(faulty)
-        zero, session_s = None, self.limits.session_s
-        if self.ensemble.ideal:
-            dose = self.single.tallies[0].summed("thermal dose")
-            zero = dose_time_s(self.ensemble, self.limits, self.single.end, dose, session_s)
-            zero = None if zero >= session_s else round(zero, 0)
-        return Demands(watchdog_s, cut_off, polarity, rest, pause_s, zero, (hangs, begins, swapped, stuck))
+def _faulty(plant: CurrentPlant, single: Single[CurrentPlay, State], limits: Limits) -> Faulty:
+    play = single.play
+    assert isinstance(play.drive, Drive)
+    return Faulty(plant.ensemble, play.drive, float(play.rest_A), single.start, limits)
 
 
 def _farthest(plant: CurrentPlant, tallies: list[Tally]) -> list[int]:

@@ -15,7 +15,7 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, colour_of, findings_of, hard_of, worst_of
+from .checks import Check, Judged, colour_of, findings_of, hard_of, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .demands import Demands
 from .display import DisplayCourse, DisplayPlant
@@ -27,7 +27,7 @@ from .single import Single
 
 
 @dataclass(frozen=True, slots=True)
-class Gate:
+class Gate(Judged):
     """The verdict on one drive.
 
     Attributes
@@ -74,19 +74,9 @@ class Gate:
         return f"Gate({self.colour}: {len(self.checks)} rules in {self.scenarios} scenarios on {self.rig_name})"
 
     @property
-    def findings(self) -> tuple[Check, ...]:
-        """The limits that are exceeded, one for each quantity and side, the hard ones first."""
-        return findings_of(self.checks)
-
-    @property
     def colour(self) -> str:
         """Green, amber (only soft limits are exceeded) or red."""
         return "red" if self.repeated.too_soon else colour_of(self.findings)
-
-    @property
-    def safe(self) -> bool:
-        """Whether no hard limit is exceeded."""
-        return self.colour != "red"
 
     @property
     def reason(self) -> str | None:
@@ -102,13 +92,6 @@ class Gate:
     def mended_by_pause(self) -> bool:
         """Whether a longer pause between plays is all that is missing."""
         return not hard_of(findings_of(self.once)) and self.repeated.shortest_pause_s is not None
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit exceeded."""
-        from .words import soft_cautions
-
-        return soft_cautions(self.findings)
 
     @property
     def text(self) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..inputs import InputError
 from ..rig.rules import Limits
-from .checks import Before, Check, Scenario, colour_of, findings_of
+from .checks import Before, Check, Judged, Scenario, colour_of
 from .plant import Plant, Play, Played, States, follow, left_s
 from .single import RECOVERY_ROWS_S
 from .tally import Tally
@@ -43,7 +43,7 @@ class PauseError(InputError):
 
 
 @dataclass(frozen=True, slots=True)
-class Repeated:
+class Repeated(Judged):
     """The verdict on a drive that is played repeatedly, with its resting current held in the pauses.
 
     `recovery_s`: from the end of a play until display and skin are back within 0.1 K in every corner; None: later than
@@ -63,11 +63,6 @@ class Repeated:
 
     def __repr__(self) -> str:
         return f"Repeated({self.colour}: {self.plays} plays with {self.pause_s:g} s between them)"
-
-    @property
-    def findings(self) -> tuple[Check, ...]:
-        """The limits that repetition exceeds, the hard ones first."""
-        return findings_of(self.checks)
 
     @property
     def colour(self) -> str:

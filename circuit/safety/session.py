@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ..rig.parts import Uncertainty
 from ..rig.rules import Limits
 from ..solver.trace import Trace
-from .checks import Check, colour_of, findings_of
+from .checks import Check, Judged
 from .sessionplan import SessionPlan
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class TimeBeyond:
 
 
 @dataclass(frozen=True, slots=True)
-class Session:
+class Session(Judged):
     """A session on a rig.
 
     Attributes
@@ -126,28 +126,9 @@ class Session:
         return float(self.trace.time_s[-1])
 
     @property
-    def findings(self) -> tuple[Check, ...]:
-        """The limits that the session exceeds in the worst case, the hard ones first."""
-        return findings_of(self.checks)
-
-    @property
     def verdict(self) -> str:
-        """Green, amber or red, of the whole session in the worst case."""
-        return colour_of(self.findings)
-
-    @property
-    def reason(self) -> str | None:
-        """The first hard limit exceeded, in one sentence; None where there is none."""
-        from .words import hard_reason
-
-        return hard_reason(self.findings)
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit exceeded."""
-        from .words import soft_cautions
-
-        return soft_cautions(self.findings)
+        """The colour of the whole session in the worst case."""
+        return self.colour
 
     @property
     def baseline_drift_K(self) -> float:

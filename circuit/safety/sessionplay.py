@@ -25,7 +25,7 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.simulate import simulate_current
 from ..solver.trace import Trace
-from .checks import Check, colour_of, findings_of, worst_of
+from .checks import Check, Judged, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
 from .exposure import cem43_min, henriques
@@ -44,7 +44,7 @@ Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class WorstCase:
+class WorstCase(Judged):
     """Every rule in its worst scenario, the number of scenarios, and the recovery time of display and skin.
 
     `recovery_s` counts from the end of the session until both are within 0.1 K of where they began in every corner,
@@ -54,16 +54,6 @@ class WorstCase:
     checks: tuple[Check, ...]
     scenarios: int
     recovery_s: float | None
-
-    @property
-    def findings(self) -> tuple[Check, ...]:
-        """The limits that are exceeded, the hard ones first."""
-        return findings_of(self.checks)
-
-    @property
-    def verdict(self) -> str:
-        """Green, amber or red."""
-        return colour_of(self.findings)
 
 
 def play_session(
@@ -150,7 +140,7 @@ def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits
         rows = slice(begin, until + 1)
         times, skin, display = trace.time_s[rows], trace.skin_C[rows], trace.display_C[rows]
         columns = {name: getattr(trace, name)[np.newaxis, rows] for name in WATCHED}
-        verdict = SafetyVerdict(findings_of(checks_of(limits, times, columns)))
+        verdict = SafetyVerdict(checks_of(limits, times, columns))
         plays.append(
             Play(
                 icon=plan.order[place],

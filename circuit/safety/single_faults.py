@@ -74,6 +74,22 @@ class Faulty:
     bounds: tuple[State, ...] = ()
     instants: tuple[int, ...] | None = None
 
+    def at(self, corners: list[int]) -> Faulty:
+        """The same in some of the corners."""
+        start, *bounds = (state.take(np.array(corners)) for state in (self.start, *self.bounds))
+        few = self.ensemble if len(corners) == len(self.ensemble.corners) else self.ensemble.only(corners)
+        return replace(self, ensemble=few, start=start, bounds=tuple(bounds))
+
+    @property
+    def shown_C(self) -> tuple[float, float]:
+        """Between which temperatures in °C the display is in plays that begin between bounds."""
+        shown = [
+            values[WATCHED.index("display_C")]
+            for begun in self.bounds
+            for (_, values), _ in self.ensemble.play(self.drive, begun)
+        ]
+        return float(min(np.nanmin(one) for one in shown)), float(max(np.nanmax(one) for one in shown))
+
     def moments(self) -> Moments:
         """When the current may get stuck: in each stretch of a drive at its end, and at the ends of its extremes."""
         starts, count = self.bounds or (self.start,), len(self.ensemble.corners)

@@ -108,11 +108,6 @@ def hard_reason(findings: Sequence[Check]) -> str | None:
     return next(map(str, hard_of(findings)), None)
 
 
-def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:
-    """A sentence for each finding that is not hard."""
-    return tuple(str(finding) for finding in findings if finding.severity != "hard")
-
-
 def more_and_cure(findings: Sequence[Check]) -> str:
     """What follows the reason of a refusal: every other hard limit that is exceeded, and what would cure all of them.
 

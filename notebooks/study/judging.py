@@ -148,7 +148,7 @@ def judge_sessions(
     red += [
         f"blocks of participant {label}, each from rest: NOT SAFE: {worst.findings[0]}"
         for label, worst in after_breaks.items()
-        if worst.verdict == "red" and sessions[label].verdict != "red"
+        if worst.colour == "red" and sessions[label].verdict != "red"
     ]
     if red:
         raise Refused(red)
