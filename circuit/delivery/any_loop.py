@@ -15,8 +15,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from thermicon.icons.number_text import signed
+
 from ..arrays import Array
-from ..safety.checks import Check, again, worst_of
+from ..safety.checks import Before, Check, Scenario, worst_of
 from ..safety.demands import CutOff
 from ..safety.ensemble import LaneDrives
 from ..safety.single_faults import AFTER_ROWS_S
@@ -86,7 +88,7 @@ class AnyLoop:
         if slower_K <= loss_limit("receptor difference"):
             return limits, checks
         cure = f", as its set-points need; a driver.current_limit_A of {min(-limits[0], limits[1]):g} A slows them"
-        return given, tuple(replace(check, scenario=f"{check.scenario}{cure}") for check in wide)
+        return given, tuple(replace(check, run=replace(check.run, way=f"{check.run.way}{cure}")) for check in wide)
 
     def _shown(self, play: Samples, limits_A: Limits_A) -> Array:
         """The display of the rig as given that follows set-points within current limits."""
@@ -109,8 +111,8 @@ class AnyLoop:
         currents: Array = np.append(flows, flows[:, -1:], axis=1)
         times: Array = np.arange(currents.shape[1], dtype=np.float64) * period
         drives = LaneDrives(times, currents / ensemble.gain[:, np.newaxis])
-        what = f", under any loop of {limits_A[0]:g} … {limits_A[1]:g} A"
-        tally = Tally(ensemble.rig.limits, ensemble.corners, what.replace("-", "−"))
+        what = Scenario(way=f"under any loop of {limits_A[0]:g} … {limits_A[1]:g} A".replace("-", "−"))
+        tally = Tally(ensemble.rig.limits, ensemble.corners, what)
         for (rows, values), _ in ensemble.play(drives, start):
             tally.add(rows, values, sums=False)
         wanted = ("rate of skin temperature", "hot plate")
@@ -146,14 +148,14 @@ class AnyLoop:
         """Hard rules of temperature with a driver at its limit from either state, and without current afterwards."""
         ensemble, judged = self.module.ensemble, []
         for state, current_A in zip(begun, (limits_A[1], limits_A[0]), strict=True):
-            what = f", display at the cut-off, then {current_A:g} A for {reaction_s:g} s".replace("then -", "then −")
-            tally = Tally(ensemble.rig.limits, ensemble.corners, what)
+            what = f"display at the cut-off, then {signed(current_A, 'g')} A for {reaction_s:g} s"
+            tally = Tally(ensemble.rig.limits, ensemble.corners, Scenario(way=what, before=Before("any")))
             rows: Array = np.linspace(0.0, reaction_s, 5)
             for start_s, amperes, times in ((0.0, current_A, rows), (reaction_s, 0.0, AFTER_ROWS_S)):
                 values, state = ensemble.hold(amperes, state, times)
                 tally.add(start_s + times, values, rates=False, sums=False)
             judged.append(tally.checks())
-        return again([check for check in worst_of(judged) if check.severity == "hard" and check.unit == "°C"])
+        return tuple(check for check in worst_of(judged) if check.severity == "hard" and check.unit == "°C")
 
 
 def _whole_A(limit_A: float) -> float:

@@ -19,13 +19,13 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Controller
-from ..safety.checks import Check, worst_of
+from ..safety.checks import Check, Scenario, worst_of
+from ..safety.demanded import polarity_check
 from ..safety.demands import CutOff, Demands, Loop, SingleFault
-from ..safety.first_plays import polarity_check
-from ..safety.gate import Gate
+from ..safety.display import DisplayCourse, DisplayPlant
+from ..safety.gate import Gate, gate_shown
+from ..safety.single import recovery_s
 from ..safety.single_faults import BEYOND_K
-from ..safety.thermode import DisplayCourse, Under
-from ..safety.thermode_gate import gate_shown
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_follow import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.plate import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
@@ -57,16 +57,18 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
 
     Raises PauseError for an impossible pause, and RigError where the module cannot be at rest.
     """
-    rig, device = deliveries[0].rig, deliveries[0].device
+    rig, stuck_C = deliveries[0].rig, deliveries[0].device.interval("set-point range")
     verdicts = gate_shown(
         [(_beside(delivery, BESIDE_K), _beside(delivery, -BESIDE_K)) for delivery in deliveries],
-        rig, stuck_C=device.interval("set-point range"), pause_s=pause_s, module=True,
+        rig, stuck_C=stuck_C, pause_s=pause_s, module=True,
     )  # fmt: skip
-    module, under, plays = FollowingModule.of(rig), Under.of(rig), [samples_of(delivery) for delivery in deliveries]
-    loops, shown = AnyLoop.of(module), verdicts[0].demands.cut_off_display_C
-    reach_C = shown.low + BEYOND_K, shown.high - BEYOND_K
-    unpowered_C = module.unpowered_C()
-    reach_C = min(reach_C[0], unpowered_C[0]), max(reach_C[1], unpowered_C[1])
+    module, under = FollowingModule.of(rig), DisplayPlant.of(rig, stuck_C)
+    loops, plays = AnyLoop.of(module), [samples_of(delivery) for delivery in deliveries]
+    cuts, unpowered_C = [verdict.demands.cut_off_display_C for verdict in verdicts], module.unpowered_C()
+    reach_C = (
+        min(unpowered_C[0], *(cut.low + BEYOND_K for cut in cuts)),
+        max(unpowered_C[1], *(cut.high - BEYOND_K for cut in cuts)),
+    )
     around = CutOff(reach_C[0] - BEYOND_K, reach_C[1] + BEYOND_K, 0.0)
     limits_A, swings = loops.limits_A(around, plays)
     drives = [module.drives(play) for play in plays]
@@ -105,7 +107,7 @@ def _demands(
     verdict: Gate,
     module: FollowingModule,
     delivery: DeliveredDrive,
-    under: Under,
+    under: DisplayPlant,
     unpowered_C: tuple[float, float],
     proven: tuple[Loop, Limits_A, CutOff],
 ) -> Demands:
@@ -115,22 +117,11 @@ def _demands(
     """
     loop, limits_A, cut = proven
     rest_s = _rest_s(under, delivery, unpowered_C)
-    duration = "10 min or more" if rest_s is None else f"{rest_s:g} s"
-    start = SingleFault(
-        "first play on a display that was without power",
-        "green",
-        f"the display is between {signed(unpowered_C[0], '.1f')} and {signed(unpowered_C[1], '.1f')} °C",
-        f"holding the baseline for {duration} before the first play",
-    )
+    start = SingleFault("unpowered loop", "green", {"display_C": unpowered_C, "rest_s": rest_s})
     faulty = module.faulty(samples_of(delivery))
     polarity, _ = polarity_check(faulty)
     _, stuck = faulty.cut_off((cut.low + BEYOND_K, cut.high - BEYOND_K))
-    lost = SingleFault(
-        "sensor lost or poles swapped: the loop runs to the driver's limit",
-        stuck.colour,
-        stuck.text,
-        f"a cut-off at {cut.low:g} and {cut.high:g} °C on a second sensor of its own, within {cut.react_within_s:g} s",
-    )
+    lost = SingleFault("loop lost", stuck.colour, {"harms": stuck.values["harms"], "cut_off": cut})
     return replace(
         verdict.demands,
         cut_off_display_C=cut,
@@ -143,11 +134,11 @@ def _demands(
     )
 
 
-def _rest_s(under: Under, delivery: DeliveredDrive, unpowered_C: tuple[float, float]) -> float | None:
+def _rest_s(under: DisplayPlant, delivery: DeliveredDrive, unpowered_C: tuple[float, float]) -> float | None:
     """How long the loop must hold the baseline after a start without power until the skin is there, in every corner."""
     base = _beside(delivery)
     rest = DisplayCourse(base.way, base.step_s, np.full(2, base.display_C[0]))
-    times = [under.recovery_s(rest, under.steady(level)) for level in unpowered_C]
+    times = [recovery_s(under, rest, under.rest(rest), under.steady(level)) for level in unpowered_C]
     known = [time for time in times if time is not None]
     return max(known) if len(known) == len(times) else None
 
@@ -209,4 +200,6 @@ def _swing(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, play: Sa
     gains = f"{loop.kp_A_per_K[1]:g} A/K, {loop.ki_A_per_Ks[1]:g} A/(K·s)"
     what = f"a loop of {gains} and a lag of {loop.sensor_lag_at_most_s:g} s"
     cure = "so that its cut-off would act; use a smaller controller.kp_A_per_K or a faster sensor"
-    return Check("swing of the display", "hard", value, limit, "K", float(play.time_s[-1]), since, cure, "", True, what)
+    return Check(
+        "swing of the display", "hard", value, limit, "K", float(play.time_s[-1]), since, cure, run=Scenario(what)
+    )

@@ -102,12 +102,8 @@ class Prepared:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to know about the delivery, then what is amber; without what it is refused for."""
-        narrowed = self.delivery.narrowed
-        notes = self.delivery.warnings
-        if narrowed and any(refusal.kind != "unsafe" for refusal in self.refusals):
-            notes = tuple(text for text in notes if text != narrowed.text)
-        refused = [refusal.text for refusal in self.refusals]
-        return (*(text for text in notes if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
+        told = {text for refusal in self.refusals for text in refusal.tells}
+        return (*(text for text in self.delivery.warnings if text not in told), *self.verdict.cautions)
 
 
 def prepare_set(
@@ -173,8 +169,3 @@ def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:
     deviation = delivery.deviation
     refusals = refusals_of(delivery, verdict, deviation)
     return Prepared(delivery, verdict, deviation, refusals, open_loop_spread(delivery))
-
-
-def _bare(warning: str) -> str:
-    """A warning without the name of the device before it."""
-    return warning.partition(": ")[2] or warning

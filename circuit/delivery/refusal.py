@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from thermicon.icons.number_text import signed
 
 from ..rig.rig import Rig
-from ..safety.checks import more_and_cure
+from ..safety.words import more_and_cure
 from ..solver.inverse import design
 from ..solver.simulate import duration_s
 from ..solver.trace import Outcome
@@ -41,6 +41,8 @@ class Refusal:
         `unsafe`, `unreachable` or `lossy`; an export that is unsafe cannot be forced.
     text
         The reason, with its cure.
+    tells
+        The warnings of the delivery that the reason tells too.
 
     Examples
     --------
@@ -51,6 +53,7 @@ class Refusal:
 
     kind: Literal["unsafe", "unreachable", "lossy"]
     text: str
+    tells: tuple[str, ...] = ()
 
     @property
     def forcible(self) -> bool:
@@ -68,19 +71,22 @@ def refusals_of(delivery: DeliveredDrive, verdict: Verdict, deviation: DeliveryD
     the range, and losses are not reported where the drive is unsafe.
     """
     refusals, narrowed = [], delivery.narrowed
+    tells = (narrowed.text,) if narrowed else ()
     if verdict.colour == "red":
         reason = verdict.reason or "the gate says red"
         more = "" if verdict.mended_by_pause else more_and_cure(verdict.findings)
         refusals.append(Refusal("unsafe", reason + more))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
-        refusals.append(Refusal("unreachable", _out_of_reach(delivery, delivery.outcome, verdict.colour != "red")))
+        text = _out_of_reach(delivery, delivery.outcome, verdict.colour != "red")
+        refusals.append(Refusal("unreachable", text, tells))
         lost = "" if narrowed else lost
     elif narrowed and narrowed.outcome is not None and not narrowed.outcome.reached:
-        refusals.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}"))
+        refusals.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}", tells))
         lost = ""
     if lost and verdict.colour != "red":
-        refusals.append(Refusal("lossy", f"{narrowed.text}. With that {lost}" if narrowed else _lossy(delivery, lost)))
+        text = f"{narrowed.text}. With that {lost}" if narrowed else ""
+        refusals.append(Refusal("lossy", text, tells) if narrowed else _lossy(delivery, lost))
     return tuple(refusals)
 
 
@@ -151,16 +157,17 @@ def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome, safe: bool) -> str
     )
 
 
-def _lossy(delivery: DeliveredDrive, lost: str) -> str:
+def _lossy(delivery: DeliveredDrive, lost: str) -> Refusal:
     """What is lost, why, and what would lose less."""
     device, played = delivery.device, delivery.played
     if isinstance(played, Setpoints):
-        why = f"its set-points have steps of {played.step_K:g} K"
+        why = f"{device.name}: its set-points have steps of {played.step_K:g} K"
     elif delivery.device_warnings:
-        why = "; ".join(text.removeprefix(f"{device.name}: ") for text in delivery.device_warnings)
+        why = "; ".join(delivery.device_warnings)
     elif delivery.rate_Hz < 0.9 * delivery.requested_Hz:
-        why = f"it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
+        why = f"{device.name}: it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
     else:
         unit = " of full duty" if device.driven_by == "duty" else f" {device.unit}"
-        why = f"its steps are {signed(played.scale.step, '.3g')}{unit}"
-    return f"{lost}; {device.name}: {why}; use a device that is finer or faster there"
+        why = f"{device.name}: its steps are {signed(played.scale.step, '.3g')}{unit}"
+    text = f"{lost}; {why}; use a device that is finer or faster there"
+    return Refusal("lossy", text, () if isinstance(played, Setpoints) else delivery.device_warnings)

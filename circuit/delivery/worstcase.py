@@ -12,9 +12,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..safety.gate import Gate, gate_set
-from ..safety.thermode import DisplayCourse
-from ..safety.thermode_gate import gate_shown
+from ..safety.display import DisplayCourse
+from ..safety.gate import Gate, gate_set, gate_shown
 from ..solver.drive import Drive
 from .controlled import gate_controlled
 from .delivered_drive import DeliveredDrive

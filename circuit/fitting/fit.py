@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..cores import quiet_blas
-from ..rig.modules import PARAMETERS
+from ..rig.faults import PARAMETERS
 from ..rig.rig import Rig
 from .checks import aligned, check_clocks, check_sensors
 from .identify import identified, in_series

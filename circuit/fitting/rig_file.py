@@ -10,8 +10,8 @@ from typing import Any
 from ..program import own_version
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
-from ..rig.rig_text import toml_text
 from ..rig.rigfile import UncertaintyTable
+from ..rig.settings import toml_text
 from ..rig.uncertainty import uncertainty_of
 from .identify import Parameter
 from .keys import FitKey

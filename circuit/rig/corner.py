@@ -9,8 +9,8 @@ from typing import Any
 
 from thermicon.icons.number_text import signed
 
+from .faults import PARAMETERS
 from .module import ZERO_C_IN_K, Peltier
-from .modules import PARAMETERS
 from .parts import HeatSink
 from .rig import Rig
 from .rigfile import RigError

@@ -16,7 +16,6 @@ from .skin import Column
 
 if TYPE_CHECKING:
     from .rig import Rig
-    from .rigfile import RigTable
 
 METAL, AIR = "metal block", "air"
 LOAD_SITES = (METAL, AIR)
@@ -67,33 +66,6 @@ def load_of(table: LoadTable | None, area_m2: float) -> Load | None:
         return Load(AIR, AIR_J_PER_M2K * area_m2, table.film_W_per_m2K * area_m2)
     assert table.capacity_J_per_K is not None and table.conductance_W_per_K is not None
     return Load(METAL, table.capacity_J_per_K, table.conductance_W_per_K)
-
-
-def load_faults(table: RigTable) -> list[str]:
-    """Return one sentence for each key of [load] that is missing or does not go with another."""
-    load = table.load
-    if load is None:
-        return []
-    metal = {"capacity_J_per_K": load.capacity_J_per_K, "conductance_W_per_K": load.conductance_W_per_K}
-    given = [key for key, value in metal.items() if value is not None]
-    faults = []
-    if load.film_W_per_m2K is not None and given:
-        faults.append(f"load.film_W_per_m2K belongs to air, load.{given[0]} to a block of metal; remove one of them")
-    elif load.film_W_per_m2K is None and not given:
-        faults.append(
-            "load: give capacity_J_per_K and conductance_W_per_K (to the room) of a block of metal, or film_W_per_m2K "
-            "of air"
-        )
-    elif load.film_W_per_m2K is None and len(given) == 1:
-        faults.append(f"load.{next(key for key in metal if key not in given)} is missing; add it")
-    if table.thermode is not None:
-        faults.append("load: a thermode keeps its display at the set-points on any load; remove [load] or [thermode]")
-    if table.contact.lands_s is not None:
-        faults.append("contact.lands_s: there is no hand to land where the display touches a load; remove it or [load]")
-    deep = [probe.name for probe in table.probe if probe.place not in ("display", "interface")]
-    if deep:
-        faults.append(f'probe {deep[0]}: there is no skin on a rig with [load]; use place = "display" or "interface"')
-    return faults
 
 
 def refuse_load(rig: Rig, what: str) -> None:

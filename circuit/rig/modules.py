@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -13,6 +13,7 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..records import Record, RecordError, Table, load_records
 from .datasheet import Datasheet, Extraction, at_mean_C
+from .faults import PARAMETERS
 from .module import Peltier
 
 if TYPE_CHECKING:
@@ -30,14 +31,10 @@ COLUMNS = (
     "q_max_W",
     "dt_max_K",
 )
-PARAMETERS = {"seebeck_V_per_K": "V/K", "resistance_ohm": "Ω", "thermal_resistance_K_per_W": "K/W"}
-"""The three parameters of a module in a rig file, with their units."""
 MOST_RESIDUAL = 0.10
 """Share of the printed Qmax by which three figures may miss it without a warning."""
 LEAST_APART_K = 1.0
 """Two sheets closer than this in mean module temperature cannot show its influence."""
-SAME_FACE = 0.01
-"""Share by which a contact in cm² may differ from the face of a module by rounding alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,47 +80,6 @@ def build_of(name: str) -> Build:
     return Build(face, float(plate) if plate else None, float(record.get("i_max_A")))
 
 
-def unlike_before(
-    name: str, area_cm2: float, limit_A: float, plates: tuple[float, float], stated: Collection[str]
-) -> list[str]:
-    """Return one sentence for each value of a rig that still suits the module which was replaced.
-
-    `area_cm2` in contact, `limit_A` of the driver, `plates` (hot, cold) in J/K; `stated` keys were set along with it.
-    """
-    build, sentences = build_of(name), []
-    keys = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
-    if build.plate_J_per_K is None and not set(keys) <= set(stated):
-        sentences.append(
-            f"module {name}: its plates are unknown, so the rig keeps its own, {plates[0]:g} (hot) and "
-            f"{plates[1]:g} J/K (cold); set {' and '.join(keys)}"
-        )
-    if larger := beyond_the_face(name, area_cm2):
-        sentences += larger
-    elif "contact.area_cm2" not in stated and (build.face_cm2 is None or area_cm2 < (1.0 - SAME_FACE) * build.face_cm2):
-        face = "not on record" if build.face_cm2 is None else f"{build.face_cm2:g} cm²"
-        sentences.append(
-            f"module {name}: its face is {face}, and contact.area_cm2 stays the {area_cm2:g} cm² of the rig; set it to "
-            f"what touches"
-        )
-    if limit_A > build.i_max_A:
-        sentences.append(
-            f"module {name}: driver.current_limit_A = {limit_A:g} A is above its Imax of {build.i_max_A:g} A, past "
-            f"which more current cools less; set it to at most that"
-        )
-    return sentences
-
-
-def beyond_the_face(name: str, area_cm2: float) -> list[str]:
-    """Return a sentence where more than the face of a shipped module is in contact; none where its face is unknown."""
-    face_cm2 = build_of(name).face_cm2
-    if face_cm2 is None or area_cm2 <= (1.0 + SAME_FACE) * face_cm2:
-        return []
-    return [
-        f"module {name}: contact.area_cm2 = {area_cm2:g} cm² is more than its face of {face_cm2:g} cm²; set "
-        f"contact.area_cm2 to at most that"
-    ]
-
-
 def load_module(name: str) -> tuple[Datasheet, ...]:
     """Return the data sheets of a shipped module, coolest hot side first; raises RecordError with the nearest name.
 
@@ -147,44 +103,6 @@ def _sheet(record: Record) -> Datasheet:
         float(record.get(key)) for key in ("i_max_A", "v_max_V", "dt_max_K", "t_hot_C", "q_max_W")
     )
     return Datasheet(current, voltage, span, hot, heat)
-
-
-def module_faults(table: ModuleTable) -> str:
-    """Return the faults in how a rig file gives its module, one per line; empty where there are none."""
-    stated = [key for key in PARAMETERS if getattr(table, key) is not None]
-    ways = [*stated[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
-    sheets = table.datasheet
-    if not ways:
-        return (
-            f"module: no module is stated; give {', '.join(PARAMETERS)}, "
-            f"or one or two [[module.datasheet]], or the name of a shipped module"
-        )
-    if len(ways) > 1:
-        return f"module: {' and '.join(ways)} are two ways of giving it; keep one and remove the other"
-    if stated:
-        missing = [f"module.{key} is missing; add it, in {PARAMETERS[key]}" for key in PARAMETERS if key not in stated]
-        if table.extraction is not None:
-            missing.append("module.extraction: only for a data sheet or a name; remove the key")
-        if missing:
-            return "\n".join(missing)
-    if sheets is not None and len(sheets) not in (1, 2):
-        return f"module.datasheet: {len(sheets)} tables; give one, or two for two hot-side temperatures"
-    return _leg_fault(table)
-
-
-def _leg_fault(table: ModuleTable) -> str:
-    """The fault where only one of the two keys of the legs is given; empty where there is none."""
-    if table.leg_nodes and table.leg_capacity_J_per_K is None:
-        return (
-            "module.leg_capacity_J_per_K is missing; legs that are divided into nodes need it, in J/K: volume of all "
-            "legs times some 1.2e6 J/(m³·K) (127 couples of 1.0 x 1.0 x 2.5 mm legs: 0.76 J/K)"
-        )
-    if table.leg_capacity_J_per_K is not None and not table.leg_nodes:
-        return (
-            f"module.leg_capacity_J_per_K = {table.leg_capacity_J_per_K:g} J/K: has no effect while module.leg_nodes "
-            f"is 0; set module.leg_nodes to 3 or more, or remove it"
-        )
-    return ""
 
 
 def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> tuple[Peltier, ModuleOrigin]:
@@ -243,21 +161,6 @@ def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tup
         f"sheets leads away by up to {100 * change:.2g} %: where that matters, {cure}fit the module to a log "
         f"(thermicon fit)"
     )
-
-
-def unlike_record(name: str, plates: tuple[float, float], share: float) -> list[str]:
-    """Return a sentence where plates (hot, cold) in J/K are not those on record for a module, within a share of them.
-
-    >>> unlike_record("TEC1-12706", (4.6, 4.6), 0.2)
-    []
-    """
-    plate = build_of(name).plate_J_per_K
-    if plate is None or all(abs(each - plate) <= share * plate for each in plates):
-        return []
-    return [
-        f"module {name}: module.hot_plate_J_per_K and module.cold_plate_J_per_K are {plates[0]:g} and {plates[1]:g} "
-        f"J/K, those on record for it {plate:g} J/K each: set both to that, or state in [source] where yours are from"
-    ]
 
 
 def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extraction, ...]:

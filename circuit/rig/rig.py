@@ -14,10 +14,10 @@ from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
-from .heat_sink import heat_sink_of
+from .assemble import HeatPump, probes_of, pump_of, skin_of
 from .load import AIR, NO_CONTACT_M2K_PER_W, Load, load_of
 from .module import Peltier
-from .modules import ModuleOrigin, module_of
+from .modules import ModuleOrigin
 from .parts import (
     Ambient,
     Contact,
@@ -28,25 +28,13 @@ from .parts import (
     Thermode,
     Uncertainty,
 )
-from .probes import probes_of
 from .rig_summary import rig_summary
-from .rig_text import toml_text
 from .rig_warnings import rig_warnings
 from .rigfile import RigError, RigTable, parse_toml, read_table
 from .rules import Limits
-from .settings import flattened, put_all, read_settings
-from .skin import STRATUM_CORNEUM, Column, Layer, ReceptorDepths, Skin, column_of
+from .settings import changed, flattened, put_all, read_settings, toml_text
+from .skin import Column, ReceptorDepths, Skin, column_of
 from .uncertainty import uncertainty_of
-
-
-@dataclass(frozen=True, slots=True)
-class HeatPump:
-    """What warms and cools a display by a current: module, the origin of its numbers, heat sink, driver."""
-
-    module: Peltier
-    origin: ModuleOrigin
-    heat_sink: HeatSink
-    driver: Driver
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,9 +267,9 @@ class Rig:
         """
         document, changes = json.loads(self.document), flattened(changes)
         put_all(document, changes)
-        texts = {text.partition("=")[0]: text for text in self.changes}
-        texts.update({key: f"{key}={value}" for key, value in changes.items()})
-        return replace(_build(document, f"rig {self.name}"), changes=tuple(texts.values()))
+        stated = {**changed(self.changes), **changes}
+        texts = tuple(f"{key}={value}" for key, value in stated.items())
+        return replace(_build(document, f"rig {self.name}"), changes=texts)
 
     def with_set(self, settings: Iterable[str]) -> Rig:
         """Return a new rig with changes given as `key=value` texts, as on the command line."""
@@ -328,50 +316,8 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
         raise RigError(f"{where}: {problem}") from None
 
 
-def _pump(table: RigTable) -> HeatPump | None:
-    module, sink, driver = table.module, table.heat_sink, table.driver
-    if module is None or sink is None or driver is None:
-        return None
-    hot_side = heat_sink_of(sink, table.ambient.temperature_C)
-    lowest = -driver.current_limit_A if driver.current_min_A is None else driver.current_min_A
-    return HeatPump(
-        *module_of(module, (hot_side.temperature_C + table.skin.rest_C) / 2, table.source.get("module")),
-        hot_side,
-        Driver(
-            driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
-        ),
-    )
-
-
 def _assemble(table: RigTable, document: str) -> Rig:
-    contact, skin = table.contact, table.skin
-    layers = tuple(
-        Layer(
-            layer.name,
-            layer.thickness_mm * 1e-3,
-            layer.conductivity_W_per_mK,
-            layer.density_kg_per_m3,
-            layer.heat_capacity_J_per_kgK,
-            layer.perfusion_per_s,
-        )
-        for layer in skin.layer
-    )
-    if skin.depth_from == STRATUM_CORNEUM and layers[0].name != STRATUM_CORNEUM:
-        raise ValueError(
-            f'skin.depth_from = "{STRATUM_CORNEUM}": needs a first layer of that name, not "{layers[0].name}"; '
-            f'rename the layer or use "surface"'
-        )
-    above = skin.layer[0].thickness_mm if skin.depth_from == STRATUM_CORNEUM else 0.0
-    body = Skin(
-        skin.site,
-        skin.rest_C,
-        (above + skin.cold_receptor_mm) * 1e-3,
-        (above + skin.warm_receptor_mm) * 1e-3,
-        layers,
-        skin.deep_C,
-        None if skin.elements is None else tuple(skin.elements),
-        skin.depth_from,
-    )
+    contact, skin, body = table.contact, table.skin, skin_of(table.skin)
     area, load = contact.area_cm2 * 1e-4, load_of(table.load, contact.area_cm2 * 1e-4)
     blood = table.blood.density_kg_per_m3 * table.blood.heat_capacity_J_per_kgK
     column = column_of(body, blood) if load is None else load.column(area)
@@ -383,7 +329,7 @@ def _assemble(table: RigTable, document: str) -> Rig:
         table.name,
         table.title,
         tuple(table.notes),
-        _pump(table),
+        pump_of(table),
         Contact(area, touch, contact.lands_s),
         Ambient(**table.ambient.model_dump()),
         body,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -18,11 +18,9 @@ from ..inputs import (
     read_toml,
 )
 from ..key_faults import Place, key_faults
-from .heat_sink import heat_sink_faults
+from .faults import heat_sink_faults, module_faults, rig_faults
 from .keyunits import unit_of
-from .load import LoadTable, load_faults
-from .modules import module_faults
-from .rig_faults import display_faults, landing_faults
+from .load import LoadTable
 from .rules import faults_of
 from .uncertainty import uncertainty_faults
 
@@ -75,6 +73,16 @@ MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
 
+    def faults(self) -> Iterable[str]:
+        """A sentence for each fault between keys that are possible by themselves."""
+        return ()
+
+    @model_validator(mode="after")
+    def _together(self) -> Self:
+        if sentences := list(self.faults()):
+            raise ValueError("\n".join(sentences))
+        return self
+
 
 class DatasheetTable(_Table):
     """What a module's maker prints for one hot-side temperature."""
@@ -100,11 +108,9 @@ class ModuleTable(_Table):
     leg_nodes: Annotated[int, Field(ge=0, le=MOST_LEG_NODES)] = 0
     leg_capacity_J_per_K: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
 
-    @model_validator(mode="after")
-    def _one_way(self) -> ModuleTable:
-        if faults := module_faults(self):
-            raise ValueError(faults)
-        return self
+    def faults(self) -> Iterable[str]:
+        """See `module_faults`."""
+        return module_faults(self)
 
 
 class HeatSinkTable(_Table):
@@ -119,11 +125,9 @@ class HeatSinkTable(_Table):
     ki_W_per_Ks: Gain | None = None
     power_limit_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
 
-    @model_validator(mode="after")
-    def _one_kind(self) -> HeatSinkTable:
-        if faults := heat_sink_faults(self):
-            raise ValueError("\n".join(faults))
-        return self
+    def faults(self) -> Iterable[str]:
+        """See `heat_sink_faults`."""
+        return heat_sink_faults(self)
 
 
 class DriverTable(_Table):
@@ -233,11 +237,9 @@ class UncertaintyTable(_Table):
         stated = self.model_dump(exclude={"reason"})
         return {key: float(value) for key, value in stated.items() if value is not None}
 
-    @model_validator(mode="after")
-    def _reasoned(self) -> UncertaintyTable:
-        if faults := uncertainty_faults(self.given, self.reason):
-            raise ValueError("\n".join(faults))
-        return self
+    def faults(self) -> Iterable[str]:
+        """See `uncertainty_faults`."""
+        return uncertainty_faults(self.given, self.reason)
 
 
 class SafetyTable(_Table):
@@ -267,11 +269,9 @@ class SafetyTable(_Table):
         stated = self.model_dump(exclude={"reason"})
         return {key: float(value) for key, value in stated.items() if value is not None}
 
-    @model_validator(mode="after")
-    def _reasoned(self) -> SafetyTable:
-        if faults := faults_of(self.changes, self.reason):
-            raise ValueError("\n".join(faults))
-        return self
+    def faults(self) -> Iterable[str]:
+        """See `faults_of`."""
+        return faults_of(self.changes, self.reason)
 
 
 class RigTable(_Table):
@@ -296,11 +296,9 @@ class RigTable(_Table):
     safety: SafetyTable = Field(default_factory=SafetyTable)
     source: dict[Text, Paragraph] = Field(default_factory=dict)
 
-    @model_validator(mode="after")
-    def _whole(self) -> RigTable:
-        if faults := display_faults(self) or load_faults(self) or landing_faults(self):
-            raise ValueError("\n".join(faults))
-        return self
+    def faults(self) -> Iterable[str]:
+        """See `rig_faults`."""
+        return rig_faults(self)
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:

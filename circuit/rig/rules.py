@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 
-from thermicon.icons.number_text import signed
-
 from ..records import Record, Table, load_records
 
 SHORTEST_REASON, FEWEST_WORDS = 20, 4
@@ -117,31 +115,23 @@ class Limits:
         return (f"{SESSION_KEY} {self.session_s / 60:g} min instead of {shipped / 60:g} min",)
 
     @property
-    def hidden(self) -> tuple[str, ...]:
-        """A sentence for each soft limit that a hard one makes void, since nothing is amber before it is red."""
-        sentences = []
-        for hard, soft in _pairs(self.rules):
-            if hard.limit < soft.limit if hard.upper else hard.limit > soft.limit:
-                side = "below" if hard.upper else "above"
-                sentences.append(
-                    f"safety.{hard.key} = {signed(hard.limit)} {hard.unit} is hard and lies {side} the soft limit of "
-                    f"{signed(soft.limit)} {soft.unit}, so that nothing is amber before it is red; set "
-                    f"safety.{soft.key} {side} {signed(hard.limit)} {hard.unit} too"
-                )
-        return tuple(sentences)
+    def hidden(self) -> tuple[tuple[Rule, Rule], ...]:
+        """Hard rules, each with the soft one that it makes void, since nothing is amber before it is red."""
+        plain = [rule for rule in self.rules if rule.key and not rule.relative]
+        return tuple(
+            (hard, soft)
+            for hard in plain
+            for soft in plain
+            if (hard.severity, soft.severity) == ("hard", "soft")
+            and (hard.quantity, hard.upper) == (soft.quantity, soft.upper)
+            and (hard.limit < soft.limit if hard.upper else hard.limit > soft.limit)
+        )
 
-    def passed_at_rest(self, rest_C: float) -> str | None:
-        """A sentence where skin at its rest in °C is outside a limit already, a hard one first; otherwise None."""
+    def passed_at_rest(self, rest_C: float) -> Rule | None:
+        """The rule that skin at its rest in °C is outside of already, a hard one first; otherwise None."""
         skin_rules = [rule for rule in self.rules if rule.quantity == "skin surface" and not rule.relative]
-        for rule in sorted(skin_rules, key=lambda one: one.severity != "hard"):
-            if rest_C > rule.limit if rule.upper else rest_C < rule.limit:
-                side, colour = "above" if rule.upper else "below", "red" if rule.severity == "hard" else "amber"
-                return (
-                    f"the resting skin of {rest_C:g} °C (skin.rest_C) is itself {side} the {rule.severity} limit "
-                    f"safety.{rule.key} = {signed(rule.limit)} °C, so that every icon that begins there is {colour} "
-                    f"from its start; change the limit or the baseline"
-                )
-        return None
+        passed = [rule for rule in skin_rules if (rest_C > rule.limit if rule.upper else rest_C < rule.limit)]
+        return min(passed, key=lambda rule: rule.severity != "hard", default=None)
 
     def to_dict(self) -> dict[str, object]:
         """What is changed, what is loosened and why, as a sidecar holds it."""
@@ -234,18 +224,6 @@ def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
                     f"{high.unit}; leave some room between them"
                 )
     return faults
-
-
-def _pairs(rules: Iterable[Rule]) -> list[tuple[Rule, Rule]]:
-    """Hard and soft rules of one quantity and side."""
-    plain = [rule for rule in rules if rule.key and not rule.relative]
-    return [
-        (hard, soft)
-        for hard in plain
-        for soft in plain
-        if (hard.severity, soft.severity) == ("hard", "soft")
-        and (hard.quantity, hard.upper) == (soft.quantity, soft.upper)
-    ]
 
 
 def _in_words(rules: Iterable[Rule]) -> tuple[str, ...]:

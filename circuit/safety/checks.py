@@ -1,14 +1,66 @@
-"""Checks of runs against the rules of safety: how near they come, when and in which scenario."""
+"""Checks of runs against the rules of safety: how near they come, when and in which scenario.
+
+All of it is records, by which every decision is made; `words` turns them into sentences.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, replace
-
-from thermicon.icons.number_text import significant
+from dataclasses import asdict, dataclass
+from typing import Literal
 
 LEVEL = 1e-6
 """Within this distance, in its unit, the extreme counts as reached: a held level has no unique latest row."""
+
+Cure = Literal["baseline", "slower", "less current", "shorter", "smaller"]
+"""What keeps a quantity within its limit."""
+
+CURE_OF: dict[str, Cure] = {
+    "rate of skin temperature": "slower",
+    "hot plate": "less current",
+    "thermal dose": "shorter",
+    "Henriques integral": "shorter",
+    "skin surface": "smaller",
+    "display": "smaller",
+    "cold-receptor depth": "smaller",
+}
+"""In the order in which cures are named; the time of a display above a temperature needs a shorter hold too."""
+
+
+@dataclass(frozen=True, slots=True)
+class Before:
+    """What was played before a play, with a pause in s between plays.
+
+    `plays`: the same drive for ever (`cycle`) or `once`, another one once (`another`) or for ever (`others`), or drives
+    in any order, between the `warm` and the `cold` bound of which the play begins; or just `any` before it.
+    """
+
+    plays: Literal["cycle", "once", "another", "others", "warm", "cold", "any"]
+    pause_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Scenario:
+    """The run that a check is of.
+
+    `corner` has the deviations of the rig in the order of `rig.uncertainty.WORDS`, or the name of a lane; `way` says
+    how a device follows or what is wrong, empty where it does as told; `before` is None for a first play, `ending` what
+    follows the play, empty for the play itself.
+    """
+
+    corner: tuple[float, ...] | str = ""
+    way: str = ""
+    before: Before | None = None
+    ending: str = ""
+
+    def __str__(self) -> str:
+        from .words import scenario_text
+
+        return scenario_text(self)
+
+
+AS_TOLD = Scenario()
+"""A play as told, by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,7 +68,8 @@ class Check:
     """One rule checked against runs: the extreme, its time and scenario, and the source of the limit.
 
     `value` is the extreme on the side that the rule limits, first reached at `time_s`; `since_s` is when the limit is
-    first exceeded, None where it never is. `scenario` says in which run, `again` whether that is a later play.
+    first exceeded, None where it never is. `from_start_K` is how far the limit is from where the run began, None for
+    one that is absolute. `run` is the scenario, of which `scenario` tells in words.
     """
 
     quantity: str
@@ -27,10 +80,9 @@ class Check:
     time_s: float
     since_s: float | None
     source: str
-    note: str = ""
+    from_start_K: float | None = None
     upper: bool = True
-    scenario: str = ""
-    again: bool = False
+    run: Scenario = AS_TOLD
 
     @property
     def passed(self) -> bool:
@@ -38,25 +90,39 @@ class Check:
         return self.since_s is None
 
     @property
+    def beyond(self) -> float:
+        """How far it goes beyond its limit, in its unit; negative where it stays inside."""
+        return self.value - self.limit if self.upper else self.limit - self.value
+
+    @property
+    def scenario(self) -> str:
+        """The scenario in words."""
+        return str(self.run)
+
+    @property
+    def note(self) -> str:
+        """From where a relative limit counts, in words; empty for one that is absolute."""
+        from .words import note_text
+
+        return note_text(self)
+
+    @property
     def figures(self) -> tuple[str, str]:
-        """Value and limit as people read them: in four digits, or in as many as show that the limit is exceeded."""
-        value, limit = f"{self.value:.4g}", f"{self.limit:.4g}"
-        if not self.passed:
-            value, limit = significant(self.value, self.limit, least=4)
-        return value.replace("-", "−"), limit.replace("-", "−")
+        """Value and limit as people read them."""
+        from .words import figures
+
+        return figures(self)
 
     def __str__(self) -> str:
-        unit = "" if self.unit == "1" else f" {self.unit}"
-        where = f", with {self.scenario}" if self.scenario else ""
-        value, limit = (f"{figure}{unit}" for figure in self.figures)
-        reached = f"{self.quantity} reaches {value} at {self.time_s:.2f} s{where}"
-        side = "above" if self.upper else "below"
-        if self.since_s is None:
-            return f"{reached}, not {side} the {self.severity} limit of {limit}{self.note} ({self.source})"
-        return (
-            f"{reached}, {side} the {self.severity} limit of {limit}{self.note} "
-            f"from {self.since_s:.2f} s on ({self.source})"
-        )
+        from .words import check_text
+
+        return check_text(self)
+
+    def to_dict(self) -> dict[str, object]:
+        """The record in the form of a sidecar, with its sentence."""
+        known = {**asdict(self), "from_start_K": self.note, "run": self.scenario}
+        named = {{"from_start_K": "note", "run": "scenario"}.get(name, name): value for name, value in known.items()}
+        return {**named, "passed": self.passed, "text": str(self)}
 
 
 def findings_of(checks: Sequence[Check]) -> tuple[Check, ...]:
@@ -71,62 +137,29 @@ def findings_of(checks: Sequence[Check]) -> tuple[Check, ...]:
     return tuple(worst.values())
 
 
+def hard_of(findings: Sequence[Check]) -> tuple[Check, ...]:
+    """The findings that no drive may have."""
+    return tuple(finding for finding in findings if finding.severity == "hard")
+
+
 def colour_of(findings: Sequence[Check]) -> str:
     """Green without findings, red with a hard one, otherwise amber."""
-    if any(finding.severity == "hard" for finding in findings):
+    if hard_of(findings):
         return "red"
     return "amber" if findings else "green"
 
 
-def hard_reason(findings: Sequence[Check]) -> str | None:
-    """The first hard finding in one sentence; None where there is none."""
-    return next((str(finding) for finding in findings if finding.severity == "hard"), None)
+def cures_of(findings: Sequence[Check]) -> tuple[Cure, ...]:
+    """What would keep every hard limit that is exceeded: a baseline, where a first play begins beyond one.
 
-
-CURES = (
-    (("rate of skin temperature",), "a slower change"),
-    (("hot plate",), "less current or a better heat sink"),
-    (("thermal dose", "Henriques integral", "time of the display"), "a shorter hold"),
-    (("skin surface", "display", "cold-receptor depth"), "a smaller or shorter change"),
-)
-"""What keeps a quantity within its limit, by the beginning of its name."""
-NEARER_BASELINE = "a baseline nearer to resting skin, since it is beyond the limit from the start"
-
-
-def more_and_cure(findings: Sequence[Check]) -> str:
-    """What follows the reason of a refusal: every other hard limit that is exceeded, and what would cure all of them.
-
-    >>> more_and_cure([])
-    ''
+    >>> cures_of([])
+    ()
     """
-    hard = [finding for finding in findings if finding.severity == "hard"]
-    if any(check.unit == "°C" and check.since_s == 0.0 and not check.again for check in hard):
-        cures = [NEARER_BASELINE]
-    else:
-        cures = [cure for names, cure in CURES if any(check.quantity.startswith(names) for check in hard)]
-    others = [
-        f"{check.quantity} {value}{'' if check.unit == '1' else ' ' + check.unit} (limit {limit})"
-        for check in hard[1:]
-        for value, limit in (check.figures,)
-    ]
-    more = f"; also beyond hard limits: {', '.join(others)}" if others else ""
-    return f"{more}; use {', '.join(cures)}" if cures else more
-
-
-def soft_cautions(findings: Sequence[Check]) -> tuple[str, ...]:
-    """A sentence for each finding that is not hard."""
-    return tuple(str(finding) for finding in findings if finding.severity != "hard")
-
-
-def as_dict(check: Check) -> dict[str, object]:
-    """A check in the form of a sidecar, whose scenario says in words whether it is a later play."""
-    known = {name: value for name, value in asdict(check).items() if name != "again"}
-    return {**known, "passed": check.passed, "text": str(check)}
-
-
-def beyond(check: Check) -> float:
-    """How far a check goes beyond its limit, in its unit; negative where it stays inside."""
-    return check.value - check.limit if check.upper else check.limit - check.value
+    hard = hard_of(findings)
+    if any(check.unit == "°C" and check.since_s == 0.0 and check.run.before is None for check in hard):
+        return ("baseline",)
+    needed = {"shorter" if check.unit == "s" else CURE_OF.get(check.quantity) for check in hard}
+    return tuple(cure for cure in dict.fromkeys(CURE_OF.values()) if cure in needed)
 
 
 def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
@@ -134,11 +167,40 @@ def worst_of(groups: Iterable[Sequence[Check]]) -> tuple[Check, ...]:
     return tuple(_farthest(same) for same in zip(*groups, strict=True))
 
 
-def again(checks: Sequence[Check]) -> tuple[Check, ...]:
-    """Checks of plays after others."""
-    return tuple(replace(check, again=True) for check in checks)
-
-
 def _farthest(same: Sequence[Check]) -> Check:
-    most = max(beyond(check) for check in same)
-    return next(check for check in same if beyond(check) >= most - LEVEL)
+    most = max(check.beyond for check in same)
+    return next(check for check in same if check.beyond >= most - LEVEL)
+
+
+class Judged:
+    """Whatever was checked against rules, by its `checks`."""
+
+    __slots__ = ()
+    checks: tuple[Check, ...]
+
+    @property
+    def findings(self) -> tuple[Check, ...]:
+        """The limits that are exceeded, one for each quantity and side, the hard ones first."""
+        return findings_of(self.checks)
+
+    @property
+    def colour(self) -> str:
+        """Green, amber (only soft limits are exceeded) or red."""
+        return colour_of(self.findings)
+
+    @property
+    def safe(self) -> bool:
+        """Whether no hard limit is exceeded."""
+        return self.colour != "red"
+
+    @property
+    def reason(self) -> str | None:
+        """The first hard limit exceeded, in one sentence; None where there is none."""
+        from .words import hard_reason
+
+        return hard_reason(self.findings)
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """A sentence for each soft limit exceeded."""
+        return tuple(str(finding) for finding in self.findings if finding.severity != "hard")

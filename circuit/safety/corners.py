@@ -10,10 +10,8 @@ heat grows with the square: where the driver can pass that current, gains in bet
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
-
-from thermicon.icons.number_text import signed
 
 from ..rig.corner import perturbed
 from ..rig.rig import Rig
@@ -44,19 +42,19 @@ class Corner:
     rig: Rig
 
     def __str__(self) -> str:
-        return _in_words(*(getattr(self, key) for key in WORDS))
+        from .words import corner_text
+
+        return corner_text(self.deviations)
+
+    @property
+    def deviations(self) -> tuple[float, ...]:
+        """Shares and K of deviation, in the order of `WORDS`."""
+        return tuple(getattr(self, key) for key in WORDS)
 
     @property
     def nominal(self) -> bool:
         """Whether this is the rig as given."""
-        return not any(getattr(self, field.name) for field in fields(self) if field.name != "rig")
-
-
-@lru_cache(maxsize=4096)
-def _in_words(*deviations: float) -> str:
-    parts = zip(deviations, WORDS.values(), strict=True)
-    moved = [f"{name} {signed(scale * value, '+g')} {unit}" for value, (_, name, scale, unit) in parts if value]
-    return ", ".join(moved) or "the rig as given"
+        return not any(self.deviations)
 
 
 @lru_cache(maxsize=64)
@@ -91,6 +89,18 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
             if deviations not in rigs:
                 rigs[deviations] = _there(corner)
             corners.append(replace(corner, rig=rigs[deviations]))
+    return tuple(corners)
+
+
+def contact_corners(rig: Rig) -> tuple[Corner, ...]:
+    """The rig as given, then all combinations of contact and ambient at either end of their uncertainty."""
+    contact, ambient = rig.uncertainty.contact_resistance_relative, rig.uncertainty.ambient_K
+    spans = [(-most, most) if most else (0.0,) for most in (contact, ambient)]
+    corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
+    for share, shift in itertools.product(*spans):
+        if share or shift:
+            there = perturbed(rig, contact_resistance_relative=share, ambient_K=shift)
+            corners.append(Corner(share, shift, 0.0, 0.0, 0.0, 0.0, 0.0, there))
     return tuple(corners)
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from typing import Any
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +53,29 @@ class Loop:
 
 
 @dataclass(frozen=True, slots=True)
-class SingleFault:
-    """A single fault: what fails, the verdict on the drive with this fault, and what prevents harm."""
+class Harm:
+    """The temperature in °C that passes a hard limit the farthest."""
 
-    fault: str
+    quantity: str
+    value_C: float
+
+
+@dataclass(frozen=True, slots=True)
+class SingleFault:
+    """A single fault: its kind, the verdict on the drive with it, and what is to be told of harm and prevention.
+
+    Kinds and the names of their values are those of `words.FAULTS`, which has their sentences.
+    """
+
+    kind: str
     colour: str
-    text: str
-    prevented_by: str
+    values: Mapping[str, Any]
+
+    def to_dict(self) -> dict[str, object]:
+        """The fault in words, in the form of a sidecar: `fault`, `colour`, `text` and `prevented_by`."""
+        from .words import fault_table
+
+        return fault_table(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,4 +114,4 @@ class Demands:
 
     def to_dict(self) -> dict[str, object]:
         """All of it in the form of a sidecar's `hardware_must_prevent`."""
-        return asdict(self)
+        return {**asdict(self), "faults": [fault.to_dict() for fault in self.faults]}

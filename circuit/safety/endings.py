@@ -17,6 +17,7 @@ from ..rig.rules import Limits
 from ..solver.batch_inputs import Bank, Intervals, State, run_on
 from ..solver.network import unpowered
 from ..solver.steady import state_under_current
+from .checks import Scenario
 from .ensemble import Ensemble
 from .tally import HOTTEST_C, WATCHED, Tally
 
@@ -36,32 +37,6 @@ LATE_S = np.geomspace(ENDING_S, LATER_S, 60)
 """Rows of zero current from then on."""
 
 
-def follow_endings(
-    ensemble: Ensemble, state: State, last_A: float | Array, end_s: float, tallies: dict[str, Tally], sums: bool = True
-) -> dict[str, Array]:
-    """Add what follows a drive to the tally of each ending; returns the skin a minute later, (corners,) per ending.
-
-    The tallies are in the same state before. `state` is that at the end of the drive, at `end_s`; `last_A` its last
-    current, or the mean of a bridge's, or one for each corner; `sums` whether doses count.
-    """
-    after = {}
-    last, zero, off = ENDINGS
-    for name, current in ((last, last_A), (zero, 0.0)):
-        values, _ = ensemble.hold(current, state, ENDING_ROWS_S)
-        tallies[name].add(end_s + ENDING_ROWS_S, values, sums=sums)
-        after[name] = values[WATCHED.index("skin_C"), :, -1]
-    if ensemble.ideal:  # without power it is the same
-        tallies[off].copy_from(tallies[zero])
-    else:
-        values = without_power(ensemble, state, ENDING_ROWS_S)[0]
-        tallies[off].add(end_s + ENDING_ROWS_S, values, sums=sums)
-    after[off] = values[WATCHED.index("skin_C"), :, -1]
-    if ensemble.ideal:
-        later, _ = ensemble.hold(0.0, state, np.concatenate([[0.0], LATE_S]))
-        tallies[zero].add(end_s + LATE_S, later[:, :, 1:], sums=sums, drift=True)
-    return after
-
-
 def zero_current_C(ensemble: Ensemble) -> Array:
     """WATCHED (4, corners) that zero current leads to without limit of time."""
     steady_C = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
@@ -73,7 +48,7 @@ def zero_current_C(ensemble: Ensemble) -> Array:
 
 def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
     """The steady state under zero current, checked against the limits of temperature."""
-    tally = Tally(limits, ensemble.corners, f", then {IN_THE_END}", begun_C=begun_C)
+    tally = Tally(limits, ensemble.corners, Scenario(ending=IN_THE_END), begun_C=begun_C)
     levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
     tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
     return tally

@@ -24,6 +24,7 @@ from ..solver.network import Network, network_of
 from ..solver.pwm import steady_of
 from ..solver.steady import check_sink, state_under_current
 from .corners import Corner, corners_of
+from .plant import Stretch
 from .tally import HOTTEST_C, WATCHED
 
 ROW_S, FINEST_S = 0.01, 1e-4
@@ -40,10 +41,6 @@ class LaneDrives:
     time_s: Array
     current_A: Array
     held: bool = True
-
-
-Stretch = tuple[Array, Array]
-"""Times in s (rows,) and WATCHED (4, lanes, rows) in °C."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -136,7 +133,7 @@ class Ensemble:
             values, state = run_on(self.bank, which, which, intervals, state, WATCHED, alone=alone)
             yield (rows, values), state
 
-    def end_of(self, drive: Drive, state: State, rigs: Index | None = None) -> State:
+    def end_of(self, drive: Drive | LaneDrives, state: State, rigs: Index | None = None) -> State:
         """States at the end of a drive."""
         which = self.lanes if rigs is None else rigs
         end = float(drive.time_s[-1])
@@ -173,7 +170,7 @@ class Ensemble:
             return self.modes(current_A).run(rigs, state.nodes_C, times_s, columns)
         return self.hold(current_A, state, times_s, rigs)[0][[WATCHED.index(name) for name in columns]]
 
-    def rest(self, current_A: float, state: State, time_s: float) -> State:
+    def rest(self, current_A: float | Array, state: State, time_s: float) -> State:
         """States after a constant current has been held for a time in s."""
         if self.ideal:
             return State(self.modes(current_A).after(self.lanes, state.nodes_C, time_s), state.sink)

@@ -5,7 +5,7 @@ and over how often it is played.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -13,31 +13,21 @@ from ..cores import quiet_blas
 from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..rig.uncertainty import stated, tightened
+from ..rig.uncertainty import tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, again, as_dict, colour_of, findings_of, hard_reason, soft_cautions, worst_of
+from .checks import Check, Judged, colour_of, findings_of, hard_of, worst_of
+from .current import CurrentPlant, CurrentPlay
 from .demands import Demands
-from .endings import ENDING_S, ENDINGS
+from .display import DisplayCourse, DisplayPlant
+from .endings import ENDING_S
 from .ensemble import Ensemble
-from .repeated import (
-    LONGEST_PAUSE_S,
-    Repeated,
-    Repeating,
-    check_pause,
-    plays_in,
-    shortest_pause_s,
-)
-from .repetition import Cycle, mapped
-from .single import Single, demanded
-
-WHAT_IT_IS_NOT = (
-    "This is a calculation, not a medical or ethical clearance. Hardware that touches people needs a temperature "
-    "cut-off of its own that works without any software."
-)
+from .plant import Plant, Played, States
+from .repeated import LONGEST_PAUSE_S, Repeated, Repeating, check_pause, plays_in, shortest_pause_s
+from .single import Single
 
 
 @dataclass(frozen=True, slots=True)
-class Gate:
+class Gate(Judged):
     """The verdict on one drive.
 
     Attributes
@@ -84,19 +74,9 @@ class Gate:
         return f"Gate({self.colour}: {len(self.checks)} rules in {self.scenarios} scenarios on {self.rig_name})"
 
     @property
-    def findings(self) -> tuple[Check, ...]:
-        """The limits that are exceeded, one for each quantity and side, the hard ones first."""
-        return findings_of(self.checks)
-
-    @property
     def colour(self) -> str:
         """Green, amber (only soft limits are exceeded) or red."""
         return "red" if self.repeated.too_soon else colour_of(self.findings)
-
-    @property
-    def safe(self) -> bool:
-        """Whether no hard limit is exceeded."""
-        return self.colour != "red"
 
     @property
     def reason(self) -> str | None:
@@ -104,23 +84,21 @@ class Gate:
 
         A single play comes first: where that is not safe, repetition adds no information.
         """
-        once = hard_reason(findings_of(self.once))
-        return once or self.repeated.reason
+        from .words import hard_reason
+
+        return hard_reason(findings_of(self.once)) or self.repeated.reason
 
     @property
     def mended_by_pause(self) -> bool:
         """Whether a longer pause between plays is all that is missing."""
-        return hard_reason(findings_of(self.once)) is None and self.repeated.shortest_pause_s is not None
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit exceeded."""
-        return soft_cautions(self.findings)
+        return not hard_of(findings_of(self.once)) and self.repeated.shortest_pause_s is not None
 
     @property
     def text(self) -> str:
         """The verdict as a table: every rule with its worst value, the limit, time, scenario and source."""
-        return "\n".join(_lines(self))
+        from .words import gate_lines
+
+        return "\n".join(gate_lines(self))
 
     @property
     def demanded(self) -> dict[str, object]:
@@ -129,6 +107,8 @@ class Gate:
 
     def to_dict(self) -> dict[str, object]:
         """All of it in the form of a sidecar."""
+        from .words import WHAT_IT_IS_NOT
+
         return {
             "colour": self.colour,
             "what_it_is_not": WHAT_IT_IS_NOT,
@@ -142,8 +122,8 @@ class Gate:
             "repeated": self.repeated.to_dict(),
             "recovery_s": self.repeated.recovery_s,
             "shortest_pause_s": self.repeated.shortest_pause_s,
-            "findings": [as_dict(finding) for finding in self.findings],
-            "checks": [as_dict(check) for check in self.checks],
+            "findings": [finding.to_dict() for finding in self.findings],
+            "checks": [check.to_dict() for check in self.checks],
         }
 
 
@@ -225,8 +205,49 @@ def gate_set(
     """
     check_pause(pause_s)
     with quiet_blas():
-        ensemble = Ensemble.of(rig, bridge_A, averaged)
-        return _gated(drives, ensemble, rig.limits if limits is None else limits, pause_s)
+        plant = CurrentPlant.of(Ensemble.of(rig, bridge_A, averaged))
+        rules = rig.limits if limits is None else limits
+        return _gated([[CurrentPlay(drive, rest)] for drive, rest in drives], plant, rules, pause_s)
+
+
+def gate_shown(
+    drives: Sequence[Sequence[DisplayCourse]],
+    rig: Rig,
+    *,
+    stuck_C: tuple[float, float],
+    limits: Limits | None = None,
+    pause_s: float | None = None,
+    module: bool = False,
+) -> tuple[Gate, ...]:
+    """Check what a device with its own control loop shows, in repeated plays in any order; as `gate_set` does.
+
+    Parameters
+    ----------
+    drives
+        For each drive, its display in each way in which the device may follow.
+    rig
+        The rig, of which skin, contact and air with their uncertainty are used.
+    stuck_C
+        Ends in °C of the device's range, at which a single fault may leave it.
+    limits
+        Limits in place of the rig's.
+    pause_s
+        Time between plays, 0 to 600 s; None: the longest recovery time.
+    module
+        Keep the rules of a hot plate, taken as warm as the display, so that checks can be joined with a module's.
+        The rate of skin is left to these, since a jump of the display is an idealisation.
+
+    Raises
+    ------
+    PauseError
+        For an impossible pause.
+
+    """
+    check_pause(pause_s)
+    rules = rig.limits if limits is None else limits
+    if not module:
+        rules = replace(rules, rules=tuple(rule for rule in rules.rules if rule.quantity != "hot plate"))
+    return _gated(drives, DisplayPlant.of(rig, stuck_C, rates=not module), rules, pause_s)
 
 
 def _rest_of(drive: Drive, rest_A: float | None, bridge_A: float | None) -> float:
@@ -242,96 +263,56 @@ def _rest_of(drive: Drive, rest_A: float | None, bridge_A: float | None) -> floa
 
 
 def _gated(
-    drives: Sequence[tuple[Drive, float]], ensemble: Ensemble, limits: Limits, pause_s: float | None
+    drives: Sequence[Sequence[Played]], plant: Plant[Played, States], limits: Limits, pause_s: float | None
 ) -> tuple[Gate, ...]:
-    singles = [Single.of(ensemble, drive, rest, limits) for drive, rest in drives]
-    alone = [single for single in singles if not single.safe]  # never written, so never part of a sequence
-    together = [single for single in singles if single.safe]
+    singles = [[Single.of(plant, play, limits) for play in ways] for ways in drives]
+    safe = [all(single.safe for single in ways) for ways in singles]
+    together = [number for number, each in enumerate(safe) if each]
+    alone = [[number] for number, each in enumerate(safe) if not each]  # never written, so never part of a sequence
     gates: dict[int, Gate] = {}
-    for group in ([together] if together else []) + [[single] for single in alone]:
-        gates |= zip(map(id, group), _gated_together(group, ensemble, limits, pause_s), strict=True)
-    return tuple(gates[id(single)] for single in singles)
+    for group in ([together] if together else []) + alone:
+        judged = _gated_together(plant, [singles[number] for number in group], limits, pause_s, group is together)
+        gates |= zip(group, judged, strict=True)
+    return tuple(gates[number] for number in range(len(drives)))
 
 
-def _gated_together(singles: list[Single], ensemble: Ensemble, limits: Limits, pause_s: float | None) -> Iterator[Gate]:
-    """The verdicts on drives that may follow each other in any order."""
-    known = [single.recovery_s for single in singles]
-    pause = pause_s
-    if pause is None:
-        pause = LONGEST_PAUSE_S if None in known else max(time for time in known if time is not None)
-    cycles = [mapped(Cycle(ensemble, single.drive, single.rest_A, pause), single.start) for single in singles]
-    repeating = Repeating(ensemble, cycles, [single.start for single in singles], limits)
+def _gated_together(
+    plant: Plant[Played, States],
+    singles: Sequence[Sequence[Single[Played, States]]],
+    limits: Limits,
+    pause_s: float | None,
+    safe: bool,
+) -> Iterator[Gate]:
+    """The verdicts on drives, each in its ways of being followed, that may follow each other in any order."""
+    recoveries = [_longest_s([single.recovery_s for single in ways]) for ways in singles]
+    recovered_s = [LONGEST_PAUSE_S if time is None else time for time in recoveries]
+    pause = max(recovered_s) if pause_s is None else pause_s
+    repeating = Repeating(plant, [[single.play for single in ways] for ways in singles], limits)
     tallies = repeating.tallies(pause)
-    shortest = (
-        shortest_pause_s(repeating) if singles[0].safe else None
-    )  # no pause makes a play safe that is red by itself
+    shortest = shortest_pause_s(repeating) if safe else None  # no pause makes a play safe that is red by itself
     if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
         shortest = pause
-    judged = [again(worst_of(tally.checks() for tally in own_tallies)) for own_tallies in tallies]
-    display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
-    with_faults, demands = demanded(singles, repeating, tallies, (min(display), max(display)), shortest)
-    for single, checks, cycle, each in zip(singles, judged, cycles, demands, strict=True):
-        plays = plays_in(cycle, limits.session_s)
-        repeated = Repeated(pause, single.recovery_s, with_faults, plays, limits.session_s, checks, shortest)
-        yield _gate(single, repeated, each)
+    with_faults, demands = plant.demanded(singles, recovered_s, repeating, tallies, shortest)
+    for ways, recovery, own, demand in zip(singles, recoveries, tallies, demands, strict=True):
+        first, last = ways[0], ways[-1]
+        once, again = worst_of(single.checks for single in ways), worst_of(tally.checks() for tally in own)
+        plays = plays_in(first.play, pause, limits.session_s)
+        yield Gate(
+            plant.rig.name,
+            first.play.end_s,
+            plant.rig.uncertainty,
+            limits,
+            len(plant.corners) * len(ways) * len(plant.endings),
+            worst_of([once, again]),
+            once,
+            {ending: float(skin_C[0]) for ending, skin_C in last.after_C.items()},
+            plant.drift_C,
+            Repeated(pause, recovery, with_faults, plays, limits.session_s, again, shortest),
+            demand,
+        )
 
 
-def _gate(single: Single, repeated: Repeated, demands: Demands) -> Gate:
-    rig = single.ensemble.rig
-    return Gate(
-        rig.name,
-        float(single.drive.time_s[-1]),
-        rig.uncertainty,
-        single.limits,
-        len(single.ensemble.corners) * len(ENDINGS),
-        worst_of([single.checks, repeated.checks]),
-        single.checks,
-        {ending: float(single.after_C[ending][0]) for ending in ENDINGS},
-        single.drift_C,
-        repeated,
-        demands,
-    )
-
-
-def _lines(verdict: Gate) -> Iterator[str]:
-    unsure, again = verdict.uncertainty, verdict.repeated
-    yield (
-        f"safety {verdict.colour.upper()}: {verdict.duration_s:.4g} s on {verdict.rig_name} and {ENDING_S:g} s after, "
-        f"in {verdict.scenarios} scenarios ({stated(unsure)}; {', '.join(verdict.after_C)})"
-    )
-    yield f"repeated plays: {again.text}"
-    table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(verdict, check) for check in verdict.checks)]
-    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
-    for row in table:
-        yield "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]).rstrip()
-    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in verdict.after_C.items())
-    yield f"skin {ENDING_S:g} s after the last sample, on the rig as given: {after}"
-    if verdict.drift_C is not None:
-        yield f"zero current is not the baseline: in the end it takes the skin to {verdict.drift_C:.1f} °C"
-    if verdict.limits.changed:
-        yield f"limits changed by the rig: {'; '.join(verdict.limits.changed)}"
-    if verdict.limits.loosened:
-        yield f"limits LOOSENED: {'; '.join(verdict.limits.loosened)}. Reason given: {verdict.limits.reason}"
-    if claims := tightened(unsure):
-        yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
-    for fault in verdict.demands.faults:
-        yield f"single fault, {fault.fault}: {fault.text}; prevented by {fault.prevented_by}"
-    yield WHAT_IT_IS_NOT
-
-
-def _row(verdict: Gate, check: Check) -> tuple[str, ...]:
-    mark = "ok" if check.passed else ("RED" if check.severity == "hard" else "amber")
-    unit = "" if check.unit == "1" else f" {check.unit}"
-    late = check.time_s - verdict.duration_s
-    when = f"{check.time_s:.2f} s" + (f" ({late:.1f} s after)" if late > 0 else "")
-    side = "≤" if check.upper else "≥"
-    value, limit = check.figures
-    return (
-        mark,
-        check.quantity,
-        f"{value}{unit}",
-        f"{side} {limit}{unit} {check.severity}",
-        when,
-        check.scenario,
-        check.source,
-    )
+def _longest_s(times: Sequence[float | None]) -> float | None:
+    """The longest of times; None where one is not known."""
+    known = [time for time in times if time is not None]
+    return max(known) if len(known) == len(times) else None

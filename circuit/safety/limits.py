@@ -15,43 +15,23 @@ from ..rig.load import LOAD_SITES, without_skin
 from ..rig.rigfile import RigError
 from ..rig.rules import Limits
 from ..solver.trace import Trace
-from .checks import Check, as_dict, colour_of, findings_of, hard_reason, soft_cautions
+from .checks import Check, Judged
 from .tally import WATCHED, Tally
 
 
 @dataclass(frozen=True, slots=True)
-class SafetyVerdict:
-    """All limits that a trace exceeds; `colour` is green, amber (soft limits only) or red."""
+class SafetyVerdict(Judged):
+    """A trace against every rule: `findings` are the limits that it exceeds."""
 
-    findings: tuple[Check, ...]
+    checks: tuple[Check, ...]
 
     def __repr__(self) -> str:
         exceeded = ", ".join(f"{check.quantity} {check.figures[0]} {check.unit}" for check in self.findings)
         return f"SafetyVerdict({self.colour}{f': {exceeded}' if exceeded else ''})"
 
-    @property
-    def colour(self) -> str:
-        """Green, amber or red."""
-        return colour_of(self.findings)
-
-    @property
-    def safe(self) -> bool:
-        """Whether no hard limit is exceeded."""
-        return self.colour != "red"
-
-    @property
-    def reason(self) -> str | None:
-        """The first hard limit exceeded, in one sentence; None where there is none."""
-        return hard_reason(self.findings)
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit exceeded."""
-        return soft_cautions(self.findings)
-
     def to_dict(self) -> dict[str, object]:
         """Colour and findings in the form of a sidecar."""
-        return {"colour": self.colour, "findings": [as_dict(each) for each in self.findings]}
+        return {"colour": self.colour, "findings": [each.to_dict() for each in self.findings]}
 
 
 def judge_safety(trace: Trace) -> SafetyVerdict:
@@ -88,7 +68,7 @@ def judge_safety(trace: Trace) -> SafetyVerdict:
     columns = {name: getattr(trace, name)[np.newaxis] for name in WATCHED}
     if not trace.has_current:  # a thermode has no hot plate; its display stands in, so that no rule is lost
         columns["hot_plate_C"] = columns["display_C"]
-    return SafetyVerdict(findings_of(checks_of(trace.limits or Limits.shipped(), trace.time_s, columns)))
+    return SafetyVerdict(checks_of(trace.limits or Limits.shipped(), trace.time_s, columns))
 
 
 def checks_of(limits: Limits, time_s: Array, columns: Mapping[str, Array]) -> tuple[Check, ...]:

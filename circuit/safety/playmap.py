@@ -21,7 +21,7 @@ from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 
 if TYPE_CHECKING:
-    from .ensemble import Ensemble
+    from .ensemble import Ensemble, LaneDrives
 
 MOST_STEPS = 20_000
 """A drive of more steps is simulated repeatedly instead: a map takes some 50 runs, a search for a cycle about ten."""
@@ -47,7 +47,7 @@ class PlayMap:
     constant: Array
 
     @staticmethod
-    def of(ensemble: Ensemble, drive: Drive, start: State) -> PlayMap:
+    def of(ensemble: Ensemble, drive: Drive | LaneDrives, start: State) -> PlayMap:
         """The map of a drive in every corner of an ensemble whose heat sinks are ideal."""
         corners, nodes = start.nodes_C.shape
         free = nodes - 1

@@ -1,4 +1,4 @@
-"""Repeated plays of a drive: verdict, recovery time, and the shortest pause that is safe."""
+"""Repeated plays: verdict, and the shortest pause that is safe."""
 
 from __future__ import annotations
 
@@ -7,27 +7,20 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Generic
 
 import numpy as np
-import numpy.typing as npt
 
 from ..arrays import Array
 from ..inputs import InputError
 from ..rig.rules import Limits
-from ..solver.batch_inputs import State
-from .checks import Check, as_dict, colour_of, findings_of, hard_reason
-from .endings import ENDINGS, follow_endings
-from .ensemble import Ensemble
-from .following import following_tallies
-from .repetition import Cycle, bound, steady_cycle
-from .tally import WATCHED, Tally
+from .checks import Before, Check, Judged, Scenario, colour_of
+from .plant import Plant, Play, Played, States, follow, left_s
+from .single import RECOVERY_ROWS_S
+from .tally import Tally
 
-RECOVERED_K = 0.1
 LONGEST_PAUSE_S = 600.0
-"""Display and skin have recovered within 0.1 K of rest; a pause longer than 10 min is another session."""
-
-RECOVERY_ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) * 1.0])
-"""Times at which recovery is checked, up to the longest pause."""
+"""A pause longer than 10 min is another session."""
 
 PAUSE_STEP_S = 0.1
 """Safe pauses are searched, and reported, in steps of this."""
@@ -50,7 +43,7 @@ class PauseError(InputError):
 
 
 @dataclass(frozen=True, slots=True)
-class Repeated:
+class Repeated(Judged):
     """The verdict on a drive that is played repeatedly, with its resting current held in the pauses.
 
     `recovery_s`: from the end of a play until display and skin are back within 0.1 K in every corner; None: later than
@@ -74,7 +67,7 @@ class Repeated:
     @property
     def colour(self) -> str:
         """Green, amber or red."""
-        return "red" if self.too_soon else colour_of(findings_of(self.checks))
+        return "red" if self.too_soon else colour_of(self.findings)
 
     @property
     def too_soon(self) -> bool:
@@ -86,30 +79,9 @@ class Repeated:
     @property
     def reason(self) -> str | None:
         """The first hard limit passed, in one sentence with its cure; None where there is none."""
-        reason = hard_reason(findings_of(self.checks))
-        if reason is None and self.too_soon:
-            reason = (
-                f"with {self.pause_s:g} s between plays a host that hangs or a driver stuck at its limit passes a hard "
-                f"limit before a watchdog or a cut-off of {PRACTICAL_S:g} s acts"
-            )
-        return None if reason is None else f"{reason}; {self.cure}"
+        from .words import repeated_reason
 
-    @property
-    def cure(self) -> str:
-        """What makes repetition safe."""
-        if self.shortest_pause_s is None:
-            return "no pause up to 10 min makes that safe: use a smaller or shorter change"
-        return f"the shortest safe pause is {self.shortest_pause_s:g} s (--pause {self.shortest_pause_s:g})"
-
-    @property
-    def text(self) -> str:
-        """Pause, plays, recovery and verdict in one line."""
-        back = "later than 10 min" if self.recovery_s is None else f"{self.recovery_s:g} s"
-        shortest = "none" if self.shortest_pause_s is None else f"{self.shortest_pause_s:g} s"
-        return (
-            f"{self.colour}, {self.plays} plays in {self.session_s / 60:g} min with {self.pause_s:g} s between them "
-            f"(back within {RECOVERED_K:g} K of rest: {back}; shortest safe pause: {shortest})"
-        )
+        return repeated_reason(self)
 
     def to_dict(self) -> dict[str, object]:
         """All of it, as a sidecar holds it."""
@@ -119,7 +91,7 @@ class Repeated:
             "pause_s": self.pause_s,
             "plays": self.plays,
             "session_s": self.session_s,
-            "findings": [as_dict(check) for check in findings_of(self.checks)],
+            "findings": [check.to_dict() for check in self.findings],
         }
 
 
@@ -130,14 +102,18 @@ def check_pause(pause_s: float | None) -> None:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Repeating:
-    """Drives on one rig that may follow each other in any order, each in all corners and from its own resting state."""
+class Repeating(Generic[Played, States]):
+    """Drives on one plant that may follow each other in any order, each in all ways in which it may be followed."""
 
-    ensemble: Ensemble
-    drives: Sequence[Cycle]
-    starts: Sequence[State]
+    plant: Plant[Played, States]
+    drives: Sequence[Sequence[Played]]
     limits: Limits
     _known: dict[tuple[float, bool], list[list[Tally]]] = field(default_factory=dict)
+
+    @property
+    def plays(self) -> list[Played]:
+        """Every drive in every way."""
+        return [play for ways in self.drives for play in ways]
 
     def tallies(self, pause_s: float, endings: bool = True) -> list[list[Tally]]:
         """Tallies of each drive with a pause between plays: steady, after another one, between the bounds of all."""
@@ -145,55 +121,55 @@ class Repeating:
             self._known[pause_s, endings] = list(self._tallies(pause_s, endings))
         return self._known[pause_s, endings]
 
-    def bounds(self, pause_s: float) -> tuple[list[Cycle], list[State], State, State]:
-        """The cycles with a pause between plays, their steady states, and the warm and the cold bound of all plays."""
-        cycles = [replace(cycle, pause_s=pause_s) for cycle in self.drives]
-        steady = [steady_cycle(cycle, start)[0] for cycle, start in zip(cycles, self.starts, strict=True)]
-        warm, cold = (bound(cycles, self.starts, steady, warm=warm) for warm in (True, False))
-        return cycles, steady, warm, cold
+    def bounds(self, pause_s: float) -> tuple[list[States], States, States]:
+        """States before plays with a pause between them: of each steady cycle, and the warm and the cold bound."""
+        steady = [self.plant.cycle(play, pause_s) for play in self.plays]
+        warm, cold = (self.plant.bound(self.plays, pause_s, steady, side) for side in (True, False))
+        return steady, warm, cold
 
     def _tallies(self, pause_s: float, endings: bool) -> Iterator[list[Tally]]:
-        cycles, steady, warm, cold = self.bounds(pause_s)
-        for number, (cycle, start, state) in enumerate(zip(cycles, self.starts, steady, strict=True)):
-            begun = skin_C(self.ensemble, start)
-            drive_tallies = [self._tally(cycle, state, begun, "", True)[0]]
-            drive_tallies += following_tallies(cycles, self.starts, steady, begun, self.limits, number)
-            for bounding, what in ((warm, " (warm bound)"), (cold, " (cold bound)")):
-                tally, ended = self._tally(cycle, bounding, begun, what, False)
-                drive_tallies += [tally, *(self._endings(cycle, ended, begun, tally.what) if endings else ())]
-            yield drive_tallies
+        plant, plays = self.plant, self.plays
+        steady, warm, cold = self.bounds(pause_s)
+        begun, number = plant.begun_C(plays), 0
+        bounds = (Before("warm", pause_s), warm), (Before("cold", pause_s), cold)
+        for ways in self.drives:
+            tallies: list[Tally] = []
+            for play in ways:
+                cycle = Before("cycle", pause_s)
+                tallies += self._judged(play, cycle, steady[number], begun[number], plant.quick)
+                tallies += plant.following(plays, pause_s, steady, begun[number], self.limits, number)
+                for before, state in bounds:
+                    tallies += self._judged(play, before, state, begun[number], endings or plant.quick)
+                number += 1
+            yield tallies
 
     def safe(self, pause_s: float, endings: bool = True) -> bool:
         """Whether no hard limit is passed with a pause between plays."""
         known = self._known.get((pause_s, endings)) or self._tallies(pause_s, endings)
         return all(tally.passes() for drive_tallies in known for tally in drive_tallies)
 
-    def _tally(self, cycle: Cycle, state: State, begun: Array, what: str, exact: bool) -> tuple[Tally, State]:
-        """The tally of a play from a state with its pause, and the state at the end of the play."""
-        plays = plays_in(cycle, self.limits.session_s)
-        again = f", repeated plays with {cycle.pause_s:.4g} s of pause{what}"
-        tally, now = Tally(self.limits, self.ensemble.corners, again, plays=plays, begun_C=begun), state
-        for (rows, values), then in self.ensemble.play(cycle.drive, state):
-            tally.add(rows, values, rates=exact)
-            now = then
-        pause = np.append(0.0, pause_rows(cycle.pause_s))
+    def _judged(self, play: Played, before: Before, state: States, begun_C: Array, endings: bool) -> Iterator[Tally]:
+        """Tallies of a play from a state with its pause, of which a bound gives no rates, and of its endings."""
+        plant, run = self.plant, Scenario(way=play.way, before=before)
+        plays = plays_in(play, before.pause_s, self.limits.session_s)
+        tally = Tally(self.limits, plant.corners, run, plays=plays, begun_C=begun_C)
+        for (rows, values), then in plant.play(play, state):
+            tally.add(rows, values, rates=plant.rates and before.plays == "cycle")
+            state = then
+        pause = np.append(0.0, pause_rows(left_s(play, before.pause_s)))
         if len(pause) > 1:
-            rested, _ = self.ensemble.hold(cycle.rest_A, now, pause)
-            tally.add(float(cycle.drive.time_s[-1]) + pause, rested, rates=False)
-        return tally, now
-
-    def _endings(self, cycle: Cycle, ended: State, begun: Array, what: str) -> list[Tally]:
-        corners = self.ensemble.corners
-        endings = {ending: Tally(self.limits, corners, f"{what}, then {ending}", begun_C=begun) for ending in ENDINGS}
-        end, last = float(cycle.drive.time_s[-1]), float(cycle.drive.current_A[-1])
-        follow_endings(self.ensemble, ended, last, end, endings, sums=False)
-        return list(endings.values())
+            tally.add(play.end_s + pause, plant.hold(play, state, pause), rates=False)
+        yield tally
+        if endings:
+            runs = [replace(run, ending=ending) for ending in plant.endings]
+            tallies = [Tally(self.limits, plant.corners, each, begun_C=begun_C) for each in runs]
+            follow(plant, play, state, play.end_s, tallies, sums=False)
+            yield from tallies
 
 
-def plays_in(cycle: Cycle, session_s: float) -> int:
-    """Number of plays of a drive that fit into a session; at least one."""
-    length = float(cycle.drive.time_s[-1])
-    return max(1, math.floor((session_s + cycle.pause_s) / (length + cycle.pause_s) + 1e-9))
+def plays_in(play: Play, pause_s: float, session_s: float) -> int:
+    """Number of plays that fit into a session; at least one."""
+    return max(1, math.floor((session_s + pause_s) / (play.end_s + left_s(play, pause_s)) + 1e-9))
 
 
 def pause_rows(pause_s: float) -> Array:
@@ -204,34 +180,7 @@ def pause_rows(pause_s: float) -> Array:
     return np.append(RECOVERY_ROWS_S[inside], pause_s)
 
 
-def recovery_s(ensemble: Ensemble, rest_A: float, start: State, ended: State) -> float | None:
-    """Time in s after a play until display and skin are within 0.1 K of where they began, in every corner."""
-    values, _ = ensemble.hold(rest_A, ended, RECOVERY_ROWS_S)
-    began, _ = ensemble.hold(rest_A, start, np.array([0.0, 1e-3]))
-    which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
-    away = np.abs(values[which] - began[which][:, :, :1]).max(axis=(0, 1)) > RECOVERED_K
-    back_s = back_after_s(away) if np.isfinite(values[which]).all() else None
-    return None if back_s is None else round(back_s, 1)
-
-
-def back_after_s(away: npt.NDArray[np.bool_]) -> float | None:
-    """Time in s of the row of RECOVERY_ROWS_S from which on nothing is away any more; None where something still is.
-
-    >>> back_after_s(RECOVERY_ROWS_S < 0.25)
-    0.3...
-    """
-    if away[-1]:
-        return None
-    late = np.flatnonzero(away)
-    return float(RECOVERY_ROWS_S[late[-1] + 1]) if len(late) else 0.0
-
-
-def skin_C(ensemble: Ensemble, state: State) -> Array:
-    """Skin (corners,) in °C of states."""
-    return np.array([net.read(nodes, "skin_C") for net, nodes in zip(ensemble.networks, state.nodes_C, strict=True)])
-
-
-def shortest_pause_s(repeating: Repeating) -> float | None:
+def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
     """The shortest pause in s, in steps of 0.1 s, with which no hard limit is passed; None up to 10 min.
 
     Searched in the corners that are worst without a pause; the result is checked in all corners, and any that exceed a
@@ -240,10 +189,11 @@ def shortest_pause_s(repeating: Repeating) -> float | None:
     tallies = [tally for drive_tallies in repeating.tallies(0.0) for tally in drive_tallies]
     if all(tally.passes() for tally in tallies):
         return 0.0
-    count = len(repeating.ensemble.corners)
+    plant = repeating.plant
+    count = len(plant.corners)
     deciding = {lane % count for tally in tallies for lane in tally.worst_lanes()}
     while True:
-        few = _with(repeating, sorted(deciding))
+        few = Repeating(plant.only(sorted(deciding)), repeating.drives, repeating.limits)
         pause_s = shortest_of(partial(few.safe, endings=False))
         if pause_s is None:
             return None
@@ -271,7 +221,7 @@ def lengthened_s(shortest_s: float, longest_s: float, safe: Callable[[float], bo
     return min(longest_s, round(tried[place], 1)) if place < len(tried) else longest_s
 
 
-def _later(repeating: Repeating, pause_s: float) -> float | None:
+def _later(repeating: Repeating[Played, States], pause_s: float) -> float | None:
     """A longer pause that is safe in all corners and with all endings; steps grow from 2 %."""
     added = max(PAUSE_STEP_S, 0.02 * pause_s)
     while pause_s < LONGEST_PAUSE_S:
@@ -280,15 +230,6 @@ def _later(repeating: Repeating, pause_s: float) -> float | None:
             return round(pause_s, 1)
         added *= 3
     return None
-
-
-def _with(repeating: Repeating, corners: list[int]) -> Repeating:
-    few, starts = repeating.ensemble.only(corners), [start.take(np.array(corners)) for start in repeating.starts]
-    cycles = [
-        replace(cycle, ensemble=few, played=None if cycle.played is None else cycle.played.only(corners))
-        for cycle in repeating.drives
-    ]
-    return Repeating(few, cycles, starts, repeating.limits)
 
 
 def shortest_of(safe: Callable[[float], bool]) -> float | None:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from ..rig.parts import Uncertainty
 from ..rig.rules import Limits
 from ..solver.trace import Trace
-from .checks import Check, as_dict, beyond, colour_of, findings_of, hard_reason, soft_cautions
-from .gate import WHAT_IT_IS_NOT
+from .checks import Check, Judged
 from .sessionplan import SessionPlan
 
 if TYPE_CHECKING:
@@ -52,7 +51,7 @@ class TimeBeyond:
 
 
 @dataclass(frozen=True, slots=True)
-class Session:
+class Session(Judged):
     """A session on a rig.
 
     Attributes
@@ -127,24 +126,9 @@ class Session:
         return float(self.trace.time_s[-1])
 
     @property
-    def findings(self) -> tuple[Check, ...]:
-        """The limits that the session exceeds in the worst case, the hard ones first."""
-        return findings_of(self.checks)
-
-    @property
     def verdict(self) -> str:
-        """Green, amber or red, of the whole session in the worst case."""
-        return colour_of(self.findings)
-
-    @property
-    def reason(self) -> str | None:
-        """The first hard limit exceeded, in one sentence; None where there is none."""
-        return hard_reason(self.findings)
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """A sentence for each soft limit exceeded."""
-        return soft_cautions(self.findings)
+        """The colour of the whole session in the worst case."""
+        return self.colour
 
     @property
     def baseline_drift_K(self) -> float:
@@ -154,7 +138,7 @@ class Session:
     def worst(self, quantity: str) -> Check | None:
         """The worst hard check of a quantity in the worst case; None where no rule limits it."""
         hard = [check for check in self.checks if check.quantity == quantity and check.severity == "hard"]
-        return max(hard, key=beyond, default=None)
+        return max(hard, key=lambda check: check.beyond, default=None)
 
     def to_frame(self) -> pd.DataFrame:
         """Return one row per play, with the fields of a Play as columns."""
@@ -171,12 +155,14 @@ class Session:
 
     def to_dict(self) -> dict[str, object]:
         """All of it as plain data; units are in the names."""
+        from .words import WHAT_IT_IS_NOT
+
         trace, sink = self.trace, self.heat_to_sink_W
         dose, burn = self.worst("thermal dose"), self.worst("Henriques integral")
         return {
             "verdict": self.verdict,
             "reason": self.reason,
-            "findings": [as_dict(finding) for finding in self.findings],
+            "findings": [finding.to_dict() for finding in self.findings],
             "what_it_is_not": WHAT_IT_IS_NOT,
             "scenarios": self.scenarios,
             "rig": trace.rig_name,
@@ -203,7 +189,7 @@ class Session:
             "heat_to_sink_min_W": sink and sink[0],
             "heat_to_sink_max_W": sink and sink[1],
             "time_beyond": [asdict(each) for each in self.time_beyond],
-            "checks": [as_dict(check) for check in self.checks],
+            "checks": [check.to_dict() for check in self.checks],
             "uncertainty": asdict(self.uncertainty),
             "limits": self.limits.to_dict(),
             "plays": [asdict(play) for play in self.plays],

@@ -1,8 +1,17 @@
-"""Simulation of a session: one run of the whole drive, divided into plays where they start."""
+"""Simulation of a session: one run of the whole drive, divided into plays where they start, and its worst case.
+
+A session is a given sequence, so it is judged as one play at the gate, and not for repetition; an export covers single
+faults of the hardware.
+
+A break, in which the hand is off and then lands again, brings skin and module back towards rest. With a given current
+every temperature and every rate is affine in the state that a play begins from, so that a block after a break lies
+between the block within one run without breaks and the block from rest: both are judged.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -11,21 +20,40 @@ from thermicon.icons import Icon
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
+from ..cores import quiet_blas
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.simulate import simulate_current
 from ..solver.trace import Trace
-from .checks import findings_of
+from .checks import Check, Judged, worst_of
+from .current import CurrentPlant, CurrentPlay
+from .ensemble import Ensemble
 from .exposure import cem43_min, henriques
 from .limits import SafetyVerdict, checks_of
 from .session import Play, Session, TimeBeyond
 from .sessiondrive import SessionDrive, drive_of
 from .sessionplan import SessionError, SessionPlan
-from .sessionworst import Progress, worst_case_of
-from .tally import WATCHED
+from .single import Single
+from .tally import WATCHED, Tally
 
 PLACES = {"display": "display_C", "hot plate": "hot_plate_C", "cold-receptor depth": "cold_receptor_C"}
 """Columns of temperatures that limits are about, where it is not the skin surface."""
+
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, slots=True)
+class WorstCase(Judged):
+    """Every rule in its worst scenario, the number of scenarios, and the recovery time of display and skin.
+
+    `recovery_s` counts from the end of the session until both are within 0.1 K of where they began in every corner,
+    with the resting current held; None where that takes longer than 10 min.
+    """
+
+    checks: tuple[Check, ...]
+    scenarios: int
+    recovery_s: float | None
 
 
 def play_session(
@@ -82,7 +110,7 @@ def play_session(
     played = drive_of(plan, known, rig, tracking)
     trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
     rules = rig.limits if limits is None else limits
-    worst = worst_case_of(played, rig, rules, progress)
+    worst = worst_case_of([played], rig, rules, progress)
     power = np.append(trace.voltage_V[:-1] * trace.current_A[:-1] * np.diff(trace.time_s), 0.0)
     plays = _plays(plan, played, trace, rules, power)
     return Session(
@@ -112,7 +140,7 @@ def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits
         rows = slice(begin, until + 1)
         times, skin, display = trace.time_s[rows], trace.skin_C[rows], trace.display_C[rows]
         columns = {name: getattr(trace, name)[np.newaxis, rows] for name in WATCHED}
-        verdict = SafetyVerdict(findings_of(checks_of(limits, times, columns)))
+        verdict = SafetyVerdict(checks_of(limits, times, columns))
         plays.append(
             Play(
                 icon=plan.order[place],
@@ -152,3 +180,29 @@ def _heat_to_sink_W(rig: Rig, trace: Trace) -> tuple[float, float] | None:
     hot = np.array([trace.hot_plate_C.min(), trace.hot_plate_C.max()])
     least, most = (hot - sink.temperature_C) / sink.resistance_K_per_W
     return float(least), float(most)
+
+
+def worst_case_of(
+    blocks: Sequence[SessionDrive], rig: Rig, limits: Limits, progress: Progress | None = None
+) -> WorstCase:
+    """Check blocks of a session in all corners, each from rest and with what may follow it; doses add up over them.
+
+    Times run on from block to block, breaks left out; `recovery_s` is that after the last block. `progress` is called
+    with the seconds played and their total. Raises RigError where the rig as given has no steady state to start from.
+    """
+    plays = [CurrentPlay(played.drive, played.rest_A) for played in blocks]
+    total_s = round(sum(play.end_s for play in plays))
+
+    def watch(time_s: float) -> None:
+        if progress is not None:
+            progress(round(time_s), total_s)
+
+    with quiet_blas():
+        plant, before_s, endings = CurrentPlant.of(Ensemble.of(rig)), 0.0, list[Tally]()
+        whole = Tally(limits, plant.corners)
+        for play in plays:
+            single = Single.of(plant, play, limits, before_s=before_s, sums=whole, watch=watch)
+            before_s += play.end_s
+            endings += single.tallies[1:-1]
+        checks = worst_of(tally.checks() for tally in (whole, *endings, single.tallies[-1]))
+        return WorstCase(checks, len(plant.corners) * len(plant.endings), single.recovery_s)

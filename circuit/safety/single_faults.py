@@ -12,13 +12,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
-
 from ..arrays import Array, Index
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .demands import CutOff, SingleFault
+from .demands import CutOff, Harm, SingleFault
 from .ensemble import Ensemble, between
 from .tally import WATCHED
 
@@ -76,6 +74,22 @@ class Faulty:
     bounds: tuple[State, ...] = ()
     instants: tuple[int, ...] | None = None
 
+    def at(self, corners: list[int]) -> Faulty:
+        """The same in some of the corners."""
+        start, *bounds = (state.take(np.array(corners)) for state in (self.start, *self.bounds))
+        few = self.ensemble if len(corners) == len(self.ensemble.corners) else self.ensemble.only(corners)
+        return replace(self, ensemble=few, start=start, bounds=tuple(bounds))
+
+    @property
+    def shown_C(self) -> tuple[float, float]:
+        """Between which temperatures in °C the display is in plays that begin between bounds."""
+        shown = [
+            values[WATCHED.index("display_C")]
+            for begun in self.bounds
+            for (_, values), _ in self.ensemble.play(self.drive, begun)
+        ]
+        return float(min(np.nanmin(one) for one in shown)), float(max(np.nanmax(one) for one in shown))
+
     def moments(self) -> Moments:
         """When the current may get stuck: in each stretch of a drive at its end, and at the ends of its extremes."""
         starts, count = self.bounds or (self.start,), len(self.ensemble.corners)
@@ -123,18 +137,15 @@ class Faulty:
         moments = moments or self.moments()
         safe = bisect_left(HANGS_S, 1, key=lambda time_s: int(self._hung_K(moments, time_s)[1].max() > 0.0))
         after, tried_s = (0.0, *HANGS_S)[safe], HANGS_S[min(safe, len(HANGS_S) - 1)]
-        worst, far_K = self._hung_K(moments, tried_s)
-        prevented = f"a watchdog that cuts the current after {after:g} s without a message from the host"
-        if after == 0.0:
-            prevented = "a cut-off on the measured temperature; no watchdog is quick enough"
-        text = f"the current hangs for {min(HANG_S, tried_s / MARGIN):.2g} s: {worst}"
-        return after, SingleFault("host hangs in mid-play", "red" if far_K.max() > 0.0 else "green", text, prevented)
+        harm, far_K = self._hung_K(moments, tried_s)
+        told = {"lasts_s": min(HANG_S, tried_s / MARGIN), "harm": harm, "watchdog_s": after}
+        return after, SingleFault("hang", "red" if far_K.max() > 0.0 else "green", told)
 
-    def _hung_K(self, moments: Moments, watchdog_s: float) -> tuple[str, Array]:
+    def _hung_K(self, moments: Moments, watchdog_s: float) -> tuple[Harm | None, Array]:
         """The worst of currents that hang until a watchdog cuts them, and how far each lane passes a limit."""
         return self._cut_K(moments, np.full(len(moments.rigs), min(HANG_S, watchdog_s / MARGIN)))
 
-    def _cut_K(self, moments: Moments, cut_s: Array) -> tuple[str, Array]:
+    def _cut_K(self, moments: Moments, cut_s: Array) -> tuple[Harm | None, Array]:
         """The worst while currents are stuck until `cut_s` (lanes,) and for 30 s after; lanes with 0 do not count."""
         which = np.flatnonzero(cut_s)
         rigs, state, cut_s = moments.rigs[which], moments.state.take(which), cut_s[which]
@@ -147,8 +158,8 @@ class Faulty:
             until, then = self.ensemble.step(on * moments.command_A[which], state, times, rigs)
             values = np.concatenate([until, self.ensemble.watch(0.0, then, AFTER_ROWS_S, rigs)], axis=2)
         far_K = np.full(len(moments.rigs), -np.inf)
-        text, far_K[which] = _passed(self.limits, values)
-        return text, far_K
+        harm, far_K[which] = _passed(self.limits, values)
+        return harm, far_K
 
     def beyond_K(self, moments: Moments, watchdog_s: float, cut: CutOff) -> Array:
         """How far lanes pass a limit if a watchdog and a cut-off act in time, in each fault that these prevent."""
@@ -174,19 +185,18 @@ class Faulty:
             stuck = moments.stuck_at(full_A)
             values = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs)
             slowest = min(slowest, self._reaction_s(stuck, values, low, high))
-            text, far_K = _passed(self.limits, values)
-            if far_K.max() > 0.0:
-                harms.append(f"{text} at {signed(full_A, '.3g')} A")
+            harm, _ = _passed(self.limits, values)
+            if harm is not None:
+                harms.append((harm, full_A))
         if hangs:
             commands = np.broadcast_to(moments.command_A, (len(STUCK_ROWS_S) - 1, len(moments.rigs)))
             values = self.ensemble.step(commands, moments.state, STUCK_ROWS_S, moments.rigs)[0]
             slowest = min(slowest, self._reaction_s(moments, values, low, high))
-        worst, colour = " and ".join(harms) or "no limit is passed", "red" if harms else "green"
-        cut = CutOff(low, high, slowest)
-        prevented = f"a cut-off at {low:g} and {high:g} °C on the measured display, within {slowest:g} s"
-        if slowest == 0.0:
-            prevented = self._limit_instead(moments, low, high)
-        return cut, SingleFault("driver stuck at its limit", colour, worst, prevented)
+        driver, cut = self.ensemble.rig.driver, CutOff(low, high, slowest)
+        most_A = max(driver.current_max_A, -driver.current_min_A)
+        limit_A = self._limit_A(moments, low, high, most_A) if slowest == 0.0 else None
+        told = {"harms": tuple(harms), "cut_off": cut, "most_A": most_A, "limit_A": limit_A}
+        return cut, SingleFault("stuck", "red" if harms else "green", told)
 
     def around_C(self, display_C: tuple[float, float]) -> tuple[float, float]:
         """Where a cut-off acts that lets the display pass between two temperatures in °C."""
@@ -201,10 +211,9 @@ class Faulty:
         driver, bridge_A = self.ensemble.rig.driver, self.ensemble.bridge_A
         return (driver.current_min_A, driver.current_max_A) if bridge_A is None else (-bridge_A, bridge_A)
 
-    def _limit_instead(self, moments: Moments, low: float, high: float) -> str:
-        """What prevents harm where no cut-off is quick enough: a smaller current limit that still plays the drive."""
+    def _limit_A(self, moments: Moments, low: float, high: float, full: float) -> float | None:
+        """A current limit that prevents harm where no cut-off is quick enough, and still plays the drive."""
         driver, cut = self.ensemble.rig.driver, CutOff(low, high, REACTIONS_S[0])
-        full = max(driver.current_max_A, -driver.current_min_A)
         shares = driver.current_min_A / full, driver.current_max_A / full
 
         def holds(most_A: float) -> bool:
@@ -212,13 +221,7 @@ class Faulty:
 
         tried = np.linspace(full, float(np.abs(self.drive.current_A).max()), LIMITS_TRIED)[1:].tolist()
         place = bisect_left(tried, True, key=holds)
-        if place < len(tried):
-            prevented = f"a current limit of {tried[place]:.2g} A in the driver's hardware"
-            return f"{prevented}; no cut-off is quick enough at {full:g} A"
-        return (
-            "a smaller or shorter drive: no cut-off is quick enough, and no current limit that still plays this one "
-            "is low enough"
-        )
+        return float(tried[place]) if place < len(tried) else None
 
     def _reaction_s(self, moments: Moments, values: Array, low: float, high: float) -> float:
         """The longest reaction time of a cut-off that is safe for currents that would give `values`; 0 for none."""
@@ -236,9 +239,9 @@ def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_
     return np.minimum(HANG_S, late_s)
 
 
-def _passed(limits: Limits, values: Array) -> tuple[str, Array]:
-    """By how much hard temperature limits are exceeded at most, in words, and in each lane in K; negative inside."""
-    farthest, text = np.full(values.shape[1], -np.inf), "no limit is passed"
+def _passed(limits: Limits, values: Array) -> tuple[Harm | None, Array]:
+    """What passes a hard temperature limit the farthest, and how far each lane does in K; negative inside."""
+    farthest, harm = np.full(values.shape[1], -np.inf), None
     columns = {
         "skin surface": "skin_C",
         "display": "display_C",
@@ -252,6 +255,6 @@ def _passed(limits: Limits, values: Array) -> tuple[str, Array]:
         over = (column - rule.limit if rule.upper else rule.limit - column).max(axis=1)
         if over.max() > max(float(farthest.max()), 0.0):
             reached = float(column.max() if rule.upper else column.min())
-            text = f"{rule.quantity} reaches {signed(reached, '.1f')} °C"
+            harm = Harm(rule.quantity, reached)
         farthest = np.maximum(farthest, over)
-    return text, farthest
+    return harm, farthest

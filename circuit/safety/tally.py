@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isnan
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arrays import Array, Index
 from ..rig.rules import Limits, Rule
-from .checks import LEVEL, Check
+from .checks import AS_TOLD, LEVEL, Check, Scenario
 from .exposure import constants
+
+if TYPE_CHECKING:
+    from .corners import Corner
 
 WATCHED = ("skin_C", "display_C", "cold_receptor_C", "hot_plate_C")
 """Columns of a run that limits are about."""
@@ -74,10 +78,10 @@ class Tally:
     ----------
     limits
         The rules.
-    scenarios
-        What is written as a few words for each lane.
-    what
-        What follows the words of every lane.
+    lanes
+        The corner, or the name, of each lane.
+    run
+        The scenario of every lane but for its corner.
     plays
         Number of plays in a session, by which sums over time are multiplied.
     begun_C
@@ -88,19 +92,18 @@ class Tally:
     def __init__(
         self,
         limits: Limits,
-        scenarios: Sequence[object],
-        what: str = "",
+        lanes: Sequence[Corner | str],
+        run: Scenario = AS_TOLD,
         *,
         plays: int = 1,
         begun_C: Array | None = None,
     ) -> None:
-        self.limits, self.scenarios, self.what, self.plays = limits, scenarios, what, plays
+        self.limits, self.lanes, self.run, self.plays = limits, lanes, run, plays
         self._begun, self._rules = begun_C, _Rules.of(limits.rules)
-        rules, lanes = len(limits.rules), len(scenarios)
-        self._sums = np.zeros((len(self._rules.code), lanes))
-        self._present = np.zeros(rules, dtype=np.bool_)
-        self._value, self._at_s = np.zeros((rules, lanes)), np.zeros((rules, lanes))
-        self._since_s = np.full((rules, lanes), np.nan)
+        shape = len(limits.rules), len(lanes)
+        self._sums = np.zeros((len(self._rules.code), len(lanes)))
+        self._present = np.zeros(len(limits.rules), dtype=np.bool_)
+        self._value, self._at_s, self._since_s = np.zeros(shape), np.zeros(shape), np.full(shape, np.nan)
 
     def add(self, time_s: Array, watched: Array, *, rates: bool = True, sums: bool = True, drift: bool = False) -> None:
         """Add WATCHED (4, lanes, rows) in °C at times in s (rows,), which continue those before.
@@ -119,15 +122,15 @@ class Tally:
             self._begun, self._sums, self._present, self._value, self._at_s, self._since_s,
         )  # fmt: skip
 
-    def fork(self, what: str) -> Tally:
-        """A copy of the state so far under other names: those of the scenarios followed by `what`."""
+    def fork(self, ending: str) -> Tally:
+        """A copy of the state so far, which goes on in an ending."""
         other = copy(self)
-        other.what = f"{self.what}, {what}"
+        other.run = replace(self.run, ending=ending)
         other.copy_from(self)
         return other
 
     def copy_from(self, other: Tally) -> None:
-        """Take over the state of another tally with the same rules and lanes; the names stay."""
+        """Take over the state of another tally with the same rules and lanes; the scenario stays."""
         self._begun = other._begun
         for name in ("_sums", "_present", "_value", "_at_s", "_since_s"):
             setattr(self, name, getattr(other, name).copy())
@@ -168,7 +171,7 @@ class Tally:
     def _limits(self) -> Array:
         """The limit of every rule in each lane (rules, lanes)."""
         limit, begun = self._rules.limit[:, np.newaxis], 0.0 if self._begun is None else self._begun
-        return np.where(self._rules.relative[:, np.newaxis], begun + limit, limit + np.zeros(len(self.scenarios)))
+        return np.where(self._rules.relative[:, np.newaxis], begun + limit, limit + np.zeros(len(self.lanes)))
 
     def _worst(self) -> Index:
         """The lane that is worst by each rule (rules,), the first of equals."""
@@ -178,16 +181,21 @@ class Tally:
     def _check(self, rule: Rule, lane: int, value: float, at_s: float, since_s: float, limit: float) -> Check:
         unit = "°C" if rule.relative else rule.unit
         since = None if isnan(since_s) else since_s
-        note = f", {abs(rule.limit):g} K from where it began," if rule.relative else ""
-        name = f"{self.scenarios[lane]}{self.what}"
-        return Check(rule.quantity, rule.severity, value, limit, unit, at_s, since, rule.source, note, rule.upper, name)
+        change = abs(rule.limit) if rule.relative else None
+        run = self._run(lane)
+        return Check(
+            rule.quantity, rule.severity, value, limit, unit, at_s, since, rule.source, change, rule.upper, run
+        )
 
     def _nothing(self, rule: Rule) -> Check:
         """The check of a rule of which nothing that it limits was added."""
         value = 0.0 if rule.upper or _code_of(rule) == RATE else HOTTEST_C
-        name = f"{self.scenarios[0]}{self.what}"
-        limit, unit = rule.limit, rule.unit
-        return Check(rule.quantity, rule.severity, value, limit, unit, 0.0, None, rule.source, "", rule.upper, name)
+        limit, unit, run = rule.limit, rule.unit, self._run(0)
+        return Check(rule.quantity, rule.severity, value, limit, unit, 0.0, None, rule.source, None, rule.upper, run)
+
+    def _run(self, lane: int) -> Scenario:
+        corner = self.lanes[lane]
+        return replace(self.run, corner=corner if isinstance(corner, str) else corner.deviations)
 
 
 def worst_of_lanes(tallies: Sequence[Tally]) -> tuple[Check, ...]:

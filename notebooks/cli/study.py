@@ -110,7 +110,7 @@ def report_lines(plan: Plan) -> list[str]:
             "dose and the largest drift are run in all corners of uncertainty; the others on the rig as given alone"
         )
     if judged.after_breaks:
-        colours = dict.fromkeys(blocks.verdict for blocks in judged.after_breaks.values())
+        colours = dict.fromkeys(blocks.colour for blocks in judged.after_breaks.values())
         blocks_from_rest = "with each block from rest, as after a long break"
         lines.append(f"            (orders without their breaks); {blocks_from_rest}: {' and '.join(colours)}")
     return [*lines, *(f"  caution   {text}" for text in judged.cautions)]

@@ -5,14 +5,15 @@ What holds for all icons of an export is said once, and of what differs the stri
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, signed
 
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.prepare import Prepared
+    from thermicon.circuit.safety.checks import Scenario
     from thermicon.circuit.safety.demands import Demands
     from thermicon.circuit.safety.gate import Gate
     from thermicon.circuit.safety.repeated import Repeated
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
 MOST_NAMES = 6
 QUICKEST_S = 0.02
 """The gate does not look for reactions quicker than this: where none is safe, it states 0."""
-
-_CORNER = re.compile(r"(?P<name>.+) (?P<sign>[+−])[\d.]+ (%|K)")
-_AGAIN = re.compile(r"repeated plays with \S+ s of pause")
 
 Named = tuple[str, "Gate"]
 
@@ -53,7 +51,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
 
 def repeated_text(gates: Sequence[Named]) -> str:
     """Colour, plays, pause and recovery of icons that were judged as a set, with one pause."""
-    from thermicon.circuit.safety.repeated import RECOVERED_K
+    from thermicon.circuit.safety.single import RECOVERED_K
 
     colours: dict[str, list[str]] = {}
     for name, gate in gates:
@@ -78,18 +76,15 @@ def repeated_text(gates: Sequence[Named]) -> str:
 
 def stuck_text(gates: Sequence[Named]) -> str | None:
     """What a stuck driver does where no cut-off is quick enough, and what helps; None where a cut-off is."""
+    from thermicon.circuit.safety.words import fault_cure
+
     slow = [(name, gate.demands) for name, gate in gates if gate.demands.cut_off_display_C.react_within_s < QUICKEST_S]
     if not slow:
         return None
-    harm = dict.fromkeys(demands.faults[-1].text for _, demands in slow)
-    cures = dict.fromkeys(_cure_of_stuck(demands) for _, demands in slow)
+    stuck = [demands.faults[-1] for _, demands in slow]
+    cures = dict.fromkeys(map(fault_cure, stuck))
     whose = _of(_names([name for name, _ in slow]), len(slow) < len(gates))
-    return f"{next(iter(harm))}, and no cut-off is quick enough{whose}; use {'; or '.join(cures)}"
-
-
-def _cure_of_stuck(demands: Demands) -> str:
-    """What prevents harm where no cut-off is quick enough: the part of the sentence before the reason."""
-    return demands.faults[-1].prevented_by.partition("; no cut-off")[0].partition(": no cut-off")[0]
+    return f"{stuck[0].to_dict()['text']}, and no cut-off is quick enough{whose}; use {'; or '.join(cures)}"
 
 
 def demands_text(gates: Sequence[Named]) -> str:
@@ -135,24 +130,26 @@ def demands_text(gates: Sequence[Named]) -> str:
     return f"{', '.join(parts)}; in any play after {number(pause_s, 1)} s of pause or more"
 
 
-def short_scenario(scenario: str) -> str:
+def short_scenario(run: Scenario) -> str:
     """A scenario in few words: which quantities of the rig are high and which low, whether repeated, what follows.
 
-    >>> short_scenario("contact −30 %, gain +10 %, repeated plays with 9 s of pause (warm bound)")
+    >>> from thermicon.circuit.safety.checks import Before, Scenario
+    >>> short_scenario(Scenario((-0.3, 0, 0.1, 0, 0, 0, 0), before=Before("warm", 9.0)))
     'low contact; high gain; repeated (warm bound)'
-    >>> short_scenario("the rig as given, then zero current")
+    >>> short_scenario(Scenario((0,) * 7, ending="zero current"))
     'the rig as given, then zero current'
     """
+    from thermicon.circuit.rig.uncertainty import WORDS
+    from thermicon.circuit.safety.words import scenario_text
+
     sides: dict[str, list[str]] = {}
-    rest = []
-    for part in _AGAIN.sub("repeated", scenario).split(", "):
-        found = _CORNER.fullmatch(part)
-        if found is None:
-            rest.append(part)
-        else:
-            sides.setdefault("high" if found["sign"] == "+" else "low", []).append(found["name"])
+    if not isinstance(run.corner, str):
+        for value, (_, name, *_) in zip(run.corner, WORDS.values(), strict=True):
+            if value:
+                sides.setdefault("high" if value > 0.0 else "low", []).append(name)
     corner = [f"{side} {', '.join(names)}" for side, names in sides.items()]
-    return "; ".join([*corner, *([", ".join(rest)] if rest else [])])
+    rest = scenario_text(replace(run, corner="") if corner else run, short=True)
+    return "; ".join([*corner, *([rest] if rest else [])])
 
 
 def _recovery(repeated: Repeated) -> float:

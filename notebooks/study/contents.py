@@ -48,7 +48,7 @@ def files_of(plan: Plan) -> dict[str, bytes]:
 
     Raises FormatError where a drive cannot be packed.
     """
-    from thermicon.circuit.rig.rig_text import toml_text
+    from thermicon.circuit.rig.settings import toml_text
 
     materials, ready = plan.materials, plan.judged.ready
     study = materials.study
@@ -139,7 +139,7 @@ def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, in
         "levels": dict(zip(names, levels_K(threshold), strict=True)) if threshold else None,
         "threshold": None if threshold is None else threshold.model_dump(),
         "sessions": {label: _session_facts(session) for label, session in judged.sessions.items()},
-        "after_breaks": {label: blocks.verdict for label, blocks in judged.after_breaks.items()},
+        "after_breaks": {label: blocks.colour for label, blocks in judged.after_breaks.items()},
         "baseline_drift_K": dict(judged.drift_K),
         "cautions": list(judged.cautions),
     }

@@ -13,7 +13,7 @@ from .timing import Gap
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Export, Rig, Session
-    from thermicon.circuit.safety.sessionworst import WorstCase
+    from thermicon.circuit.safety.sessionplay import WorstCase
     from thermicon.icons import Icon
 
     from .keys import Study
@@ -122,7 +122,7 @@ def judge_sessions(
     """
     from thermicon.circuit import SessionPlan, play_session
     from thermicon.circuit.safety.sessiondrive import drive_of
-    from thermicon.circuit.safety.sessionworst import worst_case_of_blocks
+    from thermicon.circuit.safety.sessionplay import worst_case_of
 
     if rig.thermode is not None:
         return {}, {}, {}
@@ -139,7 +139,7 @@ def judge_sessions(
         sessions[course.label] = play_session(icons, SessionPlan(course.order, gap_s), rig, tracking=tracking)
         if course.breaks:
             blocks = [drive_of(SessionPlan(order, gap_s), known, rig, tracking) for order in course.sittings]
-            after_breaks[course.label] = worst_case_of_blocks(blocks, rig, rig.limits)
+            after_breaks[course.label] = worst_case_of(blocks, rig, rig.limits)
         if step is not None:
             step(done + 1, len(chosen))
     red = [
@@ -150,7 +150,7 @@ def judge_sessions(
     red += [
         f"blocks of participant {label}, each from rest: NOT SAFE: {worst.findings[0]}"
         for label, worst in after_breaks.items()
-        if worst.verdict == "red" and sessions[label].verdict != "red"
+        if worst.colour == "red" and sessions[label].verdict != "red"
     ]
     if red:
         raise Refused(red)

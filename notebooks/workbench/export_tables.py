@@ -96,7 +96,7 @@ def _check(check: Check, source_number: int) -> dict[str, object]:
         "source_number": source_number,
         "time": f"{check.time_s:.2f} s",
         "scenario": check.scenario,
-        "short_scenario": short_scenario(check.scenario),
+        "short_scenario": short_scenario(check.run),
     }
 
 

@@ -22,12 +22,14 @@ from thermicon.circuit.delivery.prepare import Prepared
 from thermicon.circuit.delivery.temperatures import follow_samples
 from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.checks import more_and_cure, worst_of
+from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.limits import judge_safety
 from thermicon.circuit.safety.single import Single, checks_of_lanes
+from thermicon.circuit.safety.words import more_and_cure
 from thermicon.icons import load_library, parse
 
 RIG = Rig.load("thenar")
@@ -80,7 +82,9 @@ class TestWorstCase:
         )
         each = [
             Single.of(
-                Ensemble.on(RIG, (corner,), None), Drive(time_s, own, held=True), float(own[0]), RIG.limits
+                CurrentPlant.of(Ensemble.on(RIG, (corner,), None)),
+                CurrentPlay(Drive(time_s, own, held=True), float(own[0])),
+                RIG.limits,
             ).checks
             for corner, own in zip(corners, amps, strict=True)
         ]

@@ -8,8 +8,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.corners import corners_of
-from thermicon.circuit.safety.thermode import contact_corners
+from thermicon.circuit.safety.corners import contact_corners, corners_of
 from thermicon.circuit.solver.network import network_of, skin_network_of
 from thermicon.circuit.solver.steady import state_under_current
 

@@ -10,13 +10,14 @@ import pytest
 
 from thermicon.circuit import Drive, Gate, Limits, Rig, design, gate, simulate, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
-from thermicon.circuit.safety.checks import Check, findings_of, more_and_cure
+from thermicon.circuit.safety.checks import Check, findings_of
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.endings import ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.gate import WHAT_IT_IS_NOT
 from thermicon.circuit.safety.limits import checks_of, judge_safety
 from thermicon.circuit.safety.single import Single
 from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.safety.words import WHAT_IT_IS_NOT, more_and_cure
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import load_library
 
@@ -93,7 +94,8 @@ def holding(rig: Rig, control: str, level_C: float, time_s: float = 1.0) -> Driv
 )  # fmt: skip
 def test_a_level_trips_its_rule(rig: Rig, control: str, level: float, time: float, words: str) -> None:
     drive = holding(rig, control, level, time)
-    once = Single.of(Ensemble.of(rig), drive, float(drive.current_A[0]), rig.limits)
+    plant = CurrentPlant.of(Ensemble.of(rig))
+    once = Single.of(plant, CurrentPlay(drive, float(drive.current_A[0])), rig.limits)
     told = [str(finding) for finding in findings_of(once.checks)]
     assert any(text.startswith(words) for text in told), told
     found = gate(drive, rig, pause_s=600.0)

@@ -1,6 +1,6 @@
 """Played again and again: cycles, bounds, recovery and pauses against brute force, play after play."""
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -10,12 +10,14 @@ from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety import playmap
+from thermicon.circuit.safety.checks import Before
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.following import following_tallies
 from thermicon.circuit.safety.gate import Gate, gate_set
-from thermicon.circuit.safety.repeated import PauseError, Repeating, recovery_s, shortest_pause_s, skin_C
-from thermicon.circuit.safety.repetition import Cycle, bound, mapped, steady_cycle
-from thermicon.circuit.safety.tally import WATCHED, Tally
+from thermicon.circuit.safety.repeated import PauseError, Repeating, shortest_pause_s
+from thermicon.circuit.safety.repetition import steady_cycle
+from thermicon.circuit.safety.single import recovery_s
+from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import State
 from thermicon.icons import parse
 
@@ -43,36 +45,30 @@ def few(rig: Rig = THENAR) -> Ensemble:
     return Ensemble.of(rig).only([0, 1, 22, 43, 64])
 
 
-def cycles_of(ensemble: Ensemble, pause_s: float, as_maps: bool) -> tuple[list[Cycle], State]:
-    start = ensemble.at_rest(REST)
-    cycles = [Cycle(ensemble, drive, REST, pause_s) for drive in (COOL, WARM, BOTH)]
-    return [mapped(cycle, start) for cycle in cycles] if as_maps else cycles, start
+PLAYS = [CurrentPlay(drive, REST) for drive in (COOL, WARM, BOTH)]
+LONG = 20_000
+"""Steps of a play that is a map; where no play is so short, it is simulated again and again."""
 
 
-@pytest.mark.parametrize("as_maps", [True, False])
-def test_a_steady_cycle_is_what_sixty_plays_come_to(as_maps: bool) -> None:
-    ensemble = few()
-    cycles, start = cycles_of(ensemble, 60.0, as_maps)
-    for cycle in cycles:
-        assert (cycle.played is not None) == as_maps
-        steady, settles = steady_cycle(cycle, start)
-        plain, state = replace(cycle, played=None), start
+@pytest.mark.parametrize("most_steps", [LONG, 0])
+def test_a_steady_cycle_is_what_sixty_plays_come_to(most_steps: int) -> None:
+    plant, plain = CurrentPlant.of(few(), most_steps), CurrentPlant.of(few(), 0)
+    for play in PLAYS:
+        assert (plant.map(play, 60.0) is None) == (most_steps == 0)
+        start = state = plant.rest(play)
         for _ in range(60):
-            state = plain.after(state)
-        assert settles.all()
-        assert np.abs(steady.nodes_C - state.nodes_C).max() < 5e-3
+            state = plain.after(play, 60.0, state)
+        assert np.abs(plant.cycle(play, 60.0).nodes_C - state.nodes_C).max() < 5e-3
         assert np.abs(state.nodes_C - start.nodes_C).max() > 0.02, "it is not the rest"
 
 
 def test_a_steady_cycle_on_a_controlled_heat_sink_is_what_sixty_plays_come_to() -> None:
-    ensemble = few(CONTROLLED).only([0, 4])
-    start = ensemble.at_rest(REST)
-    cycle = mapped(Cycle(ensemble, COOL, REST, 60.0), start)
-    assert cycle.played is None
-    steady, settles = steady_cycle(cycle, start)
-    state = start
+    plant = CurrentPlant.of(few(CONTROLLED).only([0, 4]))
+    assert plant.map(PLAYS[0], 60.0) is None
+    state = plant.rest(PLAYS[0])
+    steady, settles = steady_cycle(lambda before: plant.after(PLAYS[0], 60.0, before), state)
     for _ in range(60):
-        state = cycle.after(state)
+        state = plant.after(PLAYS[0], 60.0, state)
     assert settles.all()
     assert np.abs(steady.nodes_C - state.nodes_C).max() < 5e-3
     assert np.abs(steady.sink[:, 0] - state.sink[:, 0]).max() < 5e-3
@@ -80,47 +76,43 @@ def test_a_steady_cycle_on_a_controlled_heat_sink_is_what_sixty_plays_come_to() 
 
 def test_short_plays_without_a_pause_still_have_their_cycle() -> None:
     """A second forgets little: a thousand plays are needed, and a few would not tell."""
-    ensemble = few()
-    cycle = mapped(Cycle(ensemble, BOTH, REST, 0.0), ensemble.at_rest(REST))
-    steady, settles = steady_cycle(cycle, ensemble.at_rest(REST))
-    assert settles.all()
-    again = replace(cycle, played=None).after(steady)
+    plant, plain = CurrentPlant.of(few()), CurrentPlant.of(few(), 0)
+    steady = plant.cycle(PLAYS[2], 0.0)
+    assert steady.nodes_C.max() < HOTTEST_C, "each corner has one"
+    again = plain.after(PLAYS[2], 0.0, steady)
     assert np.abs(again.nodes_C - steady.nodes_C).max() < 1e-6
 
 
 def test_what_heats_without_end_has_no_cycle() -> None:
-    ensemble = few().only([0])
-    cycle = mapped(Cycle(ensemble, Drive([0, 1], [-6.0, -6.0]), REST, 0.0), ensemble.at_rest(REST))
-    assert not steady_cycle(cycle, ensemble.at_rest(REST))[1].any()
+    plant, play = CurrentPlant.of(few().only([0])), CurrentPlay(Drive([0, 1], [-6.0, -6.0]), REST)
+    assert (plant.cycle(play, 0.0).nodes_C[:, :-1] == HOTTEST_C).all()
 
 
-@pytest.mark.parametrize(("pause_s", "as_maps", "near_K"), [(0.0, True, 15.0), (3.0, True, 6.0), (20.0, False, 2.0)])
-def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, as_maps: bool, near_K: float) -> None:
-    ensemble = few()
-    cycles, start = cycles_of(ensemble, pause_s, as_maps)
-    steady = [steady_cycle(cycle, start)[0] for cycle in cycles]
-    warm = bound(cycles, [start] * 3, steady, warm=True).nodes_C
-    cold = bound(cycles, [start] * 3, steady, warm=False).nodes_C
-    plain = [replace(cycle, played=None) for cycle in cycles]
+@pytest.mark.parametrize(("pause_s", "most_steps", "near_K"), [(0.0, LONG, 15.0), (3.0, LONG, 6.0), (20.0, 0, 2.0)])
+def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, most_steps: int, near_K: float) -> None:
+    plant, plain = CurrentPlant.of(few(), most_steps), CurrentPlant.of(few(), 0)
+    steady, start = [plant.cycle(play, pause_s) for play in PLAYS], plant.rest(PLAYS[0])
+    warm = plant.bound(PLAYS, pause_s, steady, warm=True).nodes_C
+    cold = plant.bound(PLAYS, pause_s, steady, warm=False).nodes_C
     rng, nearest = np.random.default_rng(2), np.inf
     for _ in range(3):
         state = start
         for k in rng.integers(0, 3, 30):
-            state = plain[k].after(state)
+            state = plain.after(PLAYS[k], pause_s, state)
             assert (state.nodes_C <= warm + 1e-6).all()
             assert (state.nodes_C >= cold - 1e-6).all()
             nearest = min(nearest, float((warm - state.nodes_C)[:, 1].min()))
     assert nearest < near_K, "bounds are of use: the display comes near them"
-    for cycle in plain:  # what no order can pass, since no play leads out
-        assert (cycle.after(State(warm, start.sink)).nodes_C <= warm + 1e-5).all()
-        assert (cycle.after(State(cold, start.sink)).nodes_C >= cold - 1e-5).all()
+    for play in PLAYS:  # what no order can pass, since no play leads out
+        assert (plain.after(play, pause_s, State(warm, start.sink)).nodes_C <= warm + 1e-5).all()
+        assert (plain.after(play, pause_s, State(cold, start.sink)).nodes_C >= cold - 1e-5).all()
 
 
 def test_recovery_is_when_display_and_skin_are_back() -> None:
     ensemble = few()
     start = ensemble.at_rest(REST)
     end = ensemble.end_of(COOL, start)
-    found = recovery_s(ensemble, REST, start, end)
+    found = recovery_s(CurrentPlant.of(ensemble), PLAYS[0], start, end)
     assert found is not None
     times = np.arange(0.0, 2 * found, 0.02)
     values = ensemble.hold(REST, end, times)[0]
@@ -148,8 +140,7 @@ def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
     once = played_thirty_times(drive, ensemble, 600.0)
     limits = Limits.of({"skin_highest_C": 40.0, "skin_highest_soft_C": 39.5})
     assert once < 39.5, "zero current leads to 39.1 °C"
-    start = ensemble.at_rest(REST)
-    repeating = Repeating(ensemble, [mapped(Cycle(ensemble, drive, REST, 0.0), start)], [start], limits)
+    repeating = Repeating(CurrentPlant.of(ensemble), [[CurrentPlay(drive, REST)]], limits)
     shortest = shortest_pause_s(repeating)
     assert shortest is not None
     assert shortest > 3.0
@@ -197,16 +188,17 @@ def test_one_drive_of_a_set_counts_for_the_others_and_a_red_one_does_not() -> No
     assert warmest(beside) > warmest(alone)
 
 
-def test_skin_is_read_off_states() -> None:
+def test_temperatures_are_read_off_states() -> None:
     ensemble = few()
     start = ensemble.at_rest(REST)
-    assert skin_C(ensemble, start) == pytest.approx(ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][0, :, 0])
+    begun = CurrentPlant.of(ensemble).now(PLAYS[0], start)
+    assert begun == pytest.approx(ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][:, :, 0])
 
 
 def test_a_bound_that_starts_where_it_ends_is_found_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    ensemble = few()
-    cycles, start = cycles_of(ensemble, 5.0, as_maps=True)
-    steady = [steady_cycle(cycle, start)[0] for cycle in cycles[:1]]
+    plant = CurrentPlant.of(few())
+    steady = plant.cycle(PLAYS[0], 5.0)
+    plant._rests[PLAYS[0]] = steady
     solved, plain = [], playmap._solved
 
     def counted(matrix: np.ndarray, constant: np.ndarray) -> np.ndarray:
@@ -214,8 +206,8 @@ def test_a_bound_that_starts_where_it_ends_is_found_at_once(monkeypatch: pytest.
         return plain(matrix, constant)
 
     monkeypatch.setattr(playmap, "_solved", counted)
-    found = bound(cycles[:1], steady, steady, warm=True)
-    assert np.abs(found.nodes_C - steady[0].nodes_C).max() < 1e-9
+    found = plant.bound(PLAYS[:1], 5.0, [steady], warm=True)
+    assert np.abs(found.nodes_C - steady.nodes_C).max() < 1e-9
     assert len(solved) <= 3
 
 
@@ -225,24 +217,25 @@ def rate_of(tally: Tally) -> float:
 
 
 def test_a_play_that_follows_another_has_the_rates_of_both_played_on() -> None:
-    ensemble = few()
-    cycles, start = cycles_of(ensemble, 0.5, as_maps=True)
-    steady = [steady_cycle(cycle, start)[0] for cycle in cycles]
-    begun = skin_C(ensemble, start)
-    tallies = following_tallies(cycles, [start] * 3, steady, begun, THENAR.limits, 0)
+    plant, plain = CurrentPlant.of(few()), CurrentPlant.of(few(), 0)
+    steady = [plant.cycle(play, 0.5) for play in PLAYS]
+    tallies = plant.following(PLAYS, 0.5, steady, plant.begun_C(PLAYS)[0], THENAR.limits, 0)
     worst = {}
-    for name, others in {"own": [cycles[0]], "another": cycles[1:]}.items():
+    for name, others in {"own": [0], "another": [1, 2]}.items():
         fastest = np.inf
         for other in others:
-            for before in (start, steady[cycles.index(other)] if name == "another" else start):
-                state = replace(other, played=None).after(before)
-                for (rows, values), _ in ensemble.play(COOL, state):
+            for before in (plant.rest(PLAYS[other]), *([steady[other]] if name == "another" else [])):
+                state = plain.after(PLAYS[other], 0.5, before)
+                for (rows, values), _ in plant.play(PLAYS[0], state):
                     fastest = min(fastest, float((np.diff(values[0]) / np.diff(rows)).min()))
         worst[name] = fastest
-    said = {name: min(rate_of(tally) for tally in tallies if name in tally.what) for name in ("after 0.5 s", "another")}
-    assert said["after 0.5 s"] == pytest.approx(worst["own"], rel=0.02)
-    assert said["another"] == pytest.approx(worst["another"], rel=0.02)
-    assert said["another"] < rate_of(tallies[0])
+    own = [tally.run.before for tally in tallies].index(Before("once", 0.5))
+    assert rate_of(tallies[own]) == pytest.approx(worst["own"], rel=0.02)
+    said = min(
+        rate_of(tally) for tally in tallies if tally.run.before in (Before("another", 0.5), Before("others", 0.5))
+    )
+    assert said == pytest.approx(worst["another"], rel=0.02)
+    assert said < rate_of(tallies[own])
 
 
 def test_a_second_play_without_a_pause_is_too_fast_where_the_first_and_the_thirtieth_are_not() -> None:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Limits, Rig, gate
+from thermicon.circuit.safety.demanded import polarity_check, rest_before
 from thermicon.circuit.safety.endings import dose_time_s
 from thermicon.circuit.safety.ensemble import Ensemble, between
 from thermicon.circuit.safety.exposure import cem43_min
-from thermicon.circuit.safety.first_plays import polarity_check, rest_before
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.single_faults import Faulty
 from thermicon.circuit.safety.tally import WATCHED, Tally
@@ -45,7 +45,7 @@ def test_a_current_that_hangs_until_the_watchdog_cuts_it_passes_no_limit_and_muc
     one = faulty()
     watchdog, fault = one.watchdog_s()
     assert 0.1 < watchdog < 60.0
-    assert (fault.colour, fault.prevented_by.split()[:2]) == ("red", ["a", "watchdog"])
+    assert (fault.colour, fault.values["watchdog_s"]) == ("red", watchdog)
     broken = False
     for instant in (0.2, 0.6, 1.5, 2.9, 3.5):
         state = one.ensemble.end_of(between(COOL, 0.0, instant), one.start)
@@ -64,8 +64,7 @@ def test_a_cut_off_that_reacts_in_time_keeps_the_limits_with_the_driver_at_its_o
     cut, fault = one.cut_off((26.0, 38.0))
     assert (cut.low, cut.high) == (25.0, 39.0)
     assert cut.react_within_s > 0.0
-    assert fault.fault == "driver stuck at its limit"
-    heats, cools = fault.text.split(" and ")
+    heats, cools = str(fault.to_dict()["text"]).split(" and ")
     assert heats.endswith(" °C at −1.5 A"), "both directions of the current are named"
     assert cools.startswith("skin surface reaches −")
     assert cools.endswith(" °C at 1.5 A")
@@ -115,7 +114,7 @@ def test_the_rest_before_the_first_play_is_needed_and_enough() -> None:
     needed, fault = rest_before(one)
     assert needed is not None
     assert 0.0 < needed < 600.0
-    assert fault.prevented_by.startswith(f"holding the rest for {needed:g} s before the first play")
+    assert str(fault.to_dict()["prevented_by"]).startswith(f"holding the rest for {needed:g} s before the first play")
     cold = one.ensemble.at_rest(0.0)
 
     def passes(rest_s: float) -> bool:
@@ -165,8 +164,10 @@ def test_everything_that_is_demanded_is_in_the_verdict() -> None:
     assert demanded["current_limit_A"] is None, "the drive itself is the current"
     assert demanded["loop"] is None, "there is none"
     assert demanded["pause_at_least_s"] == found.repeated.shortest_pause_s
-    assert [fault.fault for fault in found.demands.faults] == [
+    faults = [fault.to_dict() for fault in found.demands.faults]
+    assert demanded["faults"] == faults
+    assert [fault["fault"] for fault in faults] == [
         "host hangs in mid-play", "first play on a display that was without power", "poles swapped",
         "driver stuck at its limit",
     ]  # fmt: skip
-    assert all(f"single fault, {fault.fault}: {fault.text}" in found.text for fault in found.demands.faults)
+    assert all(f"single fault, {fault['fault']}: {fault['text']}" in found.text for fault in faults)

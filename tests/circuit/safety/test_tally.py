@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Limits
-from thermicon.circuit.safety.checks import Check, worst_of
+from thermicon.circuit.safety.checks import Check, Scenario, worst_of
 from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally, worst_of_lanes
 
 LIMITS = Limits.shipped()
@@ -75,7 +75,7 @@ def test_a_drift_is_held_against_hard_limits_only() -> None:
 def test_a_fork_goes_on_by_itself_under_another_name() -> None:
     tally = Tally(LIMITS, ["a"])
     tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 32.0))
-    fork = tally.fork("then zero current")
+    fork = tally.fork("zero current")
     fork.add(np.array([2.0, 3.0]), np.full((4, 1, 2), 44.0))
     assert tally.passes()
     assert not fork.passes()
@@ -92,7 +92,7 @@ def test_changes_count_from_where_it_began() -> None:
 
 def test_of_equals_the_first_is_named_and_rounding_is_no_difference() -> None:
     def one(value: float, scenario: str) -> Check:
-        return Check("skin surface", "hard", value, 42.0, "°C", 0.0, None, "source", scenario=scenario)
+        return Check("skin surface", "hard", value, 42.0, "°C", 0.0, None, "source", run=Scenario(scenario))
 
     assert worst_of([[one(41.0, "once")], [one(41.0 + 1e-9, "again")]])[0].scenario == "once"
     assert worst_of([[one(41.0, "once")], [one(41.01, "again")]])[0].scenario == "again"
@@ -106,16 +106,16 @@ def test_the_worst_of_lanes_is_the_worst_of_each_lane_by_itself() -> None:
 
     def tallies(lanes: list[int]) -> list[Tally]:
         both = []
-        for what, values in zip((", once", ", again"), courses, strict=True):
-            tally = Tally(LIMITS, [names[lane] for lane in lanes], what)
-            tally.add(TIME, values[:, lanes], rates=what == ", once")
+        for way, values in zip(("once", "again"), courses, strict=True):
+            tally = Tally(LIMITS, [names[lane] for lane in lanes], Scenario(way=way))
+            tally.add(TIME, values[:, lanes], rates=way == "once")
             both.append(tally)
         return both
 
     each = [worst_of(tally.checks() for tally in tallies([lane])) for lane in range(len(names))]
     found = worst_of_lanes(tallies([0, 1, 2, 3]))
     assert found == worst_of(each)
-    assert {check.scenario.partition(",")[0] for check in found} <= {"a", "b", "d"}
+    assert {check.run.corner for check in found} <= {"a", "b", "d"}
 
 
 def test_a_run_that_diverges_fails_as_the_hottest() -> None:
@@ -130,7 +130,7 @@ def test_a_run_that_diverges_fails_as_the_hottest() -> None:
 
 
 def test_a_tally_takes_over_the_state_of_another_and_keeps_its_names() -> None:
-    tally, other = Tally(LIMITS, ["a"], ", then nothing"), Tally(LIMITS, ["a"], ", then power off")
+    tally, other = Tally(LIMITS, ["a"]), Tally(LIMITS, ["a"], Scenario(ending="power off"))
     tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 44.0))
     other.copy_from(tally)
     tally.add(np.array([2.0, 3.0]), np.full((4, 1, 2), 50.0))

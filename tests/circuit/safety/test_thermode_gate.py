@@ -7,16 +7,17 @@ from thermicon.circuit import Device, Limits, Rig
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.worstcase import ways_of, worst_case, worst_cases
-from thermicon.circuit.safety.gate import Gate
+from thermicon.circuit.safety.display import DisplayCourse, DisplayPlant
+from thermicon.circuit.safety.gate import Gate, gate_shown
+from thermicon.circuit.safety.plant import left_s
+from thermicon.circuit.safety.single import recovery_s
 from thermicon.circuit.safety.tally import WATCHED
-from thermicon.circuit.safety.thermode import DisplayCourse, Under
-from thermicon.circuit.safety.thermode_gate import gate_shown
 from thermicon.icons import parse
 
 THENAR, TCS = Rig.load("thenar"), Device.load("qst-tcs2")
-UNDER = Under.of(THENAR)
 STEP_S = 0.01
 STUCK = (0.1, 60.0)
+UNDER = DisplayPlant.of(THENAR, STUCK)
 
 
 def shown(levels: list[float], times: list[float], way: str = "as told", settling_s: float = 0.0) -> DisplayCourse:
@@ -52,8 +53,9 @@ def test_a_steady_cycle_comes_back_to_itself_however_short_the_pause(pause_s: fl
 @pytest.mark.parametrize("pause_s", [2.0, 20.0])
 def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float) -> None:
     shows, begun = [COOL, WARM, QUICK], UNDER.steady(32.0)
-    warm = lumps_of(UNDER.bound(shows, pause_s, warm=True))
-    cold = lumps_of(UNDER.bound(shows, pause_s, warm=False))
+    steady = [UNDER.cycle(show, pause_s) for show in shows]
+    warm = lumps_of(UNDER.bound(shows, pause_s, steady, warm=True))
+    cold = lumps_of(UNDER.bound(shows, pause_s, steady, warm=False))
     rng = np.random.default_rng(3)
     for order in (*rng.integers(0, 3, (3, 30)), [1] * 30, [0] * 30):
         states = begun
@@ -66,7 +68,7 @@ def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float) -> None:
 
 def test_what_is_left_of_a_pause_begins_after_the_display_has_settled() -> None:
     late = shown([32, 26, 26, 32], [0, 1, 3, 4], "late", settling_s=1.5)
-    assert (late.left_s(5.0), late.left_s(1.0)) == (3.5, 0.0)
+    assert (left_s(late, 5.0), left_s(late, 1.0)) == (3.5, 0.0)
     held = UNDER.after(late, 5.0, UNDER.steady(32.0))
     assert lumps_of(held) == pytest.approx(lumps_of(UNDER.after(COOL, 3.5, UNDER.steady(32.0))))
 
@@ -74,19 +76,20 @@ def test_what_is_left_of_a_pause_begins_after_the_display_has_settled() -> None:
 @pytest.mark.parametrize("settling_s", [0.0, 1.5])
 def test_recovery_is_when_the_skin_is_back_in_every_corner(settling_s: float) -> None:
     one = shown([32, 26, 26, 32], [0, 1, 3, 4], settling_s=settling_s)
-    _, ended = UNDER.play(one, UNDER.steady(32.0))
-    found = UNDER.recovery_s(one, ended)
+    ((_, ended),) = UNDER.play(one, UNDER.steady(32.0))
+    found = recovery_s(UNDER, one, UNDER.rest(one), ended)
     assert found is not None
     times = np.arange(0.0, 120.0, 0.01)
-    skin = UNDER.hold(32.0, ended, times)[WATCHED.index("skin_C")]
-    began = UNDER.hold(32.0, UNDER.steady(32.0), np.array([0.0]))[WATCHED.index("skin_C")]
+    skin = UNDER.held(32.0, ended, times)[WATCHED.index("skin_C")]
+    began = UNDER.held(32.0, UNDER.steady(32.0), np.array([0.0]))[WATCHED.index("skin_C")]
     last = times[np.flatnonzero((np.abs(skin - began) > 0.1).any(axis=0))[-1]]
     assert last <= found - settling_s <= last + 0.12
 
 
 def test_a_display_that_does_not_return_never_recovers() -> None:
     one = shown([32, 28], [0, 1])
-    assert UNDER.recovery_s(one, UNDER.play(one, UNDER.steady(32.0))[1]) is None
+    ((_, ended),) = UNDER.play(one, UNDER.steady(32.0))
+    assert recovery_s(UNDER, one, UNDER.rest(one), ended) is None
 
 
 def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
@@ -118,9 +121,9 @@ def test_what_it_demands_holds_when_simulated() -> None:
     begun = UNDER.steady(32.0)
     skin = WATCHED.index("skin_C")
     react = found.demands.cut_off_display_C.react_within_s
-    assert UNDER.hold(44.9, begun, np.linspace(0.0, found.demands.watchdog_s, 200))[skin].max() <= 42.0
+    assert UNDER.held(44.9, begun, np.linspace(0.0, found.demands.watchdog_s, 200))[skin].max() <= 42.0
     for level in STUCK:
-        values = UNDER.hold(level, begun, np.linspace(0.0, react, 200))
+        values = UNDER.held(level, begun, np.linspace(0.0, react, 200))
         assert values[skin].min() >= 15.0
         assert values[skin].max() <= 42.0
     assert (found.demands.polarity_check, found.demands.zero_current_at_most_s, found.drift_C) == (None, None, None)

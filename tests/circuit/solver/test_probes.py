@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
-from thermicon.circuit.rig.probes import insulation_records
+from thermicon.circuit.rig.assemble import insulation_records
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.kernel_modes import lagged
 from thermicon.circuit.solver.trace import COLUMNS, write_trace

@@ -11,7 +11,7 @@ from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessiondrive import SessionDrive, drive_of
-from thermicon.circuit.safety.sessionworst import worst_case_of, worst_case_of_blocks
+from thermicon.circuit.safety.sessionplay import worst_case_of
 from thermicon.icons import load_library
 from thermicon.notebooks.study.judging import Judged, Refused, judge_sessions
 from thermicon.notebooks.study.schedule import Course, Trial
@@ -67,16 +67,16 @@ def test_a_block_after_a_break_lies_between_the_whole_run_and_the_block_from_res
 def test_blocks_from_rest_are_one_run_for_one_block_and_add_up_for_more() -> None:
     rig = sure_rig()
     cold, warm = drive(COLD, rig), drive(WARM, rig)
-    alone = worst_case_of(warm, rig, rig.limits)
-    assert worst_case_of_blocks([warm], rig, rig.limits).checks == alone.checks
-    both = worst_case_of_blocks([cold, warm, warm], rig, rig.limits)
+    alone = worst_case_of([warm], rig, rig.limits)
+    assert worst_case_of([warm], rig, rig.limits).checks == alone.checks
+    both = worst_case_of([cold, warm, warm], rig, rig.limits)
     once, twice = (
         next(check.value for check in worst.checks if check.quantity == "Henriques integral") for worst in (alone, both)
     )
     assert once < twice < 2.2 * once
     highest = [
         next(c.value for c in worst.checks if (c.quantity, c.severity, c.upper) == ("skin surface", "soft", True))
-        for worst in (both, worst_case_of(drive((*COLD, *WARM), rig), rig, rig.limits))
+        for worst in (both, worst_case_of([drive((*COLD, *WARM), rig)], rig, rig.limits))
     ]
     assert highest[0] > highest[1] + 0.2
 

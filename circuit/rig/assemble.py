@@ -1,0 +1,141 @@
+"""Parts of a rig from its file, in SI: module with heat sink and driver, skin, and probes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+from ..records import Table, load_records
+from .faults import CONTROLLED
+from .module import Peltier
+from .modules import ModuleOrigin, module_of
+from .parts import Driver, HeatSink, PassiveSink, Probe, SinkController
+from .rigfile import HeatSinkTable, ProbeTable, RigTable, SkinTable
+from .skin import STRATUM_CORNEUM, Layer, Skin
+
+
+@dataclass(frozen=True, slots=True)
+class HeatPump:
+    """What warms and cools a display by a current: module, the origin of its numbers, heat sink, driver."""
+
+    module: Peltier
+    origin: ModuleOrigin
+    heat_sink: HeatSink
+    driver: Driver
+
+
+def pump_of(table: RigTable) -> HeatPump | None:
+    """Return the module of a rig file with its parts; None for a thermode. Raises ValueError for what cannot be."""
+    module, sink, driver = table.module, table.heat_sink, table.driver
+    if module is None or sink is None or driver is None:
+        return None
+    hot_side = _heat_sink(sink, table.ambient.temperature_C)
+    lowest = -driver.current_limit_A if driver.current_min_A is None else driver.current_min_A
+    return HeatPump(
+        *module_of(module, (hot_side.temperature_C + table.skin.rest_C) / 2, table.source.get("module")),
+        hot_side,
+        Driver(
+            driver.transconductance_A_per_V, lowest, driver.current_limit_A, driver.voltage_limit_V, driver.update_Hz
+        ),
+    )
+
+
+def _heat_sink(table: HeatSinkTable, room_C: float) -> HeatSink:
+    """The heat sink of a rig file in a room; raises ValueError for a controller with a key missing."""
+    if table.air_resistance_K_per_W is not None:
+        assert table.capacity_J_per_K is not None
+        air_C = room_C if table.air_C is None else table.air_C
+        steady = table.temperature_C is None
+        passive = PassiveSink(table.capacity_J_per_K, table.air_resistance_K_per_W, air_C, steady)
+        start_C = air_C if table.temperature_C is None else table.temperature_C
+        return HeatSink(start_C, table.resistance_K_per_W, passive=passive)
+    assert table.temperature_C is not None
+    settings = {name: getattr(table, name) for name in CONTROLLED}
+    missing = [name for name, value in settings.items() if value is None]
+    if not missing:
+        return HeatSink(table.temperature_C, table.resistance_K_per_W, SinkController(**settings))
+    if len(missing) < len(CONTROLLED):
+        raise ValueError(
+            f"heat_sink.{missing[0]} is missing; a hot plate under its own control needs {', '.join(CONTROLLED)}; "
+            f"without all four it is ideal, or with heat_sink.air_resistance_K_per_W and a capacity passive"
+        )
+    return HeatSink(table.temperature_C, table.resistance_K_per_W)
+
+
+def skin_of(table: SkinTable) -> Skin:
+    """Return the skin of a rig file, with depths from its surface; raises ValueError for what cannot be."""
+    layers = tuple(
+        Layer(
+            layer.name,
+            layer.thickness_mm * 1e-3,
+            layer.conductivity_W_per_mK,
+            layer.density_kg_per_m3,
+            layer.heat_capacity_J_per_kgK,
+            layer.perfusion_per_s,
+        )
+        for layer in table.layer
+    )
+    if table.depth_from == STRATUM_CORNEUM and layers[0].name != STRATUM_CORNEUM:
+        raise ValueError(
+            f'skin.depth_from = "{STRATUM_CORNEUM}": needs a first layer of that name, not "{layers[0].name}"; '
+            f'rename the layer or use "surface"'
+        )
+    above = table.layer[0].thickness_mm if table.depth_from == STRATUM_CORNEUM else 0.0
+    return Skin(
+        table.site,
+        table.rest_C,
+        (above + table.cold_receptor_mm) * 1e-3,
+        (above + table.warm_receptor_mm) * 1e-3,
+        layers,
+        table.deep_C,
+        None if table.elements is None else tuple(table.elements),
+        table.depth_from,
+    )
+
+
+@cache
+def insulation_records() -> Table:
+    """Sourced and assumed numbers of an insulated probe: the pad over it and the skin around it."""
+    return load_records(resources.files("thermicon.circuit") / "data" / "insulated-probe.toml")
+
+
+def probes_of(tables: Sequence[ProbeTable], thickness_m: float) -> tuple[Probe, ...]:
+    """Return the probes of a rig file on skin of a thickness in m; raises ValueError for one that cannot be."""
+    probes = tuple(_probe(table) for table in tables)
+    for place, probe in enumerate(probes):
+        if any(probe.name == other.name for other in probes[:place]):
+            raise ValueError(f"probe.name = {probe.name!r}: there are two of that name; give every probe its own")
+        if probe.depth_m > thickness_m * (1 + 1e-12):
+            raise ValueError(
+                f"probe {probe.name}: depth_mm = {probe.depth_m * 1e3:g} mm: must lie inside the skin, "
+                f"which is {thickness_m * 1e3:g} mm deep"
+            )
+    return probes
+
+
+def _probe(table: ProbeTable) -> Probe:
+    lateral_keys = (table.lateral_mm, table.width_mm, table.insulation_m2K_per_W)
+    lateral, width, insulation = lateral_keys
+    if table.place != "insulated skin":
+        if any(value is not None for value in lateral_keys):
+            raise ValueError(
+                f"probe {table.name}: lateral_mm, width_mm and insulation_m2K_per_W belong to insulated skin, "
+                f"not to place = {table.place!r}; remove them"
+            )
+        return Probe(table.name, table.place, table.depth_mm * 1e-3, table.lag_s, 0.0, 0.0, 0.0)
+    records = insulation_records()
+    if insulation is None:
+        insulation = records.one("aerogel thickness").central * 1e-3 / records.one("aerogel conductivity").central
+    if lateral is None:
+        lateral = records.one("lateral distance").central if width is None else width / 2
+    width = 2 * lateral if width is None else width
+    if lateral > width / 2 * (1 + 1e-9):
+        raise ValueError(
+            f"probe {table.name}: lateral_mm = {lateral:g} mm: no place under a round pad of width_mm = {width:g} mm "
+            f"is farther than {width / 2:g} mm from skin in contact; use at most that, or remove width_mm"
+        )
+    return Probe(
+        table.name, table.place, table.depth_mm * 1e-3, table.lag_s, lateral * 1e-3, width * 1e-3, float(insulation)
+    )

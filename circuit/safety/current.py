@@ -1,0 +1,210 @@
+"""A module that a current drives, in all corners of its rig, as a plant of the gate.
+
+The bounds of repetition hold for temperatures; a rate depends on differences between nodes, and no bound on each node
+is one on it. It is taken in plays instead: each drive after a play of each from rest, and after one of its steady
+cycle. After its own play the pause may also be longer than the shortest by each of LONGER_S, since the display returns
+to rest sooner than the skin.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
+
+from ..arrays import Array
+from ..rig.rules import Limits
+from ..solver.batch_inputs import State
+from ..solver.drive import Drive
+from .checks import Before, Scenario
+from .demands import Demands
+from .endings import ENDING_ROWS_S, ENDINGS, LATE_S, judge_the_end, without_power, zero_current_C
+from .ensemble import Ensemble, LaneDrives, row_of
+from .plant import Future, Plant, Stretch
+from .playmap import MOST_STEPS, PlayMap, least_bound
+from .repetition import bound, steady_cycle
+from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
+
+if TYPE_CHECKING:
+    from .repeated import Repeating
+    from .single import Single
+
+LONGER_S = (1.0, 4.0, 15.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CurrentPlay:
+    """A drive, or one for each corner, with the current in A that is held before it and in the pauses after it."""
+
+    drive: Drive | LaneDrives
+    rest_A: float | Array
+    way: ClassVar[str] = ""
+    settling_s: ClassVar[float] = 0.0
+
+    @property
+    def end_s(self) -> float:
+        """Time in s of the last row."""
+        return float(self.drive.time_s[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class CurrentPlant(Plant[CurrentPlay, State]):
+    """An ensemble as a plant; a play of more than `most_steps` is simulated again and again, shorter ones are maps."""
+
+    ensemble: Ensemble
+    most_steps: int
+    _rests: dict[CurrentPlay, State] = field(default_factory=dict)
+    _maps: dict[CurrentPlay, PlayMap] = field(default_factory=dict)
+    endings = ENDINGS
+    quick = False
+
+    @staticmethod
+    def of(ensemble: Ensemble, most_steps: int = MOST_STEPS) -> CurrentPlant:
+        """The plant of an ensemble."""
+        return CurrentPlant(ensemble.rig, ensemble.corners, True, ensemble, most_steps)
+
+    @property
+    def drift_C(self) -> float:
+        """Steady skin temperature in °C under zero current on the rig as given."""
+        return float(zero_current_C(self.ensemble)[WATCHED.index("skin_C"), 0])
+
+    def only(self, corners: list[int]) -> CurrentPlant:
+        """The plant in some of the corners."""
+        rests = {play: state.take(np.array(corners)) for play, state in self._rests.items()}
+        maps = {play: played.only(corners) for play, played in self._maps.items()}
+        few = self.ensemble.only(corners)
+        return CurrentPlant(self.rig, few.corners, True, few, self.most_steps, rests, maps)
+
+    def rest(self, play: CurrentPlay) -> State:
+        """Steady states under the resting current."""
+        if play not in self._rests:
+            self._rests[play] = self.ensemble.at_rest(play.rest_A)
+        return self._rests[play]
+
+    def now(self, play: CurrentPlay, state: State) -> Array:
+        """WATCHED (4, corners) of states."""
+        pairs = list(zip(self.ensemble.networks, state.nodes_C, strict=True))
+        return np.array([[network.read(nodes, name) for network, nodes in pairs] for name in WATCHED])
+
+    def begun_C(self, plays: Sequence[CurrentPlay]) -> list[Array]:
+        """Skin at the rest of each play."""
+        return [self.now(play, self.rest(play))[WATCHED.index("skin_C")] for play in plays]
+
+    def play(self, play: CurrentPlay, state: State) -> Iterator[tuple[Stretch, State]]:
+        """The drive in stretches."""
+        return self.ensemble.play(play.drive, state)
+
+    def hold(self, play: CurrentPlay, state: State, times_s: Array) -> Array:
+        """The resting current held."""
+        return self.ensemble.hold(play.rest_A, state, times_s)[0]
+
+    def let_go(self, play: CurrentPlay, state: State) -> Iterator[tuple[Future, ...]]:
+        """The last current held, zero current, and power off, which is the same where the sink has no controller."""
+        last_A = play.drive.current_A[..., -1]
+        held, _ = self.ensemble.hold(last_A if last_A.ndim else float(last_A), state, ENDING_ROWS_S)
+        yield (Future((ENDING_ROWS_S, held)),)
+        zero = Future((ENDING_ROWS_S, self.ensemble.hold(0.0, state, ENDING_ROWS_S)[0]))
+        if not self.ensemble.ideal:
+            yield (zero,)
+            yield (Future((ENDING_ROWS_S, without_power(self.ensemble, state, ENDING_ROWS_S)[0])),)
+            return
+        later, _ = self.ensemble.hold(0.0, state, np.append(0.0, LATE_S))
+        yield zero, Future((LATE_S, later[:, :, 1:]), drift=True)
+        yield (zero,)
+
+    def after(self, play: CurrentPlay, pause_s: float, state: State) -> State:
+        """States before the next play, for those before this one."""
+        played = self._map(play)
+        if played is not None:
+            ended = State(played.after(state.nodes_C), state.sink)
+        else:
+            ended = self.ensemble.end_of(play.drive, state)
+        return ended if pause_s <= 0 else self.ensemble.rest(play.rest_A, ended, pause_s)
+
+    def map(self, play: CurrentPlay, pause_s: float) -> PlayMap | None:
+        """A play and its pause as a map of the nodes; None where it is simulated instead."""
+        played = self._map(play)
+        if played is None or pause_s <= 0:
+            return played
+        return played.then(PlayMap(*self.ensemble.modes(play.rest_A).passage(pause_s)))
+
+    def _map(self, play: CurrentPlay) -> PlayMap | None:
+        if not self.ensemble.ideal or play.end_s / row_of(play.drive) > self.most_steps:
+            return None
+        if play not in self._maps:
+            self._maps[play] = PlayMap.of(self.ensemble, play.drive, self.rest(play))
+        return self._maps[play]
+
+    def cycle(self, play: CurrentPlay, pause_s: float) -> State:
+        """The fixed point of the map; a corner that has none is as hot as can be."""
+        start, whole = self.rest(play), self.map(play, pause_s)
+        if whole is None:
+            return steady_cycle(partial(self.after, play, pause_s), start)[0]
+        nodes, settles = whole.fixed_point()
+        return _at(start, np.where(settles[:, np.newaxis], np.clip(nodes, COLDEST_C, HOTTEST_C), HOTTEST_C))
+
+    def bound(self, plays: Sequence[CurrentPlay], pause_s: float, steady: Sequence[State], warm: bool) -> State:
+        """Nodes that no play in any order takes the state beyond."""
+        known = [*map(self.rest, plays), *steady]
+        maps = [whole for play in plays if (whole := self.map(play, pause_s)) is not None]
+        if len(maps) < len(plays):
+            return bound([partial(self.after, play, pause_s) for play in plays], known, warm)
+        free = least_bound(maps, [state.nodes_C[:, :-1] for state in known], 1.0 if warm else -1.0)
+        return _at(known[0], np.nan_to_num(free, nan=HOTTEST_C if warm else COLDEST_C))
+
+    def alone(self, limits: Limits, end_s: float, begun_C: Array) -> list[Tally]:
+        """Where zero current leads in the end."""
+        return [judge_the_end(self.ensemble, limits, end_s, begun_C)]
+
+    def following(
+        self,
+        plays: Sequence[CurrentPlay],
+        pause_s: float,
+        steady: Sequence[State],
+        begun_C: Array,
+        limits: Limits,
+        of: int,
+    ) -> list[Tally]:
+        """Tallies of one of the plays after each of them; sums over time are not taken."""
+        before = list(self._before(plays, pause_s, steady, of))
+        states = State(*(np.concatenate([getattr(state, part) for state, _ in before]) for part in ("nodes_C", "sink")))
+        tallies = [Tally(limits, self.corners, Scenario(before=what), begun_C=begun_C) for _, what in before]
+        rigs, count = np.tile(self.ensemble.lanes, len(before)), len(self.corners)
+        for (rows, values), _ in self.ensemble.play(plays[of].drive, states, rigs):
+            for k, tally in enumerate(tallies):
+                tally.add(rows, values[:, k * count : (k + 1) * count], sums=False)
+        return tallies
+
+    def _before(
+        self, plays: Sequence[CurrentPlay], pause_s: float, steady: Sequence[State], of: int
+    ) -> Iterator[tuple[State, Before]]:
+        """States before a play that follows another, and what that is."""
+        for number, (play, settled) in enumerate(zip(plays, steady, strict=True)):
+            start = self.rest(play)
+            if number == of:
+                for longer_s in (pause_s, *(pause_s + more_s for more_s in LONGER_S)):
+                    yield self.after(play, longer_s, start), Before("once", longer_s)
+            else:
+                yield self.after(play, pause_s, start), Before("another", pause_s)
+                yield self.after(play, pause_s, settled), Before("others", pause_s)
+
+    def demanded(
+        self,
+        singles: Sequence[Sequence[Single[CurrentPlay, State]]],
+        recovered_s: Sequence[float],
+        repeating: Repeating[CurrentPlay, State],
+        tallies: Sequence[list[Tally]],
+        shortest_s: float | None,
+    ) -> tuple[float | None, list[Demands]]:
+        """What prevents a host that stops, a driver that is stuck, and faults of a first play."""
+        from .demanded import demanded
+
+        return demanded(self, [single for (single,) in singles], recovered_s, repeating, tallies, shortest_s)
+
+
+def _at(like: State, free_C: Array) -> State:
+    """States with other nodes but for the last, which is deep."""
+    return State(np.concatenate([free_C, like.nodes_C[:, -1:]], axis=1), like.sink)

@@ -1,0 +1,273 @@
+"""A display with its own control loop, as a plant of the gate: skin under the temperatures that it shows.
+
+Module, driver and heat sink of the rig are not involved. Uncertain are the contact, the room (and with it deep tissue)
+and how closely the device follows: at once, which is the worst case for the rate, or with its lag. A play ends with the
+last set-point held or with control lost, when the display conducts no heat.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..rig.rig import Rig
+from ..rig.rules import Limits
+from ..solver.prescribed import FELT, SkinModes, modes_of
+from .checks import worst_of
+from .corners import contact_corners
+from .demands import CutOff, Demands, SingleFault
+from .endings import ENDING_ROWS_S, ENDING_S, LATE_S
+from .plant import Future, Plant, Stretch, left_s
+from .playmap import PlayMap, least_bound
+from .single_faults import BEYOND_K, MARGIN
+from .tally import WATCHED, Tally
+
+if TYPE_CHECKING:
+    from .repeated import Repeating
+    from .single import Single
+
+DISPLAY_ENDINGS = ("last set-point held", "control lost")
+
+INSTANTS = 24
+"""Instants of a play, besides the last of its extreme, at which states are compared."""
+
+_PLACE = {name: FELT.index(name) for name in WATCHED if name in FELT}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DisplayCourse:
+    """A display (rows,) in °C, `step_s` apart and linear between: what a device shows if it follows in a certain `way`.
+
+    The last `settling_s` come after the end of the drive, until the display has arrived, and are part of the pause.
+    """
+
+    way: str
+    step_s: float
+    display_C: Array
+    settling_s: float = 0.0
+
+    @property
+    def rows_s(self) -> Array:
+        """Times in s of the rows."""
+        return np.arange(len(self.display_C), dtype=np.float64) * self.step_s
+
+    @property
+    def end_s(self) -> float:
+        """Time in s of the last row."""
+        return self.step_s * (len(self.display_C) - 1)
+
+    @property
+    def first_C(self) -> float:
+        """The display at rest."""
+        return float(self.display_C[0])
+
+    @property
+    def last_C(self) -> float:
+        """The display in the pause."""
+        return float(self.display_C[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class DisplayPlant(Plant[DisplayCourse, list[Array]]):
+    """Skin in the corners of contact and room; states are modes (n,) of each, in contact and under no display.
+
+    A single fault may leave the display at one of `stuck_C`, in °C. No rate is judged where a jump of the display is an
+    idealisation; that of another one is decided by the display, and nothing is to be added right after a play.
+    """
+
+    modes: tuple[SkinModes, ...]
+    insulated: tuple[SkinModes, ...]
+    stuck_C: tuple[float, float]
+    endings = DISPLAY_ENDINGS
+    quick = True
+
+    @staticmethod
+    def of(rig: Rig, stuck_C: tuple[float, float], rates: bool = True) -> DisplayPlant:
+        """All corners of a rig's contact and room."""
+        corners = contact_corners(rig)
+        modes, insulated = (tuple(modes_of(corner.rig, insulated=free) for corner in corners) for free in (False, True))
+        return DisplayPlant(rig, corners, rates, modes, insulated, stuck_C)
+
+    def rest(self, play: DisplayCourse) -> list[Array]:
+        """The first temperature held."""
+        return self.steady(play.first_C)
+
+    def steady(self, display_C: float) -> list[Array]:
+        """States under a display held."""
+        return [modes.steady(display_C) for modes in self.modes]
+
+    def now(self, play: DisplayCourse, state: Sequence[Array]) -> Array:
+        """WATCHED (4, corners) under the first temperature."""
+        return self.held(play.first_C, state, np.array([0.0]))[:, :, 0]
+
+    def begun_C(self, plays: Sequence[DisplayCourse]) -> list[Array]:
+        """Skin at the rest of the first play, which is that of all."""
+        return [self.now(plays[0], self.rest(plays[0]))[WATCHED.index("skin_C")]] * len(plays)
+
+    def play(self, play: DisplayCourse, state: Sequence[Array]) -> Iterator[tuple[Stretch, list[Array]]]:
+        """A whole play as one stretch."""
+        pairs = zip(self.modes, state, strict=True)
+        runs = [modes.run(play.display_C, play.step_s, begun) for modes, begun in pairs]
+        yield (play.rows_s, watched([felt for felt, _ in runs])), [end for _, end in runs]
+
+    def hold(self, play: DisplayCourse, state: Sequence[Array], times_s: Array) -> Array:
+        """The last temperature held."""
+        return self.held(play.last_C, state, times_s)
+
+    def held(self, display_C: float, state: Sequence[Array], times_s: Array) -> Array:
+        """WATCHED (4, corners, times) under a display held, at times from now."""
+        pairs = zip(self.modes, state, strict=True)
+        return watched([modes.relax(times_s, display_C, begun) for modes, begun in pairs])
+
+    def let_go(self, play: DisplayCourse, state: Sequence[Array]) -> Iterator[tuple[Future, ...]]:
+        """The last temperature held, and control lost."""
+        yield (Future((ENDING_ROWS_S, self.hold(play, state, ENDING_ROWS_S)), self.rates),)
+        lost = (ENDING_ROWS_S[1:], LATE_S)
+        yield tuple(Future((rows, self.under_none(state, rows)), rates=False, drift=True) for rows in lost)
+
+    def under_none(self, state: Sequence[Array], times_s: Array) -> Array:
+        """WATCHED (4, corners, times) under a display that conducts no heat and is as warm as the skin below."""
+        corners = []
+        for modes, free, begun in zip(self.modes, self.insulated, state, strict=True):
+            felt = free.relax(times_s, free.deep_C, free.unlumps @ (modes.lumps @ begun))
+            felt[_PLACE["display_C"]] = felt[_PLACE["cold_receptor_C"]]
+            corners.append(felt)
+        return watched(corners)
+
+    def after(self, play: DisplayCourse, pause_s: float, state: Sequence[Array]) -> list[Array]:
+        """States after a play and a pause with the last set-point held."""
+        ((_, ended),) = self.play(play, state)
+        left = left_s(play, pause_s)
+        return [modes.after(left, play.last_C, end) for modes, end in zip(self.modes, ended, strict=True)]
+
+    def cycle(self, play: DisplayCourse, pause_s: float) -> list[Array]:
+        """Each mode decays by the same share in every cycle."""
+        forced = self.after(play, pause_s, self._none())
+        length = play.end_s + left_s(play, pause_s)
+        return [end / -np.expm1(-modes.rate_per_s * length) for modes, end in zip(self.modes, forced, strict=True)]
+
+    def bound(
+        self, plays: Sequence[DisplayCourse], pause_s: float, steady: Sequence[list[Array]], warm: bool
+    ) -> list[Array]:
+        """Lump by lump: temperatures of lumps, unlike modes, only rise with each other."""
+        starts = [self._lumps(state) for state in (*map(self.rest, plays), *steady)]
+        bounded = least_bound([self.map(play, pause_s) for play in plays], starts, 1.0 if warm else -1.0)
+        return self._modes(bounded)
+
+    def map(self, play: DisplayCourse, pause_s: float) -> PlayMap:
+        """A play and its pause as a map of lumps, whose entries are never negative."""
+        length = play.end_s + left_s(play, pause_s)
+        forced = self.after(play, pause_s, self._none())
+        decays = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
+        return PlayMap(np.array(decays), self._lumps(forced))
+
+    def farthest(self, plays: Sequence[DisplayCourse], state: Sequence[Array], warm: bool) -> list[Array]:
+        """States warmer (or colder), lump by lump, than at instants of plays from states, and before them."""
+        side, found = 1.0 if warm else -1.0, self._lumps(state)
+        for play in plays:
+            last, now = len(play.display_C) - 1, list(state)
+            ends = {int((side * play.display_C[::-1]).argmax()), *range(0, last, -(-last // INSTANTS))}
+            for begin, end in itertools.pairwise(sorted({0, last, *(last - k for k in ends)})):
+                ((_, now),) = self.play(replace(play, display_C=play.display_C[begin : end + 1]), now)
+                found = side * np.maximum(side * found, side * self._lumps(now))
+        return self._modes(found)
+
+    def demanded(
+        self,
+        singles: Sequence[Sequence[Single[DisplayCourse, list[Array]]]],
+        recovered_s: Sequence[float],
+        repeating: Repeating[DisplayCourse, list[Array]],
+        tallies: Sequence[list[Tally]],
+        shortest_s: float | None,
+    ) -> tuple[float | None, list[Demands]]:
+        """What prevents set-points that hang, and a loop that runs to the end of its range."""
+        from .repeated import PRACTICAL_S, lengthened_s
+
+        def quickest(pause_s: float | None) -> list[tuple[float, float]]:
+            return [each.quickest_s for each in self._faults(repeating, pause_s)]
+
+        pause_s = shortest_s
+        if shortest_s is not None:
+            longest_s = max(shortest_s, *recovered_s)
+            needed = np.minimum(PRACTICAL_S, quickest(longest_s))
+            pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: bool((quickest(longer_s) >= needed).all()))
+        groups = [*(single.checks for ways in singles for single in ways)]
+        groups += [worst_of(tally.checks() for tally in own) for own in tallies]
+        shown = [check.value for checks in groups for check in checks if check.quantity == "display"]
+        around = min(shown), max(shown)
+        return pause_s, [each.demands(around, repeating.limits, pause_s) for each in self._faults(repeating, pause_s)]
+
+    def _faults(self, repeating: Repeating[DisplayCourse, list[Array]], pause_s: float | None) -> list[_Faults]:
+        """Faults of each drive in any play after a pause; without one, in drives that are not safe, from rest."""
+        bounds = None if pause_s is None else repeating.bounds(pause_s)
+        found = []
+        for ways in repeating.drives:
+            cold = warm = self.rest(ways[0])
+            if bounds is not None:
+                warm, cold = self.farthest(ways, bounds[1], True), self.farthest(ways, bounds[2], False)
+            levels = [float(level) for play in ways for level in (play.display_C.min(), play.display_C.max())]
+            ends = (min(levels), max(levels)), self.stuck_C
+            hangs, stuck = (
+                [(low, self._held_s(repeating.limits, low, cold)), (high, self._held_s(repeating.limits, high, warm))]
+                for low, high in ends
+            )
+            found.append(_Faults(hangs, stuck))
+        return found
+
+    def _held_s(self, limits: Limits, level_C: float, state: Sequence[Array]) -> float:
+        """Time in s for which a display may be held at a level until a hard temperature limit is passed, 60 at most."""
+        tally = Tally(limits, self.corners)
+        tally.add(ENDING_ROWS_S, self.held(level_C, state, ENDING_ROWS_S), rates=False, sums=False)
+        broken = [check.since_s for check in tally.checks() if check.severity == "hard" and check.since_s is not None]
+        return min(broken, default=ENDING_S)
+
+    def _none(self) -> list[Array]:
+        return [np.zeros_like(modes.rate_per_s) for modes in self.modes]
+
+    def _lumps(self, state: Sequence[Array]) -> Array:
+        """Lumps (corners, n) above the deep node's temperature, for modes."""
+        return np.array([modes.lumps @ begun for modes, begun in zip(self.modes, state, strict=True)])
+
+    def _modes(self, lumps: Array) -> list[Array]:
+        return [modes.unlumps @ each for modes, each in zip(self.modes, lumps, strict=True)]
+
+
+@dataclass(frozen=True, slots=True)
+class _Faults:
+    """Set-points that hang, and ends of a range at which a loop is stuck: level in °C, time in s to a limit."""
+
+    hangs: list[tuple[float, float]]
+    stuck: list[tuple[float, float]]
+
+    @property
+    def quickest_s(self) -> tuple[float, float]:
+        """How quickly a watchdog and a cut-off must act, in s."""
+        hang, stuck = (MARGIN * min(time for _, time in each) for each in (self.hangs, self.stuck))
+        return hang, stuck
+
+    def demands(self, shown_C: tuple[float, float], limits: Limits, pause_s: float | None) -> Demands:
+        """What the device itself must prevent, where its display is between two temperatures without a fault."""
+        watchdog, react = (min(time for _, time in each) for each in (self.hangs, self.stuck))
+        watchdog = watchdog if watchdog >= ENDING_S else round(MARGIN * watchdog, 2)
+        rules = [rule for rule in limits.rules if rule.quantity == "display" and rule.above_C is None]
+        hard = {rule.upper: rule.limit for rule in rules if rule.severity == "hard"}
+        low, high = max(hard[False], shown_C[0] - BEYOND_K), min(hard[True], shown_C[1] + BEYOND_K)
+        cut = CutOff(round(low, 1), round(high, 1), round(MARGIN * react, 3))
+        levels, ends = ([level for level, _ in each] for each in (self.hangs, self.stuck))
+        hang = {"levels_C": levels, "watchdog_s": watchdog}
+        stuck = {"levels_C": ends, "passed_s": react, "cut_off": cut}
+        faults = (
+            SingleFault("set-point hang", "red" if watchdog < ENDING_S else "green", hang),
+            SingleFault("loop stuck", "red" if react < ENDING_S else "green", stuck),
+        )
+        return Demands(watchdog, cut, None, 0.0, pause_s, None, faults)
+
+
+def watched(felt: Sequence[Array]) -> Array:
+    """WATCHED (4, corners, rows) of FELT; the missing hot plate is as warm as the display."""
+    return np.stack([[each[_PLACE.get(name, _PLACE["display_C"])] for each in felt] for name in WATCHED])

@@ -1,0 +1,158 @@
+"""What the gate asks of a plant: the few verbs by which it plays, repeats and judges, in all corners at once.
+
+There are two: a module that a current drives (`current.py`), and a display that shows temperatures (`display.py`).
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
+
+from ..arrays import Array
+from ..rig.rig import Rig
+from ..rig.rules import Limits
+from .corners import Corner
+from .demands import Demands
+from .tally import Tally
+
+if TYPE_CHECKING:
+    from .repeated import Repeating
+    from .single import Single
+
+Stretch = tuple[Array, Array]
+"""Times in s (rows,) and WATCHED (4, lanes, rows) in °C."""
+
+
+class Play(Protocol):
+    """What is played: currents, or temperatures of a display."""
+
+    @property
+    def way(self) -> str:
+        """In which way a device follows; empty for as told."""
+
+    @property
+    def end_s(self) -> float:
+        """Time in s of the last row."""
+
+    @property
+    def settling_s(self) -> float:
+        """How much of it is part of the pause, in s: until a display has arrived."""
+
+
+Played = TypeVar("Played", bound=Play)
+States = TypeVar("States")
+"""States of all corners, which only their plant reads."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Future:
+    """A stretch of what follows a play, at times in s after its end; a `drift` is not a stimulus."""
+
+    stretch: Stretch
+    rates: bool = True
+    drift: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Plant(ABC, Generic[Played, States]):
+    """A plant in the corners of its uncertainty, the first of which is the rig as given.
+
+    `endings` are the names of what may follow a play. `rates`: whether the rate of skin is judged. `quick`: plays with
+    all their endings take next to no time in all corners, so that none is left out.
+    """
+
+    rig: Rig
+    corners: tuple[Corner, ...]
+    rates: bool
+    endings: ClassVar[tuple[str, ...]]
+    quick: ClassVar[bool]
+
+    @abstractmethod
+    def rest(self, play: Played) -> States:
+        """Steady states before a first play; raises RigError where the rig as given has none."""
+
+    @abstractmethod
+    def now(self, play: Played, state: States) -> Array:
+        """WATCHED (4, corners) before a play."""
+
+    @abstractmethod
+    def begun_C(self, plays: Sequence[Played]) -> list[Array]:
+        """Skin (corners,) before each of the plays, from which changes count."""
+
+    @abstractmethod
+    def play(self, play: Played, state: States) -> Iterator[tuple[Stretch, States]]:
+        """Play from states, in stretches, each with the states at its end."""
+
+    @abstractmethod
+    def hold(self, play: Played, state: States, times_s: Array) -> Array:
+        """WATCHED (4, corners, times) in the pause after a play, at times from now that begin with 0."""
+
+    @abstractmethod
+    def let_go(self, play: Played, state: States) -> Iterable[tuple[Future, ...]]:
+        """What follows a play in each of the endings."""
+
+    @abstractmethod
+    def cycle(self, play: Played, pause_s: float) -> States:
+        """States before each play of a steady cycle."""
+
+    @abstractmethod
+    def bound(self, plays: Sequence[Played], pause_s: float, steady: Sequence[States], warm: bool) -> States:
+        """States that are warmer (or colder) than those before any play in any order; `steady` is before each cycle."""
+
+    @abstractmethod
+    def demanded(
+        self,
+        singles: Sequence[Sequence[Single[Played, States]]],
+        recovered_s: Sequence[float],
+        repeating: Repeating[Played, States],
+        tallies: Sequence[list[Tally]],
+        shortest_s: float | None,
+    ) -> tuple[float | None, list[Demands]]:
+        """The shortest pause after which single faults can be prevented in practice, and what prevents them."""
+
+    def only(self, corners: list[int]) -> Plant[Played, States]:
+        """The same in some of the corners, or in all where that takes next to no time."""
+        return self
+
+    def alone(self, limits: Limits, end_s: float, begun_C: Array) -> list[Tally]:
+        """What else a single play that ended at a time is judged by, of which skin began at `begun_C` (corners,)."""
+        return []
+
+    def following(
+        self, plays: Sequence[Played], pause_s: float, steady: Sequence[States], begun_C: Array, limits: Limits, of: int
+    ) -> list[Tally]:
+        """Tallies of one of the plays right after each of them, where its bounds say nothing of rates."""
+        return []
+
+    @property
+    def drift_C(self) -> float | None:
+        """Skin of the rig as given in °C without current for ever; None where there is no current."""
+        return None
+
+
+def left_s(play: Play, pause_s: float) -> float:
+    """Remaining time in s of a pause after the last row of a play."""
+    return max(0.0, pause_s - play.settling_s)
+
+
+def follow(
+    plant: Plant[Played, States],
+    play: Played,
+    ended: States,
+    end_s: float,
+    tallies: Sequence[Tally],
+    sums: bool = True,
+) -> dict[str, Array]:
+    """Add what follows a play that ended at a time to the tally of each ending; the skin a minute later, (corners,).
+
+    `sums`: whether doses count.
+    """
+    after_C = {}
+    for ending, tally, futures in zip(plant.endings, tallies, plant.let_go(play, ended), strict=True):
+        for future in futures:
+            rows, values = future.stretch
+            tally.add(end_s + rows, values, rates=future.rates, sums=sums, drift=future.drift)
+        after_C[ending] = futures[0].stretch[1][0, :, -1]
+    return after_C
