@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
-from thermicon.icons.model.cleaning import clean, clean_line, first_control
+from thermicon.icons.files.table import Fault
+from thermicon.icons.model.context import clean, clean_line, first_control
 
 TOO_DEEP = "nested too deeply; two or three levels are all that is needed"
 DEEPEST, MOST_KEYS_A_LINE, MOST_DIGITS = 10, 50, 19
@@ -119,6 +120,15 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[Exception] = 
         raise error(f"{path}: no such {what}") from None
     except (OSError, ValueError) as problem:
         raise error(f"{path}: cannot be read ({getattr(problem, 'strerror', None) or problem})") from None
+
+
+def table_fault(path: str | Path, error: type[Exception] = InputError) -> Fault:
+    """Return what makes `error` out of a fault of the table in a file, for `icons.files.table`."""
+
+    def fault(kind: str, line: int | None, what: str, cure: str) -> Exception:
+        return error(f"{path}{f':{line}' if line else ''}: {what}; {cure}")
+
+    return fault
 
 
 def require_pyarrow(path: str | Path, error: type[Exception] = InputError) -> None:

@@ -11,5 +11,5 @@ from .files.exchange import to_json as to_json
 from .recordings.recorded import from_csv as from_csv
 from .model.builders import cool as cool, warm as warm, ramp as ramp, current as current
 from .model.builders import hold as hold, rest as rest, back as back
-from .model.wave_builders import step as step, pulse as pulse, wave as wave
+from .model.builders import step as step, pulse as pulse, wave as wave
 from .model.builders import repeat as repeat, play as play, total as total

@@ -12,6 +12,8 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
+from .atomic import complete_or_absent
+
 HASH_BYTES = 32  # of SHA-256
 WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
@@ -118,11 +120,5 @@ def remove_unused(files: Iterable[Path], longest_s: float) -> None:
 
 def write_private(path: Path, data: bytes) -> None:
     """Write a file that only this user can read and write; it appears complete or not at all."""
-    draft = path.with_name(f".{path.name}.{os.getpid()}.part")
-    flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
-    try:
-        with os.fdopen(os.open(draft, flags, 0o600), "wb") as file:
-            file.write(data)
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)
+    with complete_or_absent(path, mode=0o600) as draft:
+        draft.write_bytes(data)

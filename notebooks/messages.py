@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NoReturn, TextIO
 
 import typer
 
-from thermicon.icons.model.cleaning import clean, clean_line
+from thermicon.icons.model.context import clean, clean_line
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -12,6 +12,7 @@ import io
 import os
 import re
 import shlex
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,17 +21,13 @@ import pytest
 from typer.testing import CliRunner
 
 from thermicon.notebooks.cli.main import app
-from thermicon.notebooks.report.schema_table import (
-    device_keys_table,
-    device_quantities_table,
-    modules_table,
-    rig_keys_table,
-)
-from thermicon.notebooks.study.keys_table import keys_table
-from thermicon.perception.evidence import posterior_tables as tables
-from thermicon.perception.evidence.memory_forms import forms_table
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "docs" / "builder"))
+
+import key_tables  # noqa: E402
+import posterior_tables  # noqa: E402
+
 README = ROOT / "README.md"
 INDEX = ROOT / "docs" / "README.md"
 PAGES = (README, *sorted((ROOT / "docs").rglob("*.md")))
@@ -40,13 +37,12 @@ FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)``
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
 
 TABLES = {
-    **tables.TABLES,
-    "forms of memory": forms_table,
-    "study keys": keys_table,
-    "rig keys": rig_keys_table,
-    "modules": modules_table,
-    "device keys": device_keys_table,
-    "device quantities": device_quantities_table,
+    **posterior_tables.TABLES,
+    "study keys": key_tables.study_keys_table,
+    "rig keys": key_tables.rig_keys_table,
+    "modules": key_tables.modules_table,
+    "device keys": key_tables.device_keys_table,
+    "device quantities": key_tables.device_quantities_table,
 }
 TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
 """Tables that are generated from data files, between comments that GitHub does not show."""
@@ -202,7 +198,7 @@ def draw_images(folder: Path) -> None:
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import read_cue
     from thermicon.notebooks import overview
-    from thermicon.notebooks.figures.overview import set_figure
+    from thermicon.notebooks.figures.set_figures import set_figure
     from thermicon.perception import perceive, rank
 
     rig = Rig.load("thenar")
@@ -214,23 +210,24 @@ def draw_images(folder: Path) -> None:
 
 def draw_mechanisms(folder: Path) -> None:
     """Draw what each mechanism does, and what the inference found."""
+    sys.path.insert(0, str(ROOT / "docs" / "explain"))  # the pictures are made beside their pages
     from episodes_picture import episodes_figure  # beside this file, which draws only as a program
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Rig, simulate
-    from thermicon.icons import load_library
-    from thermicon.perception import Observer, perceive
-    from thermicon.perception.evidence.effects import EFFECTS
-    from thermicon.perception.evidence.onset_stages import onset_stages
-    from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
-    from thermicon.perception.identification.episodes import remembered
-    from thermicon.perception.plots.draw_effects import plot_effect, plot_onset_stages
-    from thermicon.perception.plots.draw_evidence import (
+    from mechanisms.draw_effects import plot_effect, plot_onset_stages
+    from mechanisms.draw_evidence import (
         plot_ablation,
         plot_left_out,
         plot_narrowing,
         plot_published_predicted,
     )
+    from mechanisms.effects import EFFECTS
+    from thermicon.circuit import Rig, simulate
+    from thermicon.icons import load_library
+    from thermicon.perception import Observer, perceive
+    from thermicon.perception.evidence.magnitudes import onset_stages
+    from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+    from thermicon.perception.identification.episodes import remembered
 
     drawn = {f"mechanism-{name}": plot_effect(effect()) for name, effect in EFFECTS.items()} | {
         "mechanism-delays": plot_onset_stages(onset_stages(load_library("six-icons"), Rig.load("thenar"))),

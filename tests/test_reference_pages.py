@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 from typer.main import get_command
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.circuit.rig.rigfile import rig_keys
 from thermicon.circuit.solver.trace import COLUMNS
 from thermicon.icons import load_library

@@ -27,7 +27,7 @@ from ..safety.single_faults import BEYOND_K
 from ..safety.thermode import DisplayCourse, Under
 from ..safety.thermode_gate import gate_shown
 from ..solver.batch_inputs import Bank, run_regulate
-from ..solver.kernel_pid import DELAY_S, KD, KI, KP, LAG_S
+from ..solver.kernel_follow import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.plate import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
 from .any_loop import SENSOR_K, AnyLoop, Limits_A
 from .delivered_drive import DeliveredDrive

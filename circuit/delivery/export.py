@@ -1,23 +1,26 @@
-"""Export in one call: icons, a rig, a device and a format give the bytes of files, or the reasons against it."""
+"""Export in one call: icons, a rig, a device and a format give the files that play them, or the reasons against it."""
 
 from __future__ import annotations
 
-import shutil
-import tempfile
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from thermicon.icons import Icon
+from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import count_of
 
 from ..inputs import InputError
 from ..rig.rig import Rig
 from .device import Device
+from .export_folder import HOW, check_export_folder, publish
 from .formats import Format, load_format
 from .pack import pack
 from .prepare import Prepared, prepare_set
 from .refusal import Refusal
+
+CURE = "give a new or empty folder, or use the command thermicon export, which replaces an earlier export"
 
 
 class ExportError(InputError):
@@ -25,6 +28,7 @@ class ExportError(InputError):
 
     Examples
     --------
+    >>> import tempfile
     >>> from thermicon.icons import load_library
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = (Path(folder) / "notes.txt").write_text("mine")
@@ -32,8 +36,22 @@ class ExportError(InputError):
     ...         export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-protocol-ini", folder=folder)
     ...     except ExportError as problem:
     ...         print("refused:", problem)
-    refused: ... is not an empty folder; ...
+    refused: .../notes.txt already exists and was kept; ...
     """
+
+
+class Felt(Protocol):
+    """What a device changes in the perception of one icon."""
+
+    @property
+    def icon(self) -> str:
+        """Name of the icon."""
+
+    def losses(self) -> tuple[str, ...]:
+        """One sentence for each loss that is too large."""
+
+    def to_dict(self) -> dict[str, object]:
+        """Plain data for the sidecar."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,14 +60,14 @@ class Export:
 
     Attributes
     ----------
-    rig_name, device_name, format_name
-        Names of the rig, the device and the file format.
+    rig, device, form
+        The rig, the device and the file format.
     prepared
         What the device delivers of each icon, with its verdict.
-    refused
-        Every reason against writing, with the name of its icon; a forced export has reasons and files.
-    files
-        Bytes by file name; empty where an icon was refused.
+    felt
+        How the device changes what is felt of each icon; empty where that was not asked for.
+    force
+        Whether what may be forced is packed in spite of the reasons against it.
 
     Examples
     --------
@@ -59,20 +77,20 @@ class Export:
     ((), ['warming-step.json', 'warming-step.protocol.ini'])
     """
 
-    rig_name: str
-    device_name: str
-    format_name: str
+    rig: Rig
+    device: Device
+    form: Format
     prepared: tuple[Prepared, ...]
-    refused: tuple[tuple[str, Refusal], ...]
-    files: Mapping[str, bytes] = field(default_factory=dict)
+    felt: tuple[Felt, ...] = ()
+    force: bool = False
 
     def __repr__(self) -> str:
         count = count_of(len(self.prepared), "icon")
-        size = sum(len(content) for content in self.files.values())
         summary = f"REFUSED: {count_of(len(self.refused), 'cause')}"
-        if self.files:
-            summary = f"{count_of(len(self.files), 'file')}, {size / 1e3:.1f} kB"
-        return f"Export({count} on {self.rig_name} for {self.device_name} as {self.format_name}: {summary})"
+        if files := self.files:
+            size = sum(len(content) for content in files.values())
+            summary = f"{count_of(len(files), 'file')}, {size / 1e3:.1f} kB"
+        return f"Export({count} on {self.rig.name} for {self.device.name} as {self.form.name}: {summary})"
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -80,6 +98,49 @@ class Export:
         return tuple(
             f"{prepared.delivery.icon.name}: {text}" for prepared in self.prepared for text in prepared.warnings
         )
+
+    @property
+    def refused(self) -> tuple[tuple[str, Refusal], ...]:
+        """Every reason against writing, with the name of its icon; a forced export has reasons and files.
+
+        Losses of perception are listed only without other reasons, from which they would follow.
+        """
+        found, losses = [], self._losses
+        for one in self.prepared:
+            name, causes = one.delivery.icon.name, one.refusals
+            if (felt := losses.get(name, ())) and not causes:
+                more = f" (and {len(felt) - 1} more such)" if len(felt) > 1 else ""
+                causes = (Refusal("lossy", f"{felt[0]}{more}; use a device with a finer resolution or a higher rate"),)
+            found += [(name, refusal) for refusal in causes]
+        return tuple(found)
+
+    @property
+    def barred(self) -> tuple[tuple[str, Refusal], ...]:
+        """The reasons for which there are no files."""
+        return tuple((name, refusal) for name, refusal in self.refused if not (self.force and refusal.forcible))
+
+    @property
+    def files(self) -> Mapping[str, bytes]:
+        """Bytes by file name; empty where an icon was refused."""
+        if self.barred:
+            return {}
+        return pack(
+            self.prepared, self.form, felt={each.icon: each.to_dict() for each in self.felt}, losses=self._losses
+        )
+
+    @property
+    def _losses(self) -> dict[str, tuple[str, ...]]:
+        return {each.icon: each.losses() for each in self.felt}
+
+    def write(self, folder: str | Path, replace: bool = False, how: str = HOW) -> Path | None:
+        """Make the files the content of a folder, all or none; return where what they replace stands now, if anything.
+
+        A folder with files is replaced only with `replace`, and only if an export wrote them; `how` tells a person how
+        to ask for that. Raises OutputError for a folder that cannot be written, and where an icon is refused.
+        """
+        if stops := self.barred:
+            raise OutputError("; ".join(f"{name}: {refusal}" for name, refusal in stops))
+        return publish(self.files, Path(folder), replace, how)
 
 
 def export(
@@ -92,6 +153,8 @@ def export(
     pause_s: float | None = None,
     force: bool = False,
     folder: str | Path | None = None,
+    felt: Callable[[Sequence[Prepared]], Sequence[Felt]] | None = None,
+    step: Callable[[int, int], None] | None = None,
 ) -> Export:
     """Prepare icons for a device, judge them for safety in the worst case, and return the files that play them.
 
@@ -115,6 +178,10 @@ def export(
         Whether to pack icons that miss their target or lose too much; their sidecars say so. Unsafe icons stay refused.
     folder
         A folder to write the files into; it must not exist or be empty, and gets all files or none.
+    felt
+        Finds how the device changes what is felt of the prepared icons; None: that is not compared.
+    step
+        Is called after each simulated icon with how many are done, of how many.
 
     Returns
     -------
@@ -141,45 +208,17 @@ def export(
     chosen = [icons] if isinstance(icons, Icon) else list(icons)
     if not chosen:
         raise ExportError("there is no icon to export; give at least one")
-    goal = None if folder is None else _free(Path(folder))
-    ready = prepare_set(chosen, on, played, form, tail_s=tail_s, pause_s=pause_s)
-    refused = tuple((cue.delivery.icon.name, refusal) for cue in ready for refusal in cue.refusals)
-    barred = [(name, refusal) for name, refusal in refused if not (force and refusal.forcible)]
-    files = {} if barred else pack(ready, form)
-    if goal is not None:
-        if barred:
-            raise ExportError("\n".join(f"{name}: {refusal}" for name, refusal in barred))
-        _write(files, goal)
-    return Export(on.name, played.name, form.name, ready, refused, files)
-
-
-def _free(folder: Path) -> Path:
-    """The folder, if it is missing or empty; ExportError otherwise."""
+    where = None if folder is None else Path(folder)
     try:
-        taken = folder.exists() and (not folder.is_dir() or any(folder.iterdir()))
+        if where is not None:
+            where.parent.mkdir(parents=True, exist_ok=True)
+            check_export_folder(where, how=CURE)
+        prepared = prepare_set(chosen, on, played, form, tail_s=tail_s, pause_s=pause_s, step=step)
+        found = Export(on, played, form, prepared, () if felt is None else tuple(felt(prepared)), force)
+        if where is not None:
+            found.write(where, how=CURE)
+    except OutputError as problem:
+        raise ExportError(str(problem)) from None
     except OSError as problem:
-        raise ExportError(f"{folder}: cannot be read ({problem.strerror or problem}); choose another folder") from None
-    if taken:
-        raise ExportError(
-            f"{folder}: is not an empty folder; give one that is new or empty, or use the command thermicon export, "
-            f"which replaces an earlier export"
-        )
-    return folder.absolute()
-
-
-def _write(files: Mapping[str, bytes], goal: Path) -> None:
-    """Write into a new folder beside the goal and rename it, so that the goal has all files or none."""
-    try:
-        goal.parent.mkdir(parents=True, exist_ok=True)
-        draft = Path(tempfile.mkdtemp(prefix=f".{goal.name}.", dir=goal.parent))
-        try:
-            for name, content in files.items():
-                (draft / name).write_bytes(content)
-            draft.chmod(0o755)
-            if goal.exists():
-                goal.rmdir()  # raises where another program has put something into it meanwhile
-            draft.rename(goal)
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
-    except OSError as problem:
-        raise ExportError(f"{goal}: cannot be written ({problem.strerror or problem}); nothing was exported") from None
+        raise ExportError(f"cannot write {folder}: {problem.strerror or problem}") from None
+    return found

@@ -70,11 +70,11 @@ def pack(
     Examples
     --------
     >>> from thermicon.circuit import Device, Rig
-    >>> from thermicon.circuit.delivery.prepare import prepare
+    >>> from thermicon.circuit.delivery.prepare import prepare_set
     >>> from thermicon.circuit.delivery.formats import load_format
     >>> from thermicon.icons import load_library
     >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")
-    >>> list(pack([prepare(icon, Rig.load("tcs2"), Device.load("qst-tcs2"), form)], form))
+    >>> list(pack(prepare_set([icon], Rig.load("tcs2"), Device.load("qst-tcs2"), form), form))
     ['warming-step.json', 'warming-step.protocol.ini']
     """
     check_names([cue.delivery.icon.name for cue in ready], form)

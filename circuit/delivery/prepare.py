@@ -18,7 +18,7 @@ from .device import Device
 from .formats import Format
 from .refusal import Refusal, refusals_of
 from .spread import OpenLoopSpread, open_loop_spread
-from .worstcase import worst_case, worst_cases
+from .worstcase import worst_cases
 
 
 class Verdict(Protocol):
@@ -56,8 +56,8 @@ class Verdict(Protocol):
         """What the hardware must prevent, as the sidecar and the players hold it."""
 
 
-Judge = Callable[[DeliveredDrive], Verdict]
-"""A function that judges one delivered cue, as `worst_case` does."""
+Judge = Callable[[Sequence[DeliveredDrive], float | None], Sequence[Verdict]]
+"""A function that judges delivered cues, as `worst_cases` does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,8 +82,8 @@ class Prepared:
     >>> from thermicon.circuit.delivery.formats import load_format
     >>> from thermicon.icons import load_library
     >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")
-    >>> prepare(icon, Rig.load("tcs2"), Device.load("qst-tcs2"), form)
-    Prepared('warming-step' for qst-tcs2, 8 s, safety green)
+    >>> prepare_set([icon], Rig.load("tcs2"), Device.load("qst-tcs2"), form)
+    (Prepared('warming-step' for qst-tcs2, 8 s, safety green),)
     """
 
     delivery: DeliveredDrive
@@ -110,35 +110,38 @@ class Prepared:
         return (*(text for text in notes if not any(_bare(text) in why for why in refused)), *self.verdict.cautions)
 
 
-def prepare(
-    icon: Icon,
+def prepare_set(
+    icons: Sequence[Icon],
     rig: Rig,
     device: Device,
     form: Format,
     *,
-    gate: Judge | None = None,
+    judge: Judge = worst_cases,
     tail_s: float = 0.0,
     pause_s: float | None = None,
-) -> Prepared:
-    """Deliver a cue by a device, and judge its safety, its target and its losses.
+    step: Callable[[int, int], None] | None = None,
+) -> tuple[Prepared, ...]:
+    """Deliver cues by a device, and judge their safety, their targets and their losses.
 
     Parameters
     ----------
-    icon, rig, device
-        The cue, the rig that it is designed for, and the device that plays it.
+    icons, rig, device
+        The cues, which may be played repeatedly in any order, the rig that they are designed for, and the device.
     form
         The file format, which must suit the device.
-    gate
-        The function that judges the delivery; None: `worst_case`.
+    judge
+        Judges each delivery within the worst sequence of all of them.
     tail_s
         Time in s that is played after the last corner.
     pause_s
         Pause in s between plays; None: the recovery time.
+    step
+        Is called after each cue with how many are done, of how many.
 
     Returns
     -------
-    Prepared
-        The delivery with its verdict, and the reasons against writing it.
+    tuple of Prepared
+        Each delivery with its verdict, and the reasons against writing it.
 
     Raises
     ------
@@ -150,36 +153,10 @@ def prepare(
     --------
     >>> from thermicon.circuit.delivery.formats import load_format
     >>> from thermicon.icons import load_library
-    >>> icon, rig = load_library("six-icons")["warming-step"], Rig.load("thenar")
-    >>> ready = prepare(icon, rig, Device.load("dac-16"), load_format("csv"))
-    >>> ready.verdict.colour, ready.refusals
-    ('green', ())
-    """
-    form.check(device)
-    delivery = deliver(icon, rig, device, tail_s=tail_s)
-    return _judged(delivery, worst_case(delivery, pause_s) if gate is None else gate(delivery))
-
-
-def prepare_set(
-    icons: Sequence[Icon],
-    rig: Rig,
-    device: Device,
-    form: Format,
-    *,
-    tail_s: float = 0.0,
-    pause_s: float | None = None,
-    step: Callable[[int, int], None] | None = None,
-) -> tuple[Prepared, ...]:
-    """As `prepare`, for cues that may be played repeatedly in any order.
-
-    Each is judged within the worst sequence of all of them. `step` is called after each with how many are done.
-
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> from thermicon.icons import load_library
     >>> icons, rig = list(load_library("six-icons"))[:2], Rig.load("thenar")
     >>> ready = prepare_set(icons, rig, Device.load("dac-16"), load_format("csv"), pause_s=60.0)
-    >>> [one.verdict.safe for one in ready]
-    [True, True]
+    >>> [(one.verdict.colour, one.refusals) for one in ready]
+    [('green', ()), ('green', ())]
     """
     check_pause(pause_s)
     form.check(device)
@@ -188,7 +165,7 @@ def prepare_set(
         deliveries.append(deliver(icon, rig, device, tail_s=tail_s))
         if step is not None:
             step(done, len(icons))
-    verdicts = worst_cases(deliveries, pause_s) if deliveries else ()
+    verdicts = judge(deliveries, pause_s) if deliveries else ()
     return tuple(_judged(delivery, verdict) for delivery, verdict in zip(deliveries, verdicts, strict=True))
 
 

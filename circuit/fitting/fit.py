@@ -18,11 +18,10 @@ from .left_out import beyond_noise, late_column
 from .log import Log, LogError
 from .log_files import read_log
 from .notes import disagreement, far_off, kept, remarks, too_narrow, unsteady
-from .problem import FREE_START, OFFSET_SD_K, STEADY, STEADY_BEFORE, Problem
+from .problem import FREE_START, OFFSET_SD_K, STEADY, STEADY_BEFORE, Problem, changed_layers
 from .rig_file import reason_of, uncertainties
 from .rig_fit import RigFit, channel_fits
 from .runs import runs_of
-from .skin_layers import changed_layers
 from .solve import Solution, fits_better, solve
 
 LAYER_DIGITS = 5

@@ -68,8 +68,8 @@ class Prediction:
         return np.asarray(np.interp(time_s, self.trace.time_s, values), dtype=np.float64)
 
 
-def predict(rig: Rig, run: Run, start: Start | None = None, guess_A: Array | None = None) -> Prediction:
-    """Simulate a run; `start` is what differs from the steady state of the first row, `guess_A` a drive near it.
+def predict(rig: Rig, run: Run, start: Start | None = None) -> Prediction:
+    """Simulate a run; `start` is what differs from the steady state of the first row.
 
     Raises RigError where the run is not physical on this rig.
     """
@@ -81,7 +81,7 @@ def predict(rig: Rig, run: Run, start: Start | None = None, guess_A: Array | Non
         gain = rig.driver.transconductance_A_per_V if run.driven_by == "command_V" else 1.0
         drive = Drive(run.time_s, gain * run.drive, run.held)
         return Prediction(_play(sensed, drive, start), drive, ohm, display_probe)
-    current = run.drive / ohm if guess_A is None else guess_A
+    current = run.drive / ohm
     for _ in range(MOST_TURNS):
         drive = Drive(run.time_s, current, run.held)
         found = Prediction(_play(sensed, drive, start), drive, ohm, display_probe)

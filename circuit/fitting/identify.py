@@ -12,9 +12,8 @@ from ..arrays import Array
 from ..rig.keyunits import unit_of
 from ..rig.rig import Rig
 from .keys import CONTACT, value_of
-from .problem import Problem
+from .problem import CONDUCTIVITY, THICKNESS, Problem
 from .runs import Channel, Run
-from .skin_layers import CONDUCTIVITY, THICKNESS
 from .solve import Solution, covariance_of
 
 T95 = 1.96

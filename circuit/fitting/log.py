@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
+from ..inputs import LIKE_MILLISECONDS
+from ..rig.module import ZERO_C_IN_K
 from ..solver.trace import Trace
 from .keys import FitError
-from .log_units import unit_fault
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from .overlay import Overlay
 
 DRIVES = ("current_A", "command_V", "voltage_V", "setpoint_C")
 """What can drive a run, in the order of preference; a column behind the first that is there counts as measured."""
@@ -30,6 +29,19 @@ MOST_SIZE = 1e12
 """Times by the clock of a computer have ten digits; what reads a wire that is off has fewer."""
 UNEQUAL = 0.02
 """Share of the rows that may be empty at the end of a column: more is a column that ended earlier."""
+
+COLDEST_C, HOTTEST_C = -40.0, 150.0
+"""Outside, a sensor of a display on skin is unplugged or its wire broken."""
+
+KELVIN = (ZERO_C_IN_K + COLDEST_C, ZERO_C_IN_K + HOTTEST_C)
+FAHRENHEIT_FROM, FAHRENHEIT_TO = 65.0, 130.0
+"""Medians of display or skin from here on would burn; 18 to 54 °C have these numbers in °F."""
+
+SLOWEST_S, MILLI = 2.0, 1000.0
+"""A log with rows farther apart than 2 s shows nothing of a display; as a rule its times are milliseconds."""
+
+MOST_A, MOST_V = 50.0, 200.0
+"""Far above what any display on skin takes, and far below what it takes in milliamperes and millivolts."""
 
 
 class LogError(FitError):
@@ -115,7 +127,7 @@ class Log:
             )
         _check_ends(name, used)
         for key, column in used.items():
-            if fault := unit_fault(key, column):
+            if fault := _unit_fault(key, column):
                 raise LogError(f"{name}: {fault}")
         unused = unused or ", ".join(key for key in values if key not in used)
         more = (f"{name}: columns that are not used: {unused}",) if unused else ()
@@ -141,17 +153,12 @@ class Log:
             raise KeyError(f"no column {name} in {self.name}; there is {', '.join(there)}")
         return there[name]
 
-    def beside(self, trace: Trace, shift_s: float | None = None) -> Overlay:
-        """Lay the log beside a trace on the trace's clock: shift, rms and largest miss; see `overlay`."""
-        from .overlay import overlay
-
-        return overlay(trace, self, shift_s=shift_s)
-
     def draw_beside(self, trace: Trace, ax: Axes) -> None:
         """Draw the measured temperatures into the Axes of a trace's plot."""
         from .fit_figure import draw_measured
+        from .overlay import overlay
 
-        draw_measured(self.beside(trace), ax)
+        draw_measured(overlay(trace, self), ax)
 
 
 def is_measured(name: str) -> bool:
@@ -210,7 +217,7 @@ def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
             f"{_place(name, row, rows)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
             f"increase: sort the rows, or give each recording its own file"
         )
-    if fault := unit_fault("time_s", time):
+    if fault := _unit_fault("time_s", time):
         raise LogError(f"{name}: {fault}")
 
 
@@ -225,3 +232,47 @@ def _check_ends(name: str, values: Mapping[str, Array]) -> None:
                 f"{name}: unequal lengths: {key} ends in row {row + 1}, the log in row {longest + 1}; cut the log "
                 f"there, or save the columns of each instrument as a file of its own"
             )
+
+
+def _unit_fault(column: str, values: Array) -> str | None:
+    """Return why a column is not in the unit of its name, with the cure; None where it may be."""
+    there = values[np.isfinite(values)]
+    if not there.size:
+        return None
+    if column == "time_s":
+        return _time_fault(there)
+    if column.endswith("_C"):
+        return _temperature_fault(column, there)
+    limit, unit, small = (MOST_A, "A", "milliamperes") if column.endswith("_A") else (MOST_V, "V", "millivolts")
+    most = float(np.abs(there).max())
+    if most > limit:
+        return (
+            f"{column} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}; divide it by 1000, so "
+            f"that it is in {unit}"
+        )
+    return None
+
+
+def _time_fault(time: Array) -> str | None:
+    step = float(np.median(np.diff(time)))
+    if step <= SLOWEST_S:
+        return None
+    if step * 1e-3 >= 1e-4 and float(time[-1] - time[0]) > 60.0 and step <= SLOWEST_S * MILLI:
+        return f"time_s goes in steps of {step:g} over {time[-1] - time[0]:g}: {LIKE_MILLISECONDS}"
+    return f"time_s goes in steps of {step:g} s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
+
+
+def _temperature_fault(column: str, there: Array) -> str | None:
+    middle = float(np.median(there))
+    if KELVIN[0] < middle < KELVIN[1] and middle > HOTTEST_C:
+        return f"{column} has a median of {middle:g}: these look like kelvin; subtract {ZERO_C_IN_K:g} to have °C"
+    if column in ("display_C", "skin_C") and FAHRENHEIT_FROM < middle < FAHRENHEIT_TO:
+        return f"{column} has a median of {middle:g}: these look like °F; convert the column to °C"
+    outside = (there < COLDEST_C) | (there > HOTTEST_C)
+    if outside.mean() > 0.01:
+        first = float(there[np.argmax(outside)])
+        return (
+            f"{column} reads {first:g} °C in {100 * outside.mean():.0f} % of its rows: a sensor that is unplugged or "
+            f"shorted; connect it, or remove the column"
+        )
+    return None

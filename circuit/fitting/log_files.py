@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import io
 import json
 import re
+from collections import Counter
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from thermicon.icons.files.table import read_table
 from thermicon.icons.near_words import nearest_words
 
 from ..arrays import Array
-from ..inputs import quoted, read_bytes, text_of
+from ..inputs import quoted, read_bytes, table_fault, text_of
 from .log import DRIVES, MEASURED, MOST_ROWS, Log, LogError, is_known
-from .log_tdms import read_tdms
 
 MOST_MB, MOST_SIDECAR_MB = 200.0, 1.0
 OTHER_UNIT = {
@@ -33,13 +34,6 @@ OTHER_UNIT = {
 """Columns in another unit than a log has, the name they should have, and how to convert them."""
 
 ZONE = re.compile(r"(?:z|zone)_?(?P<zone>[1-9])_?(?P<what>set|setpoint|command|commanded|act|actual|temp|temperature)")
-ASIDE = ("#", "sep=")
-"""Comments, and the line by which spreadsheets name the separator."""
-
-NOTHINGS = ("n/a", "na", "nan")
-"""What loggers write for a missing number."""
-NUMBER = re.compile(r"[-+\d.,eE\s]*|n/a|nan")
-"""A cell that names no column."""
 MISSPELT = 0.85
 """A name of a column that is so much alike a known one is taken for a slip of the pen."""
 
@@ -51,6 +45,9 @@ OTHER_NAMES = {
     "skin_C": ("skin", "skin_temp"),
 }
 """Names that people give to columns of a log, in lower case; none is taken for the other without being asked."""
+
+INCREMENT, OFFSET = "wf_increment", "wf_start_offset"
+"""Properties by which a TDMS channel tells its times."""
 
 SESSION_TIME = ("time_s", "onset", "time", "t")
 
@@ -88,60 +85,32 @@ def read_log(path: str | Path) -> Log:
     data = read_bytes(where, "log", MOST_MB, LogError)
     digest = hashlib.sha256(data).hexdigest()
     if where.suffix.lower() == ".tdms":
-        return Log.of(where.name, read_tdms(data, where.name), sha256=digest)
+        return Log.of(where.name, _read_tdms(data, where.name), sha256=digest)
     return _from_text(where, text_of(data, where, "log", LogError), digest)
 
 
 def _from_text(where: Path, text: str, digest: str) -> Log:
-    first = next((line for line in text.split("\n") if line.strip() and not line.startswith(ASIDE)), None)
-    if first is None:
-        raise LogError(f"{where}: holds comments only; a log has a line with the names of its columns, and rows")
-    mark = next((mark for mark in ("\t", ";", ",") if mark in first), ",")
-    lines = csv.reader(io.StringIO(text), delimiter=mark)
-    header: list[str] | None = _sidecar(where, first, mark)
-    cells: list[list[str]] = []
-    places: list[str] = []
-    try:
-        for row in lines:
-            if not any(cell.strip() for cell in row) or row[0].startswith(ASIDE):
-                continue
-            place = f"{where}:{lines.line_num}"
-            if header is None:
-                header = [cell.strip() for cell in row]
-                _check_header(header, place)
-                continue
-            if len(row) > len(header):
-                raise LogError(
-                    f"{place}: {len(row)} cells, the first line names {len(header)} columns; write decimal points, or "
-                    f"put semicolons between the cells"
-                )
-            cells.append(row)
-            places.append(place)
-            if len(cells) > MOST_ROWS:
-                raise LogError(f"{where}: more than {MOST_ROWS:,} rows; keep every tenth row, or cut the log")
-    except csv.Error as problem:
-        raise LogError(f"{where}:{lines.line_num}: this row cannot be read ({problem}); save it as CSV") from None
-    assert header is not None
-    wanted = [k for k, name in enumerate(header) if name == "time_s" or is_known(name) or _session_name(name)]
-    gaps: list[str] = []
-    values = {header[k]: _numbers(cells, places, k, header[k], mark, gaps) for k in wanted}
+    fault = table_fault(where, LogError)
+    session = where.suffix.lower() == ".tsv"
+    table = read_table(text, fault, "time_s,current_A,…", MOST_ROWS, partial(_sidecar, where) if session else None)
+    wanted = [name for name in dict.fromkeys(table.header) if name == "time_s" or is_known(name) or _session_name(name)]
+    gaps = {name: Counter[str]() for name in wanted}
+    values = {name: table.numbers(name, "leave the cell empty", gaps=gaps[name]) for name in wanted}
     merged = _session(values)
     columns = merged or values
-    _check_columns(where.name, columns, header)
-    notes = (f"{where.name}: display_C and setpoint_C are means over the zones",) if merged else ()
+    _check_columns(where.name, columns, table.header)
+    notes = [f"{where.name}: display_C and setpoint_C are means over the zones"] if merged else []
+    notes += [
+        f"{where.name}: {name} is {quoted(cell)} in {count:,} of {len(table.rows):,} rows, which are taken as gaps"
+        for name, counts in gaps.items()
+        for cell, count in counts.items()
+        if cell
+    ]
     used = set(values) if merged else set(columns)
-    left_out = [name for name in header if name not in used and name != "icon"]
+    left_out = [name for name in table.header if name not in used and name != "icon"]
     listed = ", ".join(_with_likely_name(name, columns) for name in left_out[:8])
-    texts = tuple(f"{where.name}: {gap}" for gap in gaps)
-    return Log.of(where.name, columns, sha256=digest, notes=(*notes, *texts), rows=places, unused=listed)
-
-
-def _check_header(header: Sequence[str], place: str) -> None:
-    doubled = [name for k, name in enumerate(header) if name and name in header[:k]]
-    if doubled:
-        raise LogError(f"{place}: the column {doubled[0]} appears twice; remove one of them")
-    if all(map(NUMBER.fullmatch, header)):
-        raise LogError(f"{place}: this line holds numbers, not the names of columns; put time_s,current_A,… above it")
+    places = [f"{where}:{line}" for line in table.lines]
+    return Log.of(where.name, columns, sha256=digest, notes=notes, rows=places, unused=listed)
 
 
 def _check_columns(name: str, columns: Mapping[str, Array], header: Sequence[str]) -> None:
@@ -172,37 +141,8 @@ def _misspelt(cell: str, known: Sequence[str]) -> str | None:
     return next((name for name in known if close and name.lower() == close[0]), None)
 
 
-def _numbers(
-    cells: Sequence[Sequence[str]], places: Sequence[str], at: int, name: str, mark: str, gaps: list[str]
-) -> Array:
-    """A column (rows,) of cells; empty cells and NaN become NaN, a text is an error with its line.
-
-    What stands for a missing number is counted in `gaps`.
-    """
-    values, texts = np.empty(len(cells)), dict[str, int]()
-    for k, row in enumerate(cells):
-        cell = row[at].strip() if at < len(row) else ""
-        if mark != "," and "," in cell:
-            cell = cell.replace(",", ".")
-        if cell.lower() in NOTHINGS:
-            texts[cell] = texts.get(cell, 0) + 1
-            cell = ""
-        try:
-            values[k] = float(cell) if cell else np.nan
-        except ValueError:
-            raise LogError(f"{places[k]}: {name} is {quoted(cell)}, not a number; leave the cell empty") from None
-    values[~np.isfinite(values)] = np.nan
-    gaps += [
-        f"{name} is {quoted(text)} in {count:,} of {len(cells):,} rows, which are taken as gaps"
-        for text, count in texts.items()
-    ]
-    return values
-
-
-def _sidecar(where: Path, first: str, mark: str) -> list[str] | None:
-    """Names of the columns of a session without a header, from the JSON beside it; None where the file has one."""
-    if where.suffix.lower() != ".tsv" or not all(NUMBER.fullmatch(cell.strip()) for cell in first.split(mark)):
-        return None
+def _sidecar(where: Path, first: Sequence[str]) -> list[str]:
+    """Names of the columns of a session without a line of them, from the JSON beside it."""
     beside = where.with_suffix(".json")
     if not beside.is_file():
         raise LogError(
@@ -214,8 +154,8 @@ def _sidecar(where: Path, first: str, mark: str) -> list[str] | None:
         names = [str(name) for name in document["Columns"]]
     except (ValueError, KeyError, TypeError):
         raise LogError(f'{beside}: has no list "Columns" with the names of the columns; add it') from None
-    if len(names) != len(first.split(mark)):
-        raise LogError(f"{beside}: names {len(names)} columns; {where.name} has {len(first.split(mark))}")
+    if len(names) != len(first):
+        raise LogError(f"{beside}: names {len(names)} columns; {where.name} has {len(first)}")
     return names
 
 
@@ -233,3 +173,47 @@ def _session(values: Mapping[str, Array]) -> dict[str, Array] | None:
     if time is None or not zones["display_C"]:
         return None
     return {"time_s": time, **{name: np.mean(columns, axis=0) for name, columns in zones.items() if columns}}
+
+
+def _read_tdms(data: bytes, name: str) -> dict[str, Array]:
+    """Return the columns of a TDMS file by channel name; times come from a channel `time_s` or from `wf_increment`.
+
+    Raises LogError where npTDMS is not installed, and for a file without one common clock.
+    """
+    try:
+        from nptdms import TdmsFile
+    except ImportError:
+        raise LogError(
+            f'{name}: TDMS needs npTDMS, which is not installed: pip install "thermicon[hardware]"'
+        ) from None
+    try:
+        file = TdmsFile.read(io.BytesIO(data))
+        channels = {channel.name: channel for group in file.groups() for channel in group.channels()}
+        columns = {
+            key: np.asarray(channel[:], dtype=np.float64)
+            for key, channel in channels.items()
+            if np.issubdtype(channel.dtype, np.number)
+        }
+    except Exception as problem:  # npTDMS raises whatever a broken file leads it to
+        raise LogError(f"{name}: cannot be read as TDMS ({str(problem) or type(problem).__name__})") from None
+    if not channels:
+        raise LogError(f"{name}: cannot be read as TDMS (no channel in it); save the log again")
+    if not columns:
+        raise LogError(f"{name}: no channel with numbers; found {', '.join(channels) or 'no channel'}")
+    lengths = {key: len(column) for key, column in columns.items()}
+    if len(set(lengths.values())) > 1:
+        listed = ", ".join(f"{key} {count}" for key, count in lengths.items())
+        raise LogError(f"{name}: channels of unequal lengths ({listed} samples); save each clock as a file of its own")
+    if "time_s" in columns:
+        return columns
+    clocks = {
+        key: (channels[key].properties.get(INCREMENT), channels[key].properties.get(OFFSET, 0.0)) for key in columns
+    }
+    missing = [key for key, (step, _) in clocks.items() if not step]
+    if missing:
+        raise LogError(f"{name}: channel {missing[0]} has neither {INCREMENT} nor a channel time_s beside it")
+    if len({(round(float(step), 12), float(start)) for step, start in clocks.values()}) > 1:
+        raise LogError(f"{name}: channels with different {INCREMENT}; save each clock as a file of its own")
+    step, start = next(iter(clocks.values()))
+    count = next(iter(lengths.values()))
+    return {"time_s": float(start) + float(step) * np.arange(count, dtype=np.float64), **columns}

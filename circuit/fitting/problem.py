@@ -3,12 +3,16 @@
 Along with the keys go the zero of every temperature sensor, how far the sensors are from the drive within a row, shift
 and drift of every further clock, unless left out the layers of the skin, and, on request, the state at the first row.
 Scales are fitted as logarithms, so that they stay positive and intervals are relative.
+
+Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. What is a times
+as thick is simulated as equally thick with 1/a of the conductivity and a times the density and perfusion, which is the
+same to a log and keeps the mesh of the skin.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,10 +20,10 @@ import numpy as np
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
+from ..rig.skin import layer_spreads
 from .forward import Prediction, Start, predict
 from .keys import FitError, FitKey, value_of
 from .runs import Channel, Run
-from .skin_layers import LAYER_KINDS, Factors, changed_layers, finely_divided, layer_priors
 
 OFFSET_SD_K = 0.1
 """Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
@@ -42,6 +46,16 @@ held from its row on, lasted until it, or is a mean."""
 
 IMPOSSIBLE = 1e3
 """Residual, in standard deviations, of a rig that cannot exist: the fit turns back."""
+
+
+THICKNESS, CONDUCTIVITY, CAPACITY = LAYER_KINDS = ("thickness", "conductivity", "heat capacity")
+"""What differs of a layer; the last is per volume."""
+
+FINE_ELEMENTS = 40
+"""Elements per layer of the skin that the mesh is compared with: within 0.5 mK of more, where the mesh is off by 2."""
+
+Factors = Mapping[tuple[str, int], float]
+"""Logarithms of factors by kind and layer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -255,3 +269,35 @@ def _along(runs: Sequence[Run], start_count: int, offset_sd_K: float) -> list[Un
                 Unknown("offset", r, c, offset_sd_K) for c, channel in enumerate(run.channels) if channel.temperature
             ]
     return extra
+
+
+def layer_priors(rig: Rig) -> dict[tuple[str, int], float]:
+    """Return the standard deviation of the logarithm of every layer's factors; nothing on a rig without skin.
+
+    >>> priors = layer_priors(Rig.load("thenar"))
+    >>> len(priors), round(priors[THICKNESS, 0], 3)
+    (15, 0.182)
+    """
+    if rig.bench_load is not None:
+        return {}
+    known = {record.quantity: math.log1p(record.central) for record in layer_spreads()}
+    priors = {(kind, k): known[f"layer {kind} spread"] for k in range(len(rig.skin.layers)) for kind in LAYER_KINDS}
+    return {**priors, (THICKNESS, 0): known["outermost layer thickness spread"]}
+
+
+def changed_layers(rig: Rig, factors: Factors) -> dict[str, float]:
+    """Return keys of the rig for its layers times factors, at the thickness that they have; none without factors."""
+    changes = {}
+    for k, layer in enumerate(rig.skin.layers if factors else ()):
+        thicker, better, heavier = (math.exp(factors.get((kind, k), 0.0)) for kind in LAYER_KINDS)
+        changes[f"skin.layer.{k}.conductivity_W_per_mK"] = layer.conductivity_W_per_mK * better / thicker
+        changes[f"skin.layer.{k}.density_kg_per_m3"] = layer.density_kg_per_m3 * heavier * thicker
+        changes[f"skin.layer.{k}.perfusion_per_s"] = layer.perfusion_per_s * thicker
+    return changes
+
+
+def finely_divided(rig: Rig) -> Rig | None:
+    """The rig with a fine mesh of its skin; None where it states its elements, or has no skin."""
+    if rig.skin.elements is not None or rig.bench_load is not None:
+        return None
+    return rig.with_(**{"skin.elements": [FINE_ELEMENTS] * len(rig.skin.layers)})

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from thermicon.icons.atomic import OutputError, complete_or_absent
+
 from ..arrays import Array
 from ..inputs import LONGEST_NAME
 from ..rig.rig import Rig
@@ -159,9 +161,10 @@ class RigFit:
         if where.suffix != ".toml":
             raise FitError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
         try:
-            where.write_text(self.rig_text(name or where.stem[:LONGEST_NAME]), encoding="utf-8")
-        except OSError as problem:
-            raise FitError(f"{where}: cannot be written ({problem.strerror or problem})") from None
+            with complete_or_absent(where) as draft:
+                draft.write_text(self.rig_text(name or where.stem[:LONGEST_NAME]), encoding="utf-8")
+        except OutputError as problem:
+            raise FitError(str(problem)) from None
 
 
 def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:

@@ -10,6 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
@@ -141,7 +142,6 @@ class Rig:
         ------
         RigError
             With every fault of the file on a line of its own, or the nearest name where there is no such rig.
-
         """
         path, names = Path(source), rig_names()
         if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
@@ -170,7 +170,6 @@ class Rig:
         ------
         RigError
             For another ending, a path that cannot be written, and a rig that no rig file may describe.
-
         """
         where = Path(path)
         if where.suffix != ".toml":
@@ -179,9 +178,10 @@ class Rig:
         if _build(parse_toml(saved.toml, str(where)), str(where)) != saved:
             raise RigError(f"{where}: rig {self.name} cannot be read back unchanged; it was not saved")
         try:
-            where.write_text(saved.toml, encoding="utf-8")
-        except OSError as problem:
-            raise RigError(f"{where}: cannot be written ({problem.strerror or problem})") from None
+            with complete_or_absent(where) as draft:
+                draft.write_text(saved.toml, encoding="utf-8")
+        except OutputError as problem:
+            raise RigError(str(problem)) from None
 
     def _pump_for(self, what: str) -> HeatPump:
         if self.pump is None:
@@ -276,7 +276,6 @@ class Rig:
         >>> rig = Rig.load("thenar")
         >>> rig.with_(**{"skin.layer.dermis.thickness_mm": 1.2}, contact={"area_cm2": 4}).changes
         ('skin.layer.dermis.thickness_mm=1.2', 'contact.area_cm2=4')
-
         """
         document, changes = json.loads(self.document), flattened(changes)
         put_all(document, changes)

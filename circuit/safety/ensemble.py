@@ -133,7 +133,7 @@ class Ensemble:
             part = between(drive, float(rows[0]), float(rows[-1]))
             intervals = self._cut(rows - rows[0], part)
             alone = isinstance(drive, LaneDrives)  # lanes of a block share their steps, and each here jumps by itself
-            values, state = run_on(self.bank, which, which, intervals, state, WATCHED, alone=alone, few_alone=True)
+            values, state = run_on(self.bank, which, which, intervals, state, WATCHED, alone=alone)
             yield (rows, values), state
 
     def end_of(self, drive: Drive, state: State, rigs: Index | None = None) -> State:
@@ -141,7 +141,7 @@ class Ensemble:
         which = self.lanes if rigs is None else rigs
         end = float(drive.time_s[-1])
         intervals = self._cut(np.array([0.0, end]), drive)
-        return run_on(self.bank, which, which, intervals, state, WATCHED[:1], few_alone=True)[1]
+        return run_on(self.bank, which, which, intervals, state, WATCHED[:1])[1]
 
     def _cut(self, rows_s: Array, drive: Drive | LaneDrives) -> Intervals:
         """A drive cut into intervals, scaled in each corner; where it has means, with the heat of what switches."""
@@ -200,7 +200,7 @@ class Ensemble:
         begin, end = (mean, mean) if self.bridge_A is None else switching(mean, self.bridge_A * self.gain[rigs])
         intervals = Intervals(times_s, np.arange(len(times_s)), np.ascontiguousarray(begin), np.ascontiguousarray(end))
         lanes = np.arange(len(rigs), dtype=np.int64)
-        return run_on(self.bank, rigs, lanes, intervals, state, WATCHED, few_alone=True)
+        return run_on(self.bank, rigs, lanes, intervals, state, WATCHED)
 
 
 def row_of(drive: Drive | LaneDrives) -> float:

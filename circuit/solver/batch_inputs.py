@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -61,6 +62,11 @@ class Bank:
             networks[0].legs,
             networks[0].passive,
         )
+
+    @property
+    def arrays(self) -> tuple[Index, Array, Array, Array, Array]:
+        """What the kernels take of a bank."""
+        return self.count, self.plates, self.capacity, self.conductance, self.perfusion
 
     @property
     def extras(self) -> int:
@@ -179,14 +185,11 @@ class State:
 
 def run_on(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = RECORDED,
-    extra: tuple[Index, Array] | None = None, *, alone: bool = False, few_alone: bool = False,
+    extra: tuple[Index, Array] | None = None, *, alone: bool = False,
 ) -> tuple[Array, State]:  # fmt: skip
-    """`run_forward` from any states; also returns the states at the end.
-
-    `alone`: each lane has steps of its own. `few_alone`: so have a few lanes after the last whole block.
-    """
-    from . import kernel, kernel_batch
-    from .kernel_legs import LANES, block_room, leg_room
+    """`run_forward` from any states; also returns the states at the end; `alone`: each lane has steps of its own."""
+    from .kernel import forward
+    from .kernel_legs import leg_room
 
     which = [RECORDED.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
@@ -202,21 +205,14 @@ def run_on(
         sinks[:] = 0.0
         sinks[:, 0] = warm
 
-    def work(part: Index) -> None:
-        run, room = (kernel.forward, leg_room) if part.ndim == 1 else (kernel_batch.forward, block_room)
-        run(
-            part, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
-            bank.count, bank.plates, bank.capacity, bank.conductance, bank.perfusion, places, weights, core,
-            sinks, out, final, cells, room(cells),
+    def work(wide: tuple[int, ...], blocks: Index) -> None:
+        forward(
+            wide, blocks, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
+            bank.arrays, places, weights, core, sinks, out, final, cells,
+            leg_room(wide, cells),
         )  # fmt: skip
 
-    lanes = len(rig_of)
-    beyond = lanes % LANES if few_alone else 0
-    single = lanes if alone else (beyond if beyond < FEWEST else 0)
-    if single < lanes:
-        _on_all_cores(work, lanes - single, len(intervals.edges_s))
-    if single:
-        work(np.arange(lanes - single, lanes, dtype=np.int64))
+    _on_all_cores(work, len(rig_of), len(intervals.edges_s), alone)
     return out, State(bank.joined(final, cells, None if warm is None else sinks[:, 0].copy(), rig_of), sinks)
 
 
@@ -224,24 +220,10 @@ def run_follow(
     bank: Bank, rig_of: Index, cue_of: Index, period_s: float, target_C: Array, skin_control: bool, state: Array
 ) -> tuple[Array, Array, Index]:
     """Return (current A, reached °C, limit code), each (lanes, periods), that follow targets (cues, periods)."""
-    from . import kernel, kernel_batch
-    from .kernel_legs import block_room, leg_room
+    from .kernel_follow import follow
 
-    shape = (len(rig_of), target_C.shape[1])
-    current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
-    core, cells, warm = bank.parted(state, rig_of)
-
-    def work(part: Index) -> None:
-        run, room = (kernel.follow, leg_room) if part.ndim == 1 else (kernel_batch.follow, block_room)
-        ahead = None if cells is None else np.zeros(5)
-        run(
-            part, rig_of, cue_of, period_s, target_C, skin_control, bank.face_share, bank.count, bank.plates,
-            bank.capacity, bank.conductance, bank.perfusion, core, current, reached, why,
-            cells, warm, room(cells), room(cells), ahead,
-        )  # fmt: skip
-
-    _on_all_cores(work, len(rig_of))
-    return current, reached, why
+    share = bank.face_share if skin_control else np.ones_like(bank.face_share)
+    return _run_periods(follow, 2, bank, rig_of, state, (cue_of, period_s, target_C, share))
 
 
 def run_regulate(
@@ -255,44 +237,52 @@ def run_regulate(
     state: Array,
 ) -> tuple[Array, Array, Index]:
     """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 5)."""
-    from . import kernel_pid
+    from .kernel_follow import regulate
+
+    return _run_periods(regulate, 1, bank, rig_of, state, (cue_of, period_s, setpoint_C, gains, bias_A))
+
+
+def _run_periods(
+    kernel: Callable[..., None], rooms: int, bank: Bank, rig_of: Index, state: Array, given: tuple[Any, ...]
+) -> tuple[Array, Array, Index]:
+    """Run a kernel that finds the current of each period of its third argument, a target, with rooms for legs."""
     from .kernel_legs import leg_room
 
-    shape = (len(rig_of), setpoint_C.shape[1])
+    shape = (len(rig_of), given[2].shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
     core, cells, warm = bank.parted(state, rig_of)
 
-    def work(part: Index) -> None:
-        kernel_pid.regulate(
-            np.unique(part), rig_of, cue_of, period_s, setpoint_C, gains, bias_A, bank.count, bank.plates,
-            bank.capacity, bank.conductance, bank.perfusion, core, current, reached, why,
-            cells, warm, leg_room(cells),
-        )  # fmt: skip
+    def work(wide: tuple[int, ...], blocks: Index) -> None:
+        legs = (leg_room(wide, cells) for _ in range(rooms))
+        kernel(wide, blocks, rig_of, *given, bank.arrays, core, current, reached, why, cells, warm, *legs)
 
     _on_all_cores(work, len(rig_of))
     return current, reached, why
 
 
-FEWEST = 4
-"""Below this many lanes one at a time is quicker than a padded block."""
+FEWEST = 8
+"""Fewer lanes than this are quicker one at a time than in a padded block."""
 
 
 SHORT = 100_000
 """Lanes times intervals below which starting a thread takes longer than the work."""
 
 
-def _on_all_cores(work: Callable[[Index], None], lanes: int, intervals: int = SHORT) -> None:
-    """Run lanes: a few one by one, many in blocks that do not depend on the number of cores."""
-    if lanes < FEWEST:
-        work(np.arange(lanes, dtype=np.int64))
-        return
-    from .kernel_legs import LANES
+def _on_all_cores(
+    work: Callable[[tuple[int, ...], Index], None], lanes: int, intervals: int = SHORT, alone: bool = False
+) -> None:
+    """Run lanes: most in blocks that do not depend on the number of cores, a few that are left over one by one."""
+    from .kernel import MANY, ONE
 
-    count = -(-lanes // LANES)
-    blocks = np.minimum(np.arange(count * LANES, dtype=np.int64), lanes - 1).reshape(count, LANES)
-    used = min(cores(), count) if lanes * intervals >= SHORT else 1
-    if used == 1:
-        work(blocks)
-        return
-    with ThreadPoolExecutor(used) as pool:
-        list(pool.map(work, np.array_split(blocks, used)))
+    width = len(MANY)
+    single = lanes if alone else lanes % width if lanes % width < FEWEST else 0
+    last, every = lanes - single - 1, np.arange(lanes, dtype=np.int64)
+    blocks = np.minimum(np.arange(-(-(last + 1) // width) * width, dtype=np.int64), last).reshape(-1, width)
+    used = min(cores(), len(blocks)) if lanes * intervals >= SHORT else 1
+    if len(blocks) and used == 1:
+        work(MANY, blocks)
+    elif used > 1:
+        with ThreadPoolExecutor(used) as pool:
+            list(pool.map(work, [MANY] * used, np.array_split(blocks, used)))
+    if single:
+        work(ONE, every[last + 1 :, np.newaxis])

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from thermicon.icons.model.cleaning import clean_line
+from thermicon.icons.files.table import read_table
+from thermicon.icons.model.context import clean_line
 
 from ..arrays import Array
-from ..inputs import InputError, quoted, read_text
+from ..inputs import InputError, read_text, table_fault
 
 COLUMNS = ("time_s", "current_A")
-MOST_MB, LONGEST_CELL = 200, 60
-"""Largest drive file, some ten million rows, and characters of a cell that a message quotes."""
+MOST_MB, MOST_ROWS = 200, 10_000_000
+"""Largest drive file, and its rows."""
 
 SHORTEST_S, LONGEST_S, MOST_A = 1e-15, 1e7, 1e6
 """Closest rows in s, far below the switching time of any driver and far above rounding; longest drive in s,
@@ -143,51 +141,20 @@ def read_drive(path: str | Path, hold: bool = False) -> Drive:
     """
     where = Path(path)
     text = read_text(where, "drive file", MOST_MB, DriveError)
-    rows = csv.reader(io.StringIO(text))
-    try:
-        header = [name.strip() for name in next(rows, [])]
-        places = _places(header, where)
-        values: list[list[float]] = []
-        for row in rows:
-            if not any(cell.strip() for cell in row):
-                continue
-            place = f"{where}:{rows.line_num}"
-            values.append([_number(row, at, place, name) for at, name in zip(places, COLUMNS, strict=True)])
-    except csv.Error as problem:
+    table = read_table(text, table_fault(where, DriveError), ",".join(COLUMNS), MOST_ROWS)
+    if missing := [name for name in COLUMNS if name not in table.header]:
+        if "duty" in table.header and "current_A" in missing:
+            raise DriveError(
+                f"{where}:1: these are duties of a bridge, which switches its full current within every row, so that "
+                f"there is no current to hold; only drives for a device driven by volts or amperes can be replayed, "
+                f"and what this one does is in the sidecar beside it, under predicted"
+            )
         raise DriveError(
-            f"{where}:{rows.line_num}: this row cannot be read ({problem}); a row is two short numbers"
-        ) from None
+            f"{where}:{table.line}: column {missing[0]} is missing; the first line must be time_s,current_A "
+            f"(found {clean_line(table.found)})"
+        )
+    times, currents = (table.numbers(name, "correct it, or remove the row") for name in COLUMNS)
     try:
-        times, currents = np.array(values).reshape(-1, 2).T
         return Drive(times, currents, hold)
     except DriveError as problem:
         raise DriveError(f"{where}: {problem}") from None
-
-
-def _places(header: list[str], where: Path) -> list[int]:
-    """Places of the two columns in the header; DriveError where one is missing."""
-    missing = [name for name in COLUMNS if name not in header]
-    if "duty" in header and "current_A" in missing:
-        raise DriveError(
-            f"{where}:1: these are duties of a bridge, which switches its full current within every row, so that there "
-            f"is no current to hold; only drives for a device driven by volts or amperes can be replayed, and what "
-            f"this one does is in the sidecar beside it, under predicted"
-        )
-    if missing:
-        present = ", ".join(clean_line(name[:LONGEST_CELL]) for name in header[:6])
-        raise DriveError(
-            f"{where}:1: column {missing[0]} is missing; the first line must be time_s,current_A "
-            f"(found {present or 'nothing'})"
-        )
-    return [header.index(name) for name in COLUMNS]
-
-
-def _number(row: list[str], place: int, where: str, column: str) -> float:
-    cell = row[place].strip() if place < len(row) else ""
-    try:
-        value = float(cell)
-    except ValueError:
-        raise DriveError(f"{where}: {column} is {quoted(cell)}, not a number") from None
-    if not math.isfinite(value):
-        raise DriveError(f"{where}: {column} is {clean_line(cell[:LONGEST_CELL])}; it must be a finite number")
-    return value

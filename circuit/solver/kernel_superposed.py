@@ -17,7 +17,8 @@ import math
 import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
-from .kernel import compiled, greatest_cooling
+from .kernel import compiled
+from .kernel_follow import greatest_cooling
 from .network import COLD, SKIN
 from .plate import (
     ALPHA,

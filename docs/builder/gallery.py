@@ -61,7 +61,7 @@ def _predict(icons: IconSet, kept: Path) -> None:
     from dataclasses import replace
 
     from thermicon.circuit import Rig
-    from thermicon.notebooks.figures.overview import set_figure
+    from thermicon.notebooks.figures.set_figures import set_figure
     from thermicon.perception import rank
 
     rig, which, members = Rig.load(RIG), "All icons", list(icons)

@@ -9,8 +9,7 @@ from ..model.family import Family
 from ..model.format import Holes
 from ..model.icon import Icon
 from ..model.iconset import IconSet
-from ..model.parameter import Parameter
-from ..model.slots import Path
+from ..model.parameter import Parameter, Path
 from ..model.statements import Play, Repeat, Return, Statement
 from ..model.units import decimal_text
 

@@ -9,12 +9,10 @@ from ..model.family_check import Summary
 from ..model.format import Holes, Wording
 from ..model.icon import Icon
 from ..model.iconset import IconSet
-from ..model.parameter import Parameter
+from ..model.parameter import Parameter, Path
 from ..model.shapes import Pulse, Step, Wave
-from ..model.slots import Path
 from ..model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
-from ..model.units import Kind, decimal_text, quantity
-from ..model.value_limits import Control
+from ..model.units import Control, Kind, decimal_text, quantity
 from .references import cited, plain_doi, sources
 
 _PRESCRIBED = {

@@ -13,10 +13,9 @@ from ..model.family import FEWER, MOST_MEMBERS, Family
 from ..model.family_check import MOST_EFFORT, MOST_FAILING, FailedMember, MemberErrors, effort
 from ..model.icon import Icon
 from ..model.iconset import IconSet
-from ..model.slots import path_of, statement_at
+from ..model.parameter import path_of, statement_at
 from ..model.statements import Broken, Repeat, Return, Statement
-from ..model.units import exact
-from ..model.value_limits import Control
+from ..model.units import Control, exact
 from ..model.words import CONTROLS, nearest
 from .bodies import IconDraft, icon_draft
 from .build import Builder, Place, span

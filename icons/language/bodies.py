@@ -7,9 +7,8 @@ from typing import Any, cast
 from ..model.context import Metadata
 from ..model.expand import HOLE
 from ..model.icon import Icon
-from ..model.parameter import Parameter
+from ..model.parameter import Parameter, Path, Slot, value_fault
 from ..model.shapes import Heading, Pulse, Shape, Start, Step, Wave
-from ..model.slots import Path, Slot, value_fault
 from ..model.statements import (
     Bound,
     Broken,
@@ -23,8 +22,7 @@ from ..model.statements import (
     Statement,
     Total,
 )
-from ..model.units import UNITS, Kind
-from ..model.value_limits import MOST_REPEATS
+from ..model.units import MOST_REPEATS, UNITS, Kind
 from ..model.words import nearest
 from .build import Builder, Place, rule_of, span
 from .failed_statement import short

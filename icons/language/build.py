@@ -6,8 +6,7 @@ from typing import Any, cast
 
 from ..model.context import Metadata, text_fault
 from ..model.errors import TITLES
-from ..model.units import Kind, to_si
-from ..model.value_limits import fault
+from ..model.units import Kind, fault, to_si
 from ..model.words import EXAMPLES, nearest
 from .failed_statement import short
 from .source import Edit, Finding, Source

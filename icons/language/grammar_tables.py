@@ -7,6 +7,7 @@ from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
+from ..atomic import OutputError
 from ..userfolder import NotPrivate, cache_folder, opened, private_folder, read_private, sealed, write_private
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def grammar() -> "Lark":
         return built(text)
     if (parser := unpacked(read_private(kept))) is None:
         parser = built(text)
-        with suppress(OSError):
+        with suppress(OutputError):
             write_private(kept, packed(parser))
     return parser
 

@@ -1,22 +1,14 @@
-"""Statements written in Python as they are in a cue text: ``cool(by=6, at=3)``, in K, K/s, s, °C and A."""
+"""Statements written in Python as they are in a cue text: ``cool(by=6, at=3)``, in K, K/s, s, °C and A.
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, get_args
+The statements themselves check what they are made of, and name their fields: a `by` is ``by_K``, an `at` a rate.
+"""
 
-from .builder_arguments import documented, given, number, one_of
-from .shapes import Heading
-from .statements import (
-    Bound,
-    Current,
-    Hold,
-    Play,
-    Ramp,
-    Repeat,
-    Rest,
-    Return,
-    Statement,
-    Total,
-)
+from collections.abc import Callable
+from inspect import cleandoc
+from typing import TYPE_CHECKING
+
+from .shapes import Pulse, Shape, Start, Step, Wave
+from .statements import Bound, Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
 
 if TYPE_CHECKING:
     from .icon import Icon
@@ -46,7 +38,14 @@ ValueError
 """What the docstrings of `cool`, `warm` and `ramp` share."""
 
 
-@documented(CHANGE)
+def _of_a_change(builder: Callable[..., Ramp]) -> Callable[..., Ramp]:
+    """Put what they share before the examples of a docstring."""
+    summary, _, examples = cleandoc(builder.__doc__ or "").partition("Examples\n")
+    builder.__doc__ = f"{summary}{CHANGE}\nExamples\n{examples}"
+    return builder
+
+
+@_of_a_change
 def cool(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
 ) -> Ramp:
@@ -57,10 +56,10 @@ def cool(
     >>> cool(by=6, at=3) == Ramp("cool", by_K=6, rate_K_per_s=3)
     True
     """
-    return _change("cool", "cool", by, to, at, over)
+    return Ramp("cool", by, to, at, over)
 
 
-@documented(CHANGE)
+@_of_a_change
 def warm(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
 ) -> Ramp:
@@ -71,10 +70,10 @@ def warm(
     >>> warm(to=38, over=2) == Ramp("warm", to_C=38, duration_s=2)
     True
     """
-    return _change("warm", "warm", by, to, at, over)
+    return Ramp("warm", by, to, at, over)
 
 
-@documented(CHANGE)
+@_of_a_change
 def ramp(
     *, by: float | None = None, to: float | None = None, at: float | None = None, over: float | None = None
 ) -> Ramp:
@@ -85,7 +84,7 @@ def ramp(
     >>> ramp(by=-6, at=3) == Ramp("change", by_K=-6, rate_K_per_s=3)
     True
     """
-    return _change("ramp", "change", by, to, at, over)
+    return Ramp("change", by, to, at, over)
 
 
 def current(*, to: float, at: float | None = None, over: float | None = None) -> Current:
@@ -115,9 +114,7 @@ def current(*, to: float, at: float | None = None, over: float | None = None) ->
     >>> current(to=0.5, at=1) == Current(0.5, rate_A_per_s=1)
     True
     """
-    one_of("current", {"at": at, "over": over})
-    rate, time = number("current", "at", at, "current_rate"), number("current", "over", over, "time")
-    return Current(given("current", "to", to, "current"), rate, time)
+    return Current(to, at, over)
 
 
 def hold(duration: float) -> Hold:
@@ -143,7 +140,7 @@ def hold(duration: float) -> Hold:
     >>> hold(4) == Hold(duration_s=4)
     True
     """
-    return Hold(given("hold", "duration", duration, "time"))
+    return Hold(duration)
 
 
 def rest(duration: float) -> Rest:
@@ -169,7 +166,7 @@ def rest(duration: float) -> Rest:
     >>> rest(1) == Rest(duration_s=1)
     True
     """
-    return Rest(given("rest", "duration", duration, "time"))
+    return Rest(duration)
 
 
 def back(*, at: float | None = None, over: float | None = None) -> Return:
@@ -197,8 +194,7 @@ def back(*, at: float | None = None, over: float | None = None) -> Return:
     >>> back(at=3) == Return(rate_per_s=3), back(over=2) == Return(duration_s=2)
     (True, True)
     """
-    one_of("back", {"at": at, "over": over})
-    return Return(number("back", "at", at, "rate"), number("back", "over", over, "time"))
+    return Return(at, over)
 
 
 def repeat(count: int, *body: Statement) -> Repeat:
@@ -226,9 +222,7 @@ def repeat(count: int, *body: Statement) -> Repeat:
     >>> repeat(3, cool(by=2, at=1), back(at=1)).count
     3
     """
-    if not body:
-        raise ValueError("repeat() needs statements after the count, such as repeat(3, hold(1))")
-    return Repeat(int(given("repeat", "count", count, "count")), _statements(body))
+    return Repeat(count, body)
 
 
 def play(icon: "Icon") -> Play:
@@ -255,8 +249,6 @@ def play(icon: "Icon") -> Play:
     >>> play(Icon("wait", (rest(1),))).icon.name
     'wait'
     """
-    if not hasattr(icon, "statements"):
-        raise ValueError(f"play() needs an Icon, not {icon!r}")
     return Play(icon)
 
 
@@ -285,25 +277,117 @@ def total(duration: float, bound: Bound = "exactly") -> Total:
     >>> total(10, "at most") == Total(10, "at most")
     True
     """
-    if bound not in get_args(Bound):
-        raise ValueError(f'total(bound={bound!r}): "exactly", "at most" or "at least" is needed')
-    return Total(given("total", "duration", duration, "time"), bound)
+    return Total(duration, bound)
 
 
-def _change(
-    call: str, direction: Heading, by: float | None, to: float | None, at: float | None, over: float | None
-) -> Ramp:
-    one_of(call, {"by": by, "to": to})
-    one_of(call, {"at": at, "over": over})
-    size = number(call, "by", by, "change" if direction == "change" else "difference")
-    target = number(call, "to", to, "absolute")
-    return Ramp(direction, size, target, number(call, "at", at, "rate"), number(call, "over", over, "time"))
+def step(
+    *, by: float | None = None, to: float | None = None, by_A: float | None = None, to_A: float | None = None
+) -> Step:
+    """Step as fast as the driver can; give exactly one argument.
+
+    Parameters
+    ----------
+    by
+        Signed difference in K.
+    to
+        Temperature in °C.
+    by_A
+        Signed difference in A, under current control.
+    to_A
+        Current in A, under current control.
+
+    Returns
+    -------
+    Step
+        The statement ``step``.
+
+    Raises
+    ------
+    ValueError
+        Unless exactly one is given, within the limits of the language.
+
+    Examples
+    --------
+    >>> step(by=-6) == Step(by_K=-6), step(to_A=0.5) == Step(to_A=0.5)
+    (True, True)
+    """
+    return Step("change", by, to, by_A, to_A)
 
 
-def _statements(parts: Sequence[object]) -> tuple[Statement, ...]:
-    """Return parts that are all statements; ValueError names the first that is not."""
-    for part in parts:
-        if not isinstance(part, Statement) or isinstance(part, Total):
-            what = "total() concerns the whole icon" if isinstance(part, Total) else f"{part!r} is not a statement"
-            raise ValueError(f"repeat(): {what}")
-    return tuple(part for part in parts if isinstance(part, Statement))
+def pulse(*, by: float | None = None, by_A: float | None = None, duration: float) -> Pulse:
+    """Step by a signed difference, hold, and step back.
+
+    Parameters
+    ----------
+    by
+        Difference in K; give `by` or `by_A`.
+    by_A
+        Difference in A, under current control.
+    duration
+        Time between the steps in s.
+
+    Returns
+    -------
+    Pulse
+        The statement ``pulse``.
+
+    Raises
+    ------
+    ValueError
+        Unless one difference is given, within the limits of the language.
+
+    Examples
+    --------
+    >>> pulse(by=-3, duration=0.5) == Pulse(by_K=-3, duration_s=0.5)
+    True
+    """
+    return Pulse("change", by, by_A, duration)
+
+
+def wave(
+    shape: Shape,
+    *,
+    by: float | None = None,
+    every: float,
+    duration: float,
+    starting: Start | None = None,
+    cut: bool = False,
+    by_A: float | None = None,
+) -> Wave:
+    """Play a wave about the present level.
+
+    Parameters
+    ----------
+    shape
+        ``sine``, ``square``, ``triangle`` or ``sawtooth``, which rises slowly and falls in a step, or the reverse.
+    by
+        Amplitude in K; give `by` or `by_A`.
+    every
+        Period in s.
+    duration
+        Duration in s: a whole number of periods, unless `cut` is true.
+    starting
+        Direction at the start: ``warm`` or ``cool``, with `by_A` ``up`` or ``down``; None: the first of them.
+    cut
+        Whether the last period may be incomplete.
+    by_A
+        Amplitude in A, under current control.
+
+    Returns
+    -------
+    Wave
+        The statement ``sine``, ``square``, ``triangle`` or ``sawtooth``.
+
+    Raises
+    ------
+    ValueError
+        For another shape or direction, and for numbers outside the limits of the language.
+
+    Examples
+    --------
+    >>> wave("sine", by=3, every=4, duration=12, starting="cool")
+    Wave(shape='sine', by_K=3.0, by_A=None, period_s=4.0, duration_s=12.0, start='cool', cut=False)
+    >>> wave("sawtooth", by_A=0.5, every=1, duration=3, starting="down").start
+    'down'
+    """
+    return Wave(shape, by, by_A, every, duration, starting, cut)

@@ -4,7 +4,7 @@ import unicodedata
 from dataclasses import dataclass
 
 from ..number_text import count_of
-from .cleaning import clean
+from .context import clean
 
 TITLES: dict[str, str] = {
     # the file as a whole

@@ -11,7 +11,7 @@ from .parameter import Parameter
 from .statements import Repeat, Statement
 
 if TYPE_CHECKING:
-    from .slots import Slot
+    from .parameter import Slot
 
 HOLE = re.compile(r"\{([^{}\s]*)\}")
 Places = Sequence[int]

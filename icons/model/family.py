@@ -11,8 +11,7 @@ from .context import Context, Metadata, name_fault
 from .expand import HOLE, Expander
 from .family_check import Summary, check_family
 from .icon import Icon, rest_level
-from .parameter import Parameter
-from .slots import Slot, in_order, slot_fault
+from .parameter import Parameter, Slot, in_order, slot_fault
 from .statements import Statement
 
 MOST_MEMBERS = 100_000

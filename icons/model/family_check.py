@@ -13,7 +13,7 @@ from .statements import Broken, Repeat, Statement
 
 if TYPE_CHECKING:
     from .expand import Expander
-    from .slots import Slot
+    from .parameter import Slot
 
 MOST_FAILING = 1_000
 """Failing members after which the rest of a family is not checked."""

@@ -3,11 +3,10 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from .parameter import Path
 from .shapes import Pulse, Step, Wave
-from .slots import Path
 from .statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Statement, Total
-from .units import Kind, quantity
-from .value_limits import Control
+from .units import Control, Kind, quantity
 
 if TYPE_CHECKING:
     from .context import Context, Metadata

@@ -14,8 +14,7 @@ from .errors import CueError, CueErrors
 from .format import icon_text, statement_text
 from .motion import TOLERANCE
 from .statements import LEAVES, Play, Repeat, Statement
-from .units import exact
-from .value_limits import fault
+from .units import exact, fault
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
-from .value_limits import Span, prove_given, prove_number, prove_one_of
+from .units import Span, prove, prove_given, prove_one_of
 
 Shape = Literal["sine", "square", "triangle", "sawtooth"]
 Start = Literal["warm", "cool", "up", "down"]
@@ -30,11 +30,9 @@ class Step:
     def __post_init__(self) -> None:
         prove_one_of(self, "by_K", "to_C", "by_A", "to_A")
         _prove_heading(self, self.direction, self.by_A is not None or self.to_A is not None)
-        prove_number(self, "by_K", "change" if self.direction == "change" else "difference")
-        prove_number(self, "to_C", "absolute")
+        prove(self, by_K="change" if self.direction == "change" else "difference", to_C="absolute")
         _prove_current_change(self, self.by_A)
-        prove_number(self, "by_A", "current")
-        prove_number(self, "to_A", "current")
+        prove(self, by_A="current", to_A="current")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +52,10 @@ class Pulse:
     def __post_init__(self) -> None:
         prove_one_of(self, "by_K", "by_A")
         _prove_heading(self, self.direction, self.by_A is not None)
-        prove_number(self, "by_K", "change" if self.direction == "change" else "difference")
+        prove(self, by_K="change" if self.direction == "change" else "difference")
         _prove_current_change(self, self.by_A)
-        prove_number(self, "by_A", "current")
-        prove_given(self, "duration_s", "time")
+        prove(self, by_A="current")
+        prove_given(self, duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,12 +82,10 @@ class Wave:
         if self.shape not in get_args(Shape):
             raise ValueError(f"Wave.shape must be one of {', '.join(get_args(Shape))}, not {self.shape!r}")
         prove_one_of(self, "by_K", "by_A")
-        prove_number(self, "by_K", "difference")
-        prove_number(self, "by_A", "current")
+        prove(self, by_K="difference", by_A="current")
         if self.by_A is not None and self.by_A <= 0:
-            raise ValueError(f"Wave.by_A = {self.by_A!r}: an amplitude is positive")
-        prove_given(self, "period_s", "time")
-        prove_given(self, "duration_s", "time")
+            raise ValueError(f'Wave.by_A = {self.by_A!r}: an amplitude is positive; to begin downwards, start "down"')
+        prove_given(self, period_s="time", duration_s="time")
         up, down = ("warm", "cool") if self.by_A is None else ("up", "down")
         if self.start is None:
             object.__setattr__(self, "start", up)

@@ -1,10 +1,11 @@
 """What an icon is made of: frozen statements in SI floats that prove themselves; shapes stand in ``shapes``."""
 
 from dataclasses import dataclass, field
+from numbers import Integral
 from typing import TYPE_CHECKING, Literal, get_args
 
 from .shapes import Heading, Pulse, Step, Wave
-from .value_limits import MOST_REPEATS, Span, prove_given, prove_number, prove_one_of
+from .units import MOST_REPEATS, Kind, Span, prove, prove_given, prove_one_of
 
 if TYPE_CHECKING:
     from .icon import Icon
@@ -35,10 +36,8 @@ class Ramp:
             raise ValueError(f'Ramp.direction must be "warm", "cool" or "change", not {self.direction!r}')
         prove_one_of(self, "by_K", "to_C")
         prove_one_of(self, "rate_K_per_s", "duration_s")
-        prove_number(self, "by_K", "change" if self.direction == "change" else "difference")
-        prove_number(self, "to_C", "absolute")
-        prove_number(self, "rate_K_per_s", "rate")
-        prove_number(self, "duration_s", "time")
+        size: Kind = "change" if self.direction == "change" else "difference"
+        prove(self, by_K=size, to_C="absolute", rate_K_per_s="rate", duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +55,8 @@ class Current:
 
     def __post_init__(self) -> None:
         prove_one_of(self, "rate_A_per_s", "duration_s")
-        prove_given(self, "to_A", "current")
-        prove_number(self, "rate_A_per_s", "current_rate")
-        prove_number(self, "duration_s", "time")
+        prove_given(self, to_A="current")
+        prove(self, rate_A_per_s="current_rate", duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +71,7 @@ class Hold:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        prove_given(self, "duration_s", "time")
+        prove_given(self, duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +86,7 @@ class Rest:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        prove_given(self, "duration_s", "time")
+        prove_given(self, duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,8 +103,7 @@ class Return:
 
     def __post_init__(self) -> None:
         prove_one_of(self, "rate_per_s", "duration_s")
-        prove_number(self, "rate_per_s", "rate")
-        prove_number(self, "duration_s", "time")
+        prove(self, rate_per_s="rate", duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +121,7 @@ class Total:
     def __post_init__(self) -> None:
         if self.bound not in get_args(Bound):
             raise ValueError(f'Total.bound must be "exactly", "at most" or "at least", not {self.bound!r}')
-        prove_given(self, "duration_s", "time")
+        prove_given(self, duration_s="time")
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,13 +161,14 @@ class Repeat:
     span: Span = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        if isinstance(self.count, bool) or not isinstance(self.count, int) or not 1 <= self.count <= MOST_REPEATS:
+        if isinstance(self.count, bool) or not isinstance(self.count, Integral) or not 1 <= self.count <= MOST_REPEATS:
             raise ValueError(f"Repeat.count must be a whole number from 1 to {MOST_REPEATS}, not {self.count!r}")
         body = tuple(self.body)
         if not body or not all(isinstance(part, (Repeat, Play, Broken, *LEAVES)) for part in body):
             raise ValueError("Repeat.body must hold at least one statement, and nothing else")
         if any(isinstance(part, Total) for part in body):
             raise ValueError("Repeat.body may not hold a Total, which concerns the whole icon")
+        object.__setattr__(self, "count", int(self.count))
         object.__setattr__(self, "body", body)
 
 

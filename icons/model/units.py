@@ -1,10 +1,13 @@
-"""Units at the door: number and unit of the text to SI floats and back, without losing a digit."""
+"""Numbers at the door: text to SI floats and back without losing a digit, and what a number in an icon may be."""
 
 import math
 from fractions import Fraction
 from functools import lru_cache
+from numbers import Real
 from typing import Literal
 
+Control = Literal["skin", "display", "current"]
+Span = tuple[int, int] | None
 # A difference has a size alone, a change a sign as well; a count has no unit.
 Kind = Literal["absolute", "difference", "change", "rate", "time", "current", "current_rate", "count"]
 
@@ -42,6 +45,14 @@ KIND_WORDS: dict[Kind, str] = {
 SMALLEST, LARGEST = 1e-9, 1e9
 LONGEST_NUMBER = 40
 _FEW_DIGITS = 12
+
+
+# The language's own sanity: wider than skin bears and modules take; what is safe is the rig's business.
+LOWEST_C, HIGHEST_C = -10.0, 60.0
+HIGHEST_A = 20.0
+SHORTEST_S, LONGEST_S = 1e-6, 3600.0
+MOST_REPEATS = 1_000_000_000
+_RANGE = f"{LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
 
 
 def to_si(number: str, unit: str, kind: Kind) -> float:
@@ -126,3 +137,63 @@ def exact(value: float, kind: Kind) -> Fraction:
         return Fraction(plain)
     number, unit = written(value, kind)
     return exact_number(number) * UNITS[kind][unit]
+
+
+def fault(value: float, kind: Kind) -> tuple[str, str] | None:
+    """Return error code and words for an SI value that no statement may have, or None.
+
+    >>> fault(70.0, "absolute")
+    ('E219', '70 °C is outside the −10 to 60 °C that the language allows')
+    """
+    if not math.isfinite(value) or abs(value) > LARGEST or 0 < abs(value) < SMALLEST:
+        return "E218", f"{value:g} is not a number that the language takes"
+    if kind == "count" and not (value == int(value) and 1 <= value <= MOST_REPEATS):
+        return "E207", f"{decimal_text(value)} is not a positive whole number"
+    if kind == "absolute" and not LOWEST_C <= value <= HIGHEST_C:
+        return "E219", f"{decimal_text(value)} °C is outside the {_RANGE} that the language allows"
+    if kind == "current" and abs(value) > HIGHEST_A:
+        return "E219", f"{decimal_text(value)} A is outside the ±{HIGHEST_A:g} A that the language allows"
+    if kind == "change" and value == 0:
+        return "E202", "a change must not be zero"
+    if kind == "difference" and value <= 0:
+        return "E202", "a change has a positive size; its direction is in the word"
+    if kind in ("difference", "change") and abs(value) > HIGHEST_C - LOWEST_C:
+        return "E219", f"{decimal_text(value)} °C is more than the whole {_RANGE} that the language allows"
+    if kind in ("rate", "current_rate") and value <= 0:
+        return "E204", "a rate is positive; the direction is in the word"
+    if kind == "time" and value <= 0:
+        return "E203", "a time is positive"
+    if kind == "time" and value < SHORTEST_S:
+        return "E203", "this is shorter than a microsecond"
+    if kind == "time" and value > LONGEST_S:
+        return "E221", f"{decimal_text(value)} s is more than the hour that an icon may last"
+    return None
+
+
+def prove(owner: object, **kinds: Kind) -> None:
+    """Make fields of a frozen object floats that their kinds allow, or raise ValueError; None is left alone."""
+    for name, kind in kinds.items():
+        value = getattr(owner, name)
+        if value is None:
+            continue
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise ValueError(f"{type(owner).__name__}.{name} must be a number, not {value!r}")
+        value = float(value) + 0.0
+        if found := fault(value, kind):
+            raise ValueError(f"{type(owner).__name__}.{name} = {value!r}: {found[1]}")
+        exact(value, kind)
+        object.__setattr__(owner, name, value)
+
+
+def prove_one_of(owner: object, *names: str) -> None:
+    """Raise ValueError unless exactly one of the fields is given."""
+    if sum(getattr(owner, name) is not None for name in names) != 1:
+        raise ValueError(f"{type(owner).__name__} needs either {' or '.join(names)}, and not both")
+
+
+def prove_given(owner: object, **kinds: Kind) -> None:
+    """As ``prove``, for fields that may not be None."""
+    for name in kinds:
+        if getattr(owner, name) is None:
+            raise ValueError(f"{type(owner).__name__}.{name} must be a number, not None")
+    prove(owner, **kinds)

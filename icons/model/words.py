@@ -6,8 +6,7 @@ from typing import get_args
 
 from ..near_words import nearest_words
 from .shapes import Shape
-from .units import UNITS, Kind, decimal_text, exact_number
-from .value_limits import Control
+from .units import UNITS, Control, Kind, decimal_text, exact_number
 
 _KEYS = ("means", "by", "doi", "licence", "tags")
 WAVES: tuple[str, ...] = get_args(Shape)

@@ -1,17 +1,16 @@
 """The door for recordings: a CSV file as times and temperatures, or what is wrong with it, where, and what helps."""
 
-import csv
-import io
 import math
-import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
 from ..files.input_files import bytes_of
+from ..files.table import Table, read_table
 from ..language.source import utf8_of
-from ..model.errors import whole_file
-from ..model.value_limits import HIGHEST_C, LONGEST_S, LOWEST_C, Control
+from ..model.errors import CueErrors, whole_file
+from ..model.units import HIGHEST_C, LONGEST_S, LOWEST_C, Control
 from ..model.words import nearest
 
 TIME = "time_s"
@@ -26,10 +25,9 @@ CONTROL_OF: dict[str, Control | None] = {
 
 MOST_ROWS, MOST_MB = 1_000_000, 200
 """Rows of a recording, about five minutes at 3 kHz, and room for them with many further columns."""
-# Columns that a message lists.
-_FEW = 8
-# Comments, and the line by which spreadsheets tell one another the separator.
-_ASIDE = ("#", "sep=")
+EXAMPLE = f"{TIME},temperature_C"
+_CURE = "fill it in, or remove the row; between readings the course is taken as linear"
+_CODES = {"table": "E013", "size": "E004", "cell": "E014"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,48 +50,19 @@ def read_readings(path: str | Path, column: str | None = None) -> Readings:
     Raises ValueError that says what is wrong with the file, and in which row.
     """
     file = str(path)
-    chosen, times, levels, rows = _read(Path(path), file, column)
-    _check_times(file, times, rows)
-    _check_levels(file, chosen, levels, rows)
-    return Readings(file, chosen, _from_zero(times), tuple(levels), rows[0])
 
+    def fault(kind: str, line: int | None, what: str, cure: str) -> CueErrors:
+        return whole_file(_CODES[kind], f"{file}:{line}" if line else file, what, cure)
 
-def _read(path: Path, file: str, column: str | None) -> tuple[str, list[float], list[float], list[int]]:
-    """Return the column's name, times (s), levels (°C) and the rows in which these stand in the file."""
-    text = _text(path, file)
-    lines = csv.reader(io.StringIO(text, newline=""), delimiter=(mark := _separator(text)))
-    header: list[str] = []
-    times, levels, rows = list[float](), list[float](), list[int]()
-    try:
-        for cells in lines:
-            if not any(cell.strip() for cell in cells) or cells[0].startswith(_ASIDE):
-                continue
-            place = f"{file}:{lines.line_num}"
-            if not header:
-                header = [cell.strip() for cell in cells]
-                chosen = _column(place, header, column)
-                at = header.index(TIME), header.index(chosen)
-                continue
-            if len(cells) > len(header) and any(cell.strip() for cell in cells[len(header) :]):
-                what = f"{len(cells)} cells, where the first line names {len(header)}"
-                help = "write decimal points, not commas; or put semicolons between the cells"
-                raise whole_file("E013", place, what, help)
-            first = not rows
-            times.append(_number(place, TIME, cells, at[0], mark, first))
-            levels.append(_number(place, chosen, cells, at[1], mark, first))
-            rows.append(lines.line_num)
-            if len(rows) > MOST_ROWS:
-                raise whole_file("E004", file, f"more than {MOST_ROWS:,} rows", "keep every tenth row, or cut the file")
-    except csv.Error as problem:
-        raise whole_file(
-            "E013", f"{file}:{lines.line_num}", f"this row cannot be read ({problem})", "save it as CSV"
-        ) from None
-    if not header:
-        raise whole_file("E013", file, "no line names the columns", f"the first line is such as: {TIME},temperature_C")
-    if len(rows) < 2:
-        what = f"{len(rows) or 'no'} row{'s' * (not rows)} below the names of the columns"
-        raise whole_file("E013", file, what, "at least two are needed, a start and an end")
-    return chosen, times, levels, rows
+    table = read_table(_text(Path(path), file), fault, EXAMPLE, MOST_ROWS)
+    chosen = _column(f"{file}:{table.line}", table, column)
+    times, levels = (table.numbers(name, _CURE).tolist() for name in (TIME, chosen))
+    if len(times) < 2:
+        what = f"{len(times) or 'no'} row{'s' * (not times)} below the names of the columns"
+        raise fault("table", None, what, "at least two are needed, a start and an end")
+    _check_times(file, times, table.lines)
+    _check_levels(file, chosen, levels, table.lines)
+    return Readings(file, chosen, _from_zero(times), tuple(levels), table.lines[0])
 
 
 def _text(path: Path, file: str) -> str:
@@ -103,23 +72,14 @@ def _text(path: Path, file: str) -> str:
         raise whole_file("E001", file, "no file has this name", "check its folder and its spelling")
     text = utf8_of(data, file, "a recording is a table, saved as CSV in UTF-8").removeprefix("\ufeff")
     if not text.strip():
-        raise whole_file("E005", file, "nothing but white space", f"the first line is such as: {TIME},temperature_C")
+        raise whole_file("E005", file, "nothing but white space", f"the first line is such as: {EXAMPLE}")
     return text
 
 
-def _separator(text: str) -> str:
-    head = next((line for line in io.StringIO(text) if line.strip() and not line.startswith(_ASIDE)), "")
-    marks = (",", ";", "\t")
-    return next((mark for mark in marks if TIME in [cell.strip(' "\r\n') for cell in head.split(mark)]), ",")
-
-
-def _column(place: str, header: list[str], column: str | None) -> str:
+def _column(place: str, table: Table, column: str | None) -> str:
     """Return the column with the temperatures."""
-    found = f"the columns are {', '.join(header[:_FEW])}{', …' if len(header) > _FEW else ''}"
+    header, found = table.header, f"the columns are {table.found}"
     if TIME not in header:
-        if all(re.fullmatch(r"[-+\d.,;eE\s]+", cell) for cell in header):
-            what, help = "this line holds numbers, not the names of columns", f"put {TIME},temperature_C above it"
-            raise whole_file("E013", place, what, help)
         close = nearest(TIME, header) or next((cell for cell in header if cell.lower().startswith("t")), None)
         hint = f"is it {close!r}? Its name must say that it is in seconds: " if close else "the time in s has the name "
         raise whole_file("E013", place, f"the column {TIME} is missing; {found}", f"{hint}{TIME}")
@@ -140,9 +100,6 @@ def _column(place: str, header: list[str], column: str | None) -> str:
         close = nearest(chosen, [cell for cell in header if cell != TIME])
         help = f"did you mean {close}?" if close else "the name must be spelled as in the file"
         raise whole_file("E013", place, f"no temperature is called {chosen!r}; {found}", help)
-    for cell in (TIME, chosen):
-        if header.count(cell) > 1:
-            raise whole_file("E013", place, f"the column {cell} appears twice", "rename or remove one of them")
     return chosen
 
 
@@ -150,23 +107,7 @@ def _meant(cell: str) -> str | None:
     return "temperature_C" if cell.lower().startswith(("temp", "t_")) else nearest(cell, CONTROL_OF)
 
 
-def _number(place: str, column: str, cells: list[str], at: int, mark: str, first: bool) -> float:
-    cell = cells[at].strip() if at < len(cells) else ""
-    plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
-    try:
-        value = math.nan if "_" in plain else float(plain)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        what = f"{column} is {cell[:30]!r}, not a finite number" if cell else f"{column} is empty"
-        help = "fill it in, or remove the row; between readings the course is taken as linear"
-        if first and cell:
-            help = "units belong in the names of the columns; remove this row"
-        raise whole_file("E014", place, what, help)
-    return value
-
-
-def _check_times(file: str, times: list[float], rows: list[int]) -> None:
+def _check_times(file: str, times: list[float], rows: Sequence[int]) -> None:
     for n, (before, time) in enumerate(pairwise(times), start=1):
         if time < before:
             what = f"{TIME} is {time:g} s, after {before:g} s in the row before"
@@ -182,7 +123,7 @@ def _check_times(file: str, times: list[float], rows: list[int]) -> None:
         raise whole_file("E221", file, f"{TIME} runs over {length:,.6g} s", help)
 
 
-def _check_levels(file: str, column: str, levels: list[float], rows: list[int]) -> None:
+def _check_levels(file: str, column: str, levels: list[float], rows: Sequence[int]) -> None:
     out = next((n for n, level in enumerate(levels) if not LOWEST_C <= level <= HIGHEST_C), None)
     if out is None:
         return

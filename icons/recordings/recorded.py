@@ -12,7 +12,7 @@ from ..model.errors import whole_file
 from ..model.icon import Icon
 from ..model.shapes import Step
 from ..model.statements import Hold, Ramp, Rest, Return, Statement
-from ..model.value_limits import fault
+from ..model.units import fault
 from .readings import CONTROL_OF, read_readings
 
 

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.number_text import number, span
 
-from ..files.outputs import OutputError, check_output, complete_or_absent
+from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
 from .cues import MOST_ICONS, warn_of_site
 from .options import RigOptions, sets_like

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import number
 
-from ..files.outputs import STDOUT, OutputError, check_output
+from ..files.outputs import STDOUT, check_output
 from ..messages import fail, note, usage
 from .cues import pick, read_set
 from .options import IconName, out, write_text

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from thermicon.circuit.delivery.export_folder import check_export_folder
 from thermicon.icons.number_text import number
 
-from ..files.export_folder import check_export_folder
-from ..files.exporting import PreparedExport, others, prepare_icons, write
+from ..files.exporting import felt_beside, others
 from ..messages import REFUSED, Missing, note, progress_bar, usage
 from ..report.gate_words import gate_words
 from .cues import pick, read_set, warn_of_site
@@ -20,6 +20,7 @@ from .options import IconName, NoFile, RigOptions, Tail, out
 from .verifying import verify_folder
 
 if TYPE_CHECKING:
+    from thermicon.circuit import Export
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
 
@@ -87,6 +88,7 @@ def export_command(
         raise Missing("option '--to'")
     if folder is None:
         raise Missing("option '-o' / '--output'")
+    from thermicon.circuit import export
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
 
@@ -96,24 +98,27 @@ def export_command(
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
     warn_of_site(file, whole, where)
+    warned: list[str] = []
     with progress_bar("simulating") as progress:
-        rest = others(whole, chosen)
-        ready = prepare_icons(chosen, rest, where, device, to, step=progress, tail_s=tail, pause_s=pause)
-    for warning in ready.warnings:
+        felt = felt_beside(others(whole, chosen), warned.append, tail)
+        ready = export(
+            chosen, where, device, form, tail_s=tail, pause_s=pause, force=force, felt=felt, step=progress
+        )  # fmt: skip
+    for warning in warned:
         note(warning)
-    if refused(ready, force):
+    if refused(ready):
         for line in (*map(icon_line, ready.prepared), *warning_lines(ready.prepared)):
             note(line)
         note(CAUTION)
         note("nothing was written", always=True)
         raise typer.Exit(REFUSED)
     report_icons(ready.prepared)
-    written = write(ready, folder, overwrite=force, insist=force)
+    before = ready.write(folder, replace=force)
     count = len(ready.prepared)
     drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
-    note(f"wrote {drives} into {folder}: {', '.join(_shown(written.names))}")
-    if written.before is not None:
-        note(f"the folder as it was before is {written.before}")
+    note(f"wrote {drives} into {folder}: {', '.join(_shown(list(ready.files)))}")
+    if before is not None:
+        note(f"the folder as it was before is {before}")
     note(f"to play: {form.how}")
     note(CAUTION)
 
@@ -162,9 +167,9 @@ def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
         yield f"warning: {name}: {warning}{more}"
 
 
-def refused(ready: PreparedExport, force: bool) -> bool:
+def refused(ready: Export) -> bool:
     """Report why icons are refused or forced; True if nothing may be written."""
-    found = ready.against
+    found, force = ready.refused, ready.force
     final = any(not refusal.forcible for _, refusal in found)
     for name, refusal in found:
         stops = final or not force
@@ -175,7 +180,7 @@ def refused(ready: PreparedExport, force: bool) -> bool:
     forcible = any(refusal.forcible for _, refusal in found)
     if forcible and not force and not final:
         note("--force exports it nevertheless, and the sidecar records that")
-    return final or (forcible and not force)
+    return bool(ready.barred)
 
 
 def steps_of(delivery: DeliveredDrive) -> str:

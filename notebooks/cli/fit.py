@@ -134,7 +134,7 @@ def show_fit(fitted: RigFit, before: Rig) -> None:
 
 def show_plan(rig: Rig, free: tuple[str, ...], offset_K: float, fixed_skin: bool) -> None:
     """Print how well each choice of sensors will identify the keys."""
-    from thermicon.circuit.fitting.plan import plan
+    from thermicon.circuit.fitting.laboratory import plan
 
     from ..report.fit_text import PLAN_HEAD, plan_table
     from ..report.tables import show

@@ -18,10 +18,10 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from thermicon.icons.atomic import check_folder, complete_or_absent, stopped_cleanly
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from ..files.document import Document
-from ..files.outputs import check_folder, complete_or_absent, stopped_cleanly
 from ..files.start_folder import FILE, OBSERVER, RIG, VARIABLE
 from ..messages import fail, interrupted, load_observer, load_rig, note, usage
 from .options import out, rigs_like

@@ -7,9 +7,10 @@ from typing import Annotated, Literal
 
 import typer
 
+from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import number
 
-from ..files.outputs import OutputError, check_output
+from ..files.outputs import check_output
 from ..messages import usage
 from ..report.tables import show, table
 from .cues import read_set, warn_of_site

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
-from ..figures.figure_look import SCREEN, Look, read_width_mm
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, complete_or_absent
+from thermicon.icons.atomic import complete_or_absent
+
+from ..figures.style import SCREEN, Look, read_width_mm
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
 from ..messages import DEFAULT_RIG, check_changes, check_draws, load_observer, load_rig, note, usage
 
 if TYPE_CHECKING:
@@ -221,7 +223,7 @@ class FigureOptions(Options):
     @property
     def look(self) -> Look:
         """How the figure is drawn."""
-        return SCREEN if self.paper is None else Look("paper", read_width_mm(self.paper), title=False, kind="pdf")
+        return SCREEN if self.paper is None else Look(read_width_mm(self.paper))
 
     def write(self, drawn: Any) -> None:
         """Write a figure to its file, and say so; nothing where none was asked for."""

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..files.outputs import STDOUT, OutputError, check_output, check_separate, complete_or_absent
+from thermicon.icons.atomic import OutputError, complete_or_absent
+
+from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
 from .cues import read_set, warn_of_frames
 from .options import FigureOptions, FileNames, Json, ObserverOptions, RigOptions, out, write_text

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_folder, check_output, check_separate
+from thermicon.icons.atomic import check_folder
+
+from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
 from ..report.rank_text import show_ranking
 from .cues import MOST_ICONS, read_set, warn_of_frames
@@ -238,8 +240,8 @@ def report_of(
     from thermicon.perception.kernels.parallel import beside
     from thermicon.perception.progress import step_counter
     from thermicon.perception.ranking.rank import with_intervals
+    from thermicon.perception.selection.edit import cheapest_edits
     from thermicon.perception.selection.goal_result import judge_goal
-    from thermicon.perception.selection.pair_edits import cheapest_edits
     from thermicon.perception.selection.request import check_selection
 
     from ..report.set_report import SetReport

@@ -9,17 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from thermicon.icons.atomic import complete_or_absent
 from thermicon.icons.number_text import number, signed, span
 
-from ..figures.trace_overview import FELT_TAIL_S, draw_overview
-from ..files.outputs import (
-    STDOUT,
-    SUBCIRCUIT_SUFFIXES,
-    TRACE_SUFFIXES,
-    check_output,
-    check_separate,
-    complete_or_absent,
-)
+from ..figures.overview import FELT_TAIL_S, draw_overview
+from ..files.outputs import STDOUT, SUBCIRCUIT_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import note, usage
 from .cues import pick, read_set, warn_of_site
 from .netlist import netlist_file, subcircuit_file
@@ -214,7 +208,9 @@ def _beside(log: Log | None, trace: Trace, output: Path | None) -> None:
     """Report how far a log lies from the trace: on stdout, or beside a trace on stderr."""
     if log is None:
         return
-    beside = log.beside(trace)
+    from thermicon.circuit.fitting.overlay import overlay
+
+    beside = overlay(trace, log)
     lines = [f"measured − simulated ({log.name}, shifted by {number(beside.shift_s, 3)} s)"]
     for each in beside.columns:
         words, _, unit = each.column.rpartition("_")

@@ -31,7 +31,8 @@ def study_command(
     Pauses are derived from simulated carry-over, orders from the content of the file. A study with a drive or a session
     that is not safe is refused with the reason; then nothing is written, and the exit code is 3.
     """
-    from ..files.export_folder import check_export_folder, publish
+    from thermicon.circuit.delivery.export_folder import check_export_folder, publish
+
     from ..study.build import make_plan, read_materials
     from ..study.contents import files_of
     from ..study.judging import Refused
@@ -59,7 +60,7 @@ def study_command(
 
 def _check_free(folder: Path) -> None:
     """Raise OutputError for a folder that holds a study already; answers of participants are named."""
-    from ..files.outputs import OutputError
+    from thermicon.icons.atomic import OutputError
 
     if not (folder / "study.json").is_file():
         return

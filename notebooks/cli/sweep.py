@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from thermicon.icons.atomic import complete_or_absent
 from thermicon.icons.number_text import percent, span
 
-from ..files.outputs import STDOUT, TRACE_SUFFIXES, check_output, check_separate, complete_or_absent
+from ..files.outputs import STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import Progress, fail, note, progress_bar, usage
 from ..report.sweep_text import swept_table
 from ..report.tables import show
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
 
-    from ..figures.figure_look import Look
+    from ..figures.style import Look
     from ..report.varied import Vary
 
 
@@ -266,7 +267,7 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Seque
 
     columns = [MEASURES[name] for name in what]
     if len(varied) == 1 and columns:
-        from ..figures.measure_figure import measure_figure
+        from ..figures.sweep_figure import measure_figure
 
         return measure_figure(frame, varied[0].key, columns, ALL, log=varied[0].log, across=look.across(2))
     if len(varied) == 1:
@@ -278,7 +279,7 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Seque
     if (count := frame["icon"].nunique()) > MOST_ROWS:
         note(f"the figure shows the first {MOST_ROWS} of {count} icons; --icon NAME selects another one")
     if columns:
-        from ..figures.measure_figure import LABELS
+        from ..figures.sweep_figure import LABELS
         from ..figures.sweep_map import SHADES
 
         maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, *_ in columns]

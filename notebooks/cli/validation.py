@@ -12,7 +12,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..files.outputs import STDOUT, check_folder, check_output, complete_or_absent
+from thermicon.icons.atomic import check_folder, complete_or_absent
+
+from ..files.outputs import STDOUT, check_output
 from ..messages import fail, note, progress_bar, usage
 from .options import Json, Seed, out, write_text
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from ..files.export_folder import before_of
-from ..files.outputs import OutputError
+from thermicon.circuit.delivery.export_folder import before_of
+from thermicon.icons.atomic import OutputError
+
 from ..messages import BAD_INPUT, note
 from ..report.tables import show, table
 

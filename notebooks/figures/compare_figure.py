@@ -1,4 +1,4 @@
-"""The figure of a comparison: curves of A and B above, what B has more below, a pair of panels a quantity."""
+"""Two runs in one figure: curves of A and B and what B has more; an icon as designed and as its device delivers it."""
 
 from __future__ import annotations
 
@@ -6,13 +6,17 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .differences import Aligned, quantity, unit_of_difference
-from .overview import BROAD, COOL, GREY, INK, WARM
+from .style import BROAD, COOL, GREY, INK, TARGET, WARM, on_one_clock, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from thermicon.circuit import Export
     from thermicon.circuit.arrays import Array
+    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
+    from thermicon.circuit.delivery.prepare import Prepared
+
 
 FIRST = ("skin_C", "display_C", "cold_receptor_C", "warm_receptor_C", "heat_flow_skin_W_per_m2", "current_A")
 COLORS = {"cold_receptor_C": COOL, "warm_receptor_C": WARM}
@@ -20,6 +24,8 @@ LEAST = 0.005
 """The panel of differences shows at least this much to both sides, in its own unit."""
 
 ACROSS = 3
+PLACES = (("skin", "skin_C", INK, "-"), ("cold receptor", "cold_receptor_C", COOL, "-."),
+          ("warm receptor", "warm_receptor_C", WARM, "--"))  # fmt: skip
 
 
 def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = ACROSS) -> Figure:
@@ -76,9 +82,7 @@ def _pair(above: Axes, below: Axes, both: Aligned, name: str, title: str) -> Non
     above.tick_params(labelbottom=False, labelsize=8)
     below.tick_params(labelsize=8)
     below.set_xlim(float(both.time_s[0]), float(both.time_s[-1]))
-    for ax in (above, below):
-        ax.grid(alpha=0.25, linewidth=0.6)
-        ax.spines[["top", "right"]].set_visible(False)
+    plain(above, below)
 
 
 def _units(name: str) -> tuple[float, str, str]:
@@ -92,3 +96,50 @@ def _units(name: str) -> tuple[float, str, str]:
 def _draw(ax: Axes, time: Array, values: Array, name: str, *, color: str, lw: float) -> None:
     style = "steps-post" if name == "current_A" else "default"
     ax.plot(time, values, color=color, lw=lw, drawstyle=style, solid_capstyle="butt")
+
+
+def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.0, 6.4)) -> Figure:
+    """Return a matplotlib Figure of one of the prepared icons: as designed and as its device delivers it.
+
+    >>> from thermicon.circuit import export
+    >>> from thermicon.icons import load_library
+    >>> icon = load_library("six-icons")["cooling-step"]
+    >>> export_figure(export(icon, "thenar")).get_suptitle()
+    'cooling-step on dac-16, safety green'
+    """
+    from matplotlib.figure import Figure
+
+    one = ready.prepared[place]
+    figure = Figure(figsize=size, layout="constrained")
+    delivery = one.delivery
+    axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 1.0, 1.0])
+    designed, delivered = delivery.designed_trace, delivery.trace
+    time_s = delivered.time_s
+    axes[0].plot(time_s, designed.skin_C, color=TARGET, lw=6.0, solid_capstyle="butt", label="skin, designed")
+    axes[0].plot(time_s, delivered.skin_C, color=INK, lw=1.4, label="skin, delivered")
+    axes[0].plot(time_s, delivered.display_C, color=GREY, lw=1.1, ls=(0, (6, 2)), label="display, delivered")
+    axes[0].set_ylabel("temperature (°C)")
+    _drive_panel(axes[1], delivery)
+    for name, column, colour, style in PLACES:
+        apart = 1e3 * (getattr(delivered, column) - getattr(designed, column))
+        axes[2].plot(time_s, apart, color=colour, lw=1.2, ls=style, label=name)
+    axes[2].set_ylabel("delivered −\ndesigned (mK)")
+    on_one_clock(figure, axes, "time on the device's clock (s)", title_of(one))
+    return figure
+
+
+def _drive_panel(ax: Axes, delivery: DeliveredDrive) -> None:
+    """What the device puts out: current, or the set-points of a thermode and the display behind them."""
+    designed, delivered = delivery.designed_trace, delivery.trace
+    time_s, label, style = delivered.time_s, "current", "steps-post"
+    wide, thin = designed.current_A, delivered.current_A
+    if not delivered.has_current:
+        label, style, wide, thin = "display", "default", designed.display_C, delivered.display_C
+    ax.plot(time_s, wide, color=TARGET, lw=4.0, drawstyle=style, label=f"{label}, designed")
+    ax.plot(time_s, thin, color=INK, lw=1.0, drawstyle=style, label=f"{label}, delivered")
+    ax.set_ylabel("current (A)" if delivered.has_current else "display (°C)")
+
+
+def title_of(one: Prepared) -> str:
+    """Which icon on which device, and the colour of the gate."""
+    return f"{one.delivery.icon.name} on {one.delivery.device.name}, safety {one.verdict.colour}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .overview import BROAD, COOL, INK, WARM
+from .style import BROAD, COOL, INK, WARM, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -128,8 +128,7 @@ def _draw(ax: Axes, rows: list[Row], scale: float = 100.0) -> None:
     ax.set_yticks(places, [row.name for row in rows], fontsize=8)
     ax.set_ylim(-0.7, len(rows) - 0.3)
     ax.tick_params(axis="x", labelsize=8)
-    ax.grid(axis="x", alpha=0.25, linewidth=0.6)
-    ax.spines[["top", "right"]].set_visible(False)
+    plain(ax, grid="x")
 
 
 def _short(name: str) -> str:

@@ -1,26 +1,31 @@
-"""Figures for people: one icon from drive to sensation, and one set as two heat maps."""
+"""The overview of one icon: temperatures, heat flow, current and sensation, from drive to percept on one clock."""
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy
 
 from thermicon.circuit.rig.load import LOAD_SITES
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from .print_figure import write_figure
+from .style import COOL, GREY, INK, LIMIT, SCREEN, TARGET, WARM, Look, key_beside, on_one_clock
 
+if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from thermicon.circuit import Trace
-    from thermicon.perception import Percept, Ranking
+    from thermicon.circuit.fitting.log import Log
+    from thermicon.perception import Percept
 
-COOL, WARM = "#2166ac", "#e08214"
-BROAD = "#b9bec4"
-"""A broad line below a thin one: the first of two, or what was predicted before."""
-FLAT = 0.75
-"""Height of a cell to its width, where two heat maps stand below one another."""
-INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"
+FELT_TAIL_S = 10.0
+"""How long an overview follows sensation after the last corner at most, unless a tail is given."""
+STILL = 0.1
+"""What stays within 10 % of its panel's range of its end has come to rest."""
 
 
 def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
@@ -59,24 +64,15 @@ def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence
         panel(trace, ax)
     if percept is not None:
         _sensation(percept, axes[-1])
-    for ax in axes:
-        ax.grid(alpha=0.25, linewidth=0.6)
-        ax.spines[["top", "right"]].set_visible(False)
-        ax.margins(x=0.0)
-        ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8, handlelength=2.6)
-    axes[-1].set_xlabel("time (s)")
-    figure.align_ylabels(axes)
     icon = trace.icon or "drive"
     what_if = f" with {', '.join(rig_changes)}" if rig_changes else ""
-    figure.suptitle(f"{icon} on the {trace.rig_name} rig{what_if}", fontsize=11, wrap=True)
+    on_one_clock(figure, axes, "time (s)", f"{icon} on the {trace.rig_name} rig{what_if}")
     return figure
 
 
 def _temperatures(trace: Trace, ax: Axes) -> None:
-    from numpy import isfinite
-
     t = trace.time_s
-    if isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
+    if numpy.isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
         ax.plot(t, trace.target_C, color=TARGET, lw=5.0, solid_capstyle="butt", label="target")
     ax.plot(t, trace.display_C, color=GREY, lw=1.2, ls=(0, (6, 2)), label="display")
     if trace.site in LOAD_SITES:
@@ -111,9 +107,7 @@ def _current(trace: Trace, ax: Axes) -> None:
 
 
 def _sensation(percept: Percept, ax: Axes) -> None:
-    from numpy import arange
-
-    t = arange(len(percept.psi_cold)) * percept.dt_s
+    t = numpy.arange(len(percept.psi_cold)) * percept.dt_s
     ax.plot(t, percept.psi_cold, color=COOL, lw=1.5, ls="-.", label="cold")
     ax.plot(t, percept.psi_warm, color=WARM, lw=1.5, ls="--", label="warm")
     if percept.onset_s is not None:
@@ -124,46 +118,62 @@ def _sensation(percept: Percept, ax: Axes) -> None:
     ax.set_ylabel(f"sensation (d′)\n{percept.clock} clock")
 
 
-def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
-    """Draw who is confused with whom: distances (d′) and predicted confusions of one set, side by side.
+def draw_overview(
+    trace: Trace,
+    picture: Path,
+    rig_changes: Sequence[str] = (),
+    measured: Log | None = None,
+    look: Look = SCREEN,
+    *,
+    settled: bool = False,
+) -> None:
+    """Write the overview figure of one trace, its percept included where there is skin, beside a measured log.
 
-    Parameters
-    ----------
-    ranking
-        The ranking of the set.
-    stacked
-        Whether the second stands below the first, as in a narrow column.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        A figure that is not shown.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.icons import load_library
-    >>> from thermicon.perception import rank
-    >>> ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=20)
-    >>> len(set_figure(ranking).axes) >= 2
-    True
+    `settled`: the time axis ends when everything has come to rest, rather than with the trace.
     """
-    from matplotlib.figure import Figure
+    from thermicon.perception import perceive
 
-    from thermicon.perception.plots import draw_heat
+    trace = evenly_timed(trace)
+    figure = overview(trace, None if trace.site in LOAD_SITES else perceive(trace), rig_changes)
+    if measured is not None:
+        ax = figure.axes[0]
+        measured.draw_beside(trace, ax)
+        key_beside(ax)
+    if settled:
+        end_when_settled(figure)
+    write_figure(figure, picture, look)
 
-    longest = max(map(len, map(draw_heat.short, ranking.labels)))
-    side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
-    down, across = (2, 1) if stacked else (1, 2)
-    names = 0.06 * longest if stacked else 0.0  # of the upper one, which stand below the lower one
-    high = down * (FLAT if stacked else 1.0) * side - names
-    figure = Figure(figsize=(across * (side + 0.6), high), layout="constrained")
-    distance, confusion = figure.subplots(down, across)
-    draw_heat.plot_distance(ranking, ax=distance)
-    draw_heat.plot_confusion(ranking, ax=confusion)
-    if stacked:
-        distance.set_xlabel("")
-        distance.tick_params(labelbottom=False)
-        for ax in (distance, confusion):
-            ax.set_aspect(FLAT)
-    return figure
+
+def end_when_settled(figure: Figure) -> None:
+    """End the time axis soon after the last line has come within 10 % of its panel's range of its end."""
+    ends = [0.0]
+    for ax in figure.axes:
+        courses = [numpy.asarray(line.get_ydata(), dtype=float) for line in ax.lines]
+        most = max([1e-9, *(float(numpy.nanmax(y) - numpy.nanmin(y)) for y in courses if numpy.isfinite(y).sum() > 2)])
+        for line in ax.lines:
+            time, values = (numpy.asarray(each, dtype=float) for each in line.get_data())
+            there = numpy.isfinite(values)
+            if there.sum() < 3:
+                ends.append(float(time.max()) if time.size and line.get_linestyle() == ":" else 0.0)
+                continue
+            time, values = time[there], values[there]
+            moving = numpy.flatnonzero(numpy.abs(values - values[-1]) > STILL * most)
+            ends.append(float(time[moving[-1]]) if moving.size else 0.0)
+    low, high = figure.axes[-1].get_xlim()
+    if max(ends) > 0.0:
+        figure.axes[-1].set_xlim(low, min(high, 1.05 * max(ends)))
+
+
+def evenly_timed(trace: Trace) -> Trace:
+    """Drop the last row where it comes off the beat, as when a drive ends between two rows."""
+    steps = numpy.diff(trace.time_s)
+    if len(steps) < 2 or abs(steps[-1] - steps[0]) < 1e-6 * steps[0]:
+        return trace
+    return dataclasses.replace(
+        trace,
+        **{
+            field.name: getattr(trace, field.name)[:-1]
+            for field in dataclasses.fields(trace)
+            if isinstance(getattr(trace, field.name), numpy.ndarray)
+        },
+    )

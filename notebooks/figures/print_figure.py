@@ -1,8 +1,8 @@
-"""Style, size and writing of every figure that a command draws.
+"""Size in print, and writing, of every figure that a command draws.
 
-Figures are drawn for a screen. For paper they are set in the width asked for, with smaller letters, thinner lines and a
-letter on each panel; keys that stood beside the panels stand below where there is no room. The bytes of a file depend
-on what is drawn alone: no dates, and fonts are embedded.
+Figures are drawn for a screen. For paper they are set in the width asked for, without a title, with smaller letters,
+thinner lines and a letter on each panel; keys that stood beside the panels stand below where there is no room. The
+bytes of a file depend on what is drawn alone: no dates, and fonts are embedded.
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ from pathlib import Path
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any
 
-from ..files.outputs import complete_or_absent
-from .figure_look import NARROW_MM, SCREEN, Look
+from thermicon.icons.atomic import complete_or_absent
+
+from .style import MM, NARROW_MM, SCREEN, Look
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 DPI, PAPER_DPI = 130, 300
 COLORBAR = "<colorbar>"
 """How matplotlib labels the axes of a colour bar."""
-WIDEST_PAPER_MM, MM_PER_INCH = 180.0, 25.4
+MM_PER_INCH = MM["in"]
 TYPE_PT, SMALLEST_PT, LARGEST_PT = 7.5, 5.5, 9.0
 """Size in print of what is drawn at 10 pt, and the limits of all sizes: journals ask for 5 to 9 pt."""
 HEIGHT_POWER = 0.6
@@ -43,47 +44,45 @@ UNDATED: Mapping[str, dict[str, None]] = {"pdf": {"CreationDate": None}, "svg": 
 
 
 def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
-    """Write a figure in its style.
-
-    Parameters
-    ----------
-    figure
-        A figure as it is drawn for the screen; it is changed.
-    path
-        File to write: .png, .pdf or .svg.
-    look
-        Style, width and title.
-    """
+    """Write a figure, which is changed, for a screen or for print into a .png, .pdf or .svg file."""
     import matplotlib
 
     embedded: Any = dict(EMBEDDED)
     with matplotlib.rc_context(embedded), complete_or_absent(path) as draft:
-        restyle(figure, look)
+        if look.width_mm is not None:
+            restyle(figure, look.width_mm)
         kind = path.suffix.lower().removeprefix(".")
-        dpi = PAPER_DPI if look.style == "paper" or look.width_mm is not None else DPI
+        dpi = DPI if look.width_mm is None else PAPER_DPI
         figure.savefig(draft, format=kind, dpi=dpi, metadata=UNDATED[kind])
 
 
-def restyle(figure: Figure, look: Look) -> None:
-    """Change a figure to a look in place; for the screen at its own width nothing changes.
+def restyle(figure: Figure, width_mm: float) -> None:
+    """Change a figure in place as it is printed so wide: its size, letters, lines and keys; its title goes.
 
     >>> from matplotlib.figure import Figure
     >>> figure = Figure(figsize=(8, 6))
     >>> _ = figure.subplots(2, 1)
-    >>> restyle(figure, Look("paper", 85.0))
+    >>> restyle(figure, 85.0)
     >>> round(float(figure.get_figwidth()) * 25.4, 1), figure.axes[1].get_title(loc="left")
     (85.0, 'b')
     """
-    if not look.title:
-        _drop_title(figure)
-    if look.style == "paper":
-        _letter_panels(figure)
-    natural_mm = float(figure.get_figwidth()) * MM_PER_INCH
-    width_mm = look.width_mm
-    if width_mm is None and look.style == "paper":
-        width_mm = min(natural_mm, WIDEST_PAPER_MM)
-    if width_mm is not None:
-        _resize(figure, width_mm, natural_mm)
+    _drop_title(figure)
+    _letter_panels(figure)
+    ratio = min(1.0, width_mm / (float(figure.get_figwidth()) * MM_PER_INCH))
+    even = any(ax.get_aspect() != "auto" for ax in figure.axes)
+    tall = ratio if even else ratio**HEIGHT_POWER
+    key_inches = _key_inches(figure)
+    if width_mm < NARROW_MM:
+        _keys_below(figure)
+    height = float(figure.get_figheight()) * tall
+    figure.set_size_inches(width_mm / MM_PER_INCH, height)
+    _resize_letters(figure)
+    _resize_lines(figure)
+    _break_labels(figure)
+    for legend in list(figure.legends):
+        _fit(figure, legend)
+    if key_inches:  # panels keep their height, whatever the key needs
+        figure.set_figheight(height + _key_inches(figure) - tall * key_inches)
 
 
 def panels_of(figure: Figure) -> list[Axes]:
@@ -125,41 +124,12 @@ def _letter_panels(figure: Figure) -> None:
             ax.set_title(rf"$\mathbf{{{letter}}}$  {ax.get_title(loc=loc)}", loc=loc)
 
 
-def _resize(figure: Figure, width_mm: float, natural_mm: float) -> None:
-    """Give the figure its width, and letters, lines and keys the sizes that go with it."""
-    key_inches = _key_inches(figure)
-    if width_mm < NARROW_MM:
-        _keys_below(figure)
-    _break_titles(figure)
-    ratio = min(1.0, width_mm / natural_mm)
-    even = any(ax.get_aspect() != "auto" for ax in figure.axes)
-    tall = ratio if even else ratio**HEIGHT_POWER
-    height = float(figure.get_figheight()) * tall
-    figure.set_size_inches(width_mm / MM_PER_INCH, height)
-    _resize_letters(figure)
-    _resize_lines(figure)
-    _break_labels(figure)
-    for legend in list(figure.legends):
-        _fit(figure, legend)
-    if key_inches:  # panels keep their height, whatever the key needs
-        figure.set_figheight(height + _key_inches(figure) - tall * key_inches)
-
-
 def _key_inches(figure: Figure) -> float:
     """Height of the keys of the whole figure, in inches."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     renderer: Any = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
     return sum(float(legend.get_window_extent(renderer).height) for legend in figure.legends) / float(figure.dpi)
-
-
-def _break_titles(figure: Figure) -> None:
-    """What a title says in brackets goes to a second line."""
-    axes: list[Any] = list(figure.axes)
-    for ax in axes:
-        for loc in ("left", "center"):
-            if " (" in (title := ax.get_title(loc=loc)):
-                ax.set_title(title.replace(" (", "\n("), loc=loc)
 
 
 def _break_labels(figure: Figure) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .overview import COOL, GREY, INK, LIMIT, WARM
+from .style import COOL, GREY, INK, LIMIT, NEAR_K, WARM, on_one_clock, skin_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -20,9 +20,6 @@ MOST_BINS = 2000
 
 MOST_NAMED, MOST_BARS = 16, 200
 """Plays up to which each has its name written beside its bar, and a bar as wide as it lasts."""
-
-NEAR_K = 6.0
-"""Limits of the skin that are nearer than this to what is drawn get a line."""
 
 HOT = "#7f3b08"
 LEAST_DOSE, FELT_K = 1e-8, 0.1
@@ -43,19 +40,12 @@ def session_figure(session: Session) -> Figure:
     scale = 1.0 / 60.0 if minutes else 1.0
     for panel, ax in zip((_changes, _temperatures, _hot_plate, _dose), axes, strict=True):
         panel(session, ax, scale)
-        ax.grid(alpha=0.25, linewidth=0.6)
-        ax.spines[["top", "right"]].set_visible(False)
-        ax.margins(x=0.0)
-        ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8, handlelength=2.6)
-    axes[-1].set_xlabel("time (min)" if minutes else "time (s)")
-    figure.align_ylabels(list(axes))
     plays = "1 play" if len(session.plays) == 1 else f"{len(session.plays)} plays"
-    figure.suptitle(
+    title = (
         f"{plays}, {session.plan.gap_s:g} s apart, on the {session.trace.rig_name} rig: safety {session.verdict} in "
-        f"the worst of {session.scenarios} scenarios",
-        fontsize=11,
-        wrap=True,
+        f"the worst of {session.scenarios} scenarios"
     )
+    on_one_clock(figure, axes, "time (min)" if minutes else "time (s)", title)
     return figure
 
 
@@ -99,17 +89,7 @@ def _temperatures(session: Session, ax: Axes, scale: float) -> None:
         time, drawn = envelope(trace.time_s * scale, values)
         ax.plot(time, drawn, color=color, ls=dashes, lw=width, label=label)
     ax.set_ylabel("temperature (°C)")
-    low, high = ax.get_ylim()
-    for rule in session.limits.rules:
-        if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
-            hard = rule.severity == "hard"
-            ax.axhline(
-                rule.limit,
-                color=LIMIT,
-                lw=1.4 if hard else 0.9,
-                ls="-" if hard else (0, (4, 3)),
-                label=f"{rule.severity} limit of skin, {rule.limit:g} °C",
-            )
+    skin_limits(ax, session)
 
 
 def _hot_plate(session: Session, ax: Axes, scale: float) -> None:

@@ -1,4 +1,4 @@
-"""The figures of ``rank --figure``: those of the whole set, and an overview for every icon."""
+"""Figures of a set: distances and confusions side by side, and all those of ``rank --figure``."""
 
 from __future__ import annotations
 
@@ -8,19 +8,66 @@ from typing import TYPE_CHECKING, Any
 
 from ..files.outputs import FIGURE_SUFFIXES
 from ..messages import note
-from .figure_look import SCREEN, Look
 from .print_figure import MM_PER_INCH, write_figure
+from .style import SCREEN, Look
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking
 
-
+FLAT = 0.75
+"""Height of a cell to its width, where two heat maps stand below one another."""
 MAP_HEIGHT = 0.85
 """Height of a narrow map to its width."""
+
+
+def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
+    """Draw who is confused with whom: distances (d′) and predicted confusions of one set, side by side.
+
+    Parameters
+    ----------
+    ranking
+        The ranking of the set.
+    stacked
+        Whether the second stands below the first, as in a narrow column.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A figure that is not shown.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import load_library
+    >>> from thermicon.perception import rank
+    >>> ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=20)
+    >>> len(set_figure(ranking).axes) >= 2
+    True
+    """
+    from matplotlib.figure import Figure
+
+    from thermicon.perception.plots import draw_heat
+
+    longest = max(map(len, map(draw_heat.short, ranking.labels)))
+    side = max(4.2, 1.2 + 0.07 * longest + 0.45 * len(ranking.labels))
+    down, across = (2, 1) if stacked else (1, 2)
+    names = 0.06 * longest if stacked else 0.0  # of the upper one, which stand below the lower one
+    high = down * (FLAT if stacked else 1.0) * side - names
+    figure = Figure(figsize=(across * (side + 0.6), high), layout="constrained")
+    distance, confusion = figure.subplots(down, across)
+    draw_heat.plot_distance(ranking, ax=distance)
+    draw_heat.plot_confusion(ranking, ax=confusion)
+    if stacked:
+        distance.set_xlabel("")
+        distance.tick_params(labelbottom=False)
+        for ax in (distance, confusion):
+            ax.set_aspect(FLAT)
+    return figure
 
 
 def _one_figure(ranking: Ranking, file: Path, look: Look) -> None:
@@ -30,8 +77,6 @@ def _one_figure(ranking: Ranking, file: Path, look: Look) -> None:
 
         drawn: Any = plot_ranking(ranking, words=not look.narrow).figure
     else:
-        from .overview import set_figure
-
         drawn = set_figure(ranking, stacked=look.narrow)
     write_figure(drawn, file, look)
     note(f"wrote {file}")
@@ -45,12 +90,12 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look:
     """
     from thermicon.circuit import simulate
 
-    from .trace_overview import FELT_TAIL_S, draw_overview
+    from .overview import FELT_TAIL_S, draw_overview
 
     if place.suffix.lower() in FIGURE_SUFFIXES and not place.is_dir():
         _one_figure(ranking, place, look)
         return
-    folder, kind = place, look.kind
+    folder, kind = place, "png" if look.width_mm is None else "pdf"
     folder.mkdir(exist_ok=True)
     drawn = set_axes(ranking, words=not look.narrow, width_mm=look.width_mm if look.narrow else None)
     for name, axes in drawn.items():

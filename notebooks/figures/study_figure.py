@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .overview import GREY, INK, LIMIT
 from .session_figure import envelope
+from .style import GREY, INK, skin_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,12 +24,10 @@ COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f
 """Okabe and Ito's colours, which people of every colour vision can distinguish; beyond eight, hatches differ."""
 
 DARK = ("#0072b2", "#009e73", "#d55e00")
+"""Numbers on these are white."""
 HATCHES = ("", "//", "..", "xx")
 MOST_ROWS, MOST_NUMBERED = 40, 40
 """Participants that are drawn, and plays up to which every one has its number written in it."""
-
-NEAR_K = 4.0
-"""Limits of the skin that are nearer than this to what is drawn get a line."""
 
 
 def study_figure(
@@ -40,6 +38,7 @@ def study_figure(
     Returns a matplotlib ``Figure``; nothing is shown.
     """
     from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
 
     drawn = list(courses[:MOST_ROWS])
     names = list(dict.fromkeys(sorted(trial.icon for trial in courses[0].trials)))
@@ -57,7 +56,7 @@ def study_figure(
     skin.set_xlabel("time from the start of the session (min)")
     for ax in (order, clock, skin):
         ax.spines[["top", "right"]].set_visible(False)
-    handles = [_patch(place, name) for place, name in enumerate(names)]
+    handles = [Patch(**_fill(place), lw=0.0, label=f"{place + 1}  {name}") for place, name in enumerate(names)]
     order.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
     return figure
 
@@ -92,23 +91,10 @@ def threshold_figure(levels_K: Sequence[float], threshold: Threshold, session: S
     return figure
 
 
-def _patch(place: int, name: str) -> object:
-    from matplotlib.patches import Patch
-
-    return Patch(facecolor=_colour(place), hatch=_hatch(place), edgecolor="white", lw=0.0, label=f"{place + 1}  {name}")
-
-
-def _colour(place: int) -> str:
-    return COLOURS[place % len(COLOURS)]
-
-
-def _ink(place: int) -> str:
-    """White on the dark colours."""
-    return "white" if _colour(place) in DARK else INK
-
-
-def _hatch(place: int) -> str:
-    return HATCHES[place // len(COLOURS) % len(HATCHES)]
+def _fill(place: int) -> dict[str, Any]:
+    """Colour and hatch of an icon by its place among their names."""
+    hatch = HATCHES[place // len(COLOURS) % len(HATCHES)]
+    return {"facecolor": COLOURS[place % len(COLOURS)], "hatch": hatch, "edgecolor": "white"}
 
 
 def _orders(courses: Sequence[Course], names: Sequence[str], ax: Axes) -> None:
@@ -116,45 +102,23 @@ def _orders(courses: Sequence[Course], names: Sequence[str], ax: Axes) -> None:
     for row, course in enumerate(courses):
         for trial in course.trials:
             place = names.index(trial.icon)
-            pale = 0.45 if trial.block == 0 else 1.0
-            ax.bar(
-                trial.place - 0.5, 0.86, 1.0, row - 0.43, align="edge", color=_colour(place), hatch=_hatch(place),
-                edgecolor="white", lw=0.6, alpha=pale,
-            )  # fmt: skip
+            fill, pale = _fill(place), 0.45 if trial.block == 0 else 1.0
+            ax.bar(trial.place - 0.5, 0.86, 1.0, row - 0.43, align="edge", **fill, lw=0.6, alpha=pale)
             if len(course.trials) <= MOST_NUMBERED:
-                ax.text(
-                    trial.place,
-                    row,
-                    str(place + 1),
-                    fontsize=7,
-                    ha="center",
-                    va="center",
-                    color=_ink(place) if trial.block else INK,
-                )
-    starts = _block_starts(courses[0])
-    for block, place in starts.items():
-        ax.axvline(place - 0.5, color=INK, lw=1.2 if block else 0.0)
+                ink = "white" if trial.block and fill["facecolor"] in DARK else INK
+                ax.text(trial.place, row, str(place + 1), fontsize=7, ha="center", va="center", color=ink)
+    blocks: dict[int, list[int]] = {}
+    for trial in courses[0].trials:
+        blocks.setdefault(trial.block, []).append(trial.place)
+    for block, places in blocks.items():
+        ax.axvline(places[0] - 0.5, color=INK, lw=1.2 if block else 0.0)
     ax.set_xlim(0.4, len(courses[0].trials) + 0.6)
     ax.set_ylim(len(courses) - 0.4, -0.6)
     ax.set_yticks(range(len(courses)), [course.label for course in courses], fontsize=7)
     ax.set_ylabel("participant")
-    middles = _block_middles(courses[0])
-    ax.set_xticks(list(middles.values()), ["practice" if not block else f"block {block}" for block in middles])
+    middles = [float(np.mean(places)) for places in blocks.values()]
+    ax.set_xticks(middles, ["practice" if not block else f"block {block}" for block in blocks])
     ax.tick_params(length=0)
-
-
-def _block_starts(course: Course) -> Mapping[int, int]:
-    starts: dict[int, int] = {}
-    for trial in course.trials:
-        starts.setdefault(trial.block, trial.place)
-    return starts
-
-
-def _block_middles(course: Course) -> dict[int, float]:
-    places: dict[int, list[int]] = {}
-    for trial in course.trials:
-        places.setdefault(trial.block, []).append(trial.place)
-    return {block: float(np.mean(block_places)) for block, block_places in places.items()}
 
 
 def _clock(course: Course, plays: Sequence[PlannedPlay], names: Sequence[str], pace: Pace, ax: Axes) -> None:
@@ -174,8 +138,7 @@ def _clock(course: Course, plays: Sequence[PlannedPlay], names: Sequence[str], p
             if last is not None:
                 bar(ended, landed, "break, hand off", color="0.85")
             bar(landed, play.onset_s, "landing of the hand", color="white", hatch="////", edgecolor=GREY, lw=0.0)
-        place = names.index(trial.icon)
-        bar(play.onset_s, play.end_s, "", color=_colour(place), hatch=_hatch(place), edgecolor="white", lw=0.0)
+        bar(play.onset_s, play.end_s, "", **_fill(names.index(trial.icon)), lw=0.0)
         last, ended = trial.block, play.end_s
     ax.set_yticks([])
     ax.set_xlim(0.0, plays[-1].end_s / 60.0)
@@ -200,14 +163,7 @@ def _skin(plays: Sequence[PlannedPlay], session: Session | None, ax: Axes) -> No
         rows = slice(*np.searchsorted(trace.time_s, [begin, until if follows else min(until, session.plays[k].end_s)]))
         time, skin = envelope(trace.time_s[rows] - begin + play.onset_s, trace.skin_C[rows])
         ax.plot(time / 60.0, skin, color=INK, lw=0.9)
-    low, high = ax.get_ylim()
-    for rule in session.limits.rules:
-        if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
-            hard = rule.severity == "hard"
-            ax.axhline(
-                rule.limit, color=LIMIT, lw=1.4 if hard else 0.9, ls="-" if hard else (0, (4, 3)),
-                label=f"{rule.severity} limit, {rule.limit:g} °C",
-            )  # fmt: skip
+    skin_limits(ax, session, 4.0, "limit")
     ax.axhline(rest, color=GREY, lw=0.7, ls=":", label=f"rest, {rest:.3g} °C")
     ax.set_ylabel("skin (°C),\nrig as given")
     ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .overview import COOL, GREY, WARM
-from .sweep_figure import key_label
+from .style import COOL, GREY, WARM
+from .sweep_axes import MOST_TICKS, key_label
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.image import AxesImage
 
 MOST_ROWS = 6
-MOST_TICKS = 6
 SHADES, BLUE_ORANGE = "cividis", "blue to orange"
 QUANTITIES = (
     ("largest_miss_K", "largest miss (K)", SHADES),

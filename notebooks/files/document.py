@@ -7,10 +7,11 @@ import time
 from pathlib import Path
 
 from thermicon.circuit.inputs import read_bytes
+from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from .history import Edited, History
-from .outputs import OutputError, check_output, complete_or_absent
+from .outputs import check_output
 from .start_folder import below_start
 from .versions import Version, Versions
 

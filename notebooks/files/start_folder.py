@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from .outputs import OutputError
+from thermicon.icons.atomic import OutputError
 
 VARIABLE = "THERMICON_PAGE_FOLDER"
 """Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""

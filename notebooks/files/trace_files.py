@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy
 
 if TYPE_CHECKING:
-    import pandas as pd
     from numpy.typing import NDArray
 
     from thermicon.circuit import Trace
@@ -25,6 +23,7 @@ MOST_UNPACKED_MB, MOST_ROWS = 1000.0, 10_000_000
 """What a Parquet file, which is packed, may hold."""
 LARGEST = 1e9
 """Largest size of a number, far more than any sensor gives: sums of squares stay finite."""
+CURE = "correct it, or leave the cell empty"
 EXTRA = re.compile(r"probe_.+_C")
 
 
@@ -57,57 +56,60 @@ def read_curves(path: str, icon: str | None = None) -> Curves:
     """
     from thermicon.circuit.solver.trace import COLUMNS
 
-    frame = _read(Path(path))
-    frame.columns = [str(column).strip() for column in frame.columns]
-    frame = _one_icon(frame, path, icon)
-    known = [str(name) for name in frame.columns if name in COLUMNS[2:] or EXTRA.fullmatch(str(name))]
-    _check_columns(frame, known, path)
-    if len(frame) < 2:
-        raise LogError(f"{path}: {len(frame)} rows; at least two are needed")
-    time = _numbers(frame["time_s"], path)
+    where = Path(path)
+    source = _of_parquet(where) if where.suffix.lower() == ".parquet" else _of_text(where)
+    known = [name for name in source.names if name in COLUMNS[2:] or EXTRA.fullmatch(name)]
+    _check_columns(source.names, known, path)
+    time = source.column("time_s")
+    rows = _rows_of(source.icons, path, icon) if source.icons else numpy.arange(len(time))
+    time = time[rows]
+    if len(time) < 2:
+        raise LogError(f"{path}: {len(time)} rows; at least two are needed")
     if not numpy.isfinite(time).all():
-        raise LogError(f"{_place(frame, int(numpy.argmin(numpy.isfinite(time))), path)}: time_s is empty")
+        raise LogError(f"{source.place(rows[numpy.argmin(numpy.isfinite(time))])}: time_s is empty")
     if (back := numpy.flatnonzero(numpy.diff(time) <= 0)).size:
         row = int(back[0]) + 1
         raise LogError(
-            f"{_place(frame, row, path)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; "
+            f"{source.place(rows[row])}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; "
             f"times must increase"
         )
-    columns = {name: _numbers(frame[name], path) for name in known}
-    whole = all(name in frame.columns for name in COLUMNS[1:])
-    ignored = tuple(str(name) for name in frame.columns if name not in (*COLUMNS, *known))
-    return Curves(Path(path).name, time, columns, whole, ignored)
+    columns = {name: source.column(name)[rows] for name in known}
+    whole = all(name in source.names for name in COLUMNS[1:])
+    ignored = tuple(name for name in source.names if name not in (*COLUMNS, *known))
+    return Curves(where.name, time, columns, whole, ignored)
 
 
-def _read(path: Path) -> pd.DataFrame:
-    import pandas as pd
+@dataclass(frozen=True, slots=True)
+class _Source:
+    """Columns of a file by name: ``column`` reads one (rows,), ``place`` says where a row stands."""
 
-    from thermicon.circuit.inputs import read_bytes, read_text
+    names: tuple[str, ...]
+    icons: list[str] | None
+    column: Callable[[str], Array]
+    place: Callable[[int], str]
 
-    if path.suffix.lower() == ".parquet":
-        return _read_parquet(read_bytes(path, "trace or log", MOST_MB), path)
+
+def _of_text(path: Path) -> _Source:
+    from thermicon.circuit.inputs import read_text, table_fault
+    from thermicon.icons.files.table import read_table
+
     text = read_text(path, "trace or log", MOST_MB)
-    first = text.partition("\n")[0]
-    if ";" in first and "," not in first:
-        raise LogError(f"{path}:1: columns are separated by semicolons; save it with commas and decimal points")
-    try:
-        header = [name.strip() for name in next(csv.reader([first]))]
-        frame = pd.read_csv(io.StringIO(text), skip_blank_lines=False, dtype=object, skipinitialspace=True)
-    except (csv.Error, pd.errors.ParserError, pd.errors.EmptyDataError) as problem:
-        raise LogError(f"{path}: not a table of comma-separated values ({problem})") from None
-    if doubled := [name for place, name in enumerate(header) if name in header[:place]]:
-        raise LogError(f"{path}:1: the column {doubled[0]} appears twice; remove one of them")
-    if not isinstance(frame.index, pd.RangeIndex):  # pandas takes cells without a name for the names of the rows
-        cells = f"a row has more cells than the {len(header)} columns that the first line names"
-        raise LogError(f"{path}: {cells}; write decimal points, not commas, or name all columns")
-    return frame.dropna(how="all")
+    table = read_table(text, table_fault(path, LogError), "time_s,display_C,skin_C", MOST_ROWS)
+    icons = list(table.texts("icon")) if "icon" in table.header else None
+
+    def column(name: str) -> Array:
+        return table.numbers(name, CURE, gaps=Counter(), most=LARGEST)
+
+    return _Source(table.header, icons, column, lambda row: f"{path}:{table.lines[row]}")
 
 
-def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
-    """The table of a Parquet file, whose size when unpacked is looked at first."""
-    from thermicon.circuit.inputs import require_pyarrow
+def _of_parquet(path: Path) -> _Source:
+    """The columns of a Parquet file, whose size when unpacked is looked at first."""
+    from thermicon.circuit.inputs import quoted, read_bytes, require_pyarrow
 
     require_pyarrow(path, LogError)
+    data = read_bytes(path, "trace or log", MOST_MB)
+    import pandas as pd
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -119,60 +121,46 @@ def _read_parquet(data: bytes, path: Path) -> pd.DataFrame:
                 f"{path}: {file.metadata.num_rows:,} rows, {sum(groups) / 1e6:,.0f} MB unpacked; the limit is "
                 f"{MOST_ROWS:,} rows and {MOST_UNPACKED_MB:g} MB: keep every tenth row"
             )
-        frame: pd.DataFrame = file.read().to_pandas()
-        return frame
+        frame = file.read().to_pandas()
     except (ValueError, OSError, NotImplementedError, KeyError) as problem:
         raise LogError(f"{path}: not a Parquet file that can be read ({problem})") from None
 
+    def column(name: str) -> Array:
+        cells = frame[name]
+        values: Array = pd.to_numeric(cells, errors="coerce").to_numpy(dtype=float)
+        for row in numpy.flatnonzero(~(numpy.abs(values) <= LARGEST)):
+            if not pd.isna(cells.iloc[row]):
+                said = f"{name} is {quoted(cells.iloc[row])}, not a finite number of at most {LARGEST:g}"
+                raise LogError(f"{path}, row {row + 1}: {said}; {CURE}")
+        return values
 
-def _one_icon(frame: pd.DataFrame, path: str, icon: str | None) -> pd.DataFrame:
+    icons = [str(name) for name in frame["icon"]] if "icon" in frame else None
+    return _Source(tuple(map(str, frame.columns)), icons, column, lambda row: f"{path}, row {row + 1}")
+
+
+def _rows_of(icons: list[str], path: str, icon: str | None) -> NDArray[numpy.intp]:
     from thermicon.icons.near_words import did_you_mean
 
     from ..messages import usage
 
-    names = [str(name) for name in frame["icon"].dropna().unique()] if "icon" in frame else []
-    if icon is None:
-        if len(names) > 1:
-            raise usage(f"{path} has traces of {len(names)} icons; name one of {', '.join(names)}", "--icon")
-        return frame
-    if not names:
-        return frame
-    if icon not in names:
+    names = list(dict.fromkeys(icons))
+    if icon is None and len(names) > 1:
+        raise usage(f"{path} has traces of {len(names)} icons; name one of {', '.join(names)}", "--icon")
+    if icon is not None and icon not in names:
         raise LogError(f"{path}: no trace of {icon}; {did_you_mean(icon, names)}")
-    return frame[frame["icon"] == icon]
+    return numpy.flatnonzero([icon in (None, name) for name in icons])
 
 
-def _check_columns(frame: pd.DataFrame, known: list[str], path: str) -> None:
+def _check_columns(names: Sequence[str], known: Sequence[str], path: str) -> None:
     from thermicon.circuit.solver.trace import COLUMNS
     from thermicon.icons.near_words import did_you_mean
 
-    found = ", ".join(str(name) for name in frame.columns[:8])
-    if "time_s" not in frame:
+    found = ", ".join(names[:8])
+    if "time_s" not in names:
         raise LogError(f"{path}: the column time_s (time in s) is missing; found {found}")
     if not known:
-        other = next((str(name) for name in frame.columns if name not in ("time_s", "icon")), "")
+        other = next((name for name in names if name not in ("time_s", "icon")), "")
         raise LogError(
             f"{path}: none of its columns is one of a trace, such as display_C or skin_C; found {found}"
             f"{f'; {other}: {did_you_mean(other, COLUMNS[2:])}' if other else ''}"
         )
-
-
-def _numbers(column: Any, path: str) -> Array:
-    import pandas as pd
-
-    from thermicon.circuit.inputs import quoted
-
-    values: Array = pd.to_numeric(column, errors="coerce").to_numpy(dtype=float)
-    texts = column.to_numpy(dtype=object)
-    for row in numpy.flatnonzero(~(numpy.abs(values) <= LARGEST)):
-        text = "" if pd.isna(texts[row]) else str(texts[row]).strip()
-        if text:
-            said = f"{column.name} is {quoted(text)}, not a finite number of at most {LARGEST:g}"
-            raise LogError(f"{_place(column, int(row), path)}: {said}; correct it, or leave the cell empty")
-    return values
-
-
-def _place(rows: Any, row: int, path: str) -> str:
-    """Where a row stands: the line of a CSV file, which has a header; the row of another."""
-    place = int(rows.index[row])
-    return f"{path}:{place + 2}" if Path(path).suffix.lower() == ".csv" else f"{path}, row {place + 1}"

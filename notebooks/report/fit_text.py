@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from thermicon.circuit import Rig
-    from thermicon.circuit.fitting.plan import Expected
+    from thermicon.circuit.fitting.laboratory import Expected
     from thermicon.circuit.fitting.rig_fit import RigFit
 
 PLAN_HEAD = (

@@ -32,10 +32,9 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
 
     Of an icon that is not safe nothing is said here, since it is refused with its reason and cure.
 
-    >>> from thermicon.circuit import Rig
+    >>> from thermicon.circuit import export
     >>> from thermicon.icons import load_library
-    >>> from thermicon.notebooks.files.exporting import prepare_icon
-    >>> ready = prepare_icon(load_library("six-icons")["cooling-step"], Rig.load("thenar"), "qst-tcs2", "tcs2-serial")
+    >>> ready = export(load_library("six-icons")["cooling-step"], "thenar", "qst-tcs2", "tcs2-serial")
     >>> [about for about, _ in gate_words(ready.prepared)]
     ['a driver stuck at its limit', 'repeated plays', 'the hardware must provide']
     """

@@ -103,10 +103,9 @@ def _overview(icon: Icon, rig: Rig, count: int) -> Picture:
     from thermicon.circuit import simulate
     from thermicon.perception import perceive
 
-    from ..figures.overview import overview
-    from ..figures.trace_overview import FELT_TAIL_S, on_one_clock
+    from ..figures.overview import FELT_TAIL_S, evenly_timed, overview
 
-    trace = on_one_clock(simulate(icon, rig, tail_s=FELT_TAIL_S))
+    trace = evenly_timed(simulate(icon, rig, tail_s=FELT_TAIL_S))
     data = png_of(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
     alt = f"temperatures, heat flow, current and sensation of {icon.name}"
     return Picture("", alt, "png", OVERVIEW_PIXELS, data)

@@ -49,17 +49,10 @@ def files_of(plan: Plan) -> dict[str, bytes]:
 
     Raises FormatError where a drive cannot be packed.
     """
-    from thermicon.circuit.delivery.pack import pack
     from thermicon.circuit.rig.rig_text import toml_text
 
     materials, ready = plan.materials, plan.judged.ready
     study = materials.study
-    drives = pack(
-        ready.prepared,
-        ready.form,
-        felt={change.icon: change.to_dict() for change in ready.felt},
-        losses=ready.losses,
-    )
     names = list(plan.durations_s)
     markers = {name: place for place, name in enumerate(names, 1)}
     stimuli = {one.delivery.icon.name: ready.form.file_name(one.delivery) for one in ready.prepared}
@@ -71,7 +64,7 @@ def files_of(plan: Plan) -> dict[str, bytes]:
         "study.toml": materials.text.encode("utf-8"),
         "icons.cue": _icons(plan).encode("utf-8"),
         "rig.toml": toml_text(_document(materials.rig.document)).encode("utf-8"),
-        **drives,
+        **ready.files,
         **{name: _shipped(name) for name in SCRIPTS if study.threshold or name != SCRIPTS[-1]},
         "participants.tsv": participants_table(labels_of(study)),
         "dataset_description.json": dataset_description(title, version("thermicon")),

@@ -6,13 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from ..files.exporting import PreparedExport, prepare_icons
+from ..files.exporting import felt_beside
 from .schedule import Course
 from .study_file import StudyError
 from .timing import Gap
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Device, Rig, Session
+    from thermicon.circuit import Device, Export, Rig, Session
     from thermicon.circuit.safety.sessionworst import WorstCase
     from thermicon.icons import Icon
 
@@ -40,7 +40,7 @@ class Judged:
     `after_breaks` are the blocks of the same participants, each from rest; empty without breaks.
     """
 
-    ready: PreparedExport
+    ready: Export
     gap: Gap
     sessions: Mapping[str, Session]
     drift_K: Mapping[str, float]
@@ -63,27 +63,29 @@ class Judged:
 
 def judge_drives(
     icons: Sequence[Icon], rig: Rig, study: Study, gap: Gap, device: Device, step: Progress | None = None
-) -> tuple[PreparedExport, Gap]:
+) -> tuple[Export, Gap]:
     """Deliver and judge every drive, repeated in any order with the gap; a derived gap grows until that is safe.
 
     Raises Refused with every reason against the drives, InputError where the device cannot play them.
     """
+    from thermicon.circuit import export
+
     stimuli, timing = study.stimuli, study.timing
 
-    def prepared(pause_s: float) -> PreparedExport:
-        return prepare_icons(icons, [], rig, device, stimuli.format, step=step, pause_s=pause_s)
+    def prepared(pause_s: float) -> Export:
+        return export(icons, rig, device, stimuli.format, pause_s=pause_s, felt=felt_beside(), step=step)
 
     ready = prepared(gap.gap_s)
     if timing.gap_s is None:
         longer = _longer_gap(ready, gap, timing.wait_for_skin)
         if longer != gap:
             ready, gap = prepared(longer.gap_s), longer
-    if ready.against:
-        raise Refused([f"{name}: {_about_study(str(refusal))}" for name, refusal in ready.against])
+    if ready.refused:
+        raise Refused([f"{name}: {_about_study(str(refusal))}" for name, refusal in ready.refused])
     return ready, gap
 
 
-def _longer_gap(ready: PreparedExport, gap: Gap, wait_for_skin: bool) -> Gap:
+def _longer_gap(ready: Export, gap: Gap, wait_for_skin: bool) -> Gap:
     """The gap that the gate asks for, where it is longer; carry-over is only less then."""
     known = [one.verdict.to_dict() for one in ready.prepared]
     wanted = [(_seconds(each.get("shortest_pause_s")), "the shortest pause that is safe") for each in known]

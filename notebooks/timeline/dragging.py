@@ -18,7 +18,7 @@ from ..editing.number_literals import Amount, Written, keyword_of, kind_of, repl
 from .handles import PEAK_AT, RATES, Corner, Grip, corners_of, grip_of, slots_of
 
 if TYPE_CHECKING:
-    from thermicon.icons.model.slots import Path
+    from thermicon.icons.model.parameter import Path
     from thermicon.icons.model.statements import Leaf
 
 ROUNDS = 12

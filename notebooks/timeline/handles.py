@@ -15,7 +15,7 @@ from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, 
 
 if TYPE_CHECKING:
     from thermicon.icons import Family, Icon
-    from thermicon.icons.model.slots import Path
+    from thermicon.icons.model.parameter import Path
     from thermicon.icons.model.statements import Leaf
 
 MOST_HANDLES = 150

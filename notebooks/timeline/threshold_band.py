@@ -10,7 +10,7 @@ import numpy as np
 
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import CHANNELS, Channel, load_thresholds
-from thermicon.perception.sensation.receptors import receptor_drive
+from thermicon.perception.sensation.sensation import receptor_drive
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
+from thermicon.icons.atomic import OutputError
 from thermicon.icons.files.shipped import library_names
 
 from ..editing.icon_edits import with_copy, with_name, with_new, without
 from ..files.document import Document
-from ..files.outputs import OutputError
 from ..report.blocks import fragment
 from .help_sheet import help_html
 from .log_panel import LogPanel

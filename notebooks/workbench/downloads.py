@@ -10,7 +10,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from ..files.exporting import PreparedExport, write
 from ..report.blocks import fragment
 
 if TYPE_CHECKING:
@@ -55,13 +54,6 @@ def rig_text(rig: Rig) -> str:
         path = Path(folder) / "rig.toml"
         rig.save(path)
         return path.read_text(encoding="utf-8")
-
-
-def drives_zip(ready: PreparedExport, insist: bool) -> bytes:
-    """The files of an export as one archive; raises OutputError where the gate refuses them."""
-    with TemporaryDirectory(prefix="thermicon-") as folder:
-        written = write(ready, Path(folder) / "drives", insist=insist)
-        return zipped({path.name: path.read_bytes() for path in written.paths})
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 from thermicon.icons.number_text import number, percent
 
@@ -12,19 +13,21 @@ from ..report.blocks import fragment
 from ..report.gate_words import gate_words, short_scenario
 
 if TYPE_CHECKING:
+    from thermicon.circuit import Export
     from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.circuit.safety.checks import Check
     from thermicon.perception.identification.delivered import PerceivedChange
 
-    from ..files.exporting import PreparedExport, Written
-
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
 
 
-def delivered_html(ready: PreparedExport) -> str:
-    """One row per icon: duration, deviation from the design, detection and safety; then demands, refusals, warnings."""
-    felt = {change.icon: change for change in ready.felt}
-    whose = ", ".join(dict.fromkeys(change.detected_by for change in ready.felt))
+def delivered_html(ready: Export, remarks: Sequence[str] = ()) -> str:
+    """One row per icon: duration, deviation from the design, detection and safety; then demands, refusals, warnings.
+
+    ``remarks`` are what could not be compared.
+    """
+    felt = {change.icon: change for change in cast("tuple[PerceivedChange, ...]", ready.felt)}
+    whose = ", ".join(dict.fromkeys(change.detected_by for change in felt.values()))
     detected = f"detected by {whose}" if whose else "detected"
     columns = ("icon", "duration", "rate", "receptors within", "rms", detected, "d′ changes by", "safety")
     rows = [_delivered(icon, felt.get(icon.delivery.icon.name)) for icon in ready.prepared]
@@ -33,9 +36,9 @@ def delivered_html(ready: PreparedExport) -> str:
         for warning in icon.warnings:
             names.setdefault(warning, []).append(icon.delivery.icon.name)
     warnings = [f"{', '.join(icons)}: {warning}" for warning, icons in names.items()]
-    remarks = dict.fromkeys(line.removeprefix("warning: ") for line in (*ready.warnings, *warnings))
-    refusals = [f"{name}: {refusal}" for name, refusal in ready.against]
-    return fragment("delivered", columns, rows, gate_words(ready.prepared), refusals, list(remarks))
+    told = dict.fromkeys(line.removeprefix("warning: ") for line in (*remarks, *warnings))
+    refusals = [f"{name}: {refusal}" for name, refusal in ready.refused]
+    return fragment("delivered", columns, rows, gate_words(ready.prepared), refusals, list(told))
 
 
 def _delivered(icon: Prepared, felt: PerceivedChange | None) -> tuple[tuple[str, ...], str, str]:
@@ -95,8 +98,8 @@ def _check(check: Check, source_number: int) -> dict[str, object]:
     }
 
 
-def written_html(ready: PreparedExport, written: Written) -> str:
+def written_html(ready: Export, folder: Path, before: Path | None) -> str:
     """Which files were written, where the folder as it was before stands, and how to play the drives."""
     drives = "1 drive with its sidecar" if len(ready.prepared) == 1 else f"{len(ready.prepared)} drives with sidecars"
-    sentence = f"wrote {drives} into {written.folder.resolve()}"
-    return fragment("written", sentence, written.names, written.before, f"to play: {ready.form.how}", CAUTION)
+    sentence = f"wrote {drives} into {folder.resolve()}"
+    return fragment("written", sentence, list(ready.files), before, f"to play: {ready.form.how}", CAUTION)

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
+from thermicon.icons.atomic import OutputError
+
 from ..editing.cue_check import read_text
-from ..files.exporting import FORMAT, PreparedExport, formats_for, prepare_icons, write
-from ..files.outputs import OutputError
+from ..files.exporting import FORMAT, felt_beside, formats_for
 from ..files.start_folder import below_start
 from ..report.blocks import fragment
 from .background import Job
-from .downloads import drives_zip, link
+from .downloads import link, zipped
 from .export_tables import delivered_html, gate_html, written_html
 from .live_view import LiveView
 from .set_model import MOST_RANKED
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+    from thermicon.circuit import Export, Rig
 
     from .design_model import DesignModel
 
@@ -36,7 +38,7 @@ class ExportView(LiveView[ExportRequest]):
 
     def __init__(self, design: DesignModel, folder: Path) -> None:
         super().__init__(design)
-        self.ready: PreparedExport | None = None
+        self.ready: Export | None = None
         self._build(folder)
 
     def _build(self, folder: Path) -> None:
@@ -114,24 +116,23 @@ class ExportView(LiveView[ExportRequest]):
             raise OutputError("the drives are not ready yet")
         try:
             folder = below_start(Path(self.folder.value.strip() or ".").expanduser())
-            written = write(self.ready, folder, self.overwrite.value, self.insist.value, "tick overwrite to replace it")
+            ready = replace(self.ready, force=self.insist.value)
+            before = ready.write(folder, self.overwrite.value, "tick overwrite to replace it")
         except (OutputError, ValueError, RuntimeError) as wrong:
             self.said["written"].value = fragment("block", f"nothing was written: {wrong}", "th-bad")
             self._say("")
             return
-        self.said["written"].value = written_html(self.ready, written)
+        self.said["written"].value = written_html(ready, folder, before)
         self._say("")
 
     def offer_download(self) -> None:
         """Offer the files as one archive, under the same conditions as they are written."""
         if self.ready is None or self._request() != self._finished:
             raise OutputError("the drives are not ready yet")
-        try:
-            data = drives_zip(self.ready, self.insist.value)
-        except (OutputError, ValueError, RuntimeError) as wrong:
-            self.said["written"].value = fragment("block", f"nothing to download: {wrong}", "th-bad")
-            return
-        self.said["written"].value = link("drives.zip", data)
+        files = replace(self.ready, force=self.insist.value).files
+        self.said["written"].value = (
+            link("drives.zip", zipped(files)) if files else fragment("block", "nothing to download", "th-bad")
+        )
 
     def _forget_result(self) -> None:
         """A result for another folder does not apply to this one."""
@@ -144,6 +145,8 @@ class ExportView(LiveView[ExportRequest]):
 
     def _prepare(self, job: Job, request: ExportRequest) -> None:
         """The background job."""
+        from thermicon.circuit import export
+
         text, rig, name, device, form, typed = request
         icons = read_text(text).icons
         assert icons is not None
@@ -155,18 +158,21 @@ class ExportView(LiveView[ExportRequest]):
         def step(done: int, total: int) -> None:
             job.on_page(lambda: self._say(f"working … {done} of {total}"))
 
-        made = prepare_icons(chosen, rest, rig, device, form, step, pause_s=pause_of(typed))
+        remarks: list[str] = []
+        felt = felt_beside(rest, remarks.append)
+        made = export(chosen, rig, device, form, pause_s=pause_of(typed), felt=felt, step=step)
         shown = self.design.scene.icon
         red = (k for k, one in enumerate(made.prepared) if one.verdict.colour == "red")
         named = (k for k, one in enumerate(made.prepared) if one.delivery.icon.name == shown)
         place = next(red, next(named, 0))  # the icon that stops the export is shown first
         picture = export_svg(made, place)
-        job.on_page(lambda: self._show(made, place, picture, request))
+        told = delivered_html(made, remarks)
+        job.on_page(lambda: self._show(made, place, told, picture, request))
 
-    def _show(self, made: PreparedExport, place: int, picture: str, request: ExportRequest) -> None:
+    def _show(self, made: Export, place: int, told: str, picture: str, request: ExportRequest) -> None:
         self.ready, self._running, self._finished, self._failed_request = made, None, request, None
         self._mark(False)
-        self.said["delivered"].value = delivered_html(made)
+        self.said["delivered"].value = told
         self.said["figure"].value = picture
         self.said["gate"].value = gate_html(made.prepared[place])
         self._allow()
@@ -175,14 +181,14 @@ class ExportView(LiveView[ExportRequest]):
         """Report whether the drives can be written, and if not, why."""
         if self.ready is None or self._request() != self._finished:
             return
-        stops = [refusal for _, refusal in self.ready.against if not (self.insist.value and refusal.forcible)]
+        stops = [refusal for _, refusal in replace(self.ready, force=self.insist.value).barred]
         self.button.disabled = self.download.disabled = bool(stops)
         if not stops:
             self._say("ready to be written", "th-good")
         elif all(refusal.forcible for refusal in stops):
             self._say("refused: lossy or unreached icons are written only if you tick the box", "th-caution")
         else:
-            names = dict.fromkeys(name for name, refusal in self.ready.against if not refusal.forcible)
+            names = dict.fromkeys(name for name, refusal in self.ready.refused if not refusal.forcible)
             cure = "; remove the red icons, or export the others one by one" if len(self.ready.prepared) > 1 else ""
             self._say(f"refused: unsafe icons are never written ({', '.join(names)}){cure}", "th-bad")
 
@@ -230,9 +236,9 @@ def pause_of(typed: str) -> float | None:
     return pause
 
 
-def export_svg(made: PreparedExport, place: int) -> str:
+def export_svg(made: Export, place: int) -> str:
     """The figure of one icon, in the colours of the page's theme."""
-    from ..figures.export_plot import export_figure
-    from ..figures.vector import themed_svg
+    from ..figures.compare_figure import export_figure
+    from ..figures.inline import themed_svg
 
     return themed_svg(export_figure(made, place, (8.6, 5.0)))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
-from ..figures.overview import COOL, GREY, INK, LIMIT, WARM, overview
+from ..figures.overview import overview
+from ..figures.style import COOL, GREY, INK, LIMIT, WARM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

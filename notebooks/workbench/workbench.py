@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.icons import CueErrors, Icon, IconSet, parse
+from thermicon.icons.atomic import OutputError
 
-from ..files.outputs import OutputError
 from ..files.start_folder import started_observer, started_rig, started_with
 from ..timeline.measured import read_measured
 from .design_model import DesignModel
@@ -200,15 +200,16 @@ class Workbench:
 
             return scene_figure(self.scene)
         if view == "set":
-            from ..figures.overview import set_figure
+            from ..figures.set_figures import set_figure
 
             return set_figure(self.ranking())
-        from ..figures.export_plot import export_figure
-        from ..files.exporting import prepare_icon
+        from thermicon.circuit import export
+
+        from ..figures.compare_figure import export_figure
 
         icons = self.icons  # raises for a bad text, of which the icon before it is drawn still
         shown = icons.find(self.scene.icon or "") or icons.icons[0]
-        return export_figure(prepare_icon(shown, self.rig))
+        return export_figure(export(shown, self.rig))
 
     @property
     def page(self) -> Any:

@@ -1,9 +1,7 @@
 """Write the observer's parameter file: inferred constants, records taken over, and the noise of memory.
 
 Constants are those of the maximum of the posterior (`inference`), so that they belong together: with so many constants
-no draw is near the middle of them all. Intervals cover 95 % of the draws; for a variant without draws, of the normal
-approximation. Records marked `predict` are never read.
-`python -m thermicon.perception.evidence.calibrate` writes the shipped file again.
+no draw is near the middle of them all. Intervals cover 95 % of the draws. Records marked `predict` are never read.
 """
 
 from __future__ import annotations
@@ -11,20 +9,21 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table, dump_records
+from thermicon.circuit.solver.network import network_of
+from thermicon.circuit.solver.steady import steady_state
 
 from ..identification.rate_task import memory_noise, memory_record
 from ..observer.channels import CHANNELS, Channel
 from ..observer.draws import PosteriorDraws
-from ..observer.draws_file import shipped_file
 from ..observer.observer import DATA, Observer, load_thresholds
-from ..observer.variants import VARIABLES, Variable, source_of
-from ..sensation.fits import neutral_flux
+from ..observer.variants import VARIABLES, Variable, receptor_column, source_of
 from .results import UNMOVED_SD, Constant, load_constants
 from .statistics import load_evidence
 
 DIGITS = 4
-COMMENT = """Constants of the nominal observer, written by `python -m thermicon.perception.evidence.calibrate`.
+COMMENT = """Constants of the nominal observer, written by `python -m thermicon.perception.evidence observer`.
 Inferred from published evidence (`data/constants.csv`), or taken over from thresholds.toml; low and high are 95 %.
 `use = "assumed"`: no data behind it, or data that say nothing of it. Nothing here was set on a predicted record.
 Numbers `from heat flow` are those of the other variant.
@@ -37,7 +36,7 @@ def calibrate(thresholds: Table | None = None) -> Table:
     known = Table(table.name, tuple(r for r in table if r.use in ("calibrate", "assumed")))
     shared = (
         *_taken_over(known),
-        *(neutral_flux(known, channel) for channel in CHANNELS),
+        *(_neutral_flux(known, channel) for channel in CHANNELS),
         *(record for variant in VARIABLES for record in _inferred(variant)),
     )
     noise = [_memory(known, shared, variant) for variant in VARIABLES]
@@ -51,27 +50,16 @@ def to_toml(observer: Table) -> str:
 
 def _inferred(variable: Variable) -> list[Record]:
     """Constants of one variant, but for offsets of single laboratories."""
-    variant = source_of(variable)
-    constants = [each for each in load_constants(variable) if each.mechanism not in LEFT]
-    if not shipped_file(variable).exists():
-        return [_record(each, variant, AT_MAXIMUM) for each in constants]
-    draws = PosteriorDraws.load(variable=variable)
-    return [_record(_drawn(each, draws), variant, FROM_DRAWS) for each in constants]
+    draws, variant = PosteriorDraws.load(variable=variable), source_of(variable)
+    constants = [each for each in load_constants(variable) if each.mechanism != OFFSETS]
+    return [_record(each, draws.interval(each.name), variant) for each in constants]
 
 
-AT_MAXIMUM = "maximum a posteriori, 95 % interval"
-FROM_DRAWS = "maximum a posteriori, 95 % of the draws of the posterior"
+OFFSETS = "laboratories"
 
 
-def _drawn(each: Constant, draws: PosteriorDraws) -> Constant:
-    low, _, high = draws.interval(each.name)
-    return replace(each, low=low, high=high)
-
-
-LEFT = ("laboratories",)
-
-
-def _record(each: Constant, variant: str, method: str) -> Record:
+def _record(each: Constant, interval: tuple[float, float, float], variant: str) -> Record:
+    low, _, high = interval
     channel, _, rest = each.name.partition(" ")
     named = channel in CHANNELS
     return Record(
@@ -79,10 +67,10 @@ def _record(each: Constant, variant: str, method: str) -> Record:
         unit=each.unit,
         source=f"inferred from published evidence; prior: {each.source}",
         value=each.value,
-        low=min(each.low, each.value),
-        high=max(each.high, each.value),
+        low=min(low, each.value),
+        high=max(high, each.value),
         channel=channel if named else "both",
-        method=method,
+        method="maximum a posteriori, 95 % of the draws of the posterior",
         conditions=f"SD {each.narrowed:.2f} times the prior's, {each.prior_low:.3g} to {each.prior_high:.3g}",
         confidence="low" if each.narrowed > UNMOVED_SD else "medium",
         use="assumed" if each.narrowed > UNMOVED_SD else "calibrate",
@@ -142,10 +130,30 @@ def _rounded(record: Record) -> Record:
     return replace(record, value=short(record.value), low=short(record.low), high=short(record.high))
 
 
-def main() -> None:
+RIG = "thenar"
+
+
+def _neutral_flux(known: Table, channel: Channel) -> Record:
+    """Heat flow at receptor depth while the skin rests at the ends of complete adaptation."""
+    zone = known.one("complete adaptation")
+    rig = Rig.load(RIG)
+    network, column = network_of(rig), receptor_column("heat flow", channel)
+    low, high = (network.read(steady_state(rig, "skin", level)[1], column) for level in zone.interval)
+    return Record(
+        quantity="neutral heat flow",
+        unit="W/m²",
+        source=f"computed from the neutral zone ({zone.source})",
+        low=low,
+        high=high,
+        channel=channel,
+        site=RIG,
+        method=f"steady heat flow into the skin at receptor depth on the {RIG} rig",
+        conditions=f"skin held at {zone.interval[0]:g} and {zone.interval[1]:g} °C",
+        confidence="low",
+        use="calibrate",
+    )
+
+
+def write_observer() -> None:
     """Write the parameter file of the package."""
     (DATA / "observer.toml").write_text(to_toml(calibrate()), encoding="utf-8")
-
-
-if __name__ == "__main__":
-    main()

@@ -13,10 +13,14 @@ emcee runs the chains.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
+
+from thermicon.circuit.records import RecordError
+from thermicon.icons.atomic import complete_or_absent
 
 from ..arrays import Array
 from .surrogate import Surrogate
@@ -67,7 +71,6 @@ class Chain:
 
     white: Array
     log_posterior: Array
-    accepted: int
     random: tuple[Any, ...]
 
     def __len__(self) -> int:
@@ -76,24 +79,21 @@ class Chain:
     @property
     def last(self) -> Chain:
         """A chain of no steps that goes on from the last one of this."""
-        return Chain(self.white[-1:], self.log_posterior[-1:], 0, self.random)
+        return Chain(self.white[-1:], self.log_posterior[-1:], self.random)
 
     def save(self, path: Path) -> None:
         """Write the chain completely or not at all."""
-        draft = path.with_suffix(".part")
         kind, keys, place, has_gauss, gauss = self.random
-        with draft.open("wb") as file:
+        with complete_or_absent(path) as draft:
             np.savez(
-                file,
+                draft,
                 white=self.white,
                 log_posterior=self.log_posterior,
-                accepted=self.accepted,
                 keys=keys,
                 place=np.array([place, has_gauss]),
                 gauss=gauss,
                 kind=kind,
             )
-        draft.replace(path)
 
     @classmethod
     def load(cls, path: Path) -> Chain:
@@ -101,14 +101,14 @@ class Chain:
         with np.load(path, allow_pickle=False) as held:
             place, has_gauss = held["place"].tolist()
             random = (str(held["kind"]), held["keys"], place, has_gauss, float(held["gauss"]))
-            return cls(held["white"], held["log_posterior"], int(held["accepted"]), random)
+            return cls(held["white"], held["log_posterior"], random)
 
 
 def begin(size: int, seed: int, number: int) -> Chain:
     """A chain of no steps that starts at a draw from the normal approximation."""
     start = np.random.default_rng([seed, number]).standard_normal(size)
     random = np.random.RandomState(np.random.MT19937(np.random.SeedSequence([seed, number, 1])))
-    return Chain(start[None], np.full(1, np.nan), 0, tuple(random.get_state(legacy=True)))
+    return Chain(start[None], np.full(1, np.nan), tuple(random.get_state(legacy=True)))
 
 
 def extend(chain: Chain, posterior: HasResiduals, reference: Reference, surrogate: Surrogate, steps: int) -> Chain:
@@ -141,6 +141,69 @@ def extend(chain: Chain, posterior: HasResiduals, reference: Reference, surrogat
     return Chain(
         np.concatenate([chain.white, sampler.get_chain()[:, 0]]),
         np.concatenate([chain.log_posterior, sampler.get_log_prob()[:, 0]]),
-        chain.accepted + int(sampler.acceptance_fraction[0] * steps + 0.5),
         tuple(end.random_state),
     )
+
+
+R_HAT, ESS = 1.01, 400.0
+"""Chains have converged where every constant has an R-hat below and a bulk effective sample size above (Vehtari et
+al. 2021)."""
+K_HAT = 0.7
+"""Pareto-smoothed weights with a larger shape of tail are not to be trusted (Vehtari et al. 2024)."""
+EXTRA = 'sampling needs emcee and arviz-stats, which are not installed: pip install "thermicon[calibrate]"'
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostics:
+    """Rank-normalised split R-hat (n,) and bulk effective sample size (n,) of every constant, by name."""
+
+    names: tuple[str, ...]
+    r_hat: Array
+    ess: Array
+
+    @property
+    def converged(self) -> bool:
+        """Whether every constant has converged."""
+        return bool((self.r_hat < R_HAT).all() and (self.ess > ESS).all())
+
+    @property
+    def worst(self) -> str:
+        """The constant with the largest R-hat or, where that is fine, the least effective sample size."""
+        if float(self.r_hat.max()) >= R_HAT:
+            return self.names[int(self.r_hat.argmax())]
+        return self.names[int(self.ess.argmin())]
+
+    def __repr__(self) -> str:
+        state = "converged" if self.converged else f"not converged, worst {self.worst}"
+        return f"Diagnostics({state}: R-hat up to {self.r_hat.max():.4f}, ESS from {self.ess.min():.0f})"
+
+
+def require_extra() -> None:
+    """Raise a RecordError with the cure where sampler or diagnostics are not installed."""
+    try:
+        import arviz_stats  # noqa: F401
+        import emcee  # noqa: F401
+    except ImportError:
+        raise RecordError(EXTRA) from None
+
+
+def diagnose(names: tuple[str, ...], chains: Array) -> Diagnostics:
+    """Diagnostics of chains (chains, steps, n)."""
+    stats = _array_stats()
+    columns = range(chains.shape[2])
+    r_hat = np.array([float(stats.rhat(chains[:, :, k])) for k in columns])
+    ess = np.array([float(stats.ess(chains[:, :, k], method="bulk")) for k in columns])
+    return Diagnostics(names, np.nan_to_num(r_hat, nan=np.inf), np.nan_to_num(ess))
+
+
+def smoothed_weights(log_weights: Array) -> tuple[Array, float]:
+    """Pareto-smoothed weights (draws,) that sum to 1, and the shape k-hat of their tail (Vehtari et al. 2024)."""
+    # ArviZ takes log likelihoods, whose weights are one over them.
+    smoothed, k_hat = _array_stats().psislw(-log_weights)
+    weights = np.exp(smoothed - np.max(smoothed))
+    return weights / weights.sum(), float(k_hat)
+
+
+def _array_stats() -> Any:
+    require_extra()
+    return import_module("arviz_stats.base").array_stats

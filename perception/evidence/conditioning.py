@@ -1,7 +1,7 @@
 """What the constants were inferred from: rows fitted and left out, constants and priors, what mechanisms are worth.
 
 Everything comes from the shipped results of the inference; nothing is fitted here. A row is left out together with its
-whole experiment, so that its prediction rests on the other nine.
+whole experiment, so that its prediction rests on the other nine. `conditioning_file` is all of it as plain data.
 """
 
 from __future__ import annotations
@@ -10,11 +10,10 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 from statistics import NormalDist, median
+from typing import Any
 
-from ..observer.mechanisms import ALL_OFF, find_mechanism
 from ..observer.priors import WITHIN_95
-from .magnitudes import Magnitude, magnitudes, stages_of_six
-from .onset_stages import OnsetStages
+from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude, OnsetStages, magnitudes, stages_of_six
 from .posterior import Posterior
 from .results import (
     UNMOVED_SD,
@@ -58,15 +57,6 @@ SUSPECTED = {
     ("E4", "sigma_between_sd_log10_noise_removed", "warm"): SAME_NOISE,
 }
 """Mechanism suspected of each row that is missed when its experiment is left out."""
-MECHANISM_SOURCES = {
-    "ends of summation": "Campero et al. 2001 (receptive fields); Hardy & Oppel 1937 (whole body)",
-    "cord": "Leone et al. 2020 (way from cord to brain)",
-}
-"""Sources of numbers that are not inferred, by mechanism."""
-VARIANT_SOURCES = {
-    "heat flow": "Shani & Lineykin 2021: that heat flow predicts sensation better",
-}
-"""Sources of the other variant of the receptors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,22 +101,13 @@ class InferredConstant:
 
 
 @dataclass(frozen=True, slots=True)
-class AblatedMechanism:
-    """One run of the ablation, with what stood in place of the mechanism and where the mechanism comes from."""
-
-    run: AblatedRow
-    replaced_by: str
-    sources: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class Conditioning:
     """The evidence behind the constants, and what the constants say of onsets and sizes."""
 
     rows: tuple[ConditionedRow, ...]
     constants: tuple[InferredConstant, ...]
     offsets: tuple[InferredConstant, ...]
-    ablation: tuple[AblatedMechanism, ...]
+    ablation: tuple[AblatedRow, ...]
     stages: tuple[OnsetStages, ...]
     magnitudes: tuple[Magnitude, ...]
 
@@ -169,7 +150,7 @@ def load_conditioning() -> Conditioning:
         rows=_rows(),
         constants=tuple(each for each in constants if each.constant.mechanism != OFFSETS or _shared(each)),
         offsets=tuple(each for each in constants if each.constant.mechanism == OFFSETS and not _shared(each)),
-        ablation=tuple(_explained(run) for run in sorted(load_ablation(), key=lambda run: run.difference)),
+        ablation=tuple(sorted(load_ablation(), key=lambda run: run.difference)),
         stages=stages_of_six(),
         magnitudes=magnitudes(),
     )
@@ -204,14 +185,101 @@ def _shared(each: InferredConstant) -> bool:
     return each.constant.unit != "SD"
 
 
-def _explained(run: AblatedRow) -> AblatedMechanism:
-    if not run.without or run.without == ALL_OFF:
-        source = None if run.without else VARIANT_SOURCES.get(run.variable)
-        return AblatedMechanism(run, "", () if source is None else (source,))
-    mechanism = find_mechanism(run.without)
-    known = {each.name: each.source for each in load_constants()}
-    sources = [known[name] for name in mechanism.fixed if name in known]
-    sources += [known["sensitivity between laboratories"]] if run.without == OFFSETS else []
-    sources += [MECHANISM_SOURCES["cord"]] if run.without == "delays" else []
-    sources += [MECHANISM_SOURCES[run.without]] if run.without in MECHANISM_SOURCES else []
-    return AblatedMechanism(run, mechanism.replaced_by, tuple(dict.fromkeys(sources)))
+def conditioning_file(known: Conditioning) -> dict[str, Any]:
+    """The keys under `conditioning`, in their order; every number has its unit beside it or in its name."""
+    return {
+        "rows": [_row(each) for each in known.rows],
+        "summary": {
+            "rows": len(known.rows),
+            "covered": len(known.rows) - len(known.missed),
+            "expected": 0.95 * len(known.rows),
+            "median_factor": known.median_half_width(log=True),
+            "rows_on_log_scale": sum(each.log for each in known.rows),
+            "median_share_of_published": known.median_half_width(log=False),
+        },
+        "constants": [_constant(each) for each in known.constants],
+        "laboratory_offsets": [_constant(each) for each in known.offsets],
+        "not_moved_above": UNMOVED_SD,
+        "edge_below": EDGE,
+        "ablation": [_ablated(each) for each in known.ablation],
+        "onset_stages": [_stages(each) for each in known.stages],
+        "magnitudes": [_magnitude(each) for each in known.magnitudes],
+    }
+
+
+def _row(each: ConditionedRow) -> dict[str, Any]:
+    row = each.row
+    return {
+        "experiment": row.experiment,
+        "title": experiment_title(row.experiment),
+        "statistic": row.statistic,
+        "channel": row.channel,
+        "row": row.label,
+        "unit": row.unit,
+        "log_scale": each.log,
+        "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
+        "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
+        "left_out": {
+            "value": row.left_out,
+            "interval": [row.left_out_low, row.left_out_high],
+            "miss_sd": row.score,
+            "log_score": row.log_score,
+            "covered": each.covered,
+        },
+        "mechanism_suspected": each.suspected or None,
+    }
+
+
+def _constant(each: InferredConstant) -> dict[str, Any]:
+    constant = each.constant
+    return {
+        "name": constant.name,
+        "mechanism": constant.mechanism,
+        "unit": constant.unit,
+        "value": constant.value,
+        "interval": [constant.low, constant.high],
+        "prior_interval": [constant.prior_low, constant.prior_high],
+        "prior_source": constant.source,
+        "sd_over_prior": constant.narrowed,
+        "prior_quantile": each.quantile,
+        "moved": each.moved,
+        "at_edge": each.at_edge,
+    }
+
+
+def _ablated(run: AblatedRow) -> dict[str, Any]:
+    return {
+        "variable": run.variable,
+        "without": run.without or None,
+        "replaced_by": run.replaced_by or None,
+        "log_evidence": run.log_evidence,
+        "difference": run.difference,
+        "sum_of_squares": run.squares,
+        "worst_row": run.worst,
+        "worst_sd": run.worst_sd,
+        "sources": run.sources.split(" | ") if run.sources else [],
+    }
+
+
+def _stages(each: OnsetStages) -> dict[str, Any]:
+    return {
+        "icon": each.icon,
+        "channel": each.channel,
+        "receptor_s": each.receptor_s,
+        "nerve_s": each.nerve_s,
+        "cord_s": each.cord_s,
+        "decision_s": each.decision_s,
+        "onset_s": each.onset_s,
+        "onset_with_conduction_of_leg_s": each.leg_s,
+    }
+
+
+def _magnitude(each: Magnitude) -> dict[str, Any]:
+    return {
+        "channel": each.channel,
+        "variable": each.variable,
+        "changes_K": list(CHANGES_K),
+        "peak_d_prime": list(each.peaks),
+        "just_noticeable_steps": each.jnds,
+        "conditions": f"{RATE_K_PER_S:g} K/s at the display, held {HOLD_S:g} s, {RIG}",
+    }

@@ -16,14 +16,13 @@ import numpy as np
 
 from thermicon.circuit import Rig
 
-from ..experiments.classical import choice_reaction_time, forced_choice, method_of_limits
-from ..experiments.levels import method_of_levels
+from ..experiments.on_bench import choice_reaction_time, forced_choice, method_of_levels, method_of_limits
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..observer.variants import Variable
 from ..sensation.bench import Bench, ramp
-from .predicted import DRAWS, Asked, Predicted, predict
+from .predicted import DRAWS, Asked, Predicted, predict, quantile_felt
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 FLAT_K_PER_S = (0.1, 0.2, 0.3)
@@ -84,10 +83,10 @@ def limits(
     made = []
     nominal = Observer.load(variable=variable)
     for one, channel in zip(predict(f"limits on the {site}", asked, variable, draws, seed), CHANNELS, strict=True):
-        each = method_of_limits(nominal, bench, channel, people=crowd)
-        low, high = each.quantile(0.16), each.quantile(0.84)
+        each = np.sort(method_of_limits(nominal, bench, channel, people=crowd))
+        low, middle, high = (quantile_felt(each, share) for share in (0.16, 0.5, 0.84))
         spread = None if low is None or high is None else (low, high)
-        made.append(replace(one, value=each.value, people=spread))
+        made.append(replace(one, value=middle, people=spread))
     return tuple(made)
 
 
@@ -130,10 +129,10 @@ def methods(variable: Variable = "temperature", *, draws: int = 0, seed: int = 0
     said = "display ramps of 1 K/s from 32 °C on the back of the hand, 9 cm²"
 
     def levels(channel: Channel, observer: Observer) -> float:
-        return float(np.median(method_of_levels(observer, bench, channel).each))
+        return float(np.median(method_of_levels(observer, bench, channel)))
 
     def choice(channel: Channel, observer: Observer) -> float:
-        return float(forced_choice(observer, bench, channel).each[0])
+        return forced_choice(observer, bench, channel)
 
     named: list[tuple[str, Callable[[Channel, Observer], float]]] = [
         ("forced choice", choice),
@@ -153,11 +152,11 @@ def _bench(rig: str, area_cm2: float, surface: str, baseline_C: float) -> Bench:
 @lru_cache(maxsize=512)
 def _limits(bench: Bench, channel: Channel, observer: Observer) -> float:
     """Limits of the nominal person, which two experiments on the hand ask for."""
-    return float(method_of_limits(observer, bench, channel).each[0])
+    return float(method_of_limits(observer, bench, channel)[0])
 
 
 def _threshold(bench: Bench, channel: Channel, observer: Observer, rate: float) -> float:
-    return float(forced_choice(observer, bench, channel, rate_K_per_s=rate, hold_s=1.0).each[0])
+    return forced_choice(observer, bench, channel, rate_K_per_s=rate, hold_s=1.0)
 
 
 def _at_rate(at: Callable[[Observer, float], float], rate: float, observer: Observer) -> float:

@@ -1,5 +1,9 @@
 """Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
 
+Six icons, and sequences of short pulses: published are the shares of the best 22 and 16 of 52 that are named correctly;
+their levels, lengths, site and display are unknown, so that the sequences are this project's own, and the result is
+shown and not judged.
+
 The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow, and
 the laboratories of a new one's interval, whose observers stand behind the other experiments too.
 """
@@ -14,25 +18,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit import Rig
+
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
-from ..identification.laboratory_draws import EVERY, people_for_intervals
+from ..identification.laboratory_draws import EVERY, PEOPLE, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import ReceptorTemperatures, identify, respond
 from ..identification.run_end import RATE_HZ, run_end_s
 from ..kernels.parallel import in_order
-from ..observer.channels import USUAL_NORM, Norm
-from ..observer.observer import Observer
+from ..observer.channels import USUAL_NORM
+from ..observer.observer import DATA, Observer
 from ..observer.people import People, draw_people
 from ..observer.variants import VARIABLES, Variable, receptor_column
 from ..ranking.batches import EXPERIMENTS
-from .plausible import plausible_laboratories
-from .predicted import Predicted
-from .waves import GROUPS, PAIRS, SHAPES, Likeness, wave_name
+from ..selection.appraise import population_dprime
+from ..selection.max_min_subset import max_min_subset
+from .predicted import Predicted, plausible_laboratories
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import Icon
 
 Score = Callable[[Array], float]
@@ -73,8 +78,8 @@ class Shown:
     played: tuple[ReceptorTemperatures, ...]
     seed: int
 
-    def identify(self, variable: Variable, draws: int, norm: Norm = USUAL_NORM) -> Identified:
-        """Confusions of one variant from memory, by a norm."""
+    def identify(self, variable: Variable, draws: int) -> Identified:
+        """Confusions of one variant from memory."""
         played = self.played[VARIABLES.index(variable)]
         few = self.crowd.part(0, people_for_intervals(len(self.labels)))
         thin = played.thinned(len(few), EVERY)
@@ -82,13 +87,13 @@ class Shown:
 
         def thinly(observer: Observer, people: People) -> Array:
             felt = respond(thin, people, observer, detection=False)
-            return identify(felt, norm, people, observer, self.seed, FEW_SAMPLES)[1].probability
+            return identify(felt, USUAL_NORM, people, observer, self.seed, FEW_SAMPLES)[1].probability
 
         felt = respond(played, self.crowd, nominal, detection=False)
-        whole = identify(felt, norm, self.crowd, nominal, self.seed, SAMPLES)[1]
+        whole = identify(felt, USUAL_NORM, self.crowd, nominal, self.seed, SAMPLES)[1]
         kept = np.zeros((0, *whole.probability.shape))
         if draws:
-            others = plausible_laboratories(draws, self.seed, norm, variable)
+            others = plausible_laboratories(draws, self.seed, variable)
             invited = others.invited(len(few))
             kept = np.stack(list(in_order(lambda k: thinly(*others.at(k, len(few)))[invited[k]], range(draws))))
         return Identified(variable, self.labels, whole.probability, thinly(nominal, few), kept)
@@ -130,7 +135,7 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
         ("plug-in information", "bit", bits, most),
         ("information", "bit", lambda p: float(information_bits(p).mean()), most),
     ]
-    asked += [(f"proportion correct, {name}", "proportion", _named(k), 1.0) for k, name in enumerate(found.labels)]
+    asked += [(f"proportion correct, {name}", "proportion", named(k), 1.0) for k, name in enumerate(found.labels)]
     made = [
         found.predicted("six icons", name, unit, score, conditions=said, top=top) for name, unit, score, top in asked
     ]
@@ -140,75 +145,32 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
     return tuple(made)
 
 
-def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
-    """How alike the shapes are at the skin, and whether they are each other's main confusions."""
-    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_NORM}"
-    made = []
-    for pair in PAIRS:
-        both = " and ".join(pair)
-        largest = max(one.largest for one in alike if one.pair == pair)
-        made.append(
-            Predicted(
-                "wave shapes", f"largest difference of {both}", "both", largest, "1", None, None,
-                found.variable, "skin temperature over the swing, largest of four groups",
-            )
-        )  # fmt: skip
-        made.append(
-            found.predicted(
-                "wave shapes", f"confusion of {both} over any other", "1", _main(found.labels, pair), conditions=said
-            )
-        )
-        made.append(
-            found.predicted(
-                "wave shapes",
-                f"confusion of {both}",
-                "proportion",
-                _mixed(found.labels, pair),
-                conditions=said,
-                top=1.0,
-            )
-        )
-    for shape in SHAPES:
-        places = [found.labels.index(wave_name(shape, *group)) for group in GROUPS]
-        scores = [_named(place) for place in places]
-        made.append(
-            found.predicted(
-                "wave shapes", f"proportion correct, {shape}", "proportion", _mean(scores), conditions=said, top=1.0
-            )
-        )
-    return tuple(made)
-
-
-def _against(
-    pooled: Array, labels: Sequence[str], pair: tuple[str, str], group: tuple[str, int]
-) -> tuple[float, float]:
-    own = [labels.index(wave_name(shape, *group)) for shape in SHAPES]
-    first, second = (labels.index(wave_name(shape, *group)) for shape in pair)
-    mixed = 0.5 * (pooled + pooled.T)
-    others = [k for k in range(len(labels)) if k not in own]
-    return float(mixed[first, second]), float(mixed[[first, second]][:, others].max())
-
-
-def _main(labels: Sequence[str], pair: tuple[str, str]) -> Score:
-    def least(probability: Array) -> float:
-        pooled = normalised(probability.mean(axis=0))
-        return min(mixed / other for mixed, other in (_against(pooled, labels, pair, group) for group in GROUPS))
-
-    return least
-
-
-def _mixed(labels: Sequence[str], pair: tuple[str, str]) -> Score:
-    def mean(probability: Array) -> float:
-        pooled = normalised(probability.mean(axis=0))
-        return float(np.mean([_against(pooled, labels, pair, group)[0] for group in GROUPS]))
-
-    return mean
-
-
 @lru_cache(maxsize=64)
-def _named(k: int) -> Score:
+def named(k: int) -> Score:
+    """Proportion correct of the k-th icon."""
     return lambda p: float(p[:, k, k].mean())
 
 
-def _mean(scores: Sequence[Score]) -> Score:
-    return lambda p: float(np.mean([score(p) for score in scores]))
+CUES, RIG, CHOSEN = DATA / "short-pulses.cue", "tcs2", (22, 16)
+
+
+def show_pulses(people: int, seed: int) -> tuple[Shown, ...]:
+    """Play the sequences of each choice to virtual people on a thermode; the nominal observer chooses, by median d′."""
+    from thermicon.icons import read_cue
+
+    icons, rig = list(read_cue(CUES)), Rig.load(RIG)
+    middle = np.median(population_dprime(icons, rig, draw_people(PEOPLE, seed))[0], axis=0)
+    best = [max_min_subset(middle, count) for count in CHOSEN]
+    return tuple(show([icons[place] for place in one.chosen], rig, people, seed) for one in best if one is not None)
+
+
+def named_pulses(each: Sequence[Identified]) -> tuple[Predicted, ...]:
+    """Proportion correct of each choice."""
+    return tuple(
+        found.predicted(
+            "short pulses", f"proportion correct of the best {len(found.labels)}", "proportion",
+            lambda p: float(proportion_correct(p).mean()), top=1.0,
+            conditions=f"named from memory, {found.probability.shape[0]} people, {RIG}, best by the worst pair of 52",
+        )
+        for found in each
+    )  # fmt: skip

@@ -15,9 +15,8 @@ from thermicon.circuit.cores import quiet_blas
 
 from ..arrays import Array
 from .chains import Chain, Reference, begin
-from .limit_features import LimitFeatures
 from .posterior import Posterior
-from .surrogate import NARROW, WIDE, Surrogate, fit_surrogate
+from .surrogate import NARROW, WIDE, LimitFeatures, Surrogate, fit_surrogate
 
 AROUND, ROUNDS = 2400, (1200, 1200)
 """Points from the normal approximation, and from each next surrogate; a quadratic has 1431 coefficients a row."""

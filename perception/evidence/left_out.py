@@ -8,14 +8,12 @@ right. Points that were weighted badly teach the next surrogate.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from ..arrays import Array
-from .chains import Reference
-from .diagnostics import K_HAT, smoothed_weights
+from .chains import K_HAT, Reference, smoothed_weights
 from .learning import Evaluate, Points, fitted, walked
 from .posterior import Posterior
 from .rows import Row, load_rows
@@ -25,7 +23,6 @@ ROUNDS, PROPOSED = 5, 600
 """Most refits of a posterior without an experiment, and draws of each."""
 NEWTON_STEPS = 12
 FROM_WEIGHTS, REFITTED = "weights", "refit"
-Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,29 +67,6 @@ class Predictive:
 
 
 def leave_out(
-    posterior: Posterior,
-    draws: Points,
-    reference: Reference,
-    points: Points,
-    seed: int,
-    evaluate: Evaluate,
-    experiments: tuple[str, ...] = (),
-    progress: Progress | None = None,
-) -> tuple[Predictive, ...]:
-    """Predict each experiment (or those named) without it.
-
-    `draws` are those of the whole posterior with the misses of all rows, `points` what its surrogate was fitted to.
-    """
-    wanted = experiments or tuple(dict.fromkeys(row.experiment for row in load_rows()))
-    predictives: list[Predictive] = []
-    for done, experiment in enumerate(wanted):
-        if progress is not None:
-            progress(done, len(wanted), experiment)
-        predictives += _without(experiment, posterior, draws, reference, points, seed, evaluate)
-    return tuple(predictives)
-
-
-def _without(
     experiment: str,
     whole: Posterior,
     draws: Points,
@@ -101,6 +75,10 @@ def _without(
     seed: int,
     evaluate: Evaluate,
 ) -> list[Predictive]:
+    """Predict an experiment without it.
+
+    `draws` are those of the whole posterior with the misses of all rows, `points` what its surrogate was fitted to.
+    """
     posterior = Posterior(whole.variable, whole.without, frozenset({experiment}))
     weights, k_hat = smoothed_weights(0.5 * np.square(draws.misses[:, ~posterior.counted]).sum(axis=1))
     if k_hat <= K_HAT:

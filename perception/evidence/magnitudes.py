@@ -1,19 +1,27 @@
 """How large a change feels, and where the time of an onset goes: what the constants say of plain cues on the thenar.
 
-A step of d′ = 1 is just noticeable, so that the peak d′ of a change is the number of just noticeable steps up to it.
+Stages of an onset are skin and receptor, nerve, cord to brain, and decision. A step of d′ = 1 is just noticeable, so
+that the peak d′ of a change is the number of just noticeable steps up to it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from thermicon.circuit import Rig
 
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
+from ..observer.receptor import SPINAL_M_PER_S, SPINE_M
 from ..observer.variants import VARIABLES, Variable
 from ..sensation.bench import Bench, Stimulus, ramp
-from .onset_stages import OnsetStages, onset_stages
+from ..sensation.percept import perceive
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
 
 RIG, ICONS = "thenar", "six-icons"
 CHANGES_K = (3.0, 10.0)
@@ -66,3 +74,49 @@ def _played(bench: Bench, channel: Channel, size_K: float) -> Stimulus:
 def _peak(played: Stimulus, channel: Channel, variable: Variable) -> float:
     felt = played.felt(Observer.load(variable=variable))[CHANNELS.index(channel)]
     return float((felt - felt[..., :1]).max())
+
+
+@dataclass(frozen=True, slots=True)
+class OnsetStages:
+    """Onset of one icon by stages, s; `leg_s` is its onset with conduction as slow as at the leg and no cord."""
+
+    icon: str
+    channel: Channel
+    receptor_s: float
+    nerve_s: float
+    cord_s: float
+    decision_s: float
+    leg_s: float
+
+    @property
+    def onset_s(self) -> float:
+        """Time from the start of the cue to the report, s."""
+        return self.receptor_s + self.nerve_s + self.cord_s + self.decision_s
+
+    def __repr__(self) -> str:
+        return f"OnsetStages({self.icon}: {self.onset_s:.2f} s by {self.channel}, {self.receptor_s:.2f} s at receptors)"
+
+
+def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
+    """Stages of every icon that a nominal person feels, in the order of the icons.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.icons import load_library
+    >>> stages = onset_stages(load_library("six-icons"), Rig.load("thenar"))
+    >>> len(stages), stages[0].channel
+    (6, 'cold')
+    """
+    from thermicon.circuit import simulate
+
+    whole, leg = Observer.load(), Observer.load(without=["delays"])
+    stages = []
+    for icon in icons:
+        trace = simulate(icon, rig)
+        felt, late = perceive(trace, whole), perceive(trace, leg)
+        if felt.onset_s is None or felt.channel is None or late.onset_s is None:
+            continue
+        nerve = whole.path_m(trace.site) / whole.receptor(felt.channel).velocity_m_per_s
+        cord = SPINE_M / SPINAL_M_PER_S[felt.channel]
+        before = felt.onset_s - nerve - cord - whole.decision_s
+        stages.append(OnsetStages(icon.name, felt.channel, before, nerve, cord, whole.decision_s, late.onset_s))
+    return tuple(stages)

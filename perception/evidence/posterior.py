@@ -1,4 +1,7 @@
-"""Log posterior of the constants: rows and priors as residuals, for one variant with some mechanisms off."""
+"""Log posterior of the constants: rows and priors as residuals, for one variant with some mechanisms off.
+
+What sampled draws say of each constant is a `Summary`: median, interval, and how far it is from its prior.
+"""
 
 from __future__ import annotations
 
@@ -13,10 +16,11 @@ from ..arrays import Array
 from ..experiments.laboratory import Laboratory
 from ..experiments.published import Predictions, predict
 from ..observer.channels import CHANNELS
+from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms import Without, find_mechanism
-from ..observer.prior_file import LABORATORIES, load_priors, priors_of
-from ..observer.priors import Priors
+from ..observer.priors import LABORATORIES, Priors, load_priors, priors_of
 from ..observer.variants import Variable
+from .results import UNMOVED_SD
 from .rows import Row, load_rows
 
 BoolArray = NDArray[np.bool_]
@@ -109,3 +113,44 @@ class Posterior:
     def counted(self) -> BoolArray:
         """Which of all rows count."""
         return np.array([row.experiment not in self.left_out for row in load_rows()])
+
+
+UNMOVED_SHIFT = 0.3
+"""A constant that keeps more than `UNMOVED_SD`, with its median moved by fewer SDs of the prior, was not moved."""
+EDGE = 1.96
+"""A median so many SDs of the prior away from its middle lies at the edge of the prior."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """One constant in its own unit: median and 95 % interval; `narrowed` and `shift` are in SDs of its prior."""
+
+    name: str
+    unit: str
+    median: float
+    low: float
+    high: float
+    narrowed: float
+    shift: float
+
+    @property
+    def unmoved(self) -> bool:
+        """Whether the posterior is the prior, as good as."""
+        return self.narrowed > UNMOVED_SD and abs(self.shift) < UNMOVED_SHIFT
+
+    @property
+    def at_edge(self) -> bool:
+        """Whether evidence and prior disagree so much that the median lies at the end of the prior's 95 %."""
+        return abs(self.shift) > EDGE
+
+
+def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
+    """Every constant of a posterior, in the order of the table."""
+    priors = Posterior(draws.variable).priors
+    rows = []
+    for prior in priors.each:
+        values = draws.values(prior.name)
+        places = (np.array([prior.to_place(value) for value in values.tolist()]) - prior.middle) / prior.sd
+        low, median, high = draws.interval(prior.name)
+        rows.append(Summary(prior.name, prior.unit, median, low, high, float(places.std()), float(np.median(places))))
+    return tuple(rows)

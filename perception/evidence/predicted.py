@@ -1,17 +1,25 @@
-"""One predicted number with its uncertainty: parameters that nobody has measured, and people."""
+"""One predicted number with its uncertainty: parameters that nobody has measured, and people.
+
+Intervals come from laboratories that the evidence leaves possible, as `rank` draws them; experiments that no population
+was simulated for ask their observers alone.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from ..experiments.measured import quantile_felt
+from ..arrays import Array
+from ..identification.drawn_laboratories import DrawnLaboratories
 from ..kernels.parallel import in_order
-from ..observer.observer import Observer
+from ..observer.channels import USUAL_NORM
+from ..observer.draws import PosteriorDraws
+from ..observer.observer import Observer, variant_records
+from ..observer.observer_model import ObserverModel
 from ..observer.variants import Variable
-from .plausible import plausible_observers
 
 DRAWS = 24
 """Observers drawn for an interval: enough to see its size, not its second digit."""
@@ -91,6 +99,18 @@ def predict(
     return tuple(made)
 
 
+def quantile_felt(ordered: Array, share: float) -> float | None:
+    """Value that a share of numbers (n,), in rising order, lies below; None where it lies among those not felt (inf).
+
+    >>> quantile_felt(np.array([1.0, 2.0, np.inf]), 0.25), quantile_felt(np.array([1.0, 2.0, np.inf]), 0.75)
+    (1.5, None)
+    """
+    place = share * (ordered.size - 1)
+    low, high = float(ordered[int(np.floor(place))]), float(ordered[int(np.ceil(place))])
+    found = low if low == high else low + (place - np.floor(place)) * (high - low)
+    return float(found) if np.isfinite(found) else None
+
+
 def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
     """What encloses 95 % of answers (inf: not felt); an end that lies among those not felt is None.
 
@@ -101,3 +121,24 @@ def interval_of(each: Sequence[float]) -> tuple[float | None, float | None]:
     if not ordered.size:
         return None, None
     return quantile_felt(ordered, 0.025), quantile_felt(ordered, 0.975)
+
+
+def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLaboratories:
+    """Laboratories of n draws of the posterior of a variant; a ValueError for fewer than two."""
+    if n < 2:
+        raise ValueError(f"at least two observers are needed to show an interval, not {n}")
+    posterior, records = PosteriorDraws.load(variable=variable), variant_records(variable)
+    return DrawnLaboratories.of(
+        replace(ObserverModel.load(), records=records, posterior=posterior), USUAL_NORM, n, seed
+    )
+
+
+@lru_cache(maxsize=8)
+def plausible_observers(n: int = 32, seed: int = 0, *, variable: Variable = "temperature") -> tuple[Observer, ...]:
+    """The observers of these laboratories; the same for the same seed.
+
+    >>> len(plausible_observers(2)), plausible_observers(2) == plausible_observers(2)
+    (2, True)
+    """
+    laboratories = plausible_laboratories(n, seed, variable)
+    return tuple(laboratories.at(place, 1)[0] for place in range(n))

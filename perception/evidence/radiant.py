@@ -1,4 +1,4 @@
-"""Bare skin under radiant heat, for published thresholds in W/m² that no display was used for.
+"""Whole-body warmth: bare skin under radiant heat, for published thresholds in W/m² that no display was used for.
 
 The skin is the column of a rig without its display, still air above it; the flux is absorbed at
 the surface, from t = 0 on. Changes from rest are stepped exactly for a flux that is constant.
@@ -7,23 +7,27 @@ the surface, from t = 0 on. Changes from rest are stepped exactly for a flux tha
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache, partial
 
 import numpy as np
 
-from ..arrays import Array
+from thermicon.circuit import Rig
 
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+from ..arrays import Array
+from ..observer.observer import Observer, load_thresholds
+from ..observer.variants import Variable
+from ..sensation.sensation import receptor_drive, sensation
+from .predicted import DRAWS, Asked, Predicted, predict
+
+RADIANT_S = 3.0
 
 
 @dataclass(frozen=True, slots=True)
 class Warming:
-    """Changes (rows,) in K at the surface and at both receptors, and heat flow at the warm one (W/m²)."""
+    """Changes (rows,) in K at the surface and at the warm receptor, and heat flow there (W/m²)."""
 
     dt_s: float
     surface_K: Array
-    cold_receptor_K: Array
     warm_receptor_K: Array
     warm_receptor_W_per_m2: Array
 
@@ -61,10 +65,9 @@ def radiant_warming(rig: Rig, flux_W_per_m2: float, duration_s: float, *, rate_H
         state[k] = step @ state[k - 1]
     change = np.concatenate([state[:, :lumps], np.zeros((state.shape[0], 1))], axis=1)
     place = np.concatenate([[0.0], np.cumsum(column.resistance_m2K_per_W[1:])])
-    at = [rig.skin.resistance_to_m2K_per_W(d) for d in (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)]
-    temperature = [_at(change, place, here) for here in at]
-    flow = _flow(change, place, at[1])
-    return Warming(1.0 / rate_Hz, change[:, 0].copy(), temperature[0], temperature[1], flow)
+    receptor = rig.skin.resistance_to_m2K_per_W(rig.skin.warm_receptor_m)
+    felt, flow = _at(change, place, receptor), _flow(change, place, receptor)
+    return Warming(1.0 / rate_Hz, change[:, 0].copy(), felt, flow)
 
 
 def _at(change: Array, place: Array, here: float) -> Array:
@@ -84,3 +87,60 @@ def _flow(change: Array, place: Array, here: float) -> Array:
         return mean
     face: Array = faces[:, k]
     return face
+
+
+def whole_body_warmth(
+    variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0
+) -> tuple[Predicted, ...]:
+    """Radiant flux (W/m²) on the whole body for 3 s that is just felt as warm (d′ = 1), as Hardy & Oppel 1937 had it.
+
+    Skin and site are the forearm's, to stand for the body. Twice: with spatial summation carried on from
+    a thermode to the whole body, far beyond the areas it was measured on, and without any. The rise of the
+    surface that goes with a flux is given beside, to set the published 6.3 W/m² against 0.003 °C.
+    """
+    body = load_thresholds().one("area of the body").central
+    factor = Observer.load(variable=variable).site_factor("warm", _forearm().site)
+    said = (
+        f"{RADIANT_S:g} s of radiant heat on bare skin of the forearm, absorbed at the surface, d′ = 1, "
+        f"thresholds {factor:.3g} times those of the thenar"
+    )
+    whole = f"{said}, summed over {body:g} m²"
+
+    def flux(area_m2: float | None, observer: Observer) -> float:
+        return _flux_felt(observer, area_m2)
+
+    asked = [
+        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(flux, body)),
+        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(flux, None)),
+        Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(_warmed().surface_K[-1])),
+    ]
+    return predict("whole-body warmth", asked, variable, draws, seed)
+
+
+def _flux_felt(observer: Observer, area_m2: float | None) -> float:
+    """Flux whose largest warm sensation is 1, by bisection of its logarithm."""
+    low, high = 1e-4, 1e6
+    for _ in range(60):
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if _warmth(observer, middle, area_m2) >= 1.0 else (middle, high)
+    return float(np.sqrt(low * high))
+
+
+def _warmth(observer: Observer, flux: float, area_m2: float | None) -> float:
+    warmed, rig = _warmed(), _forearm()
+    if observer.variable == "temperature":
+        received = rig.skin.rest_C + flux * warmed.warm_receptor_K
+    else:
+        received = rig.resting_flux_W_per_m2 + flux * warmed.warm_receptor_W_per_m2
+    drive = receptor_drive(received, warmed.dt_s, "warm", observer)
+    return float(sensation(drive, "warm", observer, area_m2=area_m2, site=rig.site).max())
+
+
+@lru_cache(maxsize=1)
+def _forearm() -> Rig:
+    return Rig.load("forearm")
+
+
+@lru_cache(maxsize=1)
+def _warmed() -> Warming:
+    return radiant_warming(_forearm(), 1.0, RADIANT_S)

@@ -1,7 +1,7 @@
 """The shipped results of the inference: constants, predictions in and out of the fit, and the ablation.
 
-Written by `python -m thermicon.perception.evidence.run`; a test checks that they belong to the shipped evidence and
-priors. All are CSV tables, so that a spreadsheet opens them.
+The first two are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the
+shipped evidence and priors. All are CSV tables, so that a spreadsheet opens them.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from functools import lru_cache
 from io import StringIO
+from pathlib import Path
 from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..observer.prior_file import load_priors
+from ..observer.priors import load_priors
 from ..observer.variants import Variable
 from .rows import load_rows
 from .statistics import DATA
@@ -69,7 +70,11 @@ class PredictedRow:
 
 @dataclass(frozen=True, slots=True)
 class AblatedRow:
-    """One run of the ablation: `difference` is its log evidence minus that of its variant with every mechanism."""
+    """A variant without a mechanism: `difference` is its log evidence minus that of the variant with every mechanism.
+
+    A difference under about 2 says nothing. A mechanism stays if it has a source or a gain. `replaced_by` says what
+    stood in its place, `sources` where the mechanism comes from, with bars between them.
+    """
 
     variable: str
     without: str
@@ -78,6 +83,8 @@ class AblatedRow:
     squares: float
     worst: str
     worst_sd: float
+    replaced_by: str
+    sources: str
 
 
 @lru_cache(maxsize=4)
@@ -98,7 +105,7 @@ def load_predictions() -> tuple[PredictedRow, ...]:
 
 @lru_cache(maxsize=1)
 def load_ablation() -> tuple[AblatedRow, ...]:
-    """The ablation, the default variant first."""
+    """What each mechanism is worth, a finished comparison: its first line says which version made it."""
     return tuple(read_rows(ABLATION, AblatedRow))
 
 
@@ -110,14 +117,18 @@ def constant(name: str) -> Constant:
     raise ValueError(f"there is no constant {name!r}: {did_you_mean(name, {each.name for each in load_constants()})}")
 
 
-def to_csv(rows: Sequence[Any]) -> str:
-    """A table with a header, numbers to six figures, from frozen rows of one kind."""
+def write_rows(rows: Sequence[Any], name: str, verb: str, folder: Path = DATA) -> None:
+    """Write frozen rows of one kind as a table, numbers to six figures, below what it was made from.
+
+    `verb` is the command of this room that made them.
+    """
     text = StringIO()
     writer = csv.DictWriter(text, [field.name for field in fields(rows[0])], lineterminator="\n")
     writer.writeheader()
     for row in rows:
         writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in asdict(row).items()})
-    return text.getvalue()
+    head = f"# written by python -m thermicon.perception.evidence {verb} from inputs {inputs_digest()}\n"
+    (folder / name).write_text(head + text.getvalue(), encoding="utf-8")
 
 
 def inputs_digest() -> str:

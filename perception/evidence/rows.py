@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from ..experiments.published import Key
-from ..experiments.task_constants import DISCREPANCY, UNSTATED
+from ..experiments.tasks import DISCREPANCY, UNSTATED
 from ..observer.channels import CHANNELS
 from ..observer.observer import load_thresholds
 from .statistics import Evidence, load_evidence

@@ -12,11 +12,11 @@ from ..observer.people import OLD_YEARS
 from ..observer.variants import VARIABLES, Variable
 from ..progress import Progress, step_counter
 from .experiments import limits, methods, rate_curve, reaction_times
-from .experiments_timing import first_and_return, peak_lead, whole_body_warmth
-from .identified import Identified, Shown, show, six_icons, wave_shapes
+from .experiments_timing import first_and_return, peak_lead
+from .identified import Identified, Shown, named_pulses, show, show_pulses, six_icons
 from .predicted import Predicted
-from .pulses import named_pulses, show_pulses
-from .waves import LIBRARY, Likeness, likeness, skin_waves, with_others
+from .radiant import whole_body_warmth
+from .waves import LIBRARY, Likeness, likeness, skin_waves, wave_shapes, with_others
 
 SIX = "six-icons"
 

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ..observer.variants import VARIABLES
-from .conditioning_file import conditioning_file
+from .conditioning import conditioning_file
 from .predicted import Predicted
 from .tradeoffs import TradeOff
 from .validate import Judged, Line, ValidationReport

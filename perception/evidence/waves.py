@@ -6,6 +6,7 @@ All have one size, so that within a group nothing differs but the shape. The set
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -13,6 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
+from ..identification.confusion import normalised
+from ..observer.channels import USUAL_NORM
+from .identified import Identified, Score, named
+from .predicted import Predicted
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -93,3 +98,72 @@ def likeness(waves: tuple[SkinWaves, ...]) -> tuple[Likeness, ...]:
             rms = float(np.sqrt((apart**2).mean()))
             found.append(Likeness(group.group, pair, float(np.abs(apart).max()), rms))
     return tuple(found)
+
+
+def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
+    """How alike the shapes are at the skin, and whether they are each other's main confusions."""
+    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_NORM}"
+    made = []
+    for pair in PAIRS:
+        both = " and ".join(pair)
+        largest = max(one.largest for one in alike if one.pair == pair)
+        made.append(
+            Predicted(
+                "wave shapes", f"largest difference of {both}", "both", largest, "1", None, None,
+                found.variable, "skin temperature over the swing, largest of four groups",
+            )
+        )  # fmt: skip
+        made.append(
+            found.predicted(
+                "wave shapes", f"confusion of {both} over any other", "1", _main(found.labels, pair), conditions=said
+            )
+        )
+        made.append(
+            found.predicted(
+                "wave shapes",
+                f"confusion of {both}",
+                "proportion",
+                _mixed(found.labels, pair),
+                conditions=said,
+                top=1.0,
+            )
+        )
+    for shape in SHAPES:
+        places = [found.labels.index(wave_name(shape, *group)) for group in GROUPS]
+        scores = [named(place) for place in places]
+        made.append(
+            found.predicted(
+                "wave shapes", f"proportion correct, {shape}", "proportion", _mean(scores), conditions=said, top=1.0
+            )
+        )
+    return tuple(made)
+
+
+def _against(
+    pooled: Array, labels: Sequence[str], pair: tuple[str, str], group: tuple[str, int]
+) -> tuple[float, float]:
+    own = [labels.index(wave_name(shape, *group)) for shape in SHAPES]
+    first, second = (labels.index(wave_name(shape, *group)) for shape in pair)
+    mixed = 0.5 * (pooled + pooled.T)
+    others = [k for k in range(len(labels)) if k not in own]
+    return float(mixed[first, second]), float(mixed[[first, second]][:, others].max())
+
+
+def _main(labels: Sequence[str], pair: tuple[str, str]) -> Score:
+    def least(probability: Array) -> float:
+        pooled = normalised(probability.mean(axis=0))
+        return min(mixed / other for mixed, other in (_against(pooled, labels, pair, group) for group in GROUPS))
+
+    return least
+
+
+def _mixed(labels: Sequence[str], pair: tuple[str, str]) -> Score:
+    def mean(probability: Array) -> float:
+        pooled = normalised(probability.mean(axis=0))
+        return float(np.mean([_against(pooled, labels, pair, group)[0] for group in GROUPS]))
+
+    return mean
+
+
+def _mean(scores: Sequence[Score]) -> Score:
+    return lambda p: float(np.mean([score(p) for score in scores]))

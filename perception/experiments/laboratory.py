@@ -16,15 +16,14 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, sign_of
-from ..observer.delays import LEG_M_PER_S, Conduction
 from ..observer.mechanisms import DEPTH_MM, Without
 from ..observer.observer import load_thresholds
 from ..observer.people import YOUNG_YEARS
+from ..observer.receptor import LEG_M_PER_S, Conduction
 from ..observer.transducer import Transducer
 from ..observer.variants import Variable
-from ..sensation.receptors import NO_LIMIT_C
-from ..sensation.summation import END_CM2, FIELD_CM2, area_factor
-from .crowd import SHARES, TRIALS, Crowd, draw_crowd
+from ..sensation.sensation import END_CM2, FIELD_CM2, NO_LIMIT_C, area_factor
+from .crowd import PEOPLE, SEED, SHARES, TRIALS, Crowd, draw_crowd
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
 
 DT_S = 0.025
@@ -68,17 +67,19 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
 class Laboratory:
     """Constants by name, as `priors.toml` names them, for one sensory variable.
 
-    `without` names mechanisms that are turned off.
+    `without` names mechanisms that are turned off; `people` of a seed take part.
     """
 
     values: Mapping[str, float]
     variable: Variable = "temperature"
     without: Without = frozenset()
+    people: int = PEOPLE
+    seed: int = SEED
 
     @property
     def crowd(self) -> Crowd:
         """The people that take part in every experiment."""
-        return draw_crowd()
+        return draw_crowd(self.people, self.seed)
 
     @cached_property
     def sensitivity(self) -> dict[Channel, Array]:

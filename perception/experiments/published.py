@@ -12,8 +12,9 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, Channel, sign_of
-from .laboratory import DT_S, FEEBLE, Laboratory, samples_of
+from ..observer.channels import CHANNELS, Channel
+from .laboratory import DT_S, Laboratory, samples_of
+from .tasks import Played, Ramp, yes_no_logs
 
 Key = tuple[str, str, str]
 """Experiment, statistic, channel."""
@@ -24,7 +25,7 @@ LN10 = math.log(10.0)
 STRIP_CM2 = 1.96
 TWO_STRIPS_CM2 = 3.58
 """Areas of contact: one strip of E1 to E3, and two of 7.4 × 24.2 mm of E4 and E5."""
-RAMPS: dict[Channel, tuple[float, float]] = {"cold": (-5.0, -26.0), "warm": (4.81, 14.0)}
+RAMPS: dict[Channel, tuple[float, float]] = {"cold": (5.0, 26.0), "warm": (4.81, 14.0)}
 """Rate in K/s as it really ran, and how far the reaction-time ramps went, K."""
 MEAN_AGE_YEARS = {"E1": 28.0, "E3": 24.5, "E4": 30.0, "E5": 27.0}
 """Mean age of the people whose rows are used; that of E1 and E5 is the middle of the range."""
@@ -46,12 +47,10 @@ def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E1: warm or cold, as fast as possible, by area."""
     log_medians: dict[tuple[Channel, int], Array] = {}
     for channel, (rate, size) in RAMPS.items():
-        corners = ((size / rate, size),)
-        drive, samples = laboratory.drive("forearm", channel, 31.0, corners, 6.0), samples_of(corners, 6.0)
+        played = Played.of(laboratory, Ramp("forearm", channel, 31.0, size, rate, 6.0))
         for strips in (1, 5):
             gain = laboratory.gain(channel, strips * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"])
-            times = laboratory.answers_s(drive, samples, channel, gain, site="forearm", choice=True)
-            times = np.minimum(times, 7.0)
+            times = np.minimum(played.answers_s(gain, "forearm", choice=True), 7.0)
             log_medians[channel, strips] = np.log(np.median(times, axis=1))
         five = log_medians[channel, 5]
         yield ("E1", "rt_gm_5strip_onset_clock", channel), float(five.mean())
@@ -74,10 +73,9 @@ def limits(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E3: limits at 1 K/s on the forearm, repeated."""
     means = []
     for channel in CHANNELS:
-        corners = ((LIMIT_K, sign_of(channel) * LIMIT_K),)
-        drive, samples = laboratory.drive("forearm", channel, 32.0, corners, LIMIT_K), samples_of(corners, LIMIT_K)
+        played = Played.of(laboratory, Ramp.held("forearm", channel, 32.0, LIMIT_K, 1.0, 0.0))
         gain = laboratory.gain(channel, 5 * STRIP_CM2, "E3", "forearm", MEAN_AGE_YEARS["E3"])
-        pressed_K = np.minimum(laboratory.answers_s(drive, samples, channel, gain, site="forearm"), LIMIT_K + 1.0)
+        pressed_K = played.limits_K(gain, "forearm")
         logs = np.log(np.where(pressed_K > ANTICIPATION_K, pressed_K, np.nan))
         person = np.nanmean(logs, axis=1)
         means.append(person)
@@ -96,15 +94,9 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     thresholds = []
     for channel in CHANNELS:
         gain = laboratory.gain(channel, TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E4"])
-        reported = []
-        for size in SIZES_K[channel].tolist():
-            top_s = size / DETECTION_K_PER_S
-            corners, end_s = ((top_s, sign_of(channel) * size),), top_s + PLATEAU_S
-            drive = laboratory.drive("forearm", channel, 30.0, corners, end_s)
-            criterion = laboratory.values["criterion of yes and no"]
-            passed = laboratory.passages(drive, samples_of(corners, end_s), channel, gain, criterion)[1]
-            reported.append(passed.mean(axis=1))
-        log_half, log_width = psychometric_logs(np.stack(reported, axis=1), np.log(SIZES_K[channel]))
+        sizes = SIZES_K[channel].tolist()
+        ramps = [Ramp.held("forearm", channel, 30.0, size, DETECTION_K_PER_S, PLATEAU_S) for size in sizes]
+        log_half, log_width = yes_no_logs(laboratory, ramps, gain)
         thresholds.append(log_half)
         yield ("E4", "threshold50_gm_age30", channel), float(log_half.mean())
         yield ("E4", "threshold_between_sd_log10_noise_removed", channel), float(log_half.std()) / LN10
@@ -116,20 +108,6 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         lost = laboratory.values[f"{channel} sensitivity lost per decade"]
         yield ("E4", "threshold50_ln_per_decade", channel), slope * lost
     yield ("E4", "cold_warm_threshold_correlation_person_fits", "both"), _correlation(*thresholds)
-
-
-HALVES = (0.16, 0.5, 0.84)
-"""Shares one SD below, at and above the middle of a cumulative normal."""
-
-
-def psychometric_logs(reported: Array, log_sizes: Array) -> tuple[Array, Array]:
-    """Logs (people,) of the size at one half and of the SD, guesses taken out; reports are (people, sizes)."""
-    from ..kernels.psychometric import psychometric
-
-    logs = np.empty((reported.shape[0], len(HALVES)))
-    psychometric(reported, log_sizes, np.array(HALVES), logs)
-    sizes = np.exp(logs)
-    return logs[:, 1], np.log(np.maximum(0.5 * (sizes[:, 2] - sizes[:, 0]), 1e-3))
 
 
 PEAKS_C = (34.9, 38.0, 45.4, 47.2)
@@ -180,9 +158,9 @@ def forced_choice(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """How many times threshold the published forced-choice thresholds are: 1 would be right (log 0)."""
     for place, site, rig, sizes in FORCED_CHOICE:
         for channel, size in sizes.items():
-            drive = laboratory.drive(rig, channel, 32.0, [(size, sign_of(channel) * size)], size + 3.0)
+            peak = Played.of(laboratory, Ramp.held(rig, channel, 32.0, size, 1.0, 3.0)).peak
             gain = laboratory.gain(channel, 9.0, place, site, 25.0)
-            yield (place, "detection threshold", channel), -math.log(max(float(drive.max()) * gain, 1e-6))
+            yield (place, "detection threshold", channel), -math.log(max(peak * gain, 1e-6))
     for channel in CHANNELS:
         spread = laboratory.values[f"{channel} sensitivity between people"]
         yield ("wrist", "spread of detection thresholds", channel), spread
@@ -197,15 +175,16 @@ def differences(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     for channel, size in FORCED_CHOICE[0][3].items():
         steps = size * laboratory.transducer.difference_threshold(PEDESTALS)
         yield ("amplitudes", "amplitude difference threshold", channel), float(np.log(steps).mean())
-    drive = laboratory.drive("forearm", "warm", 34.0, [(20.0, 10.0)], 20.0).max()
-    multiple = float(drive) / laboratory.values["warm threshold drive"]
+    peak = Played.of(laboratory, Ramp("forearm", "warm", 34.0, 10.0, 0.5, 20.0)).peak
+    multiple = peak / laboratory.values["warm threshold drive"]
     yield (
         ("steps", "steps from threshold to pain", "warm"),
         math.log(max(float(laboratory.transducer.psi(multiple)), 0.01)),
     )
 
 
-RATED: dict[Channel, tuple[float, float]] = {"cold": (-5.0, -11.0), "warm": (4.81, 11.0)}
+RATED: dict[Channel, tuple[float, float]] = {"cold": (5.0, 11.0), "warm": (4.81, 11.0)}
+"""Rate in K/s and size in K of E2."""
 E6_SIZES: dict[Channel, tuple[float, float]] = {"cold": (15.8, 3.75), "warm": (10.05, 5.6)}
 """Median change in K and area in cm² of E6."""
 E6_K_PER_S = 40.0
@@ -216,8 +195,7 @@ def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E2 and E6: ratings by area and by size; a rating is a power of the largest drive in multiples of threshold."""
     values = laboratory.values
     for channel, (rate, size) in RATED.items():
-        end_s = size / rate + 0.7
-        peak = max(float(laboratory.drive("forearm", channel, 31.0, [(size / rate, size)], end_s).max()), FEEBLE)
+        peak = Played.of(laboratory, Ramp.held("forearm", channel, 31.0, size, rate, 0.7)).peak
         one, five = (
             peak * laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"]) for n in (1, 5)
         )
@@ -229,15 +207,7 @@ def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         yield ("E2", "rating_within_sd_pooled", channel), math.log(scatter)
         change, _ = E6_SIZES[channel]
         low, high = (
-            float(
-                laboratory.drive(
-                    "forearm",
-                    channel,
-                    30.0,
-                    [(times * change / E6_K_PER_S, sign_of(channel) * times * change)],
-                    times * change / E6_K_PER_S + 2.0,
-                ).max()
-            )
+            Played.of(laboratory, Ramp.held("forearm", channel, 30.0, times * change, E6_K_PER_S, 2.0)).peak
             for times in (0.8, 1.25)
         )
         yield (

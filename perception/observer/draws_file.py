@@ -21,7 +21,7 @@ from thermicon.circuit.records import RecordError
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
-from .memory_constants import LIMITS, MEMORY_NAMES, objection_to
+from .memory import LIMITS, MEMORY_NAMES, objection_to
 from .observer import DATA
 from .variants import Variable, check_variable
 

@@ -9,7 +9,7 @@ from typing import Literal
 from thermicon.icons.near_words import did_you_mean
 
 from .channels import Channel
-from .delays import LEG_M_PER_S
+from .receptor import LEG_M_PER_S
 
 Without = frozenset[str]
 Carrier = Literal["observer", "people", "rig", "inference"]
@@ -92,10 +92,6 @@ MECHANISMS = (
         IN_INFERENCE,
     ),
 )  # fmt: skip
-
-
-ALL_OFF = "all of them"
-"""Name of an observer without any of the mechanisms."""
 
 
 def find_mechanism(name: str) -> Mechanism:

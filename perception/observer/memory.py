@@ -5,14 +5,28 @@ carried over, and the scatter of repeated ratings, differ by a factor of 1.5 to 
 
     σ_I = σ_T^(1 − λ) · σ_rated^λ,   σ_rated = scatter / (n·rated)   in log units of drive, for ratings g·u^n
 
-No thermal source says that features of episodes and not traces are remembered.
+No thermal source says that features of episodes and not traces are remembered. No published posterior has constants of
+memory, but draws of one laboratory may: they stand in columns of these names.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from .channels import Channel
+
+NOISE, SHARE = "memory noise (episodes)", "share of the scatter of ratings"
+MISSING, BAR = "cost of a missing episode", "bar of an episode"
+MEMORY_NAMES = (NOISE, SHARE, MISSING, BAR)
+"""Every constant of memory that a table of draws may have a column for."""
+OF_MEMORY: Mapping[str, str] = {"timing": NOISE, "share": SHARE, "missing": MISSING, "bar": BAR}
+"""Fields of memory by these names."""
+LIMITS: Mapping[str, tuple[float, float]] = {
+    SHARE: (0.0, 1.0), MISSING: (0.0, math.inf), "correlation of cold and warm": (-1.0, 1.0),
+}  # fmt: skip
+"""Least and largest value of constants that may be 0; the others must be above 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,3 +90,17 @@ class EpisodeMemory:
         """σ_I of a channel in log units of drive."""
         noise: float = self.timing ** (1.0 - self.share) * self.ratings(channel).log_scatter ** self.share
         return noise
+
+
+def objection_to(name: str, value: float) -> str | None:
+    """Why a constant of memory, or one that is positive, cannot have this value; None where it can.
+
+    >>> objection_to("share of the scatter of ratings", 1.5)
+    'must lie in 0 to 1'
+    """
+    if name in LIMITS:
+        low, high = LIMITS[name]
+        if low <= value <= high:
+            return None
+        return f"must lie in {low:g} to {high:g}" if math.isfinite(high) else f"must be {low:g} or more"
+    return None if value > 0.0 else "must be above 0"

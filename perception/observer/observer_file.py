@@ -23,7 +23,7 @@ NEEDED_OF = {"temperature": ("limit",), "heat flow": ("neutral heat flow",)}
 SHIPPED = Path(__file__).parents[1] / "data" / "observer.toml"
 CURE = (
     f"begin with a copy of the shipped file, {SHIPPED}, and change numbers there; or infer all of them again from your "
-    "evidence with python -m thermicon.perception.evidence.run and python -m thermicon.perception.evidence.calibrate"
+    "evidence with python -m thermicon.perception.evidence fit and python -m thermicon.perception.evidence observer"
 )
 MOST_NAMED = 6
 

@@ -20,8 +20,7 @@ from numpy.typing import NDArray
 from thermicon.circuit.cores import quiet_blas
 
 from ..arrays import Array
-from .likelihood import effective, normalised_weights
-from .pooled_answers import walk
+from .likelihood import effective, normalised_weights, walk
 from .states import SEEDS, Laboratories
 
 LEAST_EFFECTIVE, LEAST_SHARE = 60.0, 0.25

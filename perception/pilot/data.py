@@ -13,18 +13,16 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..arrays import Array
-from .answers import AnswerScore, score_person, score_pooled
+from ..experiments.measure import Setting
 from .conditioning import Step
 from .fit import Fit, MeasurementFit, compare, compare_measurements
-from .likelihood import log_likelihoods, person_log_likelihoods
-from .measurement_likelihood import Emulated, log_likelihood
+from .likelihood import PooledLikelihood, log_likelihoods, person_log_likelihoods
+from .measurement_likelihood import Emulated, Predicted, log_likelihood, predicted
 from .measurements import Measurements
 from .playing import Confusions, Stage
-from .pooled_answers import PooledLikelihood
 from .prediction import Three, three
-from .simulated_measurements import Predicted, Setting, predicted
 from .states import Laboratories, LaboratoryPrior
-from .trials import Trials
+from .trials import AnswerScore, Trials, score_person, score_pooled
 
 NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit.

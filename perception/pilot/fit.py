@@ -16,13 +16,12 @@ from itertools import combinations
 import numpy as np
 
 from ..arrays import Array
-from .answers import plugin_information
-from .measurement_likelihood import log_errors, person_covariance, shared_covariance
-from .measurements import Condition, Measurements
+from ..experiments.measure import Condition
+from .measurement_likelihood import Predicted, log_errors, person_covariance, shared_covariance
+from .measurements import Measurements
 from .playing import Confusions
 from .prediction import COVER, Three, median_three
-from .simulated_measurements import Predicted
-from .trials import Trials
+from .trials import Trials, plugin_information
 
 EXPERIMENTS = 1000
 LEAST_PEOPLE = 3

@@ -7,14 +7,28 @@ C, and N_j[a, b] answers b to icon a,
 
 Each participant is integrated over people on their own, so that a few odd answers of one person do not move the
 constants of the laboratory as the same answers of many would.
+
+With many participants or trials, the mixture over a few virtual people is a matter of who they happen to be. The sum of
+all answers hardly is: over participants it is nearly normal (a synthetic likelihood, Wood 2010),
+
+    y ~ N(μ(ℓ), V),   V = J·Cov_people(n·C) + Σ_a n_a·E[diag(C_a) − C_a C_aᵀ]
+
+with n presentations of each icon to each of J participants. μ is a polynomial of the laboratory's coordinates, fitted
+to simulated laboratories in the few directions in which they differ most against V; what the fit leaves is added to V.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
-from .playing import Small
+from .playing import Confusions, Small
 
 AT_ONCE = 4_000_000
 """Logarithms of probabilities that are held at once: 32 MB."""
@@ -62,3 +76,137 @@ def effective(weights: Array) -> float:
     4.0
     """
     return float(1.0 / np.square(weights).sum())
+
+
+DIRECTIONS, LEAST_RATIO = 10, 0.05
+"""At most so many directions, each with a variance between laboratories of at least this share of V."""
+STRONGEST = 8
+"""Coordinates whose products are fitted: no pair of weaker ones shows."""
+PENALTIES = tuple(10.0 ** (k / 2) for k in range(9))
+RIDGE = 1e-6
+"""Least variance of a cell of the pooled answers, in answers²."""
+STEPS, RISING, STEP = 1500, 0.5, 0.3
+"""Steps of a walk, the share of them in which the power of the likelihood rises to 1, and the first step size."""
+ACCEPTED = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class PooledLikelihood:
+    """Ln likelihood of pooled answers at coordinates; `coefficients` (features, directions), `variance` (directions,).
+
+    `observed` (directions,) are the answers in the directions, in SDs of V; `pairs` the products among the features.
+    """
+
+    observed: Array
+    coefficients: Array
+    pairs: tuple[tuple[int, int], ...]
+    variance: Array
+
+    @classmethod
+    def fit(cls, place: Array, played: Confusions, counts: Array, weight: Array | None = None) -> PooledLikelihood:
+        """Fit to simulated laboratories at coordinates (n, d), for answers (participants, icons, icons).
+
+        `weight` (n,) says how much each laboratory counts (None: all alike).
+        """
+        own = np.ones(len(place)) if weight is None else weight / weight.mean()
+        shown = counts.sum(axis=2)
+        mean, noise = _moments(played, shown, own)
+        root: Any = np.linalg.cholesky(noise + RIDGE * np.eye(len(noise)))
+        whitened: Array = np.linalg.solve(root, mean.T).T
+        seen: Array = np.linalg.solve(root, counts.sum(axis=0).ravel() - mean.mean(axis=0))
+        whitened = whitened - whitened.mean(axis=0)
+        features, pairs, smooth = smooth_features(place, whitened, own)
+        # Directions of the smooth part: what differs by who the simulated people are is no sign of a laboratory.
+        sizes, turned = np.linalg.eigh(np.cov(smooth.T, aweights=own))
+        used = np.flatnonzero(sizes > LEAST_RATIO)[::-1][:DIRECTIONS]
+        turned = turned[:, used] if used.size else turned[:, -1:]
+        coefficients, missed = ridge(features, whitened @ turned, own)
+        left = np.maximum(missed - _people_share(played, shown, root, turned, own), 0.0)
+        return cls(seen @ turned, coefficients, pairs, 1.0 + left)
+
+    def __call__(self, place: Array) -> Array:
+        """Ln likelihood (n,) at coordinates (n, d), up to a constant."""
+        off = self.observed - features_of(place, self.pairs) @ self.coefficients
+        found: Array = -0.5 * (np.square(off) / self.variance).sum(axis=1)
+        return found
+
+
+def walk(start: Array, target: Callable[[Array], Array], rng: np.random.Generator) -> Array:
+    """Sample coordinates (n, d) from a standard normal times the likelihood, by n Markov chains from `start`.
+
+    Proposals √(1 − s²)·x + s·noise leave the normal as it is (preconditioned Crank–Nicolson), so that the likelihood
+    alone decides on them; its power rises to 1 in the first half, in which s is set too.
+    """
+    place, value, step = start.copy(), target(start), STEP
+    for k in range(STEPS):
+        power = min(1.0, (k + 1) / (RISING * STEPS))
+        proposed = np.sqrt(1.0 - step**2) * place + step * rng.standard_normal(place.shape)
+        other = target(proposed)
+        accepted: NDArray[np.bool_] = np.log(rng.random(len(place))) < power * (other - value)
+        place[accepted], value[accepted] = proposed[accepted], other[accepted]
+        if power < 1.0:
+            step = float(np.clip(step * np.exp(0.2 * (accepted.mean() - ACCEPTED)), 0.01, 0.95))
+    return place
+
+
+def _moments(played: Confusions, shown: Array, weight: Array) -> tuple[Array, Array]:
+    """Expected pooled answers (laboratories, cells), and V (cells, cells), the mean over laboratories."""
+    total, icons = shown.sum(axis=0), shown.shape[1]
+    mean = (played.pooled * total[:, None]).reshape(len(played.probability), -1)
+    cells = np.repeat(total / total.sum(), icons)
+    each = played.probability.reshape(*played.probability.shape[:2], -1).astype(np.float64)
+    within = (each - each.mean(axis=1, keepdims=True)) * cells
+    flat = (within * np.sqrt(weight)[:, None, None]).reshape(-1, icons**2)
+    spread = flat.T @ flat / (len(flat) * (1.0 - 1.0 / each.shape[1]))
+    # Participants with more trials weigh more in the sum.
+    noise = spread * float(np.square(shown.sum(axis=1)).sum())
+    for a in range(icons):
+        rows = played.probability[:, :, a].reshape(-1, icons).astype(np.float64)
+        share = np.repeat(weight, each.shape[1]) / len(rows)
+        own = slice(a * icons, (a + 1) * icons)
+        noise[own, own] += total[a] * (np.diag(share @ rows) - (rows * share[:, None]).T @ rows)
+    return mean, noise
+
+
+def _people_share(played: Confusions, shown: Array, root: Array, turned: Array, weight: Array) -> Array:
+    """Variance (directions,) of a simulated laboratory's mean with who its people are, in the whitened directions."""
+    total = np.repeat(shown.sum(axis=0), shown.shape[1])
+    each = played.probability.reshape(*played.probability.shape[:2], -1).astype(np.float64)
+    along = ((each - each.mean(axis=1, keepdims=True)) * total) @ np.linalg.solve(root, np.eye(len(root))).T @ turned
+    found: Array = weight @ np.square(along).mean(axis=1) / len(weight) / (each.shape[1] - 1)
+    return found
+
+
+def smooth_features(place: Array, values: Array, weight: Array) -> tuple[Array, tuple[tuple[int, int], ...], Array]:
+    """Features, the products among them, and what linear terms and squares explain of values (n, cells)."""
+    plain = features_of(place, ())
+    slopes, _ = ridge(plain, values, weight)
+    smooth = plain @ slopes
+    strength = np.square(slopes[1 : 1 + place.shape[1]]).sum(axis=1)
+    pairs = tuple(combinations(sorted(np.argsort(-strength)[:STRONGEST].tolist()), 2))
+    return features_of(place, pairs), pairs, smooth
+
+
+def features_of(place: Array, pairs: tuple[tuple[int, int], ...]) -> Array:
+    """Features (n, features) of coordinates: a constant, linear terms, squares, and the products of some pairs."""
+    first, second = [a for a, _ in pairs], [b for _, b in pairs]
+    return np.hstack([np.ones((len(place), 1)), place, np.square(place) - 1.0, place[:, first] * place[:, second]])
+
+
+def ridge(features: Array, values: Array, weight: Array) -> tuple[Array, Array]:
+    """Coefficients (features, targets) with each target's best penalty, and its leave-one-out mean square error."""
+    root = np.sqrt(weight)[:, None]
+    features, targets = features * root, values * root
+    scale = np.ones(features.shape[1])
+    scale[0] = 1e3  # the constant is hardly shrunk
+    left, sizes, right = np.linalg.svd(features * scale, full_matrices=False)
+    along = left.T @ targets
+    best, found = np.full(targets.shape[1], np.inf), np.zeros((features.shape[1], targets.shape[1]))
+    for penalty in PENALTIES:
+        shrink = sizes**2 / (sizes**2 + penalty)
+        free = np.maximum(1.0 - np.square(left) @ shrink, 0.05)
+        error = np.square((targets - left @ (shrink[:, None] * along)) / free[:, None]).mean(axis=0)
+        better = error < best
+        own = scale[:, None] * (right.T @ ((sizes / (sizes**2 + penalty))[:, None] * along))
+        best[better], found[:, better] = error[better], own[:, better]
+    return found, best

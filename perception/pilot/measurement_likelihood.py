@@ -4,13 +4,14 @@ Logs of the values of participant j are normal, and participants share what the 
 
     y_j = μ(ℓ) + b_j + e_j + δ,   b_j ~ N(0, Σ(ℓ)),   e_j ~ N(0, errors²),   δ ~ N(0, D)
 
-μ and Σ are means and covariances of simulated people (`simulated_measurements`). Participants measured under the same
-conditions with the same errors enter by their mean and scatter. Where no people were simulated, polynomials of the
+μ and Σ are means and covariances of people who are simulated by `experiments.measure`. Participants measured under the
+same conditions with the same errors enter by their mean and scatter. Where no people were simulated, polynomials of the
 coordinates take the place of μ and Σ.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -18,10 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..experiments.task_constants import DISCREPANCY, UNSTATED
+from ..experiments.crowd import PEOPLE, SEED
+from ..experiments.laboratory import Laboratory
+from ..experiments.measure import Condition, Setting, logs_of
+from ..experiments.tasks import DISCREPANCY, UNSTATED
+from ..kernels.parallel import in_order
+from ..observer.draws import BETWEEN_LABORATORIES
+from .likelihood import features_of, ridge, smooth_features
 from .measurements import Measurements
-from .pooled_answers import features_of, ridge, smooth_features
-from .simulated_measurements import Predicted
+from .states import OFFSETS, Laboratories, LaboratoryPrior
 
 RATING_SCALE = 0.7
 """SD (ln) by which another laboratory's scale of ratings may differ from the published one: a factor of 2; assumed."""
@@ -152,3 +158,58 @@ def _predicted(flat: Array, count: int) -> Predicted:
     root[:, range(count), range(count)] = np.exp(np.clip(diagonal, -8.0, 3.0))
     root[:, rows, columns] = below
     return Predicted(mean, root @ np.swapaxes(root, 1, 2), np.exp(np.clip(within, -8.0, 3.0)))
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """Predictions of conditions in laboratories: logs of people's values.
+
+    `mean` (laboratories, conditions) over people, `between` (laboratories, conditions, conditions) their covariance,
+    `within` (laboratories, conditions) the SD of the log of one trial.
+    """
+
+    mean: Array
+    between: Array
+    within: Array
+
+    def of(self, which: NDArray[np.int64]) -> Predicted:
+        """Those of some laboratories."""
+        return Predicted(self.mean[which], self.between[which], self.within[which])
+
+    def joined(self, other: Predicted) -> Predicted:
+        """These and those of further laboratories."""
+        pairs = zip((self.mean, self.between, self.within), (other.mean, other.between, other.within), strict=True)
+        return Predicted(*(np.concatenate(pair) for pair in pairs))
+
+
+def measuring(
+    prior: LaboratoryPrior, row: Array, setting: Setting, people: int = PEOPLE, seed: int = SEED
+) -> Laboratory:
+    """A laboratory by a row of `LaboratoryPrior.values`, which measures in a setting."""
+    named: dict[str, float] = dict(zip(prior.names, row.tolist(), strict=True))
+    offsets = [named[offset] / named[BETWEEN_LABORATORIES] for offset in OFFSETS]
+    return setting.laboratory(named, offsets, prior.draws.variable, people, seed)
+
+
+def predicted(
+    prior: LaboratoryPrior,
+    some: Laboratories,
+    setting: Setting,
+    conditions: Sequence[Condition],
+    step: Callable[[], None] | None = None,
+) -> Predicted:
+    """Predict conditions in laboratories, with the same crowd in each; `step` is called after each."""
+    values = prior.values(some)
+
+    def one(k: int) -> tuple[Array, Array, Array]:
+        place = measuring(prior, values[k], setting)
+        each = [logs_of(place, setting, condition) for condition in conditions]
+        logs = np.stack([log for log, _ in each], axis=1)
+        return logs.mean(axis=0), np.atleast_2d(np.cov(logs.T)), np.array([within for _, within in each])
+
+    found = []
+    for each in in_order(one, range(len(some))):
+        found.append(each)
+        if step is not None:
+            step()
+    return Predicted(*(np.stack([parts[k] for parts in found]) for k in range(3)))

@@ -3,70 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
 
 import numpy as np
 
 from ..arrays import Array, own_arrays
-from ..observer.channels import CHANNELS, Channel
-
-Kind = Literal["threshold", "reaction_time", "rating"]
-METHODS: dict[Kind, tuple[str, ...]] = {
-    "threshold": ("forced_choice", "yes_no", "limits"),
-    "reaction_time": ("choice", "simple"),
-    "rating": ("magnitude",),
-}
-"""Methods of each kind; the first of reaction times and ratings is meant where none is given."""
-ADAPTIVE = ("forced_choice", "yes_no")
-"""Methods that find the size themselves."""
-UNITS: dict[Kind, str] = {"threshold": "K", "reaction_time": "s", "rating": "points"}
-"""Units inside; ratings are points of 100."""
-WORDS = {
-    "forced_choice": "forced choice",
-    "yes_no": "yes/no",
-    "limits": "limits",
-    "choice": "choice reaction time",
-    "simple": "simple reaction time",
-    "magnitude": "rating",
-}
-
-
-@dataclass(frozen=True, slots=True)
-class Condition:
-    """What was measured, and the ramp of the display it was measured with.
-
-    `size_K` is the change that was timed or rated, and where a ramp of limits ends; None for forced choice and yes/no.
-    Changes and rates are without sign.
-    """
-
-    kind: Kind
-    method: str
-    channel: Channel
-    baseline_C: float
-    size_K: float | None
-    rate_K_per_s: float
-    hold_s: float
-
-    def __post_init__(self) -> None:
-        if self.kind not in get_args(Kind) or self.method not in METHODS[self.kind] or self.channel not in CHANNELS:
-            raise ValueError(f"there is no {self.kind} by {self.method} of {self.channel}")
-        if not self.rate_K_per_s > 0.0 or not self.hold_s >= 0.0:
-            raise ValueError("a rate above 0 and a hold of at least 0 s are needed")
-        if self.method not in ADAPTIVE and (self.size_K is None or not self.size_K > 0.0):
-            raise ValueError(f"{WORDS[self.method]} needs the size of the change, above 0 K")
-
-    @property
-    def unit(self) -> str:
-        """Unit of its values."""
-        return UNITS[self.kind]
-
-    @property
-    def label(self) -> str:
-        """What it is in words."""
-        words = f"{self.channel}, {WORDS[self.method]}"
-        if self.kind == "threshold":
-            return f"{words}, {self.rate_K_per_s:g} K/s"
-        return f"{words}, {self.size_K:g} K at {self.rate_K_per_s:g} K/s"
+from ..experiments.measure import Condition
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, cast, overload
 
 import numpy as np
 
 from thermicon.circuit.inputs import quoted
+from thermicon.icons.files.table import as_number
 from thermicon.icons.near_words import nearest_words
 
+from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
 from ..observer.channels import CHANNELS, Channel
-from .measurements import ADAPTIVE, METHODS, UNITS, Condition, Kind, Measurements
-from .trials_file import Cells, TrialsError, check_labels, label, read_cells, read_header
+from .measurements import Measurements
+from .trials_file import TrialsError, check_labels, label, table_in
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -58,7 +60,7 @@ LONGEST_RAMP_S = 120.0
 
 def is_measurements(path: str | Path) -> bool:
     """Whether the header of a file is that of measurements, not of trials."""
-    header = {cell.lower() for cell in read_header(Path(path))}
+    header = {cell.lower() for cell in table_in(Path(path), (), EXAMPLE, "table of trials or measurements")[0].header}
     return "presented" not in header and any(mark in header for mark in MARKS_OF_KIND)
 
 
@@ -95,11 +97,11 @@ def read_measurements(path: str | Path, rig: Rig) -> Measurements:
     Measurements(1 participant, 1 value, 1 condition)
     """
     file = Path(path)
-    cells = read_cells(file, COLUMNS, OPTIONAL, EXAMPLE, WHAT)
-    _check_columns(file, cells)
+    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT)
+    _check_columns(file, table.header)
     found: dict[tuple[str, Condition], tuple[float, float, float]] = {}
     first: dict[tuple[str, Condition], int] = {}
-    for row, line in zip(cells.rows, cells.lines, strict=True):
+    for line, row in table.records((*COLUMNS, *OPTIONAL)):
         key, numbers = _row(row, f"{file}:{line}", rig)
         if key in found:
             person, condition = key
@@ -112,16 +114,16 @@ def read_measurements(path: str | Path, rig: Rig) -> Measurements:
     check_labels(file, people)
     if len(conditions) > MOST_CONDITIONS:
         raise TrialsError(f"{file}: {len(conditions)} conditions; at most {MOST_CONDITIONS} are taken at once")
-    table = np.full((3, len(people), len(conditions)), np.nan)
+    values = np.full((3, len(people), len(conditions)), np.nan)
     for (person, condition), numbers in found.items():
-        table[:, people.index(person), conditions.index(condition)] = numbers
-    return Measurements(conditions, people, table[0], table[1], table[2], file.name, cells.digest)
+        values[:, people.index(person), conditions.index(condition)] = numbers
+    return Measurements(conditions, people, values[0], values[1], values[2], file.name, digest)
 
 
-def _check_columns(file: Path, cells: Cells) -> None:
+def _check_columns(file: Path, header: Sequence[str]) -> None:
     """Refuse columns that look like misspelt ones; others, such as notes, are nobody's business here."""
     known = (*COLUMNS, *OPTIONAL)
-    for name in cells.header:
+    for name in header:
         if name not in known and (close := nearest_words(name, known, 1, 0.75)):
             raise TrialsError(
                 f"{file}: there is no column {quoted(name)}; did you mean {close[0]}? Rename it, or remove it"
@@ -203,10 +205,7 @@ def _one_of(text: str, column: str, known: tuple[str, ...], where: str, of: str 
 
 
 def _number(text: str, column: str, where: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
+    value = as_number(text)
     if not math.isfinite(value):
         raise TrialsError(
             f"{where}: {column} is {quoted(text) if text else 'empty'}, not a number with a decimal point"

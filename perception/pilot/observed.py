@@ -12,6 +12,7 @@ import numpy as np
 
 from thermicon.circuit.program import own_version
 
+from ..experiments.measure import Setting
 from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
@@ -23,7 +24,6 @@ from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements import Measurements
 from .playing import Confusions, Stage, laboratories_for, stage
 from .prediction import ChangedConstant, ChangedPrediction, Three, changed
-from .simulated_measurements import Setting
 from .states import LaboratoryPrior
 from .trials import Trials
 

@@ -19,15 +19,12 @@ from thermicon.circuit.records import Table
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Norm
-from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
-from ..observer.from_draw import observer_with
+from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws, laboratory_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People, draw_people
-from ..observer.prior_file import priors_of
-from ..observer.priors import Prior
-from ..sensation.memory_parameters import memory_parameters
-from ..sensation.parameters import ObserverParameter, latin
+from ..observer.people import People
+from ..observer.priors import Prior, priors_of
+from ..sensation.parameters import ObserverParameter, latin, memory_parameters
 
 LEAST_VARIANCE = 1e-12
 """Directions in which draws vary less, such as a constant that is the same in all, are left as they are."""
@@ -153,9 +150,7 @@ class LaboratoryPrior:
     def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, by a row of `values`, and people who come there."""
         named = dict(zip(self.names, values.tolist(), strict=True))
-        observer = observer_with(self.base, named)
-        crowd = draw_people(people, seed, spreads=named)
-        return observer, crowd.less_sensitive(*(-named[name] for name in OFFSETS))
+        return laboratory_with(self.base, named, (named[OFFSETS[0]], named[OFFSETS[1]]), people, seed)
 
 
 def _scores(parameter: ObserverParameter, draws: PosteriorDraws) -> Array:

@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from ..experiments.measure import ADAPTIVE, Condition, Setting, logs_of
 from ..observer.channels import CHANNELS, USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
-from .measurements import ADAPTIVE, Condition, Measurements
+from .measurement_likelihood import measuring
+from .measurements import Measurements
 from .playing import Confusions, stage
-from .simulated_measurements import Setting, measuring
 from .states import OFFSETS, SEEDS, Laboratories, LaboratoryPrior
 from .trials import Trials
 
@@ -173,7 +174,7 @@ def measurements_of(
     invited = rng.integers(CROWD, size=participants)
     values = np.empty((participants, len(conditions)))
     for k, condition in enumerate(conditions):
-        logs, within = place.measure(setting, condition)
+        logs, within = logs_of(place, setting, condition)
         # What has no trials of its own, such as a staircase, has the error that is assumed of it.
         error = within if condition.method in ADAPTIVE else within / np.sqrt(trials)
         values[:, k] = np.exp(logs[invited] + error * rng.standard_normal(participants))

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
-import io
 import math
 import re
-from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import LIKE_MILLISECONDS, InputError, line_fault, quoted, read_bytes, read_text, text_of
+from thermicon.circuit.inputs import LIKE_MILLISECONDS, InputError, line_fault, quoted, read_bytes, table_fault, text_of
+from thermicon.icons.files.table import Kind, Table, as_number, read_table
 from thermicon.icons.near_words import did_you_mean
 
 from .trials import Trials
@@ -25,7 +22,6 @@ EXAMPLE = f"{','.join(COLUMNS)},{TIME}"
 WHAT = "table of trials"
 MOST_MB, MOST_ROWS, MOST_PARTICIPANTS = 20, 200_000, 1000
 LONGEST_LABEL, LONGEST_TIME_S = 100, 3600.0
-MARKS = (",", ";", "\t")
 LEAST_TIMES, SLOW_S, SLOWEST_S = 3, 60.0, 600.0
 """Times by which a unit is judged; medians above which whole numbers from 100 on, or any, can only be milliseconds."""
 PAUSE, MOST_PAUSES = 30.0, 5
@@ -39,19 +35,6 @@ LIKE_TIMES = re.compile(
 
 class TrialsError(InputError):
     """A table of answers cannot be used; the message says what, where and the cure."""
-
-
-@dataclass(frozen=True, slots=True)
-class Cells:
-    """Rows of a table with a header: `rows` hold cells by column, `lines` where each stands in the file.
-
-    `digest` has the first 16 digits of the SHA-256 of the file, by which a result names what it was made from.
-    """
-
-    header: tuple[str, ...]
-    rows: tuple[dict[str, str], ...]
-    lines: tuple[int, ...]
-    digest: str
 
 
 def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
@@ -87,8 +70,9 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     Trials(1 participant, 2 trials, 2 icons)
     """
     file = Path(path)
-    cells = read_cells(file, COLUMNS, (TIME,), EXAMPLE, WHAT)
-    _check_unit_of_times(file, cells)
+    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT)
+    rows = list(table.records((*COLUMNS, TIME)))
+    _check_unit_of_times(file, [row for _, row in rows])
     names, known = tuple(icons), set(icons)
     places = {name: place for place, name in enumerate(names)}
     participants: dict[str, int] = {}
@@ -96,7 +80,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     times: list[tuple[int, float]] = []
     timed: list[tuple[str, int, float]] = []
     first: dict[tuple[str, str], int] = {}
-    for row, line in zip(cells.rows, cells.lines, strict=True):
+    for line, row in rows:
         where = f"{file}:{line}"
         person, trial = label(row["participant"], "participant", where), label(row["trial"], "trial", where)
         if (person, trial) in first:
@@ -119,8 +103,8 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
         float(np.median(each)) if (each := [time for person, time in times if person == number]) else math.nan
         for number in range(len(participants))
     )
-    doubts = (*_unread_times(file, cells.header), *_pauses(file, timed))
-    return Trials(names, tuple(participants), counts, medians, file.name, cells.digest, doubts)
+    doubts = (*_unread_times(file, table.header), *_pauses(file, timed))
+    return Trials(names, tuple(participants), counts, medians, file.name, digest, doubts)
 
 
 def _unread_times(file: Path, header: Sequence[str]) -> list[str]:
@@ -155,13 +139,12 @@ def _pauses(file: Path, timed: Sequence[tuple[str, int, float]]) -> list[str]:
     return found
 
 
-def _check_unit_of_times(path: Path, cells: Cells) -> None:
+def _check_unit_of_times(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
     """Refuse answers of a participant, or of all together, whose times can only be milliseconds."""
     times: dict[str, list[float]] = {}
-    for row in cells.rows:
-        with suppress(ValueError):
-            if math.isfinite(value := float(row.get(TIME, ""))):
-                times.setdefault(row["participant"], []).append(value)
+    for row in rows:
+        if math.isfinite(value := as_number(row.get(TIME, ""))):
+            times.setdefault(row["participant"], []).append(value)
     together = [value for each in times.values() for value in each]
     slow = [name for name, each in times.items() if is_milliseconds(each)]
     others = [name for name, each in times.items() if len(each) >= LEAST_TIMES and name not in slow]
@@ -187,71 +170,29 @@ def is_milliseconds(times: Sequence[float]) -> bool:
     return middle > SLOWEST_S or (middle > SLOW_S and whole)
 
 
-def read_header(path: Path) -> tuple[str, ...]:
-    """Names of the columns of a CSV file, as they stand in its first line; empty where there is none."""
-    text = read_text(path, WHAT, MOST_MB, TrialsError)
-    head = _first_line(text)
-    try:
-        return tuple(cell.strip() for cell in next(csv.reader([head], delimiter=max(MARKS, key=head.count)), []))
-    except csv.Error:
-        return ()
+def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tuple[Table, str]:
+    """Return the table in a file, and the first 16 digits of the file's SHA-256, by which a result names it.
 
-
-def _first_line(text: str) -> str:
-    return next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
-
-
-def read_cells(path: Path, needed: Sequence[str], optional: Sequence[str], example: str, what: str) -> Cells:
-    """Rows of a CSV file that has the needed columns; a TrialsError lists what is missing and what was found."""
+    A TrialsError lists which columns of those `needed` are missing, and what was found.
+    """
     data = read_bytes(path, what, MOST_MB, TrialsError)
-    text = text_of(data, path, what, TrialsError)
-    head = _first_line(text)
-    mark = max(MARKS, key=head.count)
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
-    header: tuple[str, ...] = ()
-    rows, lines = list[dict[str, str]](), list[int]()
-    try:
-        for cells in reader:
-            if not any(cell.strip() for cell in cells) or cells[0].startswith("#"):
-                continue
-            where = f"{path}:{reader.line_num}"
-            if not header:
-                header = tuple(cell.strip() for cell in cells)
-                _check_header(where, header, needed, optional, example)
-                continue
-            if len(cells) > len(header) and any(cell.strip() for cell in cells[len(header) :]):
-                raise TrialsError(
-                    f"{where}: {len(cells)} cells, where the first line names {len(header)}; "
-                    "put names with commas in quotes, and write decimal points"
-                )
-            padded = [cell.strip() for cell in cells] + [""] * len(header)
-            rows.append(dict(zip(header, padded[: len(header)], strict=True)))
-            lines.append(reader.line_num)
-            if len(rows) > MOST_ROWS:
-                raise TrialsError(f"{path}: more than {MOST_ROWS:,} rows; one experiment a file is enough")
-    except csv.Error as problem:
-        raise TrialsError(f"{path}:{reader.line_num}: this row cannot be read ({problem}); save it as CSV") from None
-    if not rows:
-        raise TrialsError(f"{path}: no row below the names of the columns; write one row per trial")
-    return Cells(header, tuple(rows), tuple(lines), hashlib.sha256(data).hexdigest()[:16])
+    said = table_fault(path, TrialsError)
 
+    def fault(kind: Kind, line: int | None, wrong: str, cure: str) -> Exception:
+        return said(kind, line, wrong, "one experiment a file is enough" if kind == "size" else cure)
 
-def _check_header(
-    where: str, header: Sequence[str], needed: Sequence[str], optional: Sequence[str], example: str
-) -> None:
-    missing = [name for name in needed if name not in header]
-    if missing:
-        close = {cell.lower(): cell for cell in header}
+    table = read_table(text_of(data, path, what, TrialsError), fault, example, MOST_ROWS)
+    if missing := [name for name in needed if name not in table.header]:
+        close = {cell.lower(): cell for cell in table.header}
         hints = [f"rename {close[name]!r} to {name}" for name in missing if name in close]
-        found = ", ".join(cell[:LONGEST_LABEL] for cell in header[:12]) or "none"
         cure = "; ".join(hints) or f"the first line is such as: {example}"
         raise TrialsError(
-            f"{where}: {'column' if len(missing) == 1 else 'columns'} missing: {', '.join(missing)}; found: {found}; "
-            f"{cure}"
+            f"{path}:{table.line}: {'column' if len(missing) == 1 else 'columns'} missing: {', '.join(missing)}; "
+            f"found: {table.found}; {cure}"
         )
-    for name in (*needed, *optional):
-        if list(header).count(name) > 1:
-            raise TrialsError(f"{where}: the column {name} appears twice; rename or remove one of them")
+    if needed and not table.rows:
+        raise TrialsError(f"{path}: no row below the names of the columns; write one row per trial")
+    return table, hashlib.sha256(data).hexdigest()[:16]
 
 
 def label(cell: str, column: str, where: str) -> str:
@@ -291,10 +232,7 @@ def _icon(cell: str, column: str, known: set[str], where: str) -> str:
 
 
 def _time(cell: str, where: str) -> float:
-    try:
-        value = float(cell)
-    except ValueError:
-        value = math.nan
+    value = as_number(cell)
     if not 0.0 <= value <= LONGEST_TIME_S:
         raise TrialsError(
             f"{where}: {TIME} is {quoted(cell)}, not a time of 0 to {LONGEST_TIME_S:g} s; leave it empty where none "

@@ -6,14 +6,13 @@ to another job, counts as absent.
 
 from __future__ import annotations
 
-import os
-import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from thermicon.icons.atomic import MARK, OutputError, complete_or_absent
 from thermicon.icons.userfolder import remove_unused
 
 from ..arrays import Array
@@ -41,7 +40,7 @@ class BatchStore:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise BatchStoreError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
-        remove_unused(folder.glob(".*.part"), STALE_S)
+        remove_unused(folder.glob(f".*.{MARK}.npz"), STALE_S)
         return cls(folder, key)
 
     def path(self, number: int) -> Path:
@@ -49,18 +48,13 @@ class BatchStore:
         return self.folder / f"{number:06d}.npz"
 
     def put(self, number: int, arrays: Mapping[str, Array]) -> None:
-        """Write a batch under a temporary name and rename it, so that an incomplete file is never read."""
-        goal = self.path(number)
-        draft = goal.with_name(f".{goal.stem}.{os.getpid()}.{threading.get_ident()}.part")
+        """Write a batch."""
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            with draft.open("wb") as file:
-                np.savez(file, allow_pickle=False, key=np.array(self._label(number)), **arrays)
-            draft.replace(goal)
-        except OSError as error:
-            raise BatchStoreError(f"cannot keep finished parts in {self.folder}: {error.strerror or error}") from error
-        finally:
-            draft.unlink(missing_ok=True)
+            with complete_or_absent(self.path(number)) as draft:
+                np.savez(draft, allow_pickle=False, key=np.array(self._label(number)), **arrays)
+        except (OSError, OutputError) as error:
+            raise BatchStoreError(f"cannot keep finished parts in {self.folder}: {error}") from error
 
     def get(self, number: int) -> dict[str, Array] | None:
         """The arrays of a finished batch; None where there is no file, or none that can be trusted."""

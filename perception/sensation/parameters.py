@@ -15,6 +15,7 @@ from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
 from ..observer.channels import USUAL_NORM
+from ..observer.memory import MEMORY_NAMES
 from ..observer.observer import CHANNELS, NORMS, Norm, Observer, on_forearm, variant_records
 
 PER_PERSON = ("path length to the cord", "decision time", "lapse rate")
@@ -130,3 +131,12 @@ def _at_site(known: Table, site: str) -> Observer:
 def _parameter(record: Record) -> ObserverParameter:
     low, high = record.interval
     return ObserverParameter(parameter_name(record), low, record.central, high, record.unit, record.source, record.use)
+
+
+def memory_parameters(norm: Norm, site: str = "thenar", records: Table | None = None) -> tuple[ObserverParameter, ...]:
+    """The uncertain constants of memory that a norm makes use of, by the records of an observer (None: the shipped).
+
+    >>> [parameter.name for parameter in memory_parameters("episodes")]
+    ['share of the scatter of ratings', 'bar of an episode', 'memory noise (episodes)']
+    """
+    return tuple(parameter for parameter in observer_parameters(norm, site, records) if parameter.name in MEMORY_NAMES)

@@ -1,4 +1,19 @@
-"""Receptor drive → sensation, through area, site and transducer. Sensory noise is the unit: ψ = 1 is d′ = 1."""
+"""What reaches a receptor → receptor drive → sensation. Sensory noise is the unit: ψ = 1 is d′ = 1.
+
+Drive goes through limits of quality, integration and adaptation. There is no cold above the cold channel's limit and no
+warmth below the warm channel's: a fall from 36 to 34 °C is less warm, not cold. Adaptation is a level that follows the
+input clipped to the neutral zone: inside it adaptation is complete, outside it a hold keeps a residue. The equations
+stand in `kernels.adapted_drive`. The input is temperature (°C) or, for an observer of heat flow, W/m² into the skin.
+Sensation goes through area, site and transducer.
+
+Spatial summation has two ends:
+
+    A_eff = (√A + √A_rf)²,   A_sum = A_eff/√(1 + (A_eff/A_end)²),   sensitivity ∝ A_sum^n
+
+Below the area of a receptive field a smaller contact stimulates the same receptors (Campero et al. 2001: human cold
+units respond to spots under 5 mm); above about 200 cm² a larger one adds nothing (Hardy & Oppel 1937: 100 and 225 cm²
+of radiant heat differ, 225 and 400 do not). Areas that do not touch add like one.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +24,55 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, as_rows
 from ..kernels.parallel import over_rows
-from ..observer.channels import Channel
+from ..observer.channels import Channel, sign_of
 from ..observer.observer import Observer
-from .summation import END_CM2, FIELD_CM2, area_factor
 
 CM2 = 1e-4
 """A square centimetre in m²."""
+FIELD_CM2 = 0.25
+"""Area of a receptive field 5 mm wide, as a square (Campero et al. 2001)."""
+END_CM2 = 200.0
+"""Area where summation ends; between 100 and 400 (Hardy & Oppel 1937)."""
+NO_LIMIT_C = 1e6
+"""So far away that a limit does nothing."""
+
+
+def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer: Observer) -> Array:
+    """Drive (never negative, in `observer.drive_unit`) of one channel for what reaches its receptors.
+
+    `received` has shape (..., n_time) on a uniform clock of `dt_s`: temperature in °C at the depth
+    of the channel or, as `observer.variable` says, heat flow there in W/m² into the skin. The drive
+    has the same shape. At the first sample the receptor is adapted as far as the neutral zone allows.
+
+    >>> import numpy as np
+    >>> cooling = 32.0 - np.minimum(np.arange(0.0, 4.0, 0.01), 1.0)
+    >>> bool(receptor_drive(cooling, 0.01, "warm", Observer.load()).max() > 0.0)
+    False
+    """
+    from ..kernels.adapted_drive import adapted_drive
+
+    rows, shape = as_rows(received)
+    drive = np.empty_like(rows)
+    receptor, sign = observer.receptor(channel), sign_of(channel)
+    limit = -NO_LIMIT_C * sign if receptor.limit_C is None else receptor.limit_C
+    low, high = observer.neutral(channel)
+
+    def work(part: slice) -> None:
+        adapted_drive(
+            rows[part],
+            dt_s,
+            sign,
+            limit,
+            receptor.softness_K,
+            low,
+            high,
+            observer.integration_s,
+            receptor.adaptation_s,
+            drive[part],
+        )
+
+    over_rows(work, rows.shape[0], rows.size)
+    return drive.reshape(shape)
 
 
 def sensation(
@@ -82,3 +140,31 @@ def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, sit
     ends = (0.0, math.inf) if "ends of summation" in observer.without else (FIELD_CM2, END_CM2)
     exponent = observer.receptor(channel).area_exponent
     return area_factor(area_m2 / CM2, observer.reference_area_m2 / CM2, exponent, *ends) / factor
+
+
+def summed_area_cm2(area_cm2: float, field_cm2: float = FIELD_CM2, end_cm2: float = END_CM2) -> float:
+    """The area that counts, in cm²; ``math.inf`` as `end_cm2` and 0 as `field_cm2` turn the two ends off.
+
+    >>> [round(summed_area_cm2(area), 2) for area in (0.01, 9.0, 18000.0)]
+    [0.36, 12.23, 199.99]
+    """
+    if not area_cm2 > 0.0:
+        raise ValueError(f"the area of contact must be above 0 cm², not {area_cm2:g} cm²")
+    touched = (math.sqrt(area_cm2) + math.sqrt(field_cm2)) ** 2
+    return touched / math.hypot(1.0, touched / end_cm2)
+
+
+def area_factor(
+    area_cm2: float,
+    reference_cm2: float,
+    exponent: float,
+    field_cm2: float = FIELD_CM2,
+    end_cm2: float = END_CM2,
+) -> float:
+    """Sensitivity at an area over that at a reference area.
+
+    >>> round(area_factor(18.0, 9.0, 0.7), 3)
+    1.525
+    """
+    ratio = summed_area_cm2(area_cm2, field_cm2, end_cm2) / summed_area_cm2(reference_cm2, field_cm2, end_cm2)
+    return math.pow(ratio, exponent)

@@ -37,15 +37,15 @@ SMOKE = {
     "test_the_page_starts_and_shows_the_curve_of_what_is_typed",  # the page under Voila
     "test_a_view_greets_and_draws_the_first_frame",  # the canvas alone
 }
-"""The tests of this folder that belong to the ordinary suite; all others are slow."""
+"""The tests of this folder that belong to the ordinary suite; all others are slow, or benchmarks, which run alone."""
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest deselects what is slow
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Browser tests come last: Playwright keeps an event loop running in this thread, which breaks others."""
     items.sort(key=lambda item: Path(__file__).parent in item.path.parents)
-    for item in items:
-        if Path(__file__).parent in item.path.parents and getattr(item, "originalname", item.name) not in SMOKE:
+    for item in (one for one in items if Path(__file__).parent in one.path.parents):
+        if getattr(item, "originalname", item.name) not in SMOKE and not item.get_closest_marker("benchmark"):
             item.add_marker(pytest.mark.slow)
 
 

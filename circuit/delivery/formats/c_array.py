@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from thermicon.icons.model.cleaning import clean_line
+from thermicon.icons.model.context import clean_line
 
 from ..delivered_drive import DeliveredDrive
 from .c_player import PLAYER, c_float, player_files

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.circuit.delivery.one_drive import Judge, prepare
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.delivery.prepare import Judge, Prepared, prepare, prepare_set
+from thermicon.circuit.delivery.prepare import Prepared, prepare_set
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import CueErrors, Icon, parse
 

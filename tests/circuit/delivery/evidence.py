@@ -20,10 +20,11 @@ from tests.circuit.delivery.adversarial import Case, some_case
 from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
 from tests.circuit.delivery.followed import followed, followed_in_order
 from tests.circuit.delivery.independent import Json
+from tests.circuit.delivery.one_drive import Judge
 from tests.circuit.delivery.replay import Held, Player, Skin, Worst, in_any_order, judged, shown
 from thermicon.circuit.delivery.formats import Format, FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import Judge, Prepared
+from thermicon.circuit.delivery.prepare import Prepared
 
 PER_PART = 100
 LOOKED_AT = 6

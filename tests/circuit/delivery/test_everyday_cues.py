@@ -16,11 +16,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, format_names, load_format
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import Icon, load_library, parse

@@ -12,13 +12,14 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.surerig import sure_rig
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import Prepared, Verdict, prepare
+from thermicon.circuit.delivery.prepare import Prepared, Verdict
 from thermicon.circuit.delivery.refusal import Refusal, needed_A, refusals_of
 from thermicon.circuit.delivery.sidecar import NO_CLEARANCE
 from thermicon.circuit.program import code_digest

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from thermicon.circuit import Device, InputError, Rig, export
 from thermicon.circuit.delivery.export import ExportError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.icons import load_library, parse
 
 WARM = load_library("six-icons")["warming-step"]
@@ -33,7 +33,7 @@ def test_a_set_is_exported_for_the_usual_device_of_a_format(tmp_path: Path) -> N
     result = export(two, RIG, format="setpoint-csv", pause_s=60.0, folder=tmp_path / "new" / "run")
     assert {path.name: path.read_bytes() for path in (tmp_path / "new" / "run").iterdir()} == dict(result.files)
     assert [path.name for path in (tmp_path / "new").iterdir()] == ["run"]
-    assert result.device_name == load_format("setpoint-csv").device
+    assert result.device.name == load_format("setpoint-csv").device
 
 
 def test_refusals_are_data_and_nothing_is_written(tmp_path: Path) -> None:
@@ -57,10 +57,10 @@ def test_force_packs_what_misses_its_target_but_never_what_is_unsafe() -> None:
 
 def test_a_folder_with_files_in_it_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
-    with pytest.raises(ExportError, match="is not an empty folder; give one that is new or empty"):
+    with pytest.raises(ExportError, match=r"notes\.txt already exists and was kept; give a new or empty folder"):
         export(WARM, RIG, "dac-16", folder=tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
-    with pytest.raises(ExportError, match="cannot be written"):
+    with pytest.raises(ExportError, match="cannot write"):
         export(WARM, RIG, "dac-16", folder=tmp_path / "notes.txt" / "run")
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from tests.circuit.delivery.followed import Follower
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.delivery.replay import RATE_K_PER_S, Worst
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.icons import parse
 
 SMALL = Rig.load("thenar").with_(**{

@@ -16,10 +16,10 @@ import pytest
 from tests.circuit.delivery.adversarial import BASES, between
 from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
 from tests.circuit.delivery.loops_at_work import Controllers, at_work
+from tests.circuit.delivery.one_drive import prepare
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.icons import Icon, load_library, parse
 
 EXPORTS = min(200, int(os.environ.get("THERMICON_EVIDENCE", "200")))

@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Rig, simulate_current
 from thermicon.circuit.delivery.deliver import deliver, traces_until
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.circuit.delivery.samples import Samples
 from thermicon.circuit.delivery.spread import open_loop_spread
 from thermicon.circuit.records import Record
@@ -52,7 +52,7 @@ class TestDeliveredDrive:
         assert found.trace.has_current
         assert np.abs(found.trace.display_C - found.designed_trace.display_C).max() < 0.05
         assert found.trace.current_A.max() <= RIG.driver.current_max_A
-        assert found.deviation.losses() == ()
+        assert found.deviation.lost == ()
         again = simulate_current(found.delivered, RIG)
         assert again.skin_C == pytest.approx(found.trace.skin_C, abs=1e-9)
 

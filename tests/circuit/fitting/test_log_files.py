@@ -53,17 +53,17 @@ def test_a_table_is_read_whatever_separates_its_cells(text: str, saved: Callable
     ("text", "message"),
     [
         ("", "the file is empty; a log was expected"),
-        ("# nothing\n# but this\n", "holds comments only; a log has a line with the names of its columns, and rows"),
+        ("# nothing\n# but this\n", "no line names the columns; the first line is such as: time_s,current_A"),
         ("time_s,current_A\n", "0 rows; a fit needs at least 20"),
         ("time_s\0", "this is a binary file, not a log .*; save it as UTF-8 text"),
         ("0,0.1,32\n1,0.1,32\n", "1: this line holds numbers, not the names of columns; put time_s,current_A"),
-        (text_of(head=("time_s", "current_A", "current_A")), "the column current_A appears twice; remove one"),
+        (text_of(head=("time_s", "current_A", "current_A")), "the column current_A appears twice; rename or remove"),
         (text_of(head=("time_ms", "current_A", "display_C")), "missing: time_s .*time_ms should be time_s: divide"),
         (text_of(head=("time_s", "amps", "volts")), "missing: one of current_A, command_V.*found time_s, amps, volts"),
         (text_of(head=("time_s", "curent_A", "display_K")), "display_K should be display_C: subtract 273.15; curent_A: "
          "did you mean current_A"),
-        (text_of().replace("32.05", "warm"), ":7: display_C is 'warm', not a number; leave the cell empty"),
-        (text_of().replace("32.05", "32,05"), ":7: 4 cells, the first line names 3 columns; write decimal points"),
+        (text_of().replace("32.05", "warm"), ":7: display_C is 'warm', not a finite number; leave the cell empty"),
+        (text_of().replace("32.05", "32,05"), ":7: 4 cells, where the first line names 3; write decimal points"),
         (text_of().replace("\n0.5,", "\n0.2,"), ":7: time_s 0.2 s does not come after 0.4 s"),
     ],
 )  # fmt: skip

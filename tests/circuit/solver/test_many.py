@@ -7,6 +7,7 @@ from thermicon.circuit import Drive, Rig, design, simulate, simulate_current, si
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.batch import simulate_stream
 from thermicon.circuit.solver.inverse import design_many
+from thermicon.circuit.solver.kernel import ONE
 from thermicon.icons import Icon, load_library
 
 THENAR = Rig.load("thenar")
@@ -42,7 +43,7 @@ def test_blocks_of_lanes_give_what_one_lane_gives(
     tracking: str, icons: tuple[Icon, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     blocks = simulate_many(icons, BLOCK, nominal=THENAR, end_s=9.0, tracking=tracking)
-    monkeypatch.setattr("thermicon.circuit.solver.batch_inputs.FEWEST", 1000)
+    monkeypatch.setattr("thermicon.circuit.solver.kernel.MANY", ONE)
     single = simulate_many(icons, BLOCK, nominal=THENAR, end_s=9.0, tracking=tracking)
     # A block shares its step lengths, so a lane may take shorter steps than it would alone.
     assert np.abs(blocks.values - single.values).max() < 1e-4

@@ -14,12 +14,10 @@ from thermicon.icons import CueErrors, Family, Icon, IconSet, load_library, pars
 from thermicon.icons.files.exchange import to_json
 from thermicon.icons.files.shipped import library_names
 from thermicon.icons.model.context import Context, Metadata
-from thermicon.icons.model.parameter import Parameter
+from thermicon.icons.model.parameter import Parameter, Slot
 from thermicon.icons.model.shapes import Pulse, Step, Wave
-from thermicon.icons.model.slots import Slot
 from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
-from thermicon.icons.model.units import Kind
-from thermicon.icons.model.value_limits import fault
+from thermicon.icons.model.units import Kind, fault
 
 SCHEMA = json.loads(resources.files("thermicon.icons").joinpath("data/cue.schema.json").read_text(encoding="utf-8"))
 VALID = Draft202012Validator(SCHEMA)

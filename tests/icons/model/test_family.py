@@ -9,8 +9,7 @@ import pytest
 
 from thermicon.icons import CueErrors, Family, Icon, IconSet, back, cool, parse, pulse, repeat, step
 from thermicon.icons.model.context import Context, Metadata
-from thermicon.icons.model.parameter import Parameter
-from thermicon.icons.model.slots import Slot
+from thermicon.icons.model.parameter import Parameter, Slot
 from thermicon.icons.model.statements import Hold
 
 TEXT = """cue 1

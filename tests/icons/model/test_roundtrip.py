@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, Icon, IconSet, parse
 from thermicon.icons.model.context import Context, Metadata
-from thermicon.icons.model.parameter import Parameter
+from thermicon.icons.model.parameter import Parameter, Slot
 from thermicon.icons.model.shapes import Pulse, Shape, Step, Wave
-from thermicon.icons.model.slots import Slot
 from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
 from thermicon.icons.model.units import exact, quantity, to_si
 

@@ -18,7 +18,6 @@ from tests.circuit.surerig import SURE
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.icons import read_cue
-from thermicon.notebooks.cli import export as exporting
 
 Cli = Callable[..., Any]
 STRONG = (
@@ -170,7 +169,7 @@ class TestRefused:
 def test_a_file_in_the_way_is_reported_before_anything_is_simulated(
     cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, name: str, more: tuple[str, ...], words: str
 ) -> None:
-    monkeypatch.setattr(exporting, "prepare_icons", None)
+    monkeypatch.setattr("thermicon.circuit.delivery.export.prepare_set", None)
     out = two.parent / "out"
     out.mkdir()
     (out / name).write_text("{}")

@@ -12,10 +12,9 @@ from typing import Any
 import pytest
 
 from tests.circuit.surerig import SURE, sure_rig
-from thermicon.circuit import Gate, Rig
+from thermicon.circuit import Export, Gate, export
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import load_library, parse
-from thermicon.notebooks.files.exporting import PreparedExport, prepare_icons
 from thermicon.notebooks.report.gate_words import gate_words
 from thermicon.notebooks.workbench.export_tables import delivered_html, gate_html
 
@@ -27,17 +26,17 @@ icon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }
 """
 
 
-def prepared(form: str) -> PreparedExport:
-    return prepare_icons(list(parse(GLOW).icons), [], sure_rig(), form=form, pause_s=60.0)
+def prepared(form: str) -> Export:
+    return export(parse(GLOW), sure_rig(), format=form, pause_s=60.0)
 
 
 @pytest.fixture(scope="module")
-def glow() -> PreparedExport:
+def glow() -> Export:
     """Two icons for PsychoPy, played a minute apart on a rig that is known exactly."""
     return prepared("psychopy")
 
 
-def verdict(ready: PreparedExport, place: int = 0) -> Gate:
+def verdict(ready: Export, place: int = 0) -> Gate:
     found = ready.prepared[place].verdict
     assert isinstance(found, Gate)
     return found
@@ -67,7 +66,7 @@ class TestFiles:
     """What the gate says stands beside the drive and in what plays it."""
 
     @pytest.mark.slow
-    def test_the_sidecar_has_repetition_and_the_demands(self, glow: PreparedExport) -> None:
+    def test_the_sidecar_has_repetition_and_the_demands(self, glow: Export) -> None:
         gate = verdict(glow)
         about = json.loads(pack(glow.prepared, glow.form)["glow.json"])
         safety, demands = about["safety"], about["hardware_must_prevent"]
@@ -84,7 +83,7 @@ class TestFiles:
         assert demands["pause_at_least_s"] == safety["shortest_pause_s"]
         assert [fault["prevented_by"] for fault in demands["faults"]].count("") == 0
 
-    def test_players_have_the_strictest_numbers_of_the_gate(self, glow: PreparedExport) -> None:
+    def test_players_have_the_strictest_numbers_of_the_gate(self, glow: Export) -> None:
         ready = prepared("c-array")
         player = pack(ready.prepared, ready.form)["thermicon_player.h"].decode()
         demands = [verdict(ready, place).demands for place in (0, 1)]
@@ -110,7 +109,7 @@ class TestFiles:
 class TestWords:
     """What holds for a set is said once, and the strictest of what differs."""
 
-    def test_a_set_in_two_lines(self, glow: PreparedExport) -> None:
+    def test_a_set_in_two_lines(self, glow: Export) -> None:
         (again, repeated), (hardware, demanded) = gate_words(glow.prepared)
         assert (again, hardware) == ("repeated plays, in any order", "the hardware must provide")
         assert repeated.startswith("green, 27 to 29 plays in 30 min with 60 s between them; shortest safe pause: ")
@@ -119,7 +118,7 @@ class TestWords:
         assert demanded.startswith(f"watchdog {strictest[0]:g} s ({strictest[1]}), cut-off at ")
         assert "rest held for " in demanded
 
-    def test_what_no_watchdog_and_no_rest_can_do_is_said(self, glow: PreparedExport) -> None:
+    def test_what_no_watchdog_and_no_rest_can_do_is_said(self, glow: Export) -> None:
         gate = verdict(glow)
         worse = replace(gate.demands, watchdog_s=0.0, rest_before_first_play_s=None, zero_current_at_most_s=120.0)
         ready = [replace(glow.prepared[0], verdict=replace(gate, demands=worse)), glow.prepared[1]]
@@ -129,7 +128,7 @@ class TestWords:
         assert "zero current in contact for 120 s at most" in demanded
 
     def test_the_page_has_short_scenarios_with_the_full_ones_to_point_at(self) -> None:
-        ready = prepare_icons([load_library("six-icons")["cooling-step"]], [], Rig.load("thenar"))
+        ready = export(load_library("six-icons")["cooling-step"], "thenar")
         shown = gate_html(ready.prepared[0])
         cells = re.findall(r'<td title="([^"]*)">([^<]*)</td>', shown)
         assert len(cells) == len(verdict(ready).checks)

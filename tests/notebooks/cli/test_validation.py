@@ -10,9 +10,9 @@ from typing import Any
 import nbformat
 import pytest
 
+from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.cli import validation
 from thermicon.notebooks.cli.validation import COMPUTED, KEPT, executed_notebook, json_text, show_report, write_report
-from thermicon.notebooks.files.outputs import OutputError
 from thermicon.notebooks.report.conditioning_text import TITLE
 from thermicon.perception.evidence.validate import ValidationReport, validate
 

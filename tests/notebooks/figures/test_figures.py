@@ -15,14 +15,13 @@ from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview
-from thermicon.notebooks.figures import sweep_figure as sweepfigure
-from thermicon.notebooks.figures.figure_look import Look
-from thermicon.notebooks.figures.measure_figure import measure_figure
-from thermicon.notebooks.figures.overview import COOL, WARM, set_figure
+from thermicon.notebooks.figures.overview import end_when_settled
 from thermicon.notebooks.figures.print_figure import COLORBAR, restyle
-from thermicon.notebooks.figures.set_figures import write_figures
+from thermicon.notebooks.figures.set_figures import set_figure, write_figures
+from thermicon.notebooks.figures.style import COOL, WARM
+from thermicon.notebooks.figures.sweep_axes import COOLS, WARMS
+from thermicon.notebooks.figures.sweep_figure import measure_figure
 from thermicon.notebooks.figures.sweep_map import sweep_map
-from thermicon.notebooks.figures.trace_overview import end_when_settled
 from thermicon.perception import Percept, perceive, rank
 
 
@@ -34,8 +33,8 @@ def percept() -> Percept:
 def test_cool_and_warm_have_one_colour_everywhere(percept: Percept) -> None:
     assert (COOL, WARM) == (circuit_draw.COOL, circuit_draw.WARM) == ("#2166ac", "#e08214")
     assert [line.get_color() for line in percept.plot().get_lines()[:2]] == [COOL, WARM]
-    assert COOL in sweepfigure.COOLS
-    assert WARM in sweepfigure.WARMS
+    assert COOL in COOLS
+    assert WARM in WARMS
 
 
 def test_time_is_labelled_alike(percept: Percept) -> None:
@@ -105,7 +104,7 @@ def test_an_overview_ends_when_everything_has_come_to_rest() -> None:
 def test_two_maps_below_one_another_name_the_columns_once() -> None:
     ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=2)
     figure = set_figure(ranking, stacked=True)
-    restyle(figure, Look("paper", 85.0, title=False))
+    restyle(figure, 85.0)
     upper, lower = figure.axes
     assert upper.get_xticklabels() == [] and len(lower.get_xticklabels()) == 6
     assert upper.get_title().endswith("Predicted d′ between icons")
@@ -138,7 +137,7 @@ def test_labels_of_colour_bars_do_not_cover_one_another_in_a_column() -> None:
           "energy_J": a, "cold_receptor_peak_change_K": -b, "warm_receptor_peak_change_K": -b} for a, b in values]
     )  # fmt: skip
     figure = sweep_map(frame, "contact.area_cm2", "driver.current_limit_A")
-    restyle(figure, Look("paper", 85.0))
+    restyle(figure, 85.0)
     figure.draw_without_rendering()
     boxes = [ax.xaxis.label.get_window_extent() for ax in figure.axes if ax.get_label() == COLORBAR]
     assert len(boxes) == 4

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from thermicon.notebooks.cli.options import FigureOptions
-from thermicon.notebooks.figures.figure_look import Look, read_width_mm
 from thermicon.notebooks.figures.print_figure import restyle, write_figure
+from thermicon.notebooks.figures.style import Look, read_width_mm
 
 
 def two_panels() -> Figure:
@@ -31,28 +31,27 @@ def two_panels() -> Figure:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["pdf", "svg", "png"])
 def test_the_same_figure_gives_the_same_bytes_without_a_date(tmp_path: Path, kind: str) -> None:
-    look = Look("paper", 85.0)
     for name in ("one", "other"):
-        write_figure(two_panels(), tmp_path / f"{name}.{kind}", look)
+        write_figure(two_panels(), tmp_path / f"{name}.{kind}", Look(85.0))
     first = (tmp_path / f"one.{kind}").read_bytes()
     assert first == (tmp_path / f"other.{kind}").read_bytes()
     assert b"CreationDate" not in first and b"dc:date" not in first
 
 
 def test_a_pdf_has_its_fonts_embedded_as_truetype(tmp_path: Path) -> None:
-    write_figure(two_panels(), tmp_path / "a.pdf", Look("paper"))
+    write_figure(two_panels(), tmp_path / "a.pdf", Look(85.0))
     content = (tmp_path / "a.pdf").read_bytes()
     assert b"/FontFile2" in content and b"/Type3" not in content
 
 
 def test_a_picture_is_as_wide_as_asked(tmp_path: Path) -> None:
-    write_figure(two_panels(), tmp_path / "a.png", Look(width_mm=85.0))
+    write_figure(two_panels(), tmp_path / "a.png", Look(85.0))
     assert Image.open(tmp_path / "a.png").width == pytest.approx(85.0 / 25.4 * 300, abs=1)
 
 
 def test_a_column_has_letters_and_one_key_below() -> None:
     figure = two_panels()
-    restyle(figure, Look("paper", 85.0))
+    restyle(figure, 85.0)
     assert [ax.get_title(loc="left") for ax in figure.axes] == ["a", "b"]
     assert [ax.get_legend() for ax in figure.axes] == [None, None]
     (legend,) = figure.legends
@@ -61,15 +60,13 @@ def test_a_column_has_letters_and_one_key_below() -> None:
     assert max(sizes) <= 9.0 and min(sizes) >= 5.5
 
 
-def test_the_screen_is_as_drawn_and_a_title_can_be_left_out() -> None:
+def test_in_print_the_title_is_left_to_the_caption() -> None:
     figure = two_panels()
-    restyle(figure, Look())
-    assert figure.get_suptitle() == "a title" and figure.axes[0].get_title(loc="left") == ""
-    restyle(figure, Look(title=False))
+    restyle(figure, 85.0)
     assert figure.get_suptitle() == ""
     one = Figure()
     one.add_subplot(title="one panel")
-    restyle(one, Look(title=False))
+    restyle(one, 85.0)
     assert one.axes[0].get_title() == ""
 
 
@@ -79,7 +76,7 @@ def test_without_titles_panels_say_what_they_show_and_no_more() -> None:
         figure.axes, ("Predicted d′ (episodes norm)", "Answers, % (diagonal correct: 85 %)"), strict=True
     ):
         ax.set_title(title)
-    restyle(figure, Look("paper", 85.0, title=False))
+    restyle(figure, 85.0)
     titles = [ax.get_title().partition("$  ")[2] for ax in figure.axes]
     assert titles == ["Predicted d′", "Answers, %"]
 
@@ -92,7 +89,7 @@ def test_a_long_label_goes_on_in_another_line_and_the_key_names_a_line_once() ->
             line.set_label(name)
         ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
     lower.set_xlabel("time since the hand was placed on the display, in seconds, by the clock of the receptors (s)")
-    restyle(figure, Look("paper", 85.0))
+    restyle(figure, 85.0)
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["display", "skin surface"]
     assert lower.get_xlabel().count("\n") >= 1
@@ -109,7 +106,7 @@ def test_panels_keep_their_height_whatever_the_key_needs() -> None:
         for place in range(count):
             ax.plot([0, 1], [0, place], label=f"a line with the number {place}")
         figure.legend(loc="outside upper center", ncols=4)
-        restyle(figure, Look("paper", 85.0))
+        restyle(figure, 85.0)
         figure.draw_without_rendering()
         heights.append(ax.get_window_extent().height / figure.dpi)
     assert heights[1] == pytest.approx(heights[0], rel=0.25) and heights[1] > 0.6
@@ -140,4 +137,4 @@ def test_a_width_that_cannot_be(text: str, what: str) -> None:
 def test_looks_without_a_figure_are_refused() -> None:
     with pytest.raises(typer.BadParameter, match="name its file with --figure"):
         FigureOptions(paper="85mm")
-    assert FigureOptions(Path("a.png"), "85mm").look == Look("paper", 85.0, title=False, kind="pdf")
+    assert FigureOptions(Path("a.png"), "85mm").look == Look(85.0)

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import Any
 
 from thermicon.circuit.delivery.claims import claims_of
-from thermicon.notebooks.files.export_folder import publish
-from thermicon.notebooks.files.outputs import OutputError
+from thermicon.circuit.delivery.export_folder import publish
+from thermicon.icons.atomic import OutputError
 
 EVENTS = ("mkdir", "open", "write", "fsync", "rename", "unlink", "rmdir", "chmod", "close")
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.files.document import Document
-from thermicon.notebooks.files.outputs import OutputError
 from thermicon.notebooks.files.versions import EVERY_S, MOST, MOST_LETTERS, Version, Versions
 
 

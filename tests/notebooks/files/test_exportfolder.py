@@ -16,8 +16,8 @@ import pytest
 
 from tests.circuit.surerig import SURE
 from tests.notebooks.files.dying import CASES, NEW, OLD, drive
-from thermicon.notebooks.files.export_folder import check_export_folder, publish
-from thermicon.notebooks.files.outputs import OutputError
+from thermicon.circuit.delivery.export_folder import check_export_folder, publish
+from thermicon.icons.atomic import OutputError
 
 DYING = Path(__file__).with_name("dying.py")
 STAGE = ".drives.thermicon-part"
@@ -178,8 +178,8 @@ import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from dying import drive
-from thermicon.notebooks.files.export_folder import publish
-from thermicon.notebooks.files.outputs import OutputError
+from thermicon.circuit.delivery.export_folder import publish
+from thermicon.icons.atomic import OutputError
 folder, mine, rounds = Path(sys.argv[2]), sys.argv[3], int(sys.argv[4])
 for turn in range(rounds):
     print("ready", flush=True)

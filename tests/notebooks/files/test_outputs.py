@@ -8,14 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.notebooks.files.outputs import (
-    STDOUT,
-    TRACE_SUFFIXES,
-    OutputError,
-    check_folder,
-    check_output,
-    complete_or_absent,
-)
+from thermicon.icons.atomic import OutputError, check_folder, complete_or_absent
+from thermicon.notebooks.files.outputs import STDOUT, TRACE_SUFFIXES, check_output
 
 
 @pytest.mark.parametrize(

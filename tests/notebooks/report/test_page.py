@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from thermicon.notebooks.files.outputs import OutputError
+from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.files.start_folder import VARIABLE, below_start
 
 POSIX = sys.platform != "win32"

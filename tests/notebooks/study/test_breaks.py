@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from tests.circuit.surerig import sure_rig
-from thermicon.circuit import Drive, Rig, SessionPlan, simulate_current
+from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessiondrive import SessionDrive, drive_of
 from thermicon.circuit.safety.sessionworst import worst_case_of, worst_case_of_blocks
 from thermicon.icons import load_library
-from thermicon.notebooks.files.exporting import PreparedExport
 from thermicon.notebooks.study.judging import Judged, Refused, judge_sessions
 from thermicon.notebooks.study.schedule import Course, Trial
 from thermicon.notebooks.study.timing import Gap
@@ -84,7 +83,7 @@ def test_blocks_from_rest_are_one_run_for_one_block_and_add_up_for_more() -> Non
 
 def judged(course: Course, rig: Rig) -> Judged:
     judgement = judge_sessions([course], list(load_library("six-icons")), rig, False, GAP_S)
-    return Judged(cast("PreparedExport", None), cast("Gap", None), *judgement)
+    return Judged(cast("Export", None), cast("Gap", None), *judgement)
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ import pytest
 
 from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.circuit import Rig
+from thermicon.icons.atomic import OutputError
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.files.outputs import OutputError
 from thermicon.notebooks.files.start_folder import FILE, RIG, VARIABLE
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tests.circuit.surerig import sure_rig
+from thermicon.circuit import export
 from thermicon.icons import parse
-from thermicon.notebooks.files.exporting import prepare_icons, write
-from thermicon.notebooks.files.outputs import OutputError
+from thermicon.icons.atomic import OutputError
+from thermicon.notebooks.files.exporting import felt_beside
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.export_view import ExportView
 from thermicon.perception import rank
@@ -87,7 +89,7 @@ def test_what_is_not_safe_is_never_written(tmp_path: Path) -> None:
     assert "safety red" in bench.said("gate")
     assert bench.view.ready is not None
     with pytest.raises(OutputError, match="hot: NOT SAFE"):
-        write(bench.view.ready, tmp_path, insist=True)
+        replace(bench.view.ready, force=True).write(tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -131,6 +133,6 @@ def test_a_text_with_errors_is_not_exported(tmp_path: Path) -> None:
 
 def test_preparing_tells_how_far_it_is() -> None:
     steps: list[tuple[int, int]] = []
-    made = prepare_icons(list(parse(TWO)), [], sure_rig(), step=lambda done, total: steps.append((done, total)))
+    made = export(parse(TWO), sure_rig(), felt=felt_beside(), step=lambda done, total: steps.append((done, total)))
     assert steps == [(1, 2), (2, 2)]
     assert [change.icon for change in made.felt] == ["dip", "glow"]

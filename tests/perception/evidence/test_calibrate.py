@@ -12,7 +12,7 @@ from thermicon.perception.observer.observer import CHANNELS, DATA, load_threshol
 from thermicon.perception.observer.variants import VARIABLES, source_of
 
 SHIPPED = DATA / "observer.toml"
-AGAIN = "the observer is out of date: run python -m thermicon.perception.evidence.calibrate"
+AGAIN = "the observer is out of date: run python -m thermicon.perception.evidence observer"
 
 
 def test_the_shipped_observer_is_what_calibrate_finds() -> None:

@@ -12,11 +12,10 @@ import pytest
 from thermicon.perception.evidence import __main__ as main_module
 from thermicon.perception.evidence import sampling
 from thermicon.perception.evidence.__main__ import main
-from thermicon.perception.evidence.diagnostics import Diagnostics
-from thermicon.perception.evidence.left_out_file import load_left_out
+from thermicon.perception.evidence.chains import Diagnostics
+from thermicon.perception.evidence.left_out_table import load_left_out
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.sampling import Sampled, shipped_vector
-from thermicon.perception.evidence.variant_scores import load_variant_scores
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import DATA
 
@@ -32,7 +31,7 @@ def sampled(r_hat: float) -> Sampled:
     size = len(posterior.priors)
     chains = shipped_vector(posterior) + 0.3 * np.random.default_rng(0).standard_normal((4, 300, size))
     found = Diagnostics(posterior.priors.names, np.full(size, r_hat), np.full(size, 900.0))
-    return Sampled(posterior, chains, np.zeros((4, 300)), 5000, 0.4, found, 0)
+    return Sampled(posterior, chains, 5000, found, 0)
 
 
 def test_draws_of_converged_chains_are_written(
@@ -78,9 +77,6 @@ def finished(tmp_path: Path) -> Path:
     for experiment in dict.fromkeys(row.experiment for row in rows):
         own = [asdict(row) for row in rows if row.experiment == experiment]
         (folder / f"left-out-{experiment}.json").write_text(json.dumps(own), encoding="utf-8")
-    for name, ending in (("temperature", "temperature"), ("heat_flow", "heat-flow")):
-        scores = [getattr(row, name) for row in load_variant_scores()]
-        (folder / f"scores-{ending}.json").write_text(json.dumps(scores), encoding="utf-8")
     return folder
 
 
@@ -90,10 +86,11 @@ def test_finished_parts_are_summed_up_and_written(
     out = tmp_path / "tables"
     assert main(["leave-out", "--keep", str(finished), "-o", str(out)]) == 0
     said = capsys.readouterr().out
-    assert "rows lie inside their 50 % interval" in said
-    assert "temperature is ahead of heat flow by" in said
-    for name in ("left-out.csv", "variant-scores.csv"):
-        assert (out / name).read_text(encoding="utf-8") == (DATA / name).read_text(encoding="utf-8")
+    assert "of 54 rows lie inside their 95 % interval" in said
+    head, *rows = (out / "left-out.csv").read_text(encoding="utf-8").splitlines()
+    old, *shipped = (DATA / "left-out.csv").read_text(encoding="utf-8").splitlines()
+    assert rows == shipped
+    assert head.rpartition(" inputs ")[2] == old.rpartition(" inputs ")[2]
     assert main(["leave-out"]) == 2
 
 

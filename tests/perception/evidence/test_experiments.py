@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from thermicon.perception.evidence.experiments import limits, methods, rate_curve, reaction_times
-from thermicon.perception.evidence.experiments_timing import first_and_return, peak_lead, whole_body_warmth
+from thermicon.perception.evidence.experiments_timing import first_and_return, peak_lead
 from thermicon.perception.evidence.predicted import Asked, Predicted, predict
+from thermicon.perception.evidence.radiant import whole_body_warmth
 from thermicon.perception.observer.variants import VARIABLES, Variable
 
 

@@ -14,7 +14,7 @@ from thermicon.perception.experiments.crowd import SHARES
 from thermicon.perception.experiments.laboratory import samples_of
 from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.adapted_drive import adapted_drive
-from thermicon.perception.kernels.psychometric import psychometric
+from thermicon.perception.kernels.passage import psychometric
 from thermicon.perception.observer.transducer import Transducer
 
 DT = 0.025

@@ -1,4 +1,4 @@
-"""Left-out predictions: weights against algebra, scores against closed forms, the naive baseline and stacking."""
+"""Left-out predictions: weights against algebra, scores against closed forms and the naive baseline."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 
 from thermicon.perception.evidence.left_out import Predictive
-from thermicon.perception.evidence.left_out_file import row_of
-from thermicon.perception.evidence.posterior_tables import covered
+from thermicon.perception.evidence.left_out_table import KINDS, LeftOutRow, naive_log_score
 from thermicon.perception.evidence.rows import Row, load_rows
-from thermicon.perception.evidence.scores import KINDS, naive_log_score, score, stacking_weights
 
 
 def predictive(value: float, draws: int = 4000) -> Predictive:
@@ -22,13 +20,14 @@ def predictive(value: float, draws: int = 4000) -> Predictive:
 
 
 def test_scores_of_a_normal_prediction_are_those_of_a_normal() -> None:
-    found = score(predictive(1.5))
+    found = LeftOutRow.of(predictive(1.5))
     assert found.probability == pytest.approx(0.841, abs=0.01)
     assert found.log_score == pytest.approx(-0.5 - math.log(0.5 * math.sqrt(2.0 * math.pi)), abs=0.03)
-    assert found.quantiles == pytest.approx((0.02, 0.663, 1.0, 1.337, 1.98), abs=0.04)
-    assert covered(row_of(found), 0.95)
-    assert not covered(row_of(found), 0.5)
-    assert not covered(row_of(score(predictive(2.3))), 0.95)
+    quantiles = np.log([found.low, found.lower, found.median, found.upper, found.high])
+    assert quantiles == pytest.approx([0.02, 0.663, 1.0, 1.337, 1.98], abs=0.04)
+    assert found.covered(0.95)
+    assert not found.covered(0.5)
+    assert not LeftOutRow.of(predictive(2.3)).covered(0.95)
 
 
 def test_weights_move_a_prediction() -> None:
@@ -44,10 +43,3 @@ def test_the_naive_baseline_knows_the_other_experiments_alone() -> None:
     assert math.isfinite(naive_log_score(limits))
     assert math.isnan(naive_log_score(rows["E2", "rating_mean_5strip", "cold"]))
     assert {key[1] for key in rows} >= set(KINDS)
-
-
-def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
-    logs = np.log(np.array([[0.9, 0.9, 0.1], [0.1, 0.1, 0.9]]))
-    weights = stacking_weights(logs)
-    assert weights.sum() == pytest.approx(1.0)
-    assert 0.5 < weights[0] < 0.9

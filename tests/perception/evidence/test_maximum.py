@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.leave_out import LeftOut
-from thermicon.perception.evidence.maximum import maximise
+from thermicon.perception.evidence.maximum import LeftOut, maximise
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import load_ablation, load_constants
 from thermicon.perception.evidence.rows import Row
@@ -40,7 +39,6 @@ def test_a_left_out_row_is_judged_with_both_errors() -> None:
     row = Row(("a", "b", "cold"), 1.0, 0.3, False, "s", "a row")
     out = LeftOut(row, 0.0, 0.4)
     assert out.score == pytest.approx(2.0)
-    assert not out.covered
     assert out.interval == pytest.approx((-0.98, 0.98), abs=1e-3)
     assert out.log_score == pytest.approx(-2.0 - np.log(0.5 * np.sqrt(2.0 * np.pi)))
 

@@ -3,8 +3,8 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer
-from thermicon.perception.evidence.plausible import plausible_observers
-from thermicon.perception.experiments.classical import forced_choice
+from thermicon.perception.evidence.predicted import plausible_observers
+from thermicon.perception.experiments.on_bench import forced_choice
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.variants import VARIABLES, Variable
 from thermicon.perception.sensation.bench import Bench
@@ -24,8 +24,8 @@ def test_draws_are_those_of_the_posterior_and_fill_it(variable: Variable) -> Non
 
 def test_every_draw_keeps_the_thresholds_near_the_shipped_ones() -> None:
     bench = Bench(Rig.load("thenar"))
-    shipped = forced_choice(Observer.load(), bench, "cold").value or 0.0
-    found = [forced_choice(person, bench, "cold").value or 0.0 for person in plausible_observers(8)]
+    shipped = forced_choice(Observer.load(), bench, "cold")
+    found = [forced_choice(person, bench, "cold") for person in plausible_observers(8)]
     assert 0.35 * shipped < min(found) < max(found) < 2.5 * shipped
 
 

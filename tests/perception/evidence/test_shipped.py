@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -31,9 +32,15 @@ def vector() -> np.ndarray:
     return (places - posterior.priors.middle) / posterior.priors.sd
 
 
-@pytest.mark.parametrize("name", [CONSTANTS, PREDICTIONS, ABLATION])
+@pytest.mark.parametrize("name", [CONSTANTS, PREDICTIONS])
 def test_tables_were_made_from_the_shipped_inputs(name: str) -> None:
     assert current_inputs(DATA / name) == inputs_digest()
+
+
+@pytest.mark.parametrize("name", [ABLATION, "variant-scores.csv", "memory_forms.csv"])
+def test_finished_tables_name_the_version_and_the_inputs_that_made_them(name: str) -> None:
+    with (DATA / name).open(encoding="utf-8") as file:
+        assert re.match(r"# made by thermicon \d+\.\d+\.\d+ .*inputs [0-9a-f]{16}", file.readline())
 
 
 def test_constants_give_the_shipped_predictions(vector: np.ndarray) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,15 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.left_out_file import LEFT_OUT, load_left_out
-from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.posterior_tables import TABLES, covered
+from thermicon.perception.evidence.left_out_table import LEFT_OUT, load_left_out
+from thermicon.perception.evidence.posterior import Posterior, summarise
 from thermicon.perception.evidence.results import inputs_digest, load_constants
 from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.evidence.statistics import DATA
-from thermicon.perception.evidence.summaries import summarise
-from thermicon.perception.evidence.tables import TABLES as INFERRED
-from thermicon.perception.evidence.variant_scores import SCORES, variant_weights
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.draws_file import current_inputs
 
@@ -52,13 +47,13 @@ def test_every_row_is_predicted_without_its_experiment() -> None:
     assert all(row.low < row.lower < row.median < row.upper < row.high for row in rows)
     assert all((row.method == "weights") <= (row.k_hat <= 0.7) for row in rows)
     for row in rows:
-        assert covered(row, 0.95) == (row.low <= row.published <= row.high)
+        assert row.covered(0.95) == (row.low <= row.published <= row.high)
 
 
 def test_left_out_predictions_cover_and_beat_the_naive_baseline() -> None:
     rows = load_left_out()
-    assert 0.85 <= np.mean([covered(row, 0.95) for row in rows]) <= 0.99
-    assert 0.35 <= np.mean([covered(row, 0.5) for row in rows]) <= 0.75
+    assert 0.85 <= np.mean([row.covered(0.95) for row in rows]) <= 0.99
+    assert 0.35 <= np.mean([row.covered(0.5) for row in rows]) <= 0.75
     compared = [row for row in rows if not math.isnan(row.naive)]
     assert len(compared) > 15
     assert sum(row.log_score - row.naive for row in compared) > 0.0
@@ -69,19 +64,6 @@ def test_summaries_say_what_was_not_moved() -> None:
     assert found["softness of the limits"].unmoved
     assert not found["warm threshold drive"].unmoved
     assert found["warm threshold drive"].narrowed < 0.4
-
-
-def test_temperature_predicts_best_of_the_variants() -> None:
-    weights = variant_weights()
-    assert current_inputs(DATA / SCORES) == inputs_digest()
-    assert max(weights, key=lambda each: weights[each]) == "temperature"
-
-
-@pytest.mark.parametrize("name", sorted(set(TABLES) - set(INFERRED)))
-def test_a_table_has_one_width_and_no_exponents(name: str) -> None:
-    text = TABLES[name]()
-    assert len({line.count(" | ") for line in text.splitlines()}) == 1
-    assert not re.search(r"\d[eE][+-]?\d", text)
 
 
 def parted(text: str) -> tuple[dict[str, str], list[str], np.ndarray]:

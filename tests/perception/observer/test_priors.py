@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from thermicon.perception.observer.prior_file import load_priors
-from thermicon.perception.observer.priors import Prior, Priors
+from thermicon.perception.observer.priors import Prior, Priors, load_priors
 
 ALL = load_priors().each
 

@@ -7,7 +7,7 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.perception import Observer, perceive
-from thermicon.perception.experiments.classical import forced_choice
+from thermicon.perception.experiments.on_bench import forced_choice
 from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
 from thermicon.perception.observer.observer import Receptor
 from thermicon.perception.observer.variants import (
@@ -28,9 +28,7 @@ def test_every_variant_loads_and_is_near_the_thresholds_it_was_inferred_from(var
     assert person.variable == variable
     bench = Bench(Rig.load("thenar"))
     for channel, published in (("cold", 0.11), ("warm", 0.20)):
-        found = forced_choice(person, bench, channel).value
-        assert found is not None
-        assert 0.5 * published < found < 2.0 * published
+        assert 0.5 * published < forced_choice(person, bench, channel) < 2.0 * published
 
 
 OF_OBSERVER = [mechanism.name for mechanism in MECHANISMS if mechanism.carrier == "observer"]

@@ -10,21 +10,23 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.laboratory import Laboratory
+from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.pilot.conditioning import Conditioned, condition
 from thermicon.perception.pilot.data import Measured
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
+    Predicted,
     groups_of,
     log_errors,
     log_likelihood,
     person_covariance,
+    predicted,
     shared_covariance,
 )
-from thermicon.perception.pilot.measurements import Condition, Measurements
+from thermicon.perception.pilot.measurements import Measurements
 from thermicon.perception.pilot.observed import observed
-from thermicon.perception.pilot.simulated_measurements import MeasuringLaboratory, Predicted, Setting, predicted
 from thermicon.perception.pilot.states import OFFSETS, LaboratoryPrior
 from thermicon.perception.pilot.synthetic import USUAL, synthetic_measurements
 
@@ -60,9 +62,9 @@ def test_the_likelihood_is_that_of_one_normal_vector(prior: LaboratoryPrior) -> 
 
 
 def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPrior) -> None:
-    values = {**prior.draws.draw(0), "own cold": 0.0, "own warm": 0.0, "thenar cold": 0.0}
+    values = {**prior.draws.draw(0), "thenar cold": 0.0}
     setting = Setting("thenar", values["contact resistance of a thermode"], 9.0)
-    logs, _ = MeasuringLaboratory(values).measure(setting, CHOICE)
+    logs, _ = logs_of(setting.laboratory(values, (0.0, 0.0), "temperature"), setting, CHOICE)
     plain = Laboratory(values)
     size = float(np.exp(logs.mean()))
     drive = plain.drive("thenar", "cold", 32.0, [(size, -size)], size + 3.0).max()

@@ -9,7 +9,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.ranking.measurements import MEASUREMENTS, base_name
 from thermicon.perception.ranking.rig_doubt import NODES, UncertainRig, _parabola
 from thermicon.perception.ranking.sensitivity import Sensitivity, sensitivity
-from thermicon.perception.sensation.memory_parameters import memory_parameters
+from thermicon.perception.sensation.parameters import memory_parameters
 
 TWO = """cue 1
 set s { control skin; baseline 32 °C }

@@ -5,8 +5,7 @@ import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import Channel
-from thermicon.perception.sensation.sensation import sensation
-from thermicon.perception.sensation.summation import area_factor
+from thermicon.perception.sensation.sensation import area_factor, sensation
 
 
 @pytest.mark.parametrize(("channel", "unit"), [("cold", 0.08), ("warm", 0.15)])

@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})

@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
@@ -22,7 +23,6 @@ from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.icons import Icon, load_library, parse
 from thermicon.icons.model.corners import Corners

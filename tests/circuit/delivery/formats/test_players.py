@@ -13,12 +13,12 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import Played
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import prepare
 from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
 from thermicon.circuit.records import Record
 from thermicon.icons import load_library

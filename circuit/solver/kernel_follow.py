@@ -1,0 +1,232 @@
+"""Compiled inverse: the current that makes the circuit follow a target, and a lab's PID loop on a display thermistor.
+
+Both find the current that is held over each period of the driver; the state moves by the rule of `kernel`.
+"""
+
+# mypy: disable-error-code="no-untyped-def,misc"
+# numba infers the types here, and its decorators have none.
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..rig.module import ZERO_C_IN_K
+from . import plate
+from .kernel import (
+    COLD_SHARE,
+    LONGEST_STEP_S,
+    LUMPS,
+    PLATES,
+    WEIGHT,
+    advance,
+    begin,
+    compiled,
+    factor,
+    room,
+    weighed,
+)
+from .kernel_legs import (
+    ACROSS,
+    COOL,
+    EDGE,
+    HEATED,
+    NEAR,
+    WARM,
+    factor_legs,
+    legs_heat,
+    load_legs,
+)
+from .plate import (
+    ALPHA,
+    COLD_J_PER_K,
+    COMPLIANCE_V,
+    CONDUCTANCE,
+    DEEP_C,
+    HIGHEST_A,
+    HOT_J_PER_K,
+    LOWEST_A,
+    PAST_MOST_COOLING,
+    RESISTANCE,
+    SINK_W_PER_K,
+    TEMPERATURE,
+)
+
+greatest_cooling = compiled(plate.greatest_cooling_A)
+current_for_heat = compiled(plate.current_for_heat_A)
+
+CLOSE_A, ANY_A = 1e-10, 1e9
+"""Tolerance of the search for a current, and what it gives where no current is enough: `limited` cuts that."""
+
+FREE, MOST_CURRENT, LEAST_CURRENT, VOLTAGE, MODULE = range(5)
+"""What limits a current: nothing, the driver's highest or lowest current, its voltage, the module's best cooling."""
+
+LAG_S, KP, KI, KD, DELAY_S = range(5)
+"""Places in a rig's gains: lag of the thermistor s, kp A/K, ki A/(K·s), kd A·s/K, delay from measuring to output s."""
+
+
+@compiled
+def limited(amperes, hot, cold, sink, p):
+    """The current that driver and module allow, and the code of the last limit that reduced it."""
+    alpha, ohm, leak, code = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE], FREE
+    if amperes > p[HIGHEST_A]:
+        amperes, code = p[HIGHEST_A], MOST_CURRENT
+    if amperes < p[LOWEST_A]:
+        amperes, code = p[LOWEST_A], LEAST_CURRENT
+    seebeck = alpha * (hot - cold)  # voltage at the module: α(T_h − T_c) + I·R
+    if amperes > (p[COMPLIANCE_V] - seebeck) / ohm:
+        amperes, code = (p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
+    if amperes < (-p[COMPLIANCE_V] - seebeck) / ohm:
+        amperes, code = (-p[COMPLIANCE_V] - seebeck) / ohm, VOLTAGE
+    capped = p[PAST_MOST_COOLING] == 0.0
+    if capped and amperes > 0.5 * alpha * (cold + ZERO_C_IN_K) / ohm:  # the best cooling is never below half of αT_c/R
+        most = greatest_cooling(cold, p[SINK_W_PER_K] * sink + leak * cold, p[SINK_W_PER_K] + leak, alpha, ohm, leak)
+        if amperes > most:
+            amperes, code = most, MODULE
+    return amperes, code
+
+
+@compiled
+def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p, leg, lane):
+    """Current for the next period and the code of what limits it, from one implicit step over the period.
+
+    After that step the first lump is z0 + elim0 · (cold plate), and what is controlled is `share` of the cold plate and
+    the rest of that lump, so that its target becomes one of the cold plate, T_aim. Its balance is then an equation for
+    the current alone (`plate.current_for_heat_A`):
+
+        αI·T_aim − I²R/2 − (T_h − T_aim)/Θ = g_0·(z0 + (elim0 − 1)·T_aim) − C_c·(T_aim − T_c)/period.
+
+    Where legs store heat, `leg` is factored for the period, and its sums stand in place of the terms in Θ and R.
+    """
+    alpha, ohm, leak = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE]
+    near, warm = leak, 0.0
+    aim = (target - (1.0 - share) * z0) / (share + (1.0 - share) * elim0)
+    heat = g0 * (z0 + (elim0 - 1.0) * aim) - p[COLD_J_PER_K] / period * (aim - cold)
+    if leg is not None:
+        rows, sums = leg
+        deep = p[DEEP_C] * (sums[NEAR, lane] - sums[ACROSS, lane])  # sums are above the deep node, plates here in °C
+        near, leak, warm = sums[NEAR, lane], sums[ACROSS, lane], sums[WARM, lane] + deep
+        ohm = 2.0 * sums[EDGE, lane] * sums[HEATED, lane] * ohm / rows.shape[1]
+        heat += sums[COOL, lane] + deep - (near - leak) * aim
+    out, hot_store = p[SINK_W_PER_K], p[HOT_J_PER_K] / period
+    base, total = hot_store * hot + out * sink + leak * aim + warm, hot_store + out + near
+    amperes = current_for_heat(heat, aim, base, total, alpha, ohm, leak, ANY_A, guess, CLOSE_A)
+    return limited(amperes, hot, cold, sink, p)
+
+
+@compiled
+def follow(
+    wide, blocks, rig_of, cue_of, period, target, face_share, bank, state, current_out, reached, why, cells, warm,
+    leg, period_leg,
+):  # fmt: skip
+    """Find the held current of every period that takes skin or display to its target at the period's end.
+
+    `target` (cue, period) in °C; `face_share` (rig,) is the weight of the cold plate in what follows it, 1 for the
+    display; `state` (lane, n + 3) is a steady state; `current_out`, `reached` and `why` (lane, period) get the current
+    A, the controlled temperature °C at the period's end, and the code of what limited the current. The current comes
+    from a damped prediction (one implicit step over the period); the state moves by the accurate rule. `cells`
+    (lane, m) are those of the legs and `warm` (lane,) passive heat sinks at the start, in °C, or None; `leg` and
+    `period_leg` are `leg_room` for cells.
+    """
+    lanes = len(wide)
+    x, p, skin, sink, y, total, first = room(wide, bank)
+    rows, whole = np.empty((4, len(y), 2 * lanes)), np.empty((5, lanes))
+    period_rows, period_whole = np.empty((4, len(y), 2 * lanes)), np.empty((5, lanes))
+    current, squared, z0, none = np.empty(lanes), np.empty(lanes), np.empty(lanes), np.zeros(lanes)
+    pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
+    step = period / pieces
+    for b in range(blocks.shape[0]):
+        block = blocks[b]
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, warm)
+        load_legs(cells, block, p, leg)
+        factor(wide, h, 0.5 * step, p, skin, rows, whole)
+        factor(wide, h, period, p, skin, period_rows, period_whole)
+        factor_legs(0.5 * step, p, leg)
+        factor_legs(period, p, period_leg)
+        weighed(wide, h, rows[WEIGHT], x, first)
+        current.fill(0.0)
+        for k in range(target.shape[1]):
+            weighed(wide, h, period_rows[WEIGHT], x, z0)
+            legs_heat(none, p, period_leg, leg)
+            for lane in range(lanes):
+                share, elim, deep = face_share[rig_of[block[lane]]], period_whole[COLD_SHARE, lane], p[DEEP_C, lane]
+                amperes, code = wanted(
+                    target[cue_of[block[lane]], k], share, z0[lane] + deep * (1.0 - elim), elim, skin[1, 0, lane],
+                    period, x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[TEMPERATURE, lane],
+                    current[lane], p[:, lane], period_leg, lane,
+                )  # fmt: skip
+                current[lane], squared[lane] = amperes, amperes * amperes
+                current_out[block[lane], k], why[block[lane], k] = amperes, code
+            for _ in range(pieces):
+                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole, leg)
+            for lane in range(lanes):
+                share = face_share[rig_of[block[lane]]]
+                face = share * x[PLATES, lanes + lane] + (1.0 - share) * x[LUMPS, lane]
+                reached[block[lane], k] = face + p[DEEP_C, lane]
+
+
+@compiled
+def regulate(
+    wide, blocks, rig_of, cue_of, period, setpoint, gains, bias, bank, state, current_out, reached, why, cells, warm,
+    leg,
+):  # fmt: skip
+    """Find the held current of every period as the controller of each rig gives it.
+
+    At the start of a period I = I_bias + kp·e + ki·∫e dt + kd·dT_felt/dt, with e = T_felt − set-point and T_felt the
+    display as the thermistor feels it: dT_felt/dt = (T_display − T_felt)/lag. `setpoint` (cue, period) is in °C,
+    `gains` (rig, 5) have the places LAG_S to DELAY_S, `bias` (lane,) is the current A that holds the start. A delay
+    counts in whole periods, rounded up. All else is as in `follow`, for the display. The integral is not advanced while
+    the current is at a limit and the error would push it further (anti-windup).
+    """
+    lanes = len(wide)
+    x, p, skin, sink, y, total, first = room(wide, bank)
+    rows, whole = np.empty((4, len(y), 2 * lanes)), np.empty((5, lanes))
+    current, squared, demanded, error = np.empty(lanes), np.empty(lanes), np.empty(lanes), np.empty(lanes)
+    decay, mean, display = np.empty(lanes), np.empty(lanes), np.empty(lanes)
+    felt, before, integral = np.empty(lanes), np.empty(lanes), np.empty(lanes)
+    pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
+    step = period / pieces
+    delay = np.ceil(gains[:, DELAY_S] / period - 1e-9).astype(np.int64)  # in periods
+    past = np.empty((delay.max() + 1, lanes))
+    for b in range(blocks.shape[0]):
+        block = blocks[b]
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, warm)
+        load_legs(cells, block, p, leg)
+        factor(wide, h, 0.5 * step, p, skin, rows, whole)
+        factor_legs(0.5 * step, p, leg)
+        weighed(wide, h, rows[WEIGHT], x, first)
+        for lane in range(lanes):
+            lag = gains[rig_of[block[lane]], LAG_S]
+            decay[lane] = math.exp(-step / lag) if lag > 0.0 else 0.0
+            mean[lane] = (1.0 - decay[lane]) * lag / step  # mean weight over a step in which the display is linear
+            felt[lane] = before[lane] = x[PLATES, lanes + lane] + p[DEEP_C, lane]
+            for k in range(len(past)):
+                past[k, lane] = felt[lane]
+            integral[lane] = 0.0
+        for k in range(setpoint.shape[1]):
+            for lane in range(lanes):
+                r, deep = rig_of[block[lane]], p[DEEP_C, lane]
+                past[k % len(past), lane] = felt[lane]
+                seen = past[(k - delay[r]) % len(past), lane]
+                error[lane] = seen - setpoint[cue_of[block[lane]], k]
+                rate = (seen - before[lane]) / period
+                demanded[lane] = bias[block[lane]] + gains[r, KP] * error[lane] + gains[r, KI] * integral[lane]
+                demanded[lane] += gains[r, KD] * rate
+                amperes, why[block[lane], k] = limited(
+                    demanded[lane], x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[TEMPERATURE, lane],
+                    p[:, lane],
+                )  # fmt: skip
+                current[lane], squared[lane], before[lane] = amperes, amperes * amperes, seen
+                current_out[block[lane], k] = amperes
+            for _ in range(pieces):
+                for lane in range(lanes):
+                    display[lane] = x[PLATES, lanes + lane] + p[DEEP_C, lane]
+                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole, leg)
+                for lane in range(lanes):
+                    now = x[PLATES, lanes + lane] + p[DEEP_C, lane]
+                    felt[lane] = decay[lane] * felt[lane] + (mean[lane] - decay[lane]) * display[lane]
+                    felt[lane] += (1.0 - mean[lane]) * now
+            for lane in range(lanes):
+                if why[block[lane], k] == FREE or (demanded[lane] - current[lane]) * error[lane] < 0.0:
+                    integral[lane] += error[lane] * period
+                reached[block[lane], k] = x[PLATES, lanes + lane] + p[DEEP_C, lane]

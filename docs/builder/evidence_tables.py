@@ -1,0 +1,195 @@
+"""Tables of the inference as Markdown: what the pages of docs/ hold between their `generated` marks.
+
+Every number comes from the shipped data files, so that a page cannot say anything else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from thermicon.circuit.records import Record
+from thermicon.perception.evidence.results import (
+    UNMOVED_SD,
+    AblatedRow,
+    Constant,
+    PredictedRow,
+    load_ablation,
+    load_constants,
+    load_predictions,
+)
+from thermicon.perception.evidence.rows import PEOPLE_WRIST, load_rows
+from thermicon.perception.evidence.statistics import load_evidence
+from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
+from thermicon.perception.observer.observer import load_thresholds
+from thermicon.perception.observer.people import people_records
+from thermicon.perception.observer.priors import WITHIN_95
+
+GROUPS = {
+    "receptors": ("depth", "skin", "quality", "adaptation"),
+    "sensation": ("sensitivity", "summation", "transducer", "compression"),
+    "detection": ("gain noise", "noise", "criterion", "delays"),
+    "people": ("people", "age"),
+}
+"""Mechanisms of the tables of single sections, by section."""
+
+
+def experiments_table() -> str:
+    """What was conditioned on: one row an experiment."""
+    counts: dict[str, int] = {}
+    for row in load_rows():
+        counts[row.experiment] = counts.get(row.experiment, 0) + 1
+    known = {each.key: each for each in load_evidence().experiments}
+    lines = [
+        (key, known[key].title, known[key].citation, known[key].licence, known[key].method, counts[key])
+        if key in known
+        else (key, *_published(key), counts[key])
+        for key in counts
+    ]
+    return markdown(("key", "experiment", "citation", "licence of code and data", "what was asked", "rows"), lines)
+
+
+def _published(key: str) -> tuple[str, str, str, str]:
+    """Title, citation, licence and question of numbers that are printed in papers."""
+    table, licence = load_thresholds(), "numbers from print"
+    if key == "steps":
+        asked = "radiant heat on the forehead: how many steps are distinguishable; its error is assumed"
+        return "Steps from threshold to pain", "Herget, Granath & Hardy 1941", licence, asked
+    if key == "amplitudes":
+        record = table.one("amplitude difference threshold", channel="cold")
+        return "Amplitude differences", record.source, licence, "two pulses one after the other; amplitudes not stated"
+    record = table.one("detection threshold", channel="cold", site=key)
+    people = f"; spread of {PEOPLE_WRIST} people" if key == "wrist" else ""
+    return f"Forced choice at the {key}", record.source, licence, f"in which interval was it?{people}"
+
+
+def constants_table(mechanisms: Sequence[str] = (), *, sources: bool = True) -> str:
+    """Constants of the default observer by mechanism; all but offsets of laboratories unless mechanisms are named."""
+    rows = [each for each in load_constants() if each.unit != "SD" and (not mechanisms or each.mechanism in mechanisms)]
+    head = ("mechanism", "constant", "value", "95 %", "prior 95 %", "SD left", *(("prior from",) if sources else ()))
+    lines, last = [], ""
+    for each in sorted(rows, key=lambda each: _order(each, rows)):
+        mechanism, last = ("" if each.mechanism == last else f"**{each.mechanism}**"), each.mechanism
+        unit = UNITS.get(each.unit, each.unit)
+        cells = (mechanism, each.name, f"{number(each.value)} {unit}".strip(), span(each.low, each.high))
+        source = (each.source,) if sources else ()
+        lines.append((*cells, span(each.prior_low, each.prior_high), f"{each.narrowed:.2f}", *source))
+    return markdown(head, lines)
+
+
+def _order(each: Constant, rows: Sequence[Constant]) -> int:
+    return [row.mechanism for row in rows].index(each.mechanism)
+
+
+def offsets_table() -> str:
+    """Offsets of laboratories, in SDs of the spread between them."""
+    rows = [each for each in load_constants() if each.unit == "SD"]
+    return markdown(
+        ("laboratory", "offset (SD)", "95 %"), [(r.name, number(r.value), span(r.low, r.high)) for r in rows]
+    )
+
+
+def unmoved_sentence() -> str:
+    """Constants of which the evidence says next to nothing."""
+    rows = sorted(load_constants(), key=lambda each: each.name)
+    names = [each.name for each in rows if each.narrowed > UNMOVED_SD and each.unit != "SD"]
+    return f"{len(names)} constants keep more than {100 * UNMOVED_SD:.0f} % of their prior's SD: {', '.join(names)}."
+
+
+def ablation_table() -> str:
+    """Every run of the ablation, most lost first."""
+    rows = sorted(load_ablation(), key=lambda row: row.difference)
+    lines = [
+        (
+            _ran(row),
+            row.replaced_by,
+            signed(row.difference, 1),
+            f"{row.squares:.1f}",
+            f"{row.worst} ({signed(row.worst_sd, 1)})",
+        )
+        for row in rows
+    ]
+    return markdown(("observer", "what stands in its place", "log evidence", "Σ(miss/SD)²", "worst row (SD)"), lines)
+
+
+def _ran(row: AblatedRow) -> str:
+    if row.without:
+        return f"without {row.without}"
+    return f"**{row.variable}**" + ("" if row.difference else " (the whole observer)")
+
+
+def left_out_table() -> str:
+    """Every row: published, fitted, and predicted by a fit without its experiment; misses are bold."""
+    lines = []
+    for row in load_predictions():
+        mark = "" if covered(row) else "**"
+        unit = {"1": "", "0-100": "of 100"}.get(row.unit, row.unit)
+        numbers = (number(row.published), number(row.fitted), number(row.left_out))
+        interval = span(row.left_out_low, row.left_out_high)
+        lines.append((row.experiment, f"{mark}{row.label}{mark}", unit, *numbers, interval, signed(row.score, 1)))
+    return markdown(("key", "row", "unit", "published", "fitted", "left out", "95 %", "miss (SD)"), lines)
+
+
+def coverage_sentence() -> str:
+    """How many rows lie inside the 95 % interval of their prediction without their experiment."""
+    rows = load_predictions()
+    missed = [f"{row.label} ({row.experiment}, {signed(row.score, 1)} SD)" for row in rows if not covered(row)]
+    inside = f"{len(rows) - len(missed)} of {len(rows)} rows lie inside the 95 % interval"
+    if not missed:
+        return f"{inside}."
+    return f"{inside}; {0.95 * len(rows):.0f} are expected. The others: {'; '.join(missed)}."
+
+
+def covered(row: PredictedRow) -> bool:
+    """Whether the 95 % interval of what would be measured contains what was."""
+    return abs(row.score) <= WITHIN_95
+
+
+def predicted_table() -> str:
+    """Published results that are never conditioned on: what `validate` compares with predictions."""
+    records: dict[tuple[str, str], int] = {}
+    for record in load_thresholds():
+        if record.use == "predict":
+            key = (record.quantity, record.source)
+            records[key] = records.get(key, 0) + 1
+    return markdown(("quantity", "source", "records"), [(*key, count) for key, count in sorted(records.items())])
+
+
+def people_table() -> str:
+    """How virtual people differ: one row a column of `People`."""
+    return markdown(
+        ("column", "spread", "basis"),
+        [(f"`{name}`", _spread(record), _basis(record)) for name, record in people_records().items()],
+    )
+
+
+def _spread(record: Record) -> str:
+    unit = UNITS.get(record.unit, record.unit)
+    low, high = record.interval
+    if record.quantity.endswith("between people") and record.value is not None and unit == "ln":
+        return f"SD {number(record.value)} ln ({span(low, high)})"
+    if record.value is not None and low == high:
+        return f"{number(record.value)} {unit}".strip()
+    middle = "" if record.value is None else f"{number(record.value)}, "
+    return f"{middle}{span(low, high)} {unit}".strip()
+
+
+def _basis(record: Record) -> str:
+    return f"assumed: {record.source}" if record.use == "assumed" else record.source
+
+
+TABLES: Mapping[str, Callable[[], str]] = {
+    "experiments": experiments_table,
+    "constants": constants_table,
+    "offsets": offsets_table,
+    "unmoved": unmoved_sentence,
+    "ablation": ablation_table,
+    "left out": left_out_table,
+    "coverage": coverage_sentence,
+    "predicted": predicted_table,
+    "people": people_table,
+    "constants of receptors": lambda: constants_table(GROUPS["receptors"]),
+    "constants of sensation": lambda: constants_table(GROUPS["sensation"]),
+    "constants of detection": lambda: constants_table(GROUPS["detection"]),
+    "constants of people": lambda: constants_table(GROUPS["people"]),
+}
+"""Every table by the name that a page's mark gives."""

@@ -1,0 +1,130 @@
+"""Keys of rig, device and study files with their values and defaults as tables, from the schemas that check them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import BaseModel
+
+BOUNDS = {"minimum": "≥ {:g}", "exclusiveMinimum": "> {:g}", "maximum": "≤ {:g}", "exclusiveMaximum": "< {:g}"}
+KINDS = {"integer": "whole number", "number": "number", "string": "text", "boolean": "true or false"}
+
+
+def rig_keys_table() -> str:
+    """Return every key of a rig file with its values and its default, as a table of Markdown.
+
+    >>> [line for line in rig_keys_table().splitlines() if "area_cm2" in line]
+    ['| `contact.area_cm2` | number ≥ 0.01, ≤ 10000 | needed |']
+    """
+    from thermicon.circuit.rig.rigfile import RigTable
+
+    return _table(RigTable)
+
+
+def modules_table() -> str:
+    """Return the modules on record, a line for each data sheet, as a table of Markdown.
+
+    >>> [line for line in modules_table().splitlines() if "TEC1-12706" in line][0]
+    '| `TEC1-12706` | 40 × 40 mm | 4.6 | 25 | 6.4 | 14.4 | 50 | 66 |'
+    """
+    from thermicon.circuit.rig.modules import build_of, module_table
+
+    rows = []
+    for record in sorted(module_table(), key=lambda record: (str(record.get("module")), float(record.get("t_hot_C")))):
+        printed, name = dict(record.extra), str(record.get("module"))
+        size = str(printed["footprint_mm"]).replace("x", "×") + " mm" if printed.get("footprint_mm") else "–"
+        plate = build_of(name).plate_J_per_K
+        figures = [f"{float(record.get(key)):g}" for key in ("t_hot_C", "i_max_A", "v_max_V", "q_max_W", "dt_max_K")]
+        rows.append(f"| {' | '.join((f'`{name}`', size, '–' if plate is None else f'{plate:g}', *figures))} |")
+    head = "| name | face | plates, J/K each | hot side °C | Imax A | Vmax V | Qmax W | ΔTmax K |"
+    return "\n".join([head, "|---|---|---|---|---|---|---|---|", *rows])
+
+
+def device_keys_table() -> str:
+    """Return every key of a device file with its values and its default, as a table of Markdown."""
+    from thermicon.circuit.delivery.devicefile import DeviceTable
+
+    return _table(DeviceTable)
+
+
+def device_quantities_table() -> str:
+    """Return the quantities that a device may state, with the limits of their values, as a table of Markdown."""
+    from thermicon.circuit.delivery.devicefile import LIMITS, UNITS, UNITS_BY_DRIVE
+
+    rows = []
+    for quantity, (low, high) in LIMITS.items():
+        units = [UNITS[quantity]] if quantity in UNITS else sorted(set(UNITS_BY_DRIVE[quantity].values()))
+        rows.append(f"| `{quantity}` | {' or '.join(units)} | {low:g} to {high:g} |")
+    return "\n".join(["| quantity | unit | from, to |", "|---|---|---|", *rows])
+
+
+def study_keys_table() -> str:
+    """Return every key of a study file with its values, its default and its meaning, as a table of Markdown."""
+    rows = [f"| `{key}` | {values} | {default} | {meaning} |" for key, values, default, meaning in _study_rows()]
+    return "\n".join(["| key | values | default | meaning |", "|---|---|---|---|", *rows])
+
+
+def _study_rows() -> Iterator[tuple[str, str, str, str]]:
+    from thermicon.notebooks.study.keys import TABLES, Study
+
+    yield from _of(Study, "", [name for name in Study.model_fields if name not in TABLES])
+    for name, table in TABLES.items():
+        yield from _of(table, f"{name}.", list(table.model_fields))
+
+
+def _of(table: type[BaseModel], prefix: str, names: list[str]) -> Iterator[tuple[str, str, str, str]]:
+    properties = table.model_json_schema()["properties"]
+    for name in names:
+        field = table.model_fields[name]
+        default = "needed" if field.is_required() else default_of(field.default)
+        yield prefix + name, values_of(properties[name]), default, str(field.description)
+
+
+def _table(model: type[BaseModel]) -> str:
+    schema = model.model_json_schema()
+    rows = [f"| `{key}` | {values} | {default} |" for key, values, default in _rows(schema, schema, "")]
+    return "\n".join(["| key | values | default |", "|---|---|---|", *rows])
+
+
+def _rows(table: dict[str, Any], schema: dict[str, Any], prefix: str) -> Iterator[tuple[str, str, str]]:
+    """Yield the keys of a table, those of the tables in it included; a list of tables has 0 as its place."""
+    for name, about in table["properties"].items():
+        known = known_of(about)
+        inner = known.get("items", known) if known.get("type") == "array" else known
+        if "$ref" in inner:
+            place = f"{prefix}{name}.0." if inner is not known else f"{prefix}{name}."
+            yield from _rows(schema["$defs"][inner["$ref"].rpartition("/")[2]], schema, place)
+        else:
+            default = "needed" if name in table.get("required", ()) else default_of(about.get("default"))
+            yield prefix + name, values_of(about), default
+
+
+def known_of(about: dict[str, Any]) -> dict[str, Any]:
+    """Return what a key holds where it is given."""
+    options = [option for option in about.get("anyOf", [about]) if option.get("type") != "null"]
+    return dict(options[0])
+
+
+def values_of(about: dict[str, Any]) -> str:
+    """Return kind and bounds of a value, as the JSON schema has them."""
+    known = known_of(about)
+    if "enum" in known:
+        return ", ".join(f"`{value}`" for value in known["enum"] if value != "")
+    if "const" in known:
+        return f"`{known['const']}`"
+    if known["type"] == "object":
+        return "text for each key"
+    if known["type"] == "array":
+        return f"list of {values_of(known['items'])}"
+    bounds = [words.format(known[bound]) for bound, words in BOUNDS.items() if bound in known]
+    return " ".join([KINDS[known["type"]], ", ".join(bounds)]).strip()
+
+
+def default_of(value: object) -> str:
+    """Return a default as it is written in a file; a key without one may be left out."""
+    if value in (None, [], ""):
+        return "none"
+    if isinstance(value, bool):
+        return f"`{str(value).lower()}`"
+    return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"

@@ -1,0 +1,219 @@
+"""Tables of the sampled posterior as Markdown: what it says of each constant, left-out predictions, variants.
+
+Log scores of the variants and of forms of memory are finished comparisons: tables whose first line says by which
+version and from what they were made.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from evidence_tables import TABLES as INFERRED
+
+from thermicon.perception.arrays import Array
+from thermicon.perception.evidence.left_out import FROM_WEIGHTS
+from thermicon.perception.evidence.left_out_table import LeftOutRow, load_left_out
+from thermicon.perception.evidence.posterior import UNMOVED_SHIFT, Summary, summarise
+from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
+from thermicon.perception.evidence.rows import load_rows
+from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
+from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.variants import VARIABLES, Variable
+
+
+@dataclass(frozen=True, slots=True)
+class VariantScores:
+    """Log scores of one left-out row by each variant: log densities of the published number on the row's scale."""
+
+    experiment: str
+    statistic: str
+    channel: str
+    temperature: float
+    heat_flow: float
+
+
+@dataclass(frozen=True, slots=True)
+class FormScore:
+    """One published row as one form of memory predicts it: value, 95 % of draws, and log score."""
+
+    norm: str
+    row: str
+    published: str
+    predicted: float
+    low: float
+    high: float
+    log_score: float
+
+
+SCORES, FORMS = "variant-scores.csv", "memory_forms.csv"
+
+
+@lru_cache(maxsize=1)
+def load_forms() -> tuple[FormScore, ...]:
+    """Scores of forms of memory, form by form."""
+    return tuple(read_rows(FORMS, FormScore))
+
+
+@lru_cache(maxsize=1)
+def variant_log_scores() -> Array:
+    """Log scores (variants, rows) in the order of VARIABLES and of the likelihood.
+
+    >>> variant_log_scores().shape
+    (2, 54)
+    """
+    rows = list(read_rows(SCORES, VariantScores))
+    return np.array([[row.temperature for row in rows], [row.heat_flow for row in rows]])
+
+
+def variant_weights() -> dict[Variable, float]:
+    """Weights of the variants that predict the left-out rows best as a mixture.
+
+    >>> round(sum(variant_weights().values()), 6)
+    1.0
+    """
+    return dict(zip(VARIABLES, stacking_weights(variant_log_scores()).tolist(), strict=True))
+
+
+def stacking_weights(log_scores: Array, rounds: int = 2000) -> Array:
+    """Weights (variants,) that sum to 1 and maximise the log score of the mixture, from log scores (variants, rows).
+
+    Expectation–maximisation, which rises with every round (Yao, Vehtari, Simpson & Gelman 2018).
+
+    >>> stacking_weights(np.array([[0.0, 0.0], [-9.0, -9.0]])).round(2)
+    array([1., 0.])
+    """
+    densities = np.exp(log_scores - log_scores.max(axis=0))
+    weights = np.full(len(densities), 1.0 / len(densities))
+    for _ in range(rounds):
+        shares = weights[:, None] * densities
+        weights = (shares / shares.sum(axis=0)).mean(axis=1)
+    return weights
+
+
+def posterior_table() -> str:
+    """Median and 95 % interval of every constant in the draws, beside the maximum; offsets of laboratories last."""
+    maxima = {each.name: each.value for each in load_constants()}
+    rows = []
+    for each in summarise(PosteriorDraws.load()):
+        unit = "" if each.unit == "SD" else UNITS.get(each.unit, each.unit)
+        remark = "edge of its prior" if each.at_edge else "not moved" if each.unmoved else ""
+        median = f"{number(each.median)} {unit}".strip()
+        ends = span(each.low, each.high)
+        rows.append((each.name, median, ends, number(maxima[each.name]), f"{each.narrowed:.2f}", remark))
+    return markdown(("constant", "median", "95 %", "at the maximum", "SD left", ""), rows)
+
+
+def sampled_sentence() -> str:
+    """How the shipped draws were made."""
+    header = PosteriorDraws.load().header
+    return f"{header.sampler}, seed {header.seed}, {header.likelihoods} likelihoods: {header.status}."
+
+
+def moved_sentence() -> str:
+    """What the evidence did not move, and what it pushed to the edge of its prior."""
+    found = [each for each in summarise(PosteriorDraws.load()) if each.unit != "SD"]
+    return (
+        f"Not moved (SD above {UNMOVED_SD:g} of the prior's, median within {UNMOVED_SHIFT:g} of its middle): "
+        f"{_names([each for each in found if each.unmoved])}. "
+        f"At the edge of the prior (median beyond its 95 %): {_names([each for each in found if each.at_edge])}."
+    )
+
+
+def _names(found: Sequence[Summary]) -> str:
+    return ", ".join(sorted(each.name for each in found)) or "none"
+
+
+def sampled_left_out_table() -> str:
+    """Every row predicted by draws that never saw its experiment; misses of the 95 % interval are bold."""
+    rows = []
+    for each in load_left_out():
+        mark = "" if each.covered(0.95) else "**"
+        unit = {"1": "", "0-100": "of 100"}.get(each.unit, each.unit)
+        naive = "" if math.isnan(each.naive) else signed(each.log_score - each.naive, 2)
+        rows.append(
+            (
+                each.experiment,
+                f"{mark}{each.label}{mark}",
+                unit,
+                number(each.published),
+                number(each.median),
+                span(each.lower, each.upper),
+                span(each.low, each.high),
+                signed(each.log_score, 2),
+                naive,
+            )
+        )
+    return markdown(
+        ("key", "row", "unit", "published", "predicted", "50 %", "95 %", "log score", "over the naive baseline"), rows
+    )
+
+
+def scores_sentence(rows: Sequence[LeftOutRow]) -> str:
+    """Coverage, widths and log scores of left-out predictions."""
+    inside = [sum(each.covered(share) for each in rows) for share in (0.5, 0.95)]
+    logs = {row.key for row in load_rows() if row.log}
+    ratios = sorted(each.high / each.low for each in rows if (each.experiment, each.statistic, each.channel) in logs)
+    compared = [each for each in rows if not math.isnan(each.naive)]
+    gain = sum(each.log_score - each.naive for each in compared) / len(compared)
+    weighted = dict.fromkeys(each.experiment for each in rows if each.method == FROM_WEIGHTS)
+    return (
+        f"{inside[0]} of {len(rows)} rows lie inside their 50 % interval and {inside[1]} inside their 95 % interval. "
+        f"Half of the 95 % intervals of ratios span less than a factor of {ratios[len(ratios) // 2]:.1f}. "
+        f"On {len(compared)} rows of a kind that two other experiments have, the log score is {signed(gain, 2)} a row "
+        f"over the naive baseline. "
+        f"Weights were enough for {', '.join(weighted) if weighted else 'no experiment'}; the others were refitted."
+    )
+
+
+def variants_sentence() -> str:
+    """Mean left-out log score of each variant, their best mixture, and how sure temperature is better than heat flow.
+
+    The standard error is that of a sum over experiments, whose rows share laboratory and people.
+    """
+    logs = variant_log_scores()
+    parts = [
+        f"{name} {signed(mean, 2)} (weight {weight:.2f})"
+        for (name, weight), mean in zip(variant_weights().items(), logs.mean(axis=1).tolist(), strict=True)
+    ]
+    gains: dict[str, float] = {}
+    for row, gain in zip(load_rows(), (logs[0] - logs[1]).tolist(), strict=True):
+        gains[row.experiment] = gains.get(row.experiment, 0.0) + gain
+    each = np.array(list(gains.values()))
+    error = float(each.std(ddof=1)) * math.sqrt(each.size)
+    better = int((each > 0.0).sum())
+    return (
+        f"Mean log score a row: {', '.join(parts)}. All rows together, temperature is ahead of heat flow by "
+        f"{signed(float(each.sum()), 1)} ± {error:.1f} (standard error over {each.size} experiments), and predicts "
+        f"{better} of them better."
+    )
+
+
+def forms_table() -> str:
+    """Scores of forms of memory, with the sum of each form."""
+    rows, forms = load_forms(), dict.fromkeys(one.norm for one in load_forms())
+    lines = []
+    for norm in forms:
+        own = [one for one in rows if one.norm == norm]
+        for one in own:
+            ends = span(one.low, one.high)
+            lines.append((f"`{norm}`", one.row, one.published, number(one.predicted), ends, f"{one.log_score:.1f}"))
+        total = f"**{sum(one.log_score for one in own):.1f}**"
+        lines.append((f"`{norm}`", "**all rows**", "", "", "", total))
+    return markdown(("norm", "row", "published", "predicted", "95 %", "log score"), lines)
+
+
+TABLES: Mapping[str, Callable[[], str]] = {
+    **INFERRED,
+    "posterior": posterior_table,
+    "sampled": sampled_sentence,
+    "moved": moved_sentence,
+    "left out by draws": sampled_left_out_table,
+    "scores": lambda: scores_sentence(load_left_out()),
+    "variants": variants_sentence,
+    "forms of memory": forms_table,
+}
+"""Every table of the pages by the name that a page's mark gives, those of the inference included."""

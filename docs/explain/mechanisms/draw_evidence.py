@@ -1,0 +1,130 @@
+"""Pictures of the inference: what each mechanism is worth, predictions of what was left out, constants and priors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.solver.draw import COOL, WARM, new_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from thermicon.perception.evidence.results import AblatedRow, Constant, PredictedRow
+
+GREY, INK = "#9a9a9a", "#222222"
+SAYS_NOTHING = 2.0
+"""A difference of log evidence that is smaller says nothing."""
+LOG_UNITS = ("s", "K", "0-100", "1/K")
+"""Units of rows whose prediction is compared as a ratio of the published number."""
+
+
+def plot_ablation(rows: Sequence[AblatedRow], ax: Axes | None = None) -> Axes:
+    """Draw log evidence lost without each mechanism, most first; grey bars are too short to say anything."""
+    shown = sorted((row for row in rows if row.without or row.difference), key=lambda row: row.difference)
+    axes = new_axes(ax, (6.6, 0.3 * len(shown) + 1.1))
+    places = np.arange(len(shown))
+    values = np.array([row.difference for row in shown])
+    colours = [GREY if abs(v) < SAYS_NOTHING else COOL if v < 0.0 else WARM for v in values.tolist()]
+    axes.axvspan(-SAYS_NOTHING, SAYS_NOTHING, color="#eeeeee", zorder=0)
+    axes.barh(places, values, color=colours, height=0.7)
+    for place, value in zip(places.tolist(), values.tolist(), strict=True):
+        left = value < 0.0
+        at = (-4, 0) if left else (4, 0)
+        axes.annotate(
+            f"{value:.1f}".replace("-", "−"),
+            (value, place),
+            at,
+            textcoords="offset points",
+            va="center",
+            ha="right" if left else "left",
+            fontsize="small",
+        )
+    axes.set_yticks(places, [_run(row) for row in shown])
+    axes.set_xscale("symlog", linthresh=10.0)
+    axes.set_xlim(3.0 * float(values.min()), 10.0)
+    axes.set_xticks([-100.0, -30.0, -10.0, -5.0, 0.0, 5.0], ["−100", "−30", "−10", "−5", "0", "5"])
+    axes.minorticks_off()
+    axes.invert_yaxis()
+    axes.set_xlabel("log evidence against the whole (grey: says nothing)")
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    return axes
+
+
+def _run(row: AblatedRow) -> str:
+    if row.without:
+        return f"without {row.without}"
+    return row.variable
+
+
+def plot_left_out(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:
+    """Draw how far each published number lies from its prediction without its experiment, in SDs of both together.
+
+    The grey band holds 95 % if the model and its errors are right; rows outside have an open marker.
+    """
+    axes = new_axes(ax, (7.2, 0.2 * len(rows) + 1.2))
+    places = np.arange(len(rows))
+    axes.axvspan(-1.96, 1.96, color="#eeeeee", zorder=0)
+    axes.axvline(0.0, color=GREY, lw=0.8)
+    for place, row in zip(places.tolist(), rows, strict=True):
+        colour = COOL if row.channel == "cold" else WARM if row.channel == "warm" else INK
+        marker = "o" if row.channel == "cold" else "s" if row.channel == "warm" else "^"
+        inside = abs(row.score) <= 1.959964
+        axes.plot(row.score, place, ls="", marker=marker, ms=5, mec=colour, mfc=colour if inside else "w")
+    axes.set_yticks(places, [f"{row.experiment}  {row.label}" for row in rows], fontsize=7)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    axes.set_xlim(-4.0, 4.0)
+    axes.set_xlabel("published minus predicted (SD of both)")
+    axes.set_title("Left-out rows (open: missed)", loc="left", fontsize="medium")
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    return axes
+
+
+def plot_published_predicted(rows: Sequence[PredictedRow], ax: Axes | None = None) -> Axes:
+    """Draw predictions without the experiment against published numbers that are positive, with 95 % intervals.
+
+    Only times, temperatures and ratings are drawn, as ratios: what is published divided by it is the dotted line.
+    """
+    shown = [row for row in rows if row.unit in LOG_UNITS or row.unit.startswith("times")]
+    axes = new_axes(ax, (7.0, 0.27 * len(shown) + 1.4))
+    axes.axvline(1.0, color=GREY, lw=1.0, ls=":")
+    for place, row in enumerate(shown):
+        colour, marker = (COOL, "o") if row.channel == "cold" else (WARM, "s")
+        low, middle, high = (end / row.published for end in (row.left_out_low, row.left_out, row.left_out_high))
+        axes.plot([low, high], [place, place], color=colour, lw=1.4)
+        axes.plot(middle, place, ls="", marker=marker, ms=5.5, color=colour)
+        axes.plot(row.fitted / row.published, place, ls="", marker="|", ms=10, color=INK)
+    axes.set_xscale("log")
+    axes.set_xticks([0.1, 0.3, 1.0, 3.0, 10.0], ["0.1", "0.3", "1", "3", "10"])
+    axes.minorticks_off()
+    axes.set_xlim(0.08, 32.0)
+    axes.set_yticks(range(len(shown)), [f"{row.experiment}  {row.label}" for row in shown], fontsize=8)
+    axes.set_ylim(len(shown) - 0.4, -0.6)
+    axes.set_xlabel("prediction / published (dot, bar: left out; tick: fitted)")
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    return axes
+
+
+def plot_narrowing(constants: Sequence[Constant], ax: Axes | None = None) -> Axes:
+    """Draw how much of its prior's SD each constant keeps: 1 where the evidence says nothing of it."""
+    shown = sorted((each for each in constants if each.mechanism != "laboratories"), key=lambda each: each.narrowed)
+    axes = new_axes(ax, (6.6, 0.19 * len(shown) + 1.0))
+    places = np.arange(len(shown))
+    for place, each in zip(places.tolist(), shown, strict=True):
+        colour = COOL if each.name.startswith("cold") else WARM if each.name.startswith("warm") else INK
+        axes.plot([0.0, each.narrowed], [place, place], color=colour, lw=1.2)
+        axes.plot(each.narrowed, place, ls="", marker="o", ms=4, color=colour)
+    axes.axvline(1.0, color=GREY, lw=0.8, ls=":")
+    axes.axvspan(0.9, 1.0, color="#eeeeee", zorder=0)
+    axes.set_yticks(places, [each.name for each in shown], fontsize=7)
+    axes.set_ylim(len(shown) - 0.4, -0.6)
+    axes.set_xlim(0.0, 1.04)
+    axes.set_xlabel("SD over the prior's SD (grey: over 0.9, as good as assumed)")
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    return axes

@@ -1,0 +1,214 @@
+"""What each mechanism does to a cue: the same stimulus with it and without it, as curves to draw.
+
+Skin is the skin of the inference (`skin_modes`) under its own thermode, receptors and sensation are the shipped
+observer's. Nothing here is conditioned on or predicted for an experiment: it shows what an equation means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from thermicon.perception.arrays import Array, own_arrays
+from thermicon.perception.evidence.results import Constant, load_constants
+from thermicon.perception.experiments.laboratory import SURFACE_DEPTH_M
+from thermicon.perception.experiments.skin_modes import Corner, SkinModes, skin_modes
+from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
+from thermicon.perception.observer.observer import Observer
+from thermicon.perception.observer.transducer import Transducer
+from thermicon.perception.sensation.detection import detect
+from thermicon.perception.sensation.sensation import receptor_drive, sensation, sensitivity
+
+Look = Literal["cold", "warm", "reference", "off", "other"]
+"""How a curve is drawn: in a channel's colour, thin for a reference, dashed grey for a mechanism turned off."""
+DT_S = 0.02
+STRIPS_CM2 = 9.8
+PEOPLE_SHARES = (0.05, 0.5, 0.95)
+"""Cautious people have a high criterion: shares of people with a lower one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """One curve by its label: `x` and `y` (n,) read-only, in the units of the axes of its effect."""
+
+    label: str
+    look: Look
+    x: Array
+    y: Array
+
+    def __post_init__(self) -> None:
+        own_arrays(self, "x", "y")
+        if self.x.shape != self.y.shape or self.x.ndim != 1:
+            raise ValueError(f"{self.label}: a curve needs as many x as y, not {self.x.shape} and {self.y.shape}")
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """What a mechanism does to a cue: curves with and without it, and what the axes show."""
+
+    mechanism: str
+    title: str
+    x_label: str
+    y_label: str
+    curves: tuple[Curve, ...]
+    log_x: bool = False
+    log_y: bool = False
+
+
+def limits_effect() -> Effect:
+    """A slow fall from 38 to 31 °C: cold with its limit and without, and warmth, which is what fades first."""
+    time, whole, free = _clock(12.0), Observer.load(), Observer.load(without=["cold limit"])
+    corners: list[Corner] = [(1.0, 0.0), (8.0, -7.0)]
+    curves = [
+        Curve("warm", "warm", time, _felt(corners, "warm", whole, time, baseline_C=38.0)),
+        Curve("cold", "cold", time, _felt(corners, "cold", whole, time, baseline_C=38.0)),
+        Curve("cold, limit off", "off", time, _felt(corners, "cold", free, time, baseline_C=38.0)),
+    ]
+    title = "A fall from 38 to 31 °C at 1 K/s (forearm)"
+    return Effect("limits", title, "time (s)", "sensation (d′)", tuple(curves))
+
+
+def adaptation_effect() -> Effect:
+    """Skin held 1, 3 and 8 K colder for a minute: cold fades inside the neutral zone, and stays beyond it."""
+    time, observer = _clock(60.0), Observer.load()
+    sizes: tuple[tuple[float, Look], ...] = ((8.0, "cold"), (3.0, "reference"), (1.0, "other"))
+    curves = [
+        Curve(
+            f"to {32.0 - size:.0f} °C",
+            look,
+            time,
+            _felt([(1.0, 0.0), (1.0 + size / 2.0, -size)], "cold", observer, time),
+        )
+        for size, look in sizes
+    ]
+    title = "A held fall from 32 °C: complete adaptation to 30 °C"
+    return Effect("adaptation", title, "time (s)", "sensation of cold (d′)", tuple(curves))
+
+
+def depth_effect() -> Effect:
+    """A fall by 5 K in 0.5 s at the cold receptors of thenar and forearm, for both ways to count their depth."""
+    time, depth = _clock(4.0), 1e-3 * _value("cold receptor depth")
+    sites: tuple[tuple[str, Look, Look], ...] = (("forearm", "cold", "off"), ("thenar", "reference", "other"))
+    curves = []
+    for site, below, surface in sites:
+        skin = _skin(site)
+        for counted, at, look in (
+            ("below the stratum corneum", skin.corneum_m + depth, below),
+            ("0.15 mm from the surface", SURFACE_DEPTH_M["cold"], surface),
+        ):
+            change = skin.course(at, 32.0, [(0.5, -5.0)], DT_S, time.size)
+            curves.append(Curve(f"{site}, {counted}", look, time, change - change[0]))
+    title = "A fall by 5 K in 0.5 s at the cold receptors"
+    return Effect("depth", title, "time (s)", "change of temperature (K)", tuple(curves))
+
+
+def summation_effect() -> Effect:
+    """Sensitivity against the area of contact, with the two ends of summation and without."""
+    area = np.geomspace(0.02, 5000.0, 120)
+    curves = []
+    for without in ((), ("ends of summation",)):
+        observer = Observer.load(without=without)
+        for channel in CHANNELS:
+            ratio = np.array([sensitivity(channel, observer, a * 1e-4) for a in area.tolist()])
+            label = f"{channel}, no ends" if without else channel
+            look: Look = channel if not without else "off" if channel == "cold" else "other"
+            curves.append(Curve(label, look, area, ratio))
+    title = "Sensitivity by area of contact (1 at 9 cm²)"
+    return Effect("summation", title, "area of contact (cm²)", "sensitivity", tuple(curves), log_x=True, log_y=True)
+
+
+def transducer_effect() -> Effect:
+    """Sensation against drive for the inferred exponent, a linear observer and the square law."""
+    drive, whole = np.geomspace(0.2, 60.0, 120), Observer.load()
+    curves = [
+        Curve(f"p = {whole.p:.2g} (inferred)", "cold", drive, whole.transducer.psi(drive)),
+        Curve("p = 1 (linear near threshold)", "reference", drive, Transducer(whole.a, 1.0).psi(drive)),
+        Curve("p = 2 (square law)", "off", drive, Transducer(whole.a, 2.0).psi(drive)),
+    ]
+    title = "Sensation by receptor drive"
+    return Effect(
+        "transducer", title, "drive (multiples of threshold)", "sensation (d′)", tuple(curves), log_x=True, log_y=True
+    )
+
+
+def gain_noise_effect() -> Effect:
+    """The psychometric function of a fall of temperature, with noise of the gain and without."""
+    sizes = np.linspace(0.02, 1.4, 60)
+    curves = [
+        Curve("gain noise", "cold", sizes, 100.0 * _noticed(sizes, Observer.load())),
+        Curve("additive noise alone", "off", sizes, 100.0 * _noticed(sizes, Observer.load(without=["gain noise"]))),
+    ]
+    title = "One person, a fall at 2.5 K/s and 1.5 s of hold (forearm)"
+    return Effect("gain noise", title, "size of the fall (K)", "noticed (%)", tuple(curves))
+
+
+def criteria_effect() -> Effect:
+    """The same for people with a low, a middle and a high criterion."""
+    from scipy.special import ndtri
+
+    sizes, observer, spread = np.linspace(0.02, 3.0, 60), Observer.load(), _value("criterion between people")
+
+    def noticed(share: float) -> Array:
+        return _noticed(sizes, observer, float(np.exp(spread * ndtri(share))))
+
+    words = ("lax (5th percentile)", "middle", "cautious (95th percentile)")
+    looks: tuple[Look, ...] = ("other", "cold", "reference")
+    curves = [
+        Curve(word, look, sizes, 100.0 * noticed(share))
+        for word, look, share in zip(words, looks, PEOPLE_SHARES, strict=True)
+    ]
+    title = "Three people who differ in criterion alone"
+    return Effect("criterion between people", title, "size of the fall (K)", "noticed (%)", tuple(curves))
+
+
+EFFECTS: Mapping[str, Callable[[], Effect]] = {
+    "limits": limits_effect,
+    "adaptation": adaptation_effect,
+    "depth": depth_effect,
+    "summation": summation_effect,
+    "transducer": transducer_effect,
+    "gain-noise": gain_noise_effect,
+    "criteria": criteria_effect,
+}
+"""Every effect by the name of its picture."""
+
+
+def _clock(end_s: float) -> Array:
+    clock: Array = DT_S * np.arange(round(end_s / DT_S) + 1, dtype=np.float64)
+    return clock
+
+
+def _value(name: str) -> float:
+    return _constants()[name].value
+
+
+def _constants() -> dict[str, Constant]:
+    return {each.name: each for each in load_constants()}
+
+
+def _skin(site: str) -> SkinModes:
+    return skin_modes(site, _value("contact resistance of a thermode"), _value("effusivity of living skin"))
+
+
+def _felt(
+    corners: Sequence[Corner], channel: Channel, observer: Observer, time: Array, *, baseline_C: float = 32.0
+) -> Array:
+    """Sensation (n_time,) of a thermode on the forearm that goes from corner to corner."""
+    skin = _skin("forearm")
+    depth = skin.corneum_m + 1e-3 * _value(f"{channel} receptor depth")
+    received = skin.course(depth, baseline_C, corners, DT_S, time.size)
+    drive = receptor_drive(received, DT_S, channel, observer)
+    return sensation(drive, channel, observer, area_m2=STRIPS_CM2 * 1e-4, site="forearm")
+
+
+def _noticed(sizes_K: Array, observer: Observer, criterion: ArrayLike = 1.0) -> Array:
+    """Probability (sizes,) that a fall is noticed, false alarms taken out."""
+    time, sign = _clock(4.0), sign_of("cold")
+    felt = np.stack(
+        [_felt([(size / 2.5, sign * size), (time[-1], sign * size)], "cold", observer, time) for size in sizes_K]
+    )
+    return detect(felt, np.zeros_like(felt), DT_S, observer, criterion_cold=criterion).probability

@@ -1,0 +1,99 @@
+"""What all figures share: colours, the width in print, how axes look, keys beside the panels, limits of the skin."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from ..messages import usage
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from thermicon.circuit import Session
+
+COOL, WARM = "#2166ac", "#e08214"
+BROAD = "#b9bec4"
+"""A broad line below a thin one: the first of two, or what was predicted before."""
+INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"
+NEAR_K = 6.0
+"""Limits of the skin that are nearer than this to what is drawn get a line."""
+MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}
+NARROWEST_MM, WIDEST_MM = 40.0, 500.0
+"""Below, labels are wider than panels; above, no printer takes it."""
+NARROW_MM, PANEL_MM = 120.0, 42.0
+"""Narrower figures have their keys below the panels; a panel with labels needs about this width."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """What a figure is for: print, so many mm wide, or a screen (None)."""
+
+    width_mm: float | None = None
+
+    def across(self, panels: int) -> int:
+        """How many panels fit beside one another, of those that stand so where there is room.
+
+        >>> Look().across(3), Look(85.0).across(3), Look(180.0).across(3)
+        (3, 2, 3)
+        """
+        return panels if self.width_mm is None else min(panels, max(1, int(self.width_mm // PANEL_MM)))
+
+    @property
+    def narrow(self) -> bool:
+        """Whether keys do not fit beside the panels."""
+        return self.width_mm is not None and self.width_mm < NARROW_MM
+
+
+SCREEN = Look()
+
+
+def read_width_mm(text: str) -> float:
+    """Read a width with its unit, in mm.
+
+    >>> read_width_mm("85mm"), read_width_mm("8.5 cm")
+    (85.0, 85.0)
+    """
+    match = re.fullmatch(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(mm|cm|in)\s*", text)
+    if match is None:
+        raise usage(f"{text!r} is not a width with a unit, such as 85mm, 18cm or 7in", "--paper")
+    width = round(float(match[1]) * MM[match[2]], 6)
+    if not NARROWEST_MM <= width <= WIDEST_MM:
+        raise usage(f"{text.strip()} is outside {NARROWEST_MM:g} to {WIDEST_MM:g} mm", "--paper")
+    return width
+
+
+def plain(*axes: Axes, grid: Literal["both", "x"] = "both") -> None:
+    """Give axes a faint grid, and no frame at the top and at the right."""
+    for ax in axes:
+        ax.grid(axis=grid, alpha=0.25, linewidth=0.6)
+        ax.spines[["top", "right"]].set_visible(False)
+
+
+def key_beside(ax: Axes) -> None:
+    """Put the key of a panel at its right, outside, where it covers no line."""
+    ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8, handlelength=2.6)
+
+
+def on_one_clock(figure: Figure, axes: Sequence[Axes], time: str, title: str) -> None:
+    """Dress panels below one another on one axis of time: grid, keys beside them, name of the axis, title."""
+    for ax in axes:
+        plain(ax)
+        ax.margins(x=0.0)
+        key_beside(ax)
+    axes[-1].set_xlabel(time)
+    figure.align_ylabels(list(axes))
+    figure.suptitle(title, fontsize=11, wrap=True)
+
+
+def skin_limits(ax: Axes, session: Session, near_K: float = NEAR_K, name: str = "limit of skin") -> None:
+    """Draw the limits of the skin that are near to what is drawn: hard ones as lines, others dashed."""
+    low, high = ax.get_ylim()
+    for rule in session.limits.rules:
+        if rule.quantity == "skin surface" and not rule.relative and low - near_K < rule.limit < high + near_K:
+            width, dashes = (1.4, "-") if rule.severity == "hard" else (0.9, (0, (4, 3)))
+            label = f"{rule.severity} {name}, {rule.limit:g} °C"
+            ax.axhline(rule.limit, color=LIMIT, lw=width, ls=dashes, label=label)

@@ -1,0 +1,246 @@
+"""What a laboratory would measure: thresholds, reaction times and ratings under a condition, on the skin of a rig.
+
+The tasks are those of the published experiments that the constants were inferred from, on the skin of the rig's site,
+with its contact and area, and with the laboratory's own offset of sensitivity. People are a quasi-random crowd with the
+spreads of the draw. `measure` asks new laboratories; a pilot asks those that its data leave.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, get_args
+
+import numpy as np
+
+from ..arrays import Array
+from ..kernels.parallel import in_order
+from ..observer.channels import CHANNELS, Channel
+from ..observer.draws import PosteriorDraws
+from ..observer.observer import on_forearm
+from ..observer.people import YOUNG_YEARS
+from ..observer.variants import Variable
+from .crowd import PEOPLE, SEED
+from .laboratory import Laboratory
+from .tasks import UNSTATED, Played, Ramp, yes_no_logs
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+
+Kind = Literal["threshold", "reaction_time", "rating"]
+METHODS: dict[Kind, tuple[str, ...]] = {
+    "threshold": ("forced_choice", "yes_no", "limits"),
+    "reaction_time": ("choice", "simple"),
+    "rating": ("magnitude",),
+}
+"""Methods of each kind; the first of reaction times and ratings is meant where none is given."""
+ADAPTIVE = ("forced_choice", "yes_no")
+"""Methods that find the size themselves."""
+UNITS: dict[Kind, str] = {"threshold": "K", "reaction_time": "s", "rating": "points"}
+"""Units inside; ratings are points of 100."""
+WORDS = {
+    "forced_choice": "forced choice",
+    "yes_no": "yes/no",
+    "limits": "limits",
+    "choice": "choice reaction time",
+    "simple": "simple reaction time",
+    "magnitude": "rating",
+}
+OWN = "own"
+"""Name of the laboratory whose offset is the user's."""
+SITES = ("thenar", "forearm", "hand-dorsum", "fingertip")
+"""Sites whose skin is shipped, as rigs of the same name."""
+CHOICE_SIZES_K = np.geomspace(0.01, 8.0, 10)
+YES_NO_SIZES_K = np.geomspace(0.05, 12.0, 9)
+AFTER_S = 3.0
+"""Seconds after a timed ramp in which an answer still counts."""
+DRAWS, LEAST_DRAWS = 100, 2
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """What was measured, and the ramp of the display it was measured with.
+
+    `size_K` is the change that was timed or rated, and where a ramp of limits ends; None for forced choice and yes/no.
+    Changes and rates are without sign.
+    """
+
+    kind: Kind
+    method: str
+    channel: Channel
+    baseline_C: float
+    size_K: float | None
+    rate_K_per_s: float
+    hold_s: float
+
+    def __post_init__(self) -> None:
+        if self.kind not in get_args(Kind) or self.method not in METHODS[self.kind] or self.channel not in CHANNELS:
+            raise ValueError(f"there is no {self.kind} by {self.method} of {self.channel}")
+        if not self.rate_K_per_s > 0.0 or not self.hold_s >= 0.0:
+            raise ValueError("a rate above 0 and a hold of at least 0 s are needed")
+        if self.method not in ADAPTIVE and (self.size_K is None or not self.size_K > 0.0):
+            raise ValueError(f"{WORDS[self.method]} needs the size of the change, above 0 K")
+
+    @property
+    def unit(self) -> str:
+        """Unit of its values."""
+        return UNITS[self.kind]
+
+    @property
+    def label(self) -> str:
+        """What it is in words."""
+        words = f"{self.channel}, {WORDS[self.method]}"
+        if self.kind == "threshold":
+            return f"{words}, {self.rate_K_per_s:g} K/s"
+        return f"{words}, {self.size_K:g} K at {self.rate_K_per_s:g} K/s"
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """Skin, contact and area under which measurements were made."""
+
+    site_rig: str
+    contact_m2K_per_W: float
+    area_cm2: float
+
+    @classmethod
+    def of(cls, rig: Rig) -> Setting:
+        """The setting of a rig; a ValueError for a site whose skin is not known."""
+        if rig.site not in SITES:
+            raise ValueError(
+                f"measurements can be simulated at {', '.join(SITES)}; {rig.name} is at {rig.site!r}: give a rig of "
+                "one of these sites"
+            )
+        return cls(rig.site, rig.contact.resistance_m2K_per_W, rig.contact.area_m2 * 1e4)
+
+    @property
+    def path_site(self) -> str:
+        """Site by which thresholds and paths to the cord differ."""
+        return "forearm" if on_forearm(self.site_rig) else "hand"
+
+    def laboratory(
+        self,
+        constants: Mapping[str, float],
+        offsets_sd: Sequence[float],
+        variable: Variable,
+        people: int = PEOPLE,
+        seed: int = SEED,
+    ) -> Laboratory:
+        """A laboratory that measures here; its offsets of cold and warm sensitivity are in SDs between laboratories."""
+        own = {f"{OWN} {channel}": offset for channel, offset in zip(CHANNELS, offsets_sd, strict=True)}
+        contact = {"contact resistance of a thermode": self.contact_m2K_per_W}
+        return Laboratory({**constants, **own, **contact}, variable, people=people, seed=seed)
+
+
+def logs_of(laboratory: Laboratory, setting: Setting, condition: Condition) -> tuple[Array, float]:
+    """Log value of each person (people,), and the SD of the log of one trial (UNSTATED where there is none)."""
+    site, channel, limits = setting.path_site, condition.channel, condition.method == "limits"
+    gain = laboratory.gain(channel, setting.area_cm2, OWN, site, YOUNG_YEARS)
+
+    def ramp(size_K: float, hold_s: float) -> Ramp:
+        return Ramp.held(setting.site_rig, channel, condition.baseline_C, size_K, condition.rate_K_per_s, hold_s)
+
+    if condition.method == "yes_no":
+        ramps = [ramp(size, condition.hold_s) for size in YES_NO_SIZES_K.tolist()]
+        return yes_no_logs(laboratory, ramps, gain)[0], UNSTATED
+    if condition.method == "forced_choice":
+        peaks = [Played.of(laboratory, ramp(size, condition.hold_s)).peak for size in CHOICE_SIZES_K.tolist()]
+        logs = np.maximum.accumulate(np.log(peaks))
+        rising = np.append(True, np.diff(logs) > 0.0)
+        wanted = -np.log(gain * laboratory.sensitivity[channel])
+        return np.interp(wanted, logs[rising], np.log(CHOICE_SIZES_K)[rising]), UNSTATED
+    assert condition.size_K is not None
+    timed = condition.kind == "reaction_time"
+    hold_s = 0.0 if limits else max(condition.hold_s, AFTER_S) if timed else condition.hold_s
+    played = Played.of(laboratory, ramp(condition.size_K, hold_s))
+    if limits:
+        logs = np.log(played.limits_K(gain, site))
+        return logs.mean(axis=1), float(np.median(logs.std(axis=1)))
+    if timed:
+        times = played.answers_s(gain, site, choice=condition.method == "choice")
+        logs = np.log(np.minimum(times, condition.size_K / condition.rate_K_per_s + AFTER_S + 1.0))
+        return np.median(logs, axis=1), float(np.median(logs.std(axis=1)))
+    values = laboratory.values
+    exponent, unit = values[f"{channel} rating exponent"], values[f"{channel} rating at threshold"]
+    logs = math.log(unit) + exponent * (math.log(played.peak * gain) + np.log(laboratory.sensitivity[channel]))
+    scatter = values["scatter of ratings"] / math.exp(float(logs.mean()))
+    return logs, math.hypot(scatter, exponent * values["gain noise"])
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """What new laboratories would measure under a condition: `value` with its 95 % interval `low` to `high`.
+
+    `value` is the geometric mean over people in the unit of the condition, `between` the SD of its natural log between
+    people, `within` that of one trial of the median person; all are medians over laboratories.
+    """
+
+    condition: Condition
+    value: float
+    low: float
+    high: float
+    between: float
+    within: float
+
+    def __repr__(self) -> str:
+        span = f"{self.value:.3g} {self.condition.unit} [{self.low:.3g}, {self.high:.3g}]"
+        return f"Measurement({self.condition.label}: {span}, SD between people {self.between:.2f} ln)"
+
+
+def measure(
+    condition: Condition, rig: Rig, *, draws: int = DRAWS, seed: int = 0, posterior: PosteriorDraws | None = None
+) -> Measurement:
+    """Predict what a laboratory that nobody knows would measure of young people.
+
+    Parameters
+    ----------
+    condition
+        What is measured, and with which ramp.
+    rig
+        Its site, contact and area count; the display is taken to follow the ramp.
+    draws
+        Laboratories, each with constants of another draw of the posterior and an offset of its own.
+    seed
+        Seed of the offsets.
+    posterior
+        Draws of the constants (None: the shipped ones).
+
+    Returns
+    -------
+    Measurement
+        The same numbers for the same arguments.
+
+    Raises
+    ------
+    ValueError
+        For a site whose skin is not known, and fewer than two draws.
+
+    Notes
+    -----
+    Tasks after E1 to E4 and E6 of the evidence. Forced choice is correct in 76 % at threshold (d′ = 1), yes/no reported
+    in half of the trials with the criterion of questions without haste, limits pressed at the first change. A rating
+    is a power of the largest drive; another laboratory's scale may differ by a factor.
+
+    Examples
+    --------
+    >>> from thermicon.circuit import Rig
+    >>> found = measure(Condition("threshold", "limits", "cold", 32.0, 12.0, 1.0, 0.0), Rig.load("forearm"), draws=20)
+    >>> found.low < found.value < found.high, found.condition.unit
+    (True, 'K')
+
+    """
+    if draws < LEAST_DRAWS:
+        raise ValueError(f"an interval needs at least {LEAST_DRAWS} laboratories, not {draws}")
+    setting, known = Setting.of(rig), posterior or PosteriorDraws.load()
+    chosen = np.linspace(0, len(known) - 1, draws).round().astype(np.int64).tolist()
+    offsets = np.random.default_rng(seed).standard_normal((draws, len(CHANNELS))).tolist()
+
+    def one(k: int) -> tuple[float, float, float]:
+        laboratory = setting.laboratory(known.draw(chosen[k]), offsets[k], known.variable)
+        logs, within = logs_of(laboratory, setting, condition)
+        return float(logs.mean()), float(logs.std()), within
+
+    mean, between, within = np.array(list(in_order(one, range(draws)))).T
+    low, middle, high = np.exp(np.percentile(mean, [2.5, 50.0, 97.5])).tolist()
+    return Measurement(condition, middle, low, high, float(np.median(between)), float(np.median(within)))

@@ -1,0 +1,96 @@
+"""Tasks that a laboratory gives its people: a ramp is played, and they press, choose, report or rate.
+
+Rows of the evidence, measurements of a pilot and `measure` are all asked here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..arrays import Array
+from ..observer.channels import Channel, sign_of
+from .laboratory import FEEBLE, Laboratory, samples_of
+from .skin_modes import Corner
+
+DISCREPANCY = 0.05
+"""What a model of this kind may miss a published or measured value by, as a share; assumed."""
+UNSTATED = 0.10
+"""Error of a threshold whose error is not stated, as a share; assumed."""
+HALVES = (0.16, 0.5, 0.84)
+"""Shares one SD below, at and above the middle of a cumulative normal."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ramp:
+    """A ramp of the display over the skin of a rig's site: size in K without sign, K/s, held until `end_s`."""
+
+    site_rig: str
+    channel: Channel
+    baseline_C: float
+    size_K: float
+    rate_K_per_s: float
+    end_s: float
+
+    @classmethod
+    def held(
+        cls, site_rig: str, channel: Channel, baseline_C: float, size_K: float, rate_K_per_s: float, hold_s: float
+    ) -> Ramp:
+        """A ramp whose end is held for so many seconds."""
+        return cls(site_rig, channel, baseline_C, size_K, rate_K_per_s, size_K / rate_K_per_s + hold_s)
+
+    @property
+    def corners(self) -> tuple[Corner, ...]:
+        """Where it ends: time in s and change in K."""
+        return ((self.size_K / self.rate_K_per_s, sign_of(self.channel) * self.size_K),)
+
+
+@dataclass(frozen=True, slots=True)
+class Played:
+    """A ramp played in a laboratory: receptor drive (rows,) of its channel. Gains are multiples of threshold a unit."""
+
+    laboratory: Laboratory
+    ramp: Ramp
+    drive: Array
+
+    @classmethod
+    def of(cls, laboratory: Laboratory, ramp: Ramp) -> Played:
+        """Play it."""
+        drive = laboratory.drive(ramp.site_rig, ramp.channel, ramp.baseline_C, ramp.corners, ramp.end_s)
+        return cls(laboratory, ramp, drive)
+
+    @property
+    def peak(self) -> float:
+        """Largest drive."""
+        return max(float(self.drive.max()), FEEBLE)
+
+    def answers_s(self, gain: float, site: str, *, choice: bool = False) -> Array:
+        """Times (people, trials) in s of a press at the first change, or of a choice of warm or cold; inf: none."""
+        samples = samples_of(self.ramp.corners, self.ramp.end_s)
+        return self.laboratory.answers_s(self.drive, samples, self.ramp.channel, gain, site=site, choice=choice)
+
+    def limits_K(self, gain: float, site: str) -> Array:
+        """How far the ramp has come at a press (people, trials), K; a second beyond its end where nobody pressed."""
+        rate = self.ramp.rate_K_per_s
+        return np.minimum(rate * self.answers_s(gain, site), self.ramp.size_K + rate)
+
+    def reported(self, gain: float) -> Array:
+        """Share of trials (people,) in which it is reported to a question without haste."""
+        samples = samples_of(self.ramp.corners, self.ramp.end_s)
+        criterion = self.laboratory.values["criterion of yes and no"]
+        passed = self.laboratory.passages(self.drive, samples, self.ramp.channel, gain, criterion)[1]
+        found: Array = passed.mean(axis=1)
+        return found
+
+
+def yes_no_logs(laboratory: Laboratory, ramps: Sequence[Ramp], gain: float) -> tuple[Array, Array]:
+    """Logs (people,) of the size that is reported in half of the trials, and of the SD of the function, guesses out."""
+    from ..kernels.passage import psychometric
+
+    reported = np.stack([Played.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
+    logs = np.empty((reported.shape[0], len(HALVES)))
+    psychometric(reported, np.log([ramp.size_K for ramp in ramps]), np.array(HALVES), logs)
+    sizes = np.exp(logs)
+    return logs[:, 1], np.log(np.maximum(0.5 * (sizes[:, 2] - sizes[:, 0]), 1e-3))

@@ -1,0 +1,63 @@
+"""Tables of the inference for the pages of docs/: every row of the data files, and numbers a person can read."""
+
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.evidence.rows import load_rows
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "builder"))
+
+import evidence_tables as tables
+from posterior_tables import TABLES, stacking_weights, variant_weights
+
+
+def body(table: str) -> list[list[str]]:
+    """Cells of the rows below the head."""
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()[2:]]
+
+
+def test_experiments_hold_all_rows_and_a_licence() -> None:
+    rows = body(tables.experiments_table())
+    assert sum(int(row[-1]) for row in rows) == len(load_rows())
+    assert all(all(row) for row in rows)
+
+
+def test_every_constant_stands_once() -> None:
+    named = [row[1] for row in body(tables.constants_table())]
+    assert sorted(named) == sorted(each.name for each in load_constants() if each.unit != "SD")
+    assert len(body(tables.offsets_table())) == sum(each.unit == "SD" for each in load_constants())
+
+
+@pytest.mark.parametrize("section", tables.GROUPS)
+def test_the_mechanisms_of_a_section_exist(section: str) -> None:
+    known = {each.mechanism for each in load_constants()}
+    assert set(tables.GROUPS[section]) <= known
+
+
+def test_ablation_and_predictions_are_complete() -> None:
+    assert len(body(tables.ablation_table())) == len(load_ablation())
+    predicted = body(tables.left_out_table())
+    assert len(predicted) == len(load_predictions())
+    missed = sum(row[1].startswith("**") for row in predicted)
+    assert tables.coverage_sentence().startswith(f"{len(predicted) - missed} of {len(predicted)} rows")
+
+
+def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
+    weights = stacking_weights(np.log(np.array([[0.9, 0.9, 0.1], [0.1, 0.1, 0.9]])))
+    assert weights.sum() == pytest.approx(1.0)
+    assert 0.5 < weights[0] < 0.9
+    shipped = variant_weights()
+    assert max(shipped, key=lambda each: shipped[each]) == "temperature"
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_has_one_width_and_no_exponents(name: str) -> None:
+    text = TABLES[name]()
+    lines = text.splitlines()
+    assert len({line.count(" | ") for line in lines}) == 1
+    assert not re.search(r"\d[eE][+-]?\d", re.sub(r"[^|]*(Ho & Jones)[^|]*", "", text))

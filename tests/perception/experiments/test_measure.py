@@ -1,0 +1,47 @@
+"""What a new laboratory would measure lies where the evidence has it, and is asked as the evidence was."""
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Rig
+from thermicon.perception.evidence.statistics import load_evidence
+from thermicon.perception.experiments.measure import Condition, measure
+
+FOREARM = Rig.load("forearm").with_(**{"contact.area_cm2": 9.8})
+LIMITS, CHOICE, YES_NO = (
+    Condition("threshold", method, "warm", 32.0, size, 1.0, hold)
+    for method, size, hold in (("limits", 12.0, 0.0), ("forced_choice", None, 3.0), ("yes_no", None, 1.5))
+)
+
+
+def test_limits_of_a_new_laboratory_cover_the_published_ones_with_its_scatter() -> None:
+    found, known = measure(LIMITS, FOREARM, draws=40), load_evidence()
+    assert found.low < known.find("E3", "threshold_gm", "warm").value < found.high
+    within = np.log(10.0) * known.find("E3", "within_sd_log10_median_person", "warm").value
+    assert found.within == pytest.approx(within, rel=0.4)
+    assert repr(found).startswith("Measurement(warm, limits, 1 K/s: ")
+
+
+def test_methods_have_their_order() -> None:
+    choice, asked, limits = (measure(each, FOREARM, draws=12).value for each in (CHOICE, YES_NO, LIMITS))
+    assert choice < asked
+    assert choice < limits
+
+
+@pytest.mark.parametrize("kind", ["reaction_time", "rating"])
+def test_a_larger_change_is_faster_and_stronger(kind: str) -> None:
+    method = {"reaction_time": "choice", "rating": "magnitude"}[kind]
+    small, large = (
+        measure(Condition(kind, method, "cold", 31.0, size, 5.0, 0.7), FOREARM, draws=4)  # type: ignore[arg-type]
+        for size in (1.5, 6.0)
+    )
+    assert (large.value < small.value) == (kind == "reaction_time")
+
+
+def test_messages() -> None:
+    with pytest.raises(ValueError, match=r"an interval needs at least 2 laboratories, not 1"):
+        measure(LIMITS, FOREARM, draws=1)
+    with pytest.raises(ValueError, match=r"limits needs the size of the change, above 0 K"):
+        Condition("threshold", "limits", "cold", 32.0, None, 1.0, 0.0)
+    with pytest.raises(ValueError, match=r"there is no rating by limits of cold"):
+        Condition("rating", "limits", "cold", 32.0, 5.0, 1.0, 0.0)

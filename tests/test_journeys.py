@@ -1,0 +1,63 @@
+"""How many modules five journeys of a user enter: whoever follows one has to read no more than these.
+
+A module is entered where one of its functions runs; what only defines names, as on import, is not counted.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+BUDGET = tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))["journeys"]
+SLACK = 5
+"""A number that is so far above what is entered has to be lowered."""
+COMMANDS = {
+    "check": "check six-icons",
+    "simulate": "simulate six-icons --icon cooling-step -o trace.csv",
+    "rank": "rank six-icons --people 20",
+    "export": "export six-icons --icon cooling-step --to csv -o drives",
+}
+COMMAND = "begin(); from thermicon.notebooks.cli.main import main; sys.argv = 'thermicon {words}'.split(); main()"
+DRAG = """
+from thermicon.circuit import Rig
+from thermicon.notebooks.workbench.design_model import DesignModel
+design = DesignModel("cue 1; icon dip { cool by 4 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }", Rig.load("thenar"))
+begin()
+for seq in range(1, 4):
+    design.receive({"type": "drag", "handle": 0, "t": 2.0, "y": 28.0 - 0.1 * seq, "end": seq == 3, "seq": seq})
+assert "cool by 4.3" in design.text, design.text
+"""
+SCRIPTS = {**{name: COMMAND.format(words=words) for name, words in COMMANDS.items()}, "drag": DRAG}
+PROFILED = """
+import os, sys
+entered = set()
+def note(frame, event, arg):
+    code = frame.f_code
+    if event == "call" and code.co_flags & 1 and not code.co_name.startswith("<"):  # a function, no body of a class
+        entered.add(code.co_filename)
+def begin():
+    sys.setprofile(note)
+root, script = sys.argv[1:]
+try:
+    exec(script)
+except SystemExit as end:
+    assert not end.code
+finally:
+    sys.setprofile(None)
+folders = tuple(os.path.join(root, package, "") for package in ("icons", "circuit", "perception", "notebooks"))
+print("entered:", *sorted(name for name in entered if name.startswith(folders)), sep="\\n")
+"""
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_a_journey_enters_no_more_modules_than_its_budget(name: str, tmp_path: Path) -> None:
+    words = [sys.executable, "-c", PROFILED, str(ROOT), SCRIPTS[name]]
+    run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
+    entered = run.stdout.partition("entered:\n")[2].split()
+    assert BUDGET[name] - SLACK <= len(entered) <= BUDGET[name], "\n".join(entered)
