@@ -29,6 +29,16 @@ def read(name: str) -> nbformat.NotebookNode:
     return nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
 
 
+def executed(notebook: nbformat.NotebookNode, folder: Path) -> list[nbformat.NotebookNode]:
+    """Run all cells in a folder; the outputs, of which none is a warning."""
+    # As JupyterLab saves: the state of widgets stays out of the file unless a person asks for it.
+    options = {"timeout": 120, "kernel_name": "python3", "store_widget_state": False}
+    NotebookClient(notebook, **options, resources={"metadata": {"path": str(folder)}}).execute()
+    outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
+    assert not [output.text for output in outputs if output.get("name") == "stderr"]
+    return outputs
+
+
 @pytest.mark.parametrize("name", sorted(path.stem for path in FOLDER.glob("*.ipynb")))
 def test_a_notebook_is_thin_and_has_no_outputs(name: str) -> None:
     notebook = read(name)
@@ -54,14 +64,9 @@ def test_each_tutorial_leads_to_the_next() -> None:
 )
 def test_a_tutorial_runs_and_shows_its_pictures(name: str, tmp_path: Path) -> None:
     notebook, began = read(name), time.monotonic()
-    resources = {"metadata": {"path": str(tmp_path)}}
-    # As JupyterLab saves: the state of widgets stays out of the file unless a person asks for it.
-    options = {"timeout": 60, "kernel_name": "python3", "store_widget_state": False}
-    NotebookClient(notebook, **options, resources=resources).execute()
+    outputs = executed(notebook, tmp_path)
     assert time.monotonic() - began < MOST_S
-    outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
     assert sum("image/png" in output.get("data", {}) for output in outputs) == (PICTURES | ALONE)[name]
-    assert not [output.text for output in outputs if output.get("name") == "stderr"]
     assert len(nbformat.writes(notebook)) < MOST_SAVED
 
 
@@ -83,3 +88,15 @@ def test_figures_are_small_pictures() -> None:
     made = small_png(wide)
     assert int.from_bytes(made[16:20], "big") <= WIDEST_PX
     assert made[25] == 3, "not a palette"
+
+
+@pytest.mark.slow
+def test_the_interval_of_the_pilot_holds_the_truth_it_is_shown_with(tmp_path: Path) -> None:
+    outputs = executed(read("09_your_pilot_sharpens_the_prediction"), tmp_path)
+    assert sum("image/png" in output.get("data", {}) for output in outputs) == 1
+    said = "".join(output.get("text", "") for output in outputs)
+    assert "participant,trial,presented,responded\nP1,1," in said
+    assert "# written by thermicon observed from inputs " in said and "# participants: 4" in said
+    low, high, truth = (int(word.strip("%;")) for word in said.split("after: ")[1].split()[:5:2])
+    assert low <= truth <= high
+    assert {"trials.csv", "lab.toml", "lab.csv"} <= {path.name for path in tmp_path.iterdir()}

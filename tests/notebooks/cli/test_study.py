@@ -146,6 +146,7 @@ def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli) -> None:
     (out / "study.json").rename(out / "README.txt")
     said = cli("study", tmp_path / "study.toml", "-o", out)
     assert "README.txt already exists and was kept; give another folder with -o" in " ".join(said.stderr.split())
+    (out / "README.txt").rename(out / "study.json")
     (out / "data").mkdir()
     (out / "data" / "dataset_description.json").write_text("{}", encoding="utf-8")
     assert "holds a study already" in " ".join(cli("study", tmp_path / "study.toml", "-o", out).stderr.split())

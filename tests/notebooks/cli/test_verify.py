@@ -92,6 +92,17 @@ class TestWell:
         assert found.well
         assert "by other code of version" in str(found.findings[0])
 
+    def test_another_shipped_rig_of_that_name_is_told(self, pair: dict[str, bytes]) -> None:
+        name = "warming-step.json"
+        rig = json.loads(pair[name])["rig"]
+        rig["document"]["title"] = "as it was"
+        known = digest(json.dumps(rig["document"], sort_keys=True, ensure_ascii=False).encode())
+        found = verify(
+            {**pair, name: changed(pair[name], rig={**rig, "content_hash": known, "changes": []}, rig_sha256=known)}
+        )
+        assert found.well
+        assert "a rig called thenar that differs from the rig that is shipped now" in str(found.findings[0])
+
 
 class TestTampered:
     """One byte, one file, one name: whatever was changed after the export is wrong."""

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.builders import messages
+
 from .conftest import Runner
 
 COLUMNS = ["participant", "trial", "presented", "responded", "time_s"]
@@ -117,21 +119,11 @@ def test_the_stop_key_ends_after_the_trial_and_resume_goes_on(script: Runner, tm
     assert len(events(tmp_path, run=2)) == 8 - len(some)
 
 
-@pytest.mark.parametrize(
-    ("option", "value", "words"),
-    [
-        ("--press", "escape", "escape is not S:KEY, a time in s and a key, such as 60:escape"),
-        ("--press", "60:", "60: is not S:KEY"),
-        ("--press", "nan:q", "nan:q is not S:KEY"),
-        ("--correct", "1.5", "1.5 is not a share; give 0 to 1"),
-        ("--correct", "nan", "nan is not a share"),
-        ("--threshold", "0", "0 is not a threshold; give K above 0"),
-    ],
-)
-def test_an_option_of_the_virtual_person_is_checked(option: str, value: str, words: str, script: Runner) -> None:
-    done = script("--participant", "A", "--simulate", option, value)
+@pytest.mark.parametrize(("words", "told"), messages(__file__)["options"].items())
+def test_an_option_of_the_virtual_person_is_checked(words: str, told: str, script: Runner) -> None:
+    done = script("--participant", "A", "--simulate", *words.split())
     assert done.returncode == 2
-    assert words in done.stderr and "Traceback" not in done.stderr
+    assert told in done.stderr and "Traceback" not in done.stderr
 
 
 def test_a_reader_who_leaves_does_not_end_the_run(quick: Path, tmp_path: Path) -> None:

@@ -8,12 +8,21 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.builders import messages, missing
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import read_text
 from thermicon.notebooks.timeline.dragging import Dragged, drag
 from thermicon.notebooks.timeline.handles import MOST_HANDLES, handles_of
 
 HEAD = "cue 1\n"
+DRAGS = messages(__file__)
+
+
+def of(asked: str) -> tuple[str, int, tuple[float, float]]:
+    """Statement, corner, and the time and level that it is dragged to."""
+    body, _, numbers = asked.rpartition(" | ")
+    index, _, time_s, level = numbers.split()
+    return body, int(index), (float(time_s), float(level))
 
 
 def text_of(body: str, head: str = HEAD) -> str:
@@ -27,39 +36,9 @@ def line(dragged: Dragged, number: int = 3) -> str:
     return dragged.text.splitlines()[number - 1].strip()
 
 
-@pytest.mark.parametrize(
-    ("body", "index", "place", "becomes"),
-    [
-        ("cool by 4 °C at 2 °C/s", 0, (1.0, 28.0), "cool by 4 °C at 4 °C/s"),
-        ("cool by 4 °C at 2 °C/s", 0, (2.0, 27.0), "cool by 5 °C at 2.5 °C/s"),
-        ("cool by 4 °C over 2 s", 0, (2.0, 27.0), "cool by 5 °C over 2 s"),
-        ("cool by 4 °C over 2 s", 0, (2.5, 28.0), "cool by 4 °C over 2.5 s"),
-        ("cool by 4 °C over 2 s", 0, (2.5, 27.0), "cool by 5 °C over 2.5 s"),
-        ("cool to 28 °C over 2 s", 0, (2.0, 26.9), "cool to 26.9 °C over 2 s"),
-        ("cool by 4 °C over 2 s", 0, (2.0, 34.0), "warm by 2 °C over 2 s"),
-        ("cool to 28 °C over 2 s", 0, (2.0, 34.0), "warm to 34 °C over 2 s"),
-        ("change by -4 °C over 2 s", 0, (2.0, 34.0), "change by 2 °C over 2 s"),
-        ("change by −4 °C over 2 s", 0, (2.0, 27.0), "change by −5 °C over 2 s"),
-        ("change by +4 °C over 2 s", 0, (2.0, 37.0), "change by +5 °C over 2 s"),
-        ("cool by 4K over 2000ms", 0, (2.53, 26.96), "cool by 5K over 2550ms"),
-        ("cool by 4 degC at 120 °C/min", 0, (1.0, 28.0), "cool by 4 degC at 240 °C/min"),
-        ("cool by 4 °C over 0.5 min", 0, (36.0, 28.0), "cool by 4 °C over 0.6 min"),
-        ("step cool by 4 °C; hold for 2 s", 0, (9.0, 27.0), "step cool by 5 °C; hold for 2 s"),
-        ("step cool by 4 °C; hold for 2 s", 0, (0.0, 34.0), "step warm by 2 °C; hold for 2 s"),
-        ("step to 28 °C; hold for 2 s", 1, (3.0, 20.0), "step to 28 °C; hold for 3 s"),
-        ("pulse by -3 °C for 500 ms", 0, (0.0, 30.0), "pulse by -2 °C for 500 ms"),
-        ("pulse by -3 °C for 500 ms", 1, (0.8, 29.0), "pulse by -3 °C for 800 ms"),
-        ("sine by 3 °C every 4 s for 8 s", 0, (1.0, 34.0), "sine by 2 °C every 4 s for 8 s"),
-        ("sine by 3 °C every 4 s for 8 s", 0, (1.5, 35.0), "sine by 3 °C every 6 s for 12 s"),
-        ("sine by 3 °C every 4 s for 8 s", 1, (12.7, 32.0), "sine by 3 °C every 4 s for 12 s"),
-        ("sine by 3 °C every 4 s for 9 s cut", 1, (10.0, 32.0), "sine by 3 °C every 4 s for 10 s cut"),
-        ("square by 3 °C every 4 s for 8 s starting cool", 0, (3.0, 28.0),
-         "square by 4 °C every 6 s for 12 s starting cool"),
-    ],
-)  # fmt: skip
-def test_a_drag_changes_the_numbers_that_it_is_about(
-    body: str, index: int, place: tuple[float, float], becomes: str
-) -> None:
+@pytest.mark.parametrize(("asked", "becomes"), DRAGS["changed"].items())
+def test_a_drag_changes_the_numbers_that_it_is_about(asked: str, becomes: str) -> None:
+    body, index, place = of(asked)
     assert line(drag(text_of(body), "dip", index, *place)) == becomes
 
 
@@ -86,27 +65,13 @@ def test_in_a_repeat_all_rounds_follow_and_the_corner_comes_under_the_pointer() 
     assert handles_of(parse(dragged.text)["dip"])[4].level == 26.0
 
 
-@pytest.mark.parametrize(
-    ("body", "index", "place", "sentence"),
-    [
-        ("hold for 1 s; cool by 4 °C over 2 s", 1, (1.0, 28.0), "cannot come before 1 s, where its statement begins"),
-        ("cool by 4 °C at 2 °C/s", 0, (-1.0, 28.0), "cannot come before 0 s"),
-        ("cool by 4 °C over 2 s", 0, (2.0, 32.0), "that would be no change"),
-        ("sine by 3 °C every 4 s for 8 s", 0, (1.0, 30.0), 'write "starting cool": an amplitude is positive'),
-        ("cool by 4 °C over 2 s", 0, (2.0, -40.0), "more than the whole −10 to 60 °C that the language allows"),
-        ("cool by 4 °C over 2 s; total 2 s", 0, (3.0, 28.0), "total not kept: this icon lasts 3 s, not 2 s"),
-        ("cool by 4 °C over 2 s; warm to 30 °C over 1 s", 0, (2.0, 31.0), "target on the wrong side"),
-        ("cool by 4 °C over 2 s", 5, (2.0, 31.0), "dip has 1 corners now, so there is none to move at 6"),
-        ("cool by 4 °C over 2 s", 0, (float("nan"), 31.0), "the message has no target position"),
-    ],
-)
-def test_a_drag_that_cannot_be_is_refused_in_a_sentence(
-    body: str, index: int, place: tuple[float, float], sentence: str
-) -> None:
+@pytest.mark.parametrize(("asked", "words"), DRAGS["refused"].items())
+def test_a_drag_that_cannot_be_is_refused_in_a_sentence(asked: str, words: str | list[str]) -> None:
+    body, index, place = of(asked)
     text = text_of(body)
     dragged = drag(text, "dip", index, *place)
     assert dragged.text == text
-    assert sentence in str(dragged.refused)
+    assert missing(words, str(dragged.refused)) == []
 
 
 def test_a_text_with_errors_is_not_dragged() -> None:

@@ -1,4 +1,4 @@
-"""``--observer FILE``: another posterior or other records in place of the shipped observer."""
+"""Options of ``thermicon rank``: another observer, workers and kept parts, and what carries the doubt."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from tests.builders import few_draws
 from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
+QUICK = ("--doubt", "--people", 3, "--intervals", 64)
 
 
 @pytest.fixture
@@ -79,3 +80,56 @@ def test_another_rig_than_that_of_the_answers_is_warned_of(cli: Cli, two: Path, 
     assert said.exit_code == 0
     assert "warning: lab.csv was conditioned on the hand-dorsum rig, not on thenar" in said.stderr
     assert said.stderr.count("warning") == 1
+
+
+def test_workers_change_no_byte(cli: Cli, two: Path, tmp_path: Path) -> None:
+    outs = []
+    for extra in ((), ("--workers", 1), ("--workers", 3)):
+        outs.append(tmp_path / f"{len(outs)}.json")
+        said = cli("rank", two, "--people", 5, "--intervals", 0, "--json", outs[-1], *extra)
+        assert said.exit_code == 0, said.stderr
+    assert len({out.read_bytes() for out in outs}) == 1
+
+
+def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:
+    pytest.importorskip("distributed")
+    said = cli("rank", two, "--people", 2, "--workers", "nowhere")
+    assert said.exit_code == 1
+    assert "'nowhere' is not the address of a scheduler" in said.stderr
+    assert "Traceback" not in said.stderr
+
+
+@pytest.mark.slow
+def test_the_error_of_sampling_is_in_the_json(cli: Cli, tmp_path: Path) -> None:
+    out = tmp_path / "six.json"
+    said = cli("rank", "six-icons", "--people", 20, "--intervals", 0, "--json", out)
+    assert said.exit_code == 0, said.stderr
+    found = json.loads(out.read_text(encoding="utf-8"))["confusion"]
+    assert 0 < found["standard_error"] < found["person_standard_error"] < 0.005
+
+
+def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    said = cli("rank", two, *QUICK, "--json", out, "--figure", picture)
+    assert said.exit_code == 0, said.stderr
+    assert said.stderr == f"wrote {out}\nwrote {picture}\n"
+    assert max(len(line) for line in said.stdout.splitlines()) <= 80
+    names = [each["constant"] for each in json.loads(out.read_text(encoding="utf-8"))["effects"]]
+    words = " ".join(said.stdout.split())
+    assert words.startswith("Two for a test constant 95 % of draws correct bits correct low–high ")
+    assert "Measure first, by the share of the variance of the proportion correct that would go: - " in words
+    assert names[0].split()[0] in words
+    assert "64 draws for 3 virtual people on the thenar rig (seed 0, episodes norm): " in words
+    assert {"memory noise (episodes)", "contact resistance"} <= set(names)
+    assert picture.stat().st_size > 10_000
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_the_doubt_of_a_what_if_is_the_same_again(cli: Cli, two: Path) -> None:
+    asked = ("rank", two, *QUICK, "--seed", 4, "--set", "contact.area_cm2=4")
+    said = [cli(*asked, "--json", "-").stdout for _ in range(2)]
+    assert said[0] == said[1]
+    effect = json.loads(said[0])["effects"][0]
+    assert {"constant", "unit", "low", "high", "proportion_correct", "information_bits"} <= set(effect)
+    words = " ".join(cli(*asked).stdout.split())
+    assert "on the thenar rig with contact.area_cm2=4 (seed 4, episodes norm)" in words
