@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -80,40 +79,6 @@ def quoted(value: object) -> str:
     """
     text = repr(value)
     return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 2]}…{text[-1]}"
-
-
-def fault_in_words(error: Mapping[str, Any], unit: str, known: str) -> str:
-    """Return a fault that pydantic finds in a key as a sentence: key, value, limit and unit.
-
-    `known` is said of a key that the table does not have: which one was meant.
-    """
-    key = ".".join(str(part) for part in error["loc"])
-    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
-    after, within = (f" {unit}", f" in {unit}") if unit else ("", "")
-    if kind == "extra_forbidden":
-        return f"{key}: unknown key; {known}"
-    if kind == TEXT_FAULT:
-        return f"{subject}: {context['fault']}"
-    if kind == "value_error":  # a sentence from a table's own validator
-        return str(context["error"])
-    if kind == "missing":
-        return f"{key} is missing; add it{f', in {unit}' if unit else ''}"
-    if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
-        limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
-        if kind == "greater_than_equal" and 0 < limit < 0.01 and value is not None and value <= 0:
-            kind, limit = "greater_than", 0
-        words = {"greater_than": "greater than", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
-        return f"{subject}{after}: must be {words} {limit:g}{after}"
-    if kind in ("float_type", "finite_number", "int_type", "int_from_float"):
-        which = {"finite_number": "finite ", "float_type": ""}.get(kind, "whole ")
-        plain = " without quotes or unit" if isinstance(value, str) else ""
-        return f"{subject}: must be a {which}number{within}{plain}"
-    if kind == "literal_error":
-        return f"{subject}: must be {context.get('expected')}"
-    if kind == "bool_type":
-        return f"{subject}: must be true or false"
-    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"
 
 
 def read_text(path: Path, what: str, limit_MB: float, error: type[Exception] = InputError) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
-from pydantic_core import ErrorDetails
 
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import signed
@@ -13,11 +12,11 @@ from thermicon.icons.number_text import signed
 from ..inputs import (
     LONGEST_NAME,
     InputError,
-    fault_in_words,
     one_line,
     paragraph,
     read_toml,
 )
+from ..key_faults import Place, key_faults
 from ..records import Record, RecordError
 
 
@@ -139,8 +138,7 @@ def read_device_table(text: str, where: str) -> DeviceTable:
     try:
         table = DeviceTable.model_validate(document)
     except ValidationError as problem:
-        findings = [_in_words(error) for error in problem.errors(include_url=False)]
-        raise DeviceError("\n".join(f"{where}: {finding}" for finding in findings)) from None
+        raise DeviceError("\n".join(f"{where}: {fault}" for fault in key_faults(problem, _nearest))) from None
     faults = _faults(table)
     if faults:
         raise DeviceError("\n".join(f"{where}: {fault}" for fault in faults))
@@ -237,6 +235,5 @@ def _interval_fault(record: RecordTable) -> str | None:
     return None
 
 
-def _in_words(error: ErrorDetails) -> str:
-    table = RecordTable if error["loc"][0] == "record" else DeviceTable
-    return fault_in_words(error, "", did_you_mean(str(error["loc"][-1]), table.model_fields))
+def _nearest(place: Place) -> str:
+    return did_you_mean(str(place[-1]), (RecordTable if place[0] == "record" else DeviceTable).model_fields)

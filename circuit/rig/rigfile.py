@@ -7,18 +7,17 @@ from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import ErrorDetails
 
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from ..inputs import (
     LONGEST_NAME,
     InputError,
-    fault_in_words,
     one_line,
     paragraph,
     read_toml,
 )
+from ..key_faults import Place, key_faults
 from .heat_sink import heat_sink_faults
 from .keyunits import unit_of
 from .load import LoadTable, load_faults
@@ -314,8 +313,8 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
     try:
         return RigTable.model_validate(dict(document))
     except ValidationError as problem:
-        findings = [line for error in problem.errors(include_url=False) for line in _in_words(error).splitlines()]
-        raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
+        faults = key_faults(problem, _nearest, unit_of)
+        raise RigError("\n".join(f"{where}: {fault}" for fault in faults)) from None
 
 
 @cache
@@ -352,22 +351,17 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
             yield prefix + name
 
 
-def meant(key: str) -> str:
-    """Return which known key an unknown one may stand for, as a sentence."""
+def unknown_key(key: str) -> str:
+    """Return the message for an unknown key."""
+    return f"{key}: unknown key; {_nearest(key.split('.'))}"
+
+
+def _nearest(parts: Place) -> str:
+    """What an unknown key may have been meant to be."""
+    key = ".".join("0" if isinstance(part, int) else part for part in parts)
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")
     beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
-    close = nearest_words(name, beside, 2)
-    if close:
+    if close := nearest_words(name, beside, 2):
         return f"did you mean {' or '.join(place + dot + other for other in close)}?"
     return did_you_mean(key, known if dot and place not in known else beside)
-
-
-def unknown_key(key: str) -> str:
-    """Return the message for an unknown key."""
-    return f"{key}: unknown key; {meant(key)}"
-
-
-def _in_words(error: ErrorDetails) -> str:
-    key = ".".join("0" if isinstance(part, int) else str(part) for part in error["loc"])
-    return fault_in_words(error, unit_of(key), meant(key) if error["type"] == "extra_forbidden" else "")

@@ -20,7 +20,6 @@ from thermicon.perception.evidence.results import (
 from thermicon.perception.evidence.rows import PEOPLE_WRIST, load_rows
 from thermicon.perception.evidence.statistics import load_evidence
 from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
-from thermicon.perception.observer.mechanisms import ALL_OFF, find_mechanism
 from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.observer.people import people_records
 from thermicon.perception.observer.priors import WITHIN_95
@@ -102,7 +101,7 @@ def ablation_table() -> str:
     lines = [
         (
             _ran(row),
-            _replaced(row),
+            row.replaced_by,
             signed(row.difference, 1),
             f"{row.squares:.1f}",
             f"{row.worst} ({signed(row.worst_sd, 1)})",
@@ -116,10 +115,6 @@ def _ran(row: AblatedRow) -> str:
     if row.without:
         return f"without {row.without}"
     return f"**{row.variable}**" + ("" if row.difference else " (the whole observer)")
-
-
-def _replaced(row: AblatedRow) -> str:
-    return "" if not row.without or row.without == ALL_OFF else find_mechanism(row.without).replaced_by
 
 
 def left_out_table() -> str:

@@ -13,11 +13,11 @@ from .tables import table
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from thermicon.perception.pilot.answers import AnswerScore
     from thermicon.perception.pilot.data import Answered
     from thermicon.perception.pilot.fit import Fit
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Three
+    from thermicon.perception.pilot.trials import AnswerScore
 
 MOST_PEOPLE, MOST_PAIRS = 20, 8
 POOR, DOUBTFUL = 0.05, 0.1

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 from thermicon.perception.evidence.conditioning import (
     EDGE,
-    AblatedMechanism,
     ConditionedRow,
     Conditioning,
     InferredConstant,
     experiment_title,
 )
 from thermicon.perception.evidence.magnitudes import CHANGES_K, OnsetStages
-from thermicon.perception.evidence.results import UNMOVED_SD
+from thermicon.perception.evidence.results import UNMOVED_SD, AblatedRow
 from thermicon.perception.evidence.table_text import UNITS, number, signed, span
 from thermicon.perception.observer.variants import VARIABLES
 
@@ -110,9 +109,8 @@ def tail(each: InferredConstant) -> float:
     return min(each.quantile, 1.0 - each.quantile)
 
 
-def ablated_name(each: AblatedMechanism) -> str:
+def ablated_name(run: AblatedRow) -> str:
     """Name a run: the mechanism that was taken out, or the variant."""
-    run = each.run
     if run.without:
         return f"without {run.without}"
     return run.variable if run.difference else f"{run.variable} (the whole observer)"
@@ -184,10 +182,9 @@ def _constants(known: Conditioning) -> Table:
 
 def _ablation(known: Conditioning) -> Table:
     rows = table("", "log evidence", "Σ(miss/SD)²", "worst row (SD)", numbers=("log evidence", "Σ(miss/SD)²"))
-    for each in known.ablation:
-        run = each.run
+    for run in known.ablation:
         worst = f"{run.worst} ({signed(run.worst_sd, 1)})"
-        rows.add_row(ablated_name(each), signed(run.difference, 1), f"{run.squares:.1f}", worst)
+        rows.add_row(ablated_name(run), signed(run.difference, 1), f"{run.squares:.1f}", worst)
     return rows
 
 

@@ -8,13 +8,11 @@ from collections import Counter
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
-from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import InputError, fault_in_words, quoted, read_text, read_toml
-from thermicon.circuit.rig.keyunits import unit_of
+from thermicon.circuit.inputs import InputError, read_text, read_toml
+from thermicon.circuit.key_faults import Place, key_faults
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from .keys import TABLES, Study, Table
@@ -23,6 +21,8 @@ LIMIT_MB = 1.0
 SHIPPED = "example-study.toml"
 SHIPPED_NAMES = ("example", "example.toml", SHIPPED)
 """What the shipped study answers to where no file has that name."""
+
+UNITS = {"_s": "s", "_K": "K", "_K_per_s": "K/s"}
 
 
 class StudyError(InputError):
@@ -62,7 +62,7 @@ def parse_study(text: str, where: str) -> Study:
     try:
         study = Study.model_validate(document)
     except ValidationError as problem:
-        findings = [_in_words(error) for error in problem.errors(include_url=False)]
+        findings = key_faults(problem, _nearest, _unit_of, _shape)
     else:
         findings = _faults(study)
         if not findings:
@@ -134,16 +134,11 @@ def _threshold_faults(study: Study) -> list[str]:
     return faults
 
 
-def _in_words(error: ErrorDetails) -> str:
-    """One fault of a key in a sentence with the limit and its unit."""
-    place = list(error["loc"])
-    key, last = ".".join(map(str, place)), str(place[-1]) if place else ""
-    if error["type"] == "string_pattern_mismatch":
-        return f"{key} = {quoted(error['input'])}: {_shape(last)}"
-    return fault_in_words(error, unit_of(last), _nearest(place))
+def _unit_of(key: str) -> str:
+    return next((unit for end, unit in reversed(UNITS.items()) if key.endswith(end)), "")
 
 
-def _nearest(place: list[Any]) -> str:
+def _nearest(place: Place) -> str:
     """The known key nearest to an unknown one, also where it stands in the wrong table."""
     known: type[Table] = TABLES.get(str(place[0]), Study) if len(place) > 1 else Study
     word = str(place[-1])
@@ -154,7 +149,8 @@ def _nearest(place: list[Any]) -> str:
     return did_you_mean(word, known.model_fields)
 
 
-def _shape(last: str) -> str:
+def _shape(key: str) -> str:
+    last = key.rpartition(".")[2]
     if last == "marker":
         return "must be none, serial:PORT, parallel:ADDRESS or ni:LINES"
     if last.endswith("_key"):

@@ -14,7 +14,7 @@ from thermicon.circuit.solver.trace import CLOSE_K
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import CHANNELS, Channel, load_thresholds
 from thermicon.perception.sensation.features import HELD_SHARE, STILL_K, directions
-from thermicon.perception.sensation.receptors import receptor_drive
+from thermicon.perception.sensation.sensation import receptor_drive
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

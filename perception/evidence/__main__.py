@@ -11,22 +11,25 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from thermicon.circuit.cores import cores
 from thermicon.circuit.records import RecordError
 from thermicon.icons.atomic import complete_or_absent
 
-from ..observer.draws_file import to_text, variant_named
+from ..observer.draws_file import shipped_file, to_text, variant_named
+from ..observer.priors import WITHIN_95
+from ..observer.variants import VARIABLES, Variable
 from .calibrate import write_observer
 from .chains import require_extra
-from .fit import write_fit
 from .learning import CHAINS
 from .left_out_table import LEFT_OUT, complete, leave_each_out
+from .maximum import LeftOut, Maximum, maximise
+from .maximum import leave_each_out as refit_without_each
 from .posterior import Posterior, summarise
-from .results import write_rows
-from .sampling import LEAST_STEPS, Sampled, sample
+from .results import CONSTANTS, PREDICTIONS, Constant, PredictedRow, write_rows
+from .sampling import LEAST_STEPS, Sampled, approximate_draws, sample
 
 REFUSED = 3
 LEAST_STEPS_ASKED, MOST_STEPS, USUAL_STEPS = 100, 100_000, 20_000
@@ -68,6 +71,48 @@ def parser() -> argparse.ArgumentParser:
 def tell(done: int, total: int, words: str = "") -> None:
     """Say on stderr how far it has come."""
     sys.stderr.write(f"\r{done} of {total} {words}".ljust(78))
+
+
+def write_fit(progress: Callable[[int, int, str], None]) -> None:
+    """Infer the constants of every variant, in minutes on one core, and write the tables of the package.
+
+    Draws of the variant that is not sampled are those of the normal approximation at its maximum, and marked as such.
+    `progress` gets (done, all, what).
+    """
+
+    def fitted(variable: Variable) -> Maximum:
+        return maximise(Posterior(variable), progress=lambda done, _: progress(done, 0, f"rounds, {variable}"))
+
+    maxima = {variable: fitted(variable) for variable in VARIABLES}
+    left_out = refit_without_each(maxima[VARIABLES[0]], progress)
+    write_rows([row for found in maxima.values() for row in constants_of(found)], CONSTANTS, "fit")
+    write_rows(predictions_of(maxima, left_out), PREDICTIONS, "fit")
+    for variable in VARIABLES[1:]:
+        drawn = approximate_draws(maxima[variable])
+        shipped_file(variable).write_text(to_text(drawn.header, drawn.names, drawn.draws), encoding="utf-8")
+
+
+def constants_of(whole: Maximum) -> list[Constant]:
+    """The constants of one variant."""
+    rows, variant = [], whole.posterior.variable
+    for prior, sd in zip(whole.posterior.priors.each, whole.sd.tolist(), strict=True):
+        ends = (*whole.interval(prior.name), *prior.interval)
+        value = whole.values[prior.name]
+        rows.append(Constant(variant, prior.name, prior.unit, value, *ends, sd, prior.mechanism, prior.source))
+    return rows
+
+
+def predictions_of(maxima: Mapping[Variable, Maximum], left_out: Sequence[LeftOut]) -> list[PredictedRow]:
+    """The table of rows: published, fitted by each variant, predicted when left out."""
+    table = []
+    for out in left_out:
+        row = out.row
+        ends = [row.shown(row.value + side * WITHIN_95 * row.sd) for side in (-1.0, 1.0)]
+        fitted = [row.shown(maxima[variable].predictions[row.key]) for variable in VARIABLES]
+        predicted = [row.shown(place) for place in (out.predicted, *out.interval)]
+        numbers = (row.shown(row.value), *ends, *fitted, *predicted, out.score, out.log_score)
+        table.append(PredictedRow(*row.key, row.label, row.unit, *numbers))
+    return table
 
 
 def sample_posterior(asked: argparse.Namespace) -> int:

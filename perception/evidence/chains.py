@@ -71,7 +71,6 @@ class Chain:
 
     white: Array
     log_posterior: Array
-    accepted: int
     random: tuple[Any, ...]
 
     def __len__(self) -> int:
@@ -80,7 +79,7 @@ class Chain:
     @property
     def last(self) -> Chain:
         """A chain of no steps that goes on from the last one of this."""
-        return Chain(self.white[-1:], self.log_posterior[-1:], 0, self.random)
+        return Chain(self.white[-1:], self.log_posterior[-1:], self.random)
 
     def save(self, path: Path) -> None:
         """Write the chain completely or not at all."""
@@ -90,7 +89,6 @@ class Chain:
                 draft,
                 white=self.white,
                 log_posterior=self.log_posterior,
-                accepted=self.accepted,
                 keys=keys,
                 place=np.array([place, has_gauss]),
                 gauss=gauss,
@@ -103,14 +101,14 @@ class Chain:
         with np.load(path, allow_pickle=False) as held:
             place, has_gauss = held["place"].tolist()
             random = (str(held["kind"]), held["keys"], place, has_gauss, float(held["gauss"]))
-            return cls(held["white"], held["log_posterior"], int(held["accepted"]), random)
+            return cls(held["white"], held["log_posterior"], random)
 
 
 def begin(size: int, seed: int, number: int) -> Chain:
     """A chain of no steps that starts at a draw from the normal approximation."""
     start = np.random.default_rng([seed, number]).standard_normal(size)
     random = np.random.RandomState(np.random.MT19937(np.random.SeedSequence([seed, number, 1])))
-    return Chain(start[None], np.full(1, np.nan), 0, tuple(random.get_state(legacy=True)))
+    return Chain(start[None], np.full(1, np.nan), tuple(random.get_state(legacy=True)))
 
 
 def extend(chain: Chain, posterior: HasResiduals, reference: Reference, surrogate: Surrogate, steps: int) -> Chain:
@@ -143,7 +141,6 @@ def extend(chain: Chain, posterior: HasResiduals, reference: Reference, surrogat
     return Chain(
         np.concatenate([chain.white, sampler.get_chain()[:, 0]]),
         np.concatenate([chain.log_posterior, sampler.get_log_prob()[:, 0]]),
-        chain.accepted + int(sampler.acceptance_fraction[0] * steps + 0.5),
         tuple(end.random_state),
     )
 

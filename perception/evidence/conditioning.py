@@ -12,7 +12,6 @@ from functools import lru_cache
 from statistics import NormalDist, median
 from typing import Any
 
-from ..observer.mechanisms import ALL_OFF, find_mechanism
 from ..observer.priors import WITHIN_95
 from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude, OnsetStages, magnitudes, stages_of_six
 from .posterior import Posterior
@@ -58,15 +57,6 @@ SUSPECTED = {
     ("E4", "sigma_between_sd_log10_noise_removed", "warm"): SAME_NOISE,
 }
 """Mechanism suspected of each row that is missed when its experiment is left out."""
-MECHANISM_SOURCES = {
-    "ends of summation": "Campero et al. 2001 (receptive fields); Hardy & Oppel 1937 (whole body)",
-    "cord": "Leone et al. 2020 (way from cord to brain)",
-}
-"""Sources of numbers that are not inferred, by mechanism."""
-VARIANT_SOURCES = {
-    "heat flow": "Shani & Lineykin 2021: that heat flow predicts sensation better",
-}
-"""Sources of the other variant of the receptors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,22 +101,13 @@ class InferredConstant:
 
 
 @dataclass(frozen=True, slots=True)
-class AblatedMechanism:
-    """One run of the ablation, with what stood in place of the mechanism and where the mechanism comes from."""
-
-    run: AblatedRow
-    replaced_by: str
-    sources: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
 class Conditioning:
     """The evidence behind the constants, and what the constants say of onsets and sizes."""
 
     rows: tuple[ConditionedRow, ...]
     constants: tuple[InferredConstant, ...]
     offsets: tuple[InferredConstant, ...]
-    ablation: tuple[AblatedMechanism, ...]
+    ablation: tuple[AblatedRow, ...]
     stages: tuple[OnsetStages, ...]
     magnitudes: tuple[Magnitude, ...]
 
@@ -169,7 +150,7 @@ def load_conditioning() -> Conditioning:
         rows=_rows(),
         constants=tuple(each for each in constants if each.constant.mechanism != OFFSETS or _shared(each)),
         offsets=tuple(each for each in constants if each.constant.mechanism == OFFSETS and not _shared(each)),
-        ablation=tuple(_explained(run) for run in sorted(load_ablation(), key=lambda run: run.difference)),
+        ablation=tuple(sorted(load_ablation(), key=lambda run: run.difference)),
         stages=stages_of_six(),
         magnitudes=magnitudes(),
     )
@@ -202,19 +183,6 @@ def _placed(each: Constant) -> InferredConstant:
 def _shared(each: InferredConstant) -> bool:
     """The spread between laboratories is a constant; the offset of a single laboratory, in SDs of it, is not."""
     return each.constant.unit != "SD"
-
-
-def _explained(run: AblatedRow) -> AblatedMechanism:
-    if not run.without or run.without == ALL_OFF:
-        source = None if run.without else VARIANT_SOURCES.get(run.variable)
-        return AblatedMechanism(run, "", () if source is None else (source,))
-    mechanism = find_mechanism(run.without)
-    known = {each.name: each.source for each in load_constants()}
-    sources = [known[name] for name in mechanism.fixed if name in known]
-    sources += [known["sensitivity between laboratories"]] if run.without == OFFSETS else []
-    sources += [MECHANISM_SOURCES["cord"]] if run.without == "delays" else []
-    sources += [MECHANISM_SOURCES[run.without]] if run.without in MECHANISM_SOURCES else []
-    return AblatedMechanism(run, mechanism.replaced_by, tuple(dict.fromkeys(sources)))
 
 
 def conditioning_file(known: Conditioning) -> dict[str, Any]:
@@ -279,18 +247,17 @@ def _constant(each: InferredConstant) -> dict[str, Any]:
     }
 
 
-def _ablated(each: AblatedMechanism) -> dict[str, Any]:
-    run = each.run
+def _ablated(run: AblatedRow) -> dict[str, Any]:
     return {
         "variable": run.variable,
         "without": run.without or None,
-        "replaced_by": each.replaced_by or None,
+        "replaced_by": run.replaced_by or None,
         "log_evidence": run.log_evidence,
         "difference": run.difference,
         "sum_of_squares": run.squares,
         "worst_row": run.worst,
         "worst_sd": run.worst_sd,
-        "sources": list(each.sources),
+        "sources": run.sources.split(" | ") if run.sources else [],
     }
 
 

@@ -6,6 +6,7 @@ what is not stated where an experiment was found is stated here as a condition.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial
 
@@ -19,7 +20,7 @@ from ..observer.observer import Observer, load_thresholds
 from ..observer.variants import Variable
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
-from ..sensation.percept import Percept, perceive
+from ..sensation.percept import perceive
 from .predicted import DRAWS, Asked, Predicted, predict
 
 PULSE_K, PULSE_S = 4.0, 8.0
@@ -28,14 +29,7 @@ STEEP_K, STEEP_K_PER_S = 4.0, 3.0
 STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percept clock"
 
 
-def peak_lead(
-    variable: Variable = "temperature",
-    *,
-    size_K: float = PULSE_K,
-    duration_s: float = PULSE_S,
-    draws: int = DRAWS,
-    seed: int = 0,
-) -> tuple[Predicted, ...]:
+def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Felt peak minus physical peak (s, negative: felt before), and lag of the felt onset, per channel.
 
     The stimulus is one smooth pulse, size·(1 − cos 2πt/T)/2 of the display on the thenar. The physical
@@ -43,33 +37,26 @@ def peak_lead(
     The onset lag, also on the percept clock, of the pulse and of a steep step, is what heat must lead a
     touch by to seem simultaneous if touch itself took no time.
     """
-    said = f"raised-cosine display pulse of {size_K:g} K in {duration_s:g} s, thenar, percept clock"
-
-    def felt(channel: Channel, observer: Observer) -> Percept:
-        return perceive(_pulse(channel, size_K, duration_s).traces[0], observer)
+    said = f"raised-cosine display pulse of {PULSE_K:g} K in {PULSE_S:g} s, thenar, percept clock"
 
     def lead(surface: Surface, channel: Channel, observer: Observer) -> float:
-        peak = felt(channel, observer).felt_peak_s(channel)
-        return float(np.inf) if peak is None else peak - _physical_peak(surface, channel, size_K, duration_s)
+        played = _pulse(channel)
+        peak = perceive(played.traces[0], observer).felt_peak_s(channel)
+        moved = sign_of(channel) * played.surface_C(surface)[0]
+        return float(np.inf) if peak is None else peak - float(played.time_s[int(moved.argmax())])
 
-    def onset(channel: Channel, observer: Observer) -> float:
-        found = felt(channel, observer)
+    def onset(play: Callable[[Channel], Stimulus], channel: Channel, observer: Observer) -> float:
+        found = perceive(play(channel).traces[0], observer)
         return float(np.inf) if found.onset_s is None else found.onset_s - observer.decision_s
 
     asked = [Asked("felt peak minus the display's", c, "s", said, partial(lead, "display", c)) for c in CHANNELS]
     asked += [Asked("felt peak minus the skin's", c, "s", said, partial(lead, "skin", c)) for c in CHANNELS]
-    asked += [Asked("lag of the felt onset", c, "s", said, partial(onset, c)) for c in CHANNELS]
-    asked += [Asked("lag of the felt onset", c, "s", STEEP, partial(_steep_onset, c)) for c in CHANNELS]
+    asked += [Asked("lag of the felt onset", c, "s", said, partial(onset, _pulse, c)) for c in CHANNELS]
+    asked += [Asked("lag of the felt onset", c, "s", STEEP, partial(onset, _steep, c)) for c in CHANNELS]
     return predict("felt peak", asked, variable, draws, seed)
 
 
-def first_and_return(
-    variable: Variable = "temperature",
-    *,
-    hold_s: float = HOLD_S,
-    draws: int = DRAWS,
-    seed: int = 0,
-) -> tuple[Predicted, ...]:
+def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Probability that the return of a step near threshold is reported, for each direction of the step.
 
     The step is one that is reported in half of the trials by a yes/no observer who is not cautious, at
@@ -77,14 +64,14 @@ def first_and_return(
     after it began, by the same observer. Published: only the first direction is felt.
     """
     alarms = load_thresholds().one("false-alarm rate near threshold").central
-    said = f"skin steps at 1 K/s half of which are reported, held for {hold_s:g} s, {alarms:g} false alarms, thenar"
+    said = f"skin steps at 1 K/s half of which are reported, held for {HOLD_S:g} s, {alarms:g} false alarms, thenar"
 
     def returned(channel: Channel, observer: Observer) -> float:
         bench = _thenar("skin")
-        asked = replace(observer, criterion=criterion_of(alarms, observer.noise_correlation_s, hold_s))
-        size = yes_no(asked, bench, channel, hold_s=hold_s)
-        start = round(size + hold_s, 2)
-        played = bench.play([ramp(channel, size, 1.0, hold_s, back=True)], start + hold_s + 2.0)
+        asked = replace(observer, criterion=criterion_of(alarms, observer.noise_correlation_s, HOLD_S))
+        size = yes_no(asked, bench, channel, hold_s=HOLD_S)
+        start = round(size + HOLD_S, 2)
+        played = bench.play([ramp(channel, size, 1.0, HOLD_S, back=True)], start + HOLD_S + 2.0)
         cold, warm = (psi[0, 0] for psi in played.felt(asked))
         after = (warm if channel == "cold" else cold)[round(start / played.dt_s) :]
         return float(detect(after, np.zeros_like(after), played.dt_s, asked).probability)
@@ -93,20 +80,9 @@ def first_and_return(
     return predict("step and return near threshold", asked, variable, draws, seed)
 
 
-def _steep_onset(channel: Channel, observer: Observer) -> float:
-    found = perceive(_steep(channel).traces[0], observer)
-    return float(np.inf) if found.onset_s is None else found.onset_s - observer.decision_s
-
-
-def _physical_peak(surface: Surface, channel: Channel, size_K: float, duration_s: float) -> float:
-    played = _pulse(channel, size_K, duration_s)
-    moved = sign_of(channel) * played.surface_C(surface)[0]
-    return float(played.time_s[int(moved.argmax())])
-
-
-@lru_cache(maxsize=16)
-def _pulse(channel: Channel, size_K: float, duration_s: float) -> Stimulus:
-    return _thenar("display").play([raised_cosine(channel, size_K, duration_s)], duration_s + 4.0)
+@lru_cache(maxsize=2)
+def _pulse(channel: Channel) -> Stimulus:
+    return _thenar("display").play([raised_cosine(channel, PULSE_K, PULSE_S)], PULSE_S + 4.0)
 
 
 @lru_cache(maxsize=2)

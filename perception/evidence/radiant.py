@@ -16,8 +16,7 @@ from thermicon.circuit import Rig
 from ..arrays import Array
 from ..observer.observer import Observer, load_thresholds
 from ..observer.variants import Variable
-from ..sensation.receptors import receptor_drive
-from ..sensation.sensation import sensation
+from ..sensation.sensation import receptor_drive, sensation
 from .predicted import DRAWS, Asked, Predicted, predict
 
 RADIANT_S = 3.0
@@ -25,11 +24,10 @@ RADIANT_S = 3.0
 
 @dataclass(frozen=True, slots=True)
 class Warming:
-    """Changes (rows,) in K at the surface and at both receptors, and heat flow at the warm one (W/m²)."""
+    """Changes (rows,) in K at the surface and at the warm receptor, and heat flow there (W/m²)."""
 
     dt_s: float
     surface_K: Array
-    cold_receptor_K: Array
     warm_receptor_K: Array
     warm_receptor_W_per_m2: Array
 
@@ -67,10 +65,9 @@ def radiant_warming(rig: Rig, flux_W_per_m2: float, duration_s: float, *, rate_H
         state[k] = step @ state[k - 1]
     change = np.concatenate([state[:, :lumps], np.zeros((state.shape[0], 1))], axis=1)
     place = np.concatenate([[0.0], np.cumsum(column.resistance_m2K_per_W[1:])])
-    at = [rig.skin.resistance_to_m2K_per_W(d) for d in (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)]
-    temperature = [_at(change, place, here) for here in at]
-    flow = _flow(change, place, at[1])
-    return Warming(1.0 / rate_Hz, change[:, 0].copy(), temperature[0], temperature[1], flow)
+    receptor = rig.skin.resistance_to_m2K_per_W(rig.skin.warm_receptor_m)
+    felt, flow = _at(change, place, receptor), _flow(change, place, receptor)
+    return Warming(1.0 / rate_Hz, change[:, 0].copy(), felt, flow)
 
 
 def _at(change: Array, place: Array, here: float) -> Array:

@@ -1,7 +1,7 @@
 """The shipped results of the inference: constants, predictions in and out of the fit, and the ablation.
 
-The first two are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the shipped
-evidence and priors. All are CSV tables, so that a spreadsheet opens them.
+The first two are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the
+shipped evidence and priors. All are CSV tables, so that a spreadsheet opens them.
 """
 
 from __future__ import annotations
@@ -72,7 +72,8 @@ class PredictedRow:
 class AblatedRow:
     """A variant without a mechanism: `difference` is its log evidence minus that of the variant with every mechanism.
 
-    A difference under about 2 says nothing. A mechanism stays if it has a source or a gain.
+    A difference under about 2 says nothing. A mechanism stays if it has a source or a gain. `replaced_by` says what
+    stood in its place, `sources` where the mechanism comes from, with bars between them.
     """
 
     variable: str
@@ -82,6 +83,8 @@ class AblatedRow:
     squares: float
     worst: str
     worst_sd: float
+    replaced_by: str
+    sources: str
 
 
 @lru_cache(maxsize=4)

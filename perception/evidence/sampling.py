@@ -53,9 +53,7 @@ class Sampled:
 
     posterior: Posterior
     chains: Array
-    log_posterior: Array
     likelihoods: int
-    acceptance: float
     diagnostics: Diagnostics
     seed: int
 
@@ -78,7 +76,6 @@ def sample(
     posterior: Posterior,
     seed: int = 0,
     *,
-    start: Maximum | None = None,
     keep: Path | None = None,
     workers: int = 1,
     least_steps: int = LEAST_STEPS,
@@ -91,8 +88,6 @@ def sample(
     ----------
     posterior, seed
         What is sampled; the same seed gives the same draws on the same computer, whose rounding they depend on.
-    start
-        Its maximum, where known.
     keep
         A folder for the chains, from which a later call goes on.
     workers
@@ -108,8 +103,8 @@ def sample(
         Where the folder holds chains of another posterior or seed.
 
     """
-    found_start = start or maximise(posterior, shipped_vector(posterior))
-    reference = Reference.at(found_start.vector, found_start.covariance)
+    start = maximise(posterior, shipped_vector(posterior))
+    reference = Reference.at(start.vector, start.covariance)
     if keep is not None:
         _check_folder(keep, posterior, seed)
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn")) if workers > 1 else nullcontext(None)
@@ -151,10 +146,7 @@ def sample(
                 if keep is not None:
                     chain.save(_file(keep, number))
     assert found is not None
-    kept = _kept(chains, reference)
-    logs = np.stack([chain.log_posterior[-kept.shape[1] :] for chain in chains])
-    accepted = sum(chain.accepted for chain in chains) / done
-    return Sampled(posterior, kept, logs, done + len(points), accepted, found, seed)
+    return Sampled(posterior, _kept(chains, reference), done + len(points), found, seed)
 
 
 def shipped_vector(posterior: Posterior) -> Array:

@@ -22,8 +22,7 @@ from ..observer.people import YOUNG_YEARS
 from ..observer.receptor import LEG_M_PER_S, Conduction
 from ..observer.transducer import Transducer
 from ..observer.variants import Variable
-from ..sensation.receptors import NO_LIMIT_C
-from ..sensation.sensation import END_CM2, FIELD_CM2, area_factor
+from ..sensation.sensation import END_CM2, FIELD_CM2, NO_LIMIT_C, area_factor
 from .crowd import PEOPLE, SEED, SHARES, TRIALS, Crowd, draw_crowd
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
 

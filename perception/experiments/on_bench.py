@@ -23,8 +23,7 @@ from ..observer.people import People
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.detection import detect
 from ..sensation.first_passage import ResponseTimes, response_times
-from ..sensation.receptors import receptor_drive
-from ..sensation.sensation import sensation
+from ..sensation.sensation import receptor_drive, sensation
 
 LEVELS_FIRST_K, LEVELS_LAST_K, LEVELS_HOLD_S = 2.0, 0.1, 1.0
 """First level and first step of a staircase, step below which a run ends, and hold of each ramp at 1 K/s."""

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..observer.channels import Norm
-from ..observer.from_draw import observer_with
+from ..observer.draws import laboratory_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People, draw_people
+from ..observer.people import People
 from ..observer.variants import Variable
 from ..sensation.parameters import latin, memory_parameters
 
@@ -60,9 +60,9 @@ class DrawnLaboratories:
     def with_values(self, values: Array, people: int) -> tuple[Observer, People]:
         """The observer and the people of a laboratory with these values of the constants (constants,)."""
         named = dict(zip(self.names, values.tolist(), strict=True))
-        observer = observer_with(Observer.load(variable=self.variable), named)
-        drawn = draw_people(people, self.seed, age_years=self.age_years, spreads=named)
-        return observer, drawn.less_sensitive(*(-named[offset] for offset in OFFSETS))
+        offsets = named[OFFSETS[0]], named[OFFSETS[1]]
+        base = Observer.load(variable=self.variable)
+        return laboratory_with(base, named, offsets, people, self.seed, self.age_years)
 
     def invited(self, people: int) -> NDArray[np.int64]:
         """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""

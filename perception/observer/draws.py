@@ -7,11 +7,13 @@ inference and stays that of the shipped observer, except in draws of one laborat
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -19,17 +21,17 @@ from thermicon.circuit.records import Table
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array, own_arrays
-from .channels import CHANNELS
+from .channels import CHANNELS, Channel
 from .draws_file import DrawsHeader, read_draws, shipped_file
-from .from_draw import observer_with
-from .memory import NOISE
-from .observer import Observer, variant_records
+from .memory import NOISE, OF_MEMORY, Ratings
+from .observer import INFERRED, OF_BOTH, OF_CHANNEL, Observer, Receptor, variant_records
+from .people import People, draw_people
 from .variants import Variable, check_variable, source_of
 
 BETWEEN_LABORATORIES = "sensitivity between laboratories"
 NEGLIGIBLE = 1e-3
 """Spread between laboratories (ln) below which draws are those of one: published ones differ by some tenths."""
-INFERRED = "inferred from published evidence"
+FROM_EVIDENCE = "inferred from published evidence"
 """How the source of a record begins whose value a draw replaces."""
 
 
@@ -132,7 +134,7 @@ class PosteriorDraws:
             if remembered in self.memory_names:
                 records.append(replace(record, value=values[remembered], low=None, high=None))
                 continue
-            if not record.source.startswith(INFERRED):
+            if not record.source.startswith(FROM_EVIDENCE):
                 records.append(record)
                 continue
             quantity = record.quantity.removesuffix(variant) if variant else record.quantity
@@ -174,3 +176,53 @@ class PosteriorDraws:
 def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
     header, (names, draws), (memory_names, memory) = read_draws(file)
     return PosteriorDraws(header, names, draws, memory_names, memory)
+
+
+def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
+    """The observer whose constants, those of memory among them, have these values; all else is that of `base`.
+
+    >>> base = Observer.load()
+    >>> values = {"criterion of speeded answers": 3.0, "cold limit": 33.0}
+    >>> moved = observer_with(base, values)
+    >>> moved.criterion, moved.cold.limit_C, moved.warm == base.warm
+    (3.0, 33.0, True)
+    """
+
+    def given(fields: Mapping[str, str], channel: str = "") -> dict[str, Any]:
+        names = {field: f"{channel} {name}".strip() for field, name in fields.items()}
+        return {field: values[name] for field, name in names.items() if name in values}
+
+    def receptor(channel: Channel) -> Receptor:
+        own, moved = base.receptor(channel), given(OF_BOTH) | given(OF_CHANNEL, channel)
+        if own.limit_C is None:
+            moved.pop("limit_C", None)
+        return replace(own, **moved)
+
+    constants, memory = given(INFERRED), base.memory
+    gain_noise = constants.get("gain_noise", base.gain_noise)
+
+    def ratings(channel: Channel) -> Ratings:
+        own = memory.ratings(channel)
+        exponent = values.get(f"{channel} rating exponent", own.exponent)
+        # What repeated ratings scatter by, without the part that gain noise makes of it.
+        scatter = math.sqrt(max(own.scatter**2 - (own.exponent * own.rated * base.gain_noise) ** 2, 0.0))
+        whole = math.hypot(values.get("scatter of ratings", scatter), exponent * own.rated * gain_noise)
+        return Ratings(values.get(f"{channel} rating at threshold", own.at_threshold), exponent, own.rated, whole)
+
+    remembered = replace(memory, cold=ratings("cold"), warm=ratings("warm"), **given(OF_MEMORY))
+    return replace(base, cold=receptor("cold"), warm=receptor("warm"), memory=remembered, **constants)
+
+
+def laboratory_with(
+    base: Observer,
+    values: Mapping[str, float],
+    offsets: tuple[float, float],
+    people: int,
+    seed: int,
+    age_years: float | None = None,
+) -> tuple[Observer, People]:
+    """The observer and people of a laboratory with these constants; cold and warm `offsets` are how much more sensitive
+    (ln) its people are.
+    """
+    drawn = draw_people(people, seed, age_years=age_years, spreads=values)
+    return observer_with(base, values), drawn.less_sensitive(-offsets[0], -offsets[1])

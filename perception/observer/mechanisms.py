@@ -94,10 +94,6 @@ MECHANISMS = (
 )  # fmt: skip
 
 
-ALL_OFF = "all of them"
-"""Name of an observer without any of the mechanisms."""
-
-
 def find_mechanism(name: str) -> Mechanism:
     """A mechanism by name; a ValueError names the nearest.
 

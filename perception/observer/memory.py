@@ -21,6 +21,8 @@ NOISE, SHARE = "memory noise (episodes)", "share of the scatter of ratings"
 MISSING, BAR = "cost of a missing episode", "bar of an episode"
 MEMORY_NAMES = (NOISE, SHARE, MISSING, BAR)
 """Every constant of memory that a table of draws may have a column for."""
+OF_MEMORY: Mapping[str, str] = {"timing": NOISE, "share": SHARE, "missing": MISSING, "bar": BAR}
+"""Fields of memory by these names."""
 LIMITS: Mapping[str, tuple[float, float]] = {
     SHARE: (0.0, 1.0), MISSING: (0.0, math.inf), "correlation of cold and warm": (-1.0, 1.0),
 }  # fmt: skip

@@ -7,7 +7,7 @@ says what it was calibrated on, or that it is assumed, and carries its interval.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -28,13 +28,34 @@ from .variants import VARIABLES, Variable, check_variable, drive_unit, source_of
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
-TURNED_OFF = {
-    "transducer": ("transducer exponent", "p"),
-    "gain noise": ("gain noise", "gain_noise"),
-    "decision between trials": ("decision time between trials", "decision_noise"),
-    "choice time": ("choice time", "choice_s"),
+INFERRED: Mapping[str, str] = {
+    "integration_s": "integration time",
+    "a": "slope of sensation",
+    "p": "transducer exponent",
+    "gain_noise": "gain noise",
+    "criterion": "criterion of speeded answers",
+    "noise_correlation_s": "noise correlation time",
+    "decision_s": "decision time",
+    "choice_s": "choice time",
+    "decision_noise": "decision time between trials",
 }
-"""Mechanisms with one constant: its parameter of the inference, and the field of an observer."""
+"""Fields of an observer by the constants of the inference, under whose names they stand in files."""
+OF_CHANNEL: Mapping[str, str] = {
+    "threshold_drive": "threshold drive",
+    "velocity_m_per_s": "conduction velocity",
+    "area_exponent": "area exponent",
+    "limit_C": "limit",
+    "forearm_factor": "threshold on the forearm",
+}
+OF_BOTH: Mapping[str, str] = {"adaptation_s": "slow adaptation time", "softness_K": "softness of the limits"}
+"""Fields of a receptor: constants of which each channel has its own, and those that both share."""
+TURNED_OFF = {
+    "transducer": "p",
+    "gain noise": "gain_noise",
+    "decision between trials": "decision_noise",
+    "choice time": "choice_s",
+}
+"""Mechanisms with one constant, and its field."""
 FOREARM_SITES = ("forearm", "wrist", "arm")
 
 
@@ -178,8 +199,7 @@ class Observer:
                 receptor = replace(receptor, velocity_m_per_s=velocity)
             changes[channel] = receptor
         for name in names & set(TURNED_OFF):
-            parameter, constant = TURNED_OFF[name]
-            changes[constant] = find_mechanism(name).off(parameter)
+            changes[TURNED_OFF[name]] = find_mechanism(name).off(INFERRED[TURNED_OFF[name]])
         return replace(self, **changes)
 
     @classmethod
@@ -197,17 +217,11 @@ class Observer:
             return table.one(own if own in known else quantity, channel=channel, site=site, method=method).central
 
         def receptor(channel: Channel) -> Receptor:
+            constants: dict[str, Any] = {field: number(name) for field, name in OF_BOTH.items()}
+            names = {field: name for field, name in OF_CHANNEL.items() if variable != "heat flow" or name != "limit"}
+            constants |= {field: number(name, channel) for field, name in names.items()}
             flux = table.one("neutral heat flow", channel=channel).interval if variable == "heat flow" else None
-            return Receptor(
-                adaptation_s=number("slow adaptation time"),
-                threshold_drive=number("threshold drive", channel),
-                velocity_m_per_s=number("conduction velocity", channel),
-                area_exponent=number("area exponent", channel),
-                limit_C=None if variable == "heat flow" else number("limit", channel),
-                softness_K=number("softness of the limits"),
-                forearm_factor=number("threshold on the forearm", channel),
-                neutral_flux=flux,
-            )
+            return Receptor(**constants, neutral_flux=flux)
 
         def ratings(channel: Channel) -> Ratings:
             rated, exponent = number("mean rating", channel), number("rating exponent", channel)
@@ -215,23 +229,16 @@ class Observer:
             return Ratings(number("rating at threshold", channel), exponent, rated, scatter)
 
         low, high = table.one("neutral zone").interval
+        constants: dict[str, Any] = {field: number(name) for field, name in INFERRED.items()}
         return cls(
+            **constants,
             cold=receptor("cold"),
             warm=receptor("warm"),
-            integration_s=number("integration time"),
             neutral_low_C=low,
             neutral_high_C=high,
-            a=number("slope of sensation"),
-            p=number("transducer exponent"),
-            gain_noise=number("gain noise"),
             reference_area_m2=number("reference area") * 1e-4,
-            criterion=number("criterion of speeded answers"),
-            noise_correlation_s=number("noise correlation time"),
             path_hand_m=number("path length to the cord", site="hand"),
             path_forearm_m=number("path length to the cord", site="forearm"),
-            decision_s=number("decision time"),
-            choice_s=number("choice time"),
-            decision_noise=number("decision time between trials"),
             lapse=number("lapse rate"),
             memory=EpisodeMemory(
                 timing=number("memory noise", method="episodes"),

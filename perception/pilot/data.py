@@ -14,7 +14,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..experiments.measure import Setting
-from .answers import AnswerScore, score_person, score_pooled
 from .conditioning import Step
 from .fit import Fit, MeasurementFit, compare, compare_measurements
 from .likelihood import PooledLikelihood, log_likelihoods, person_log_likelihoods
@@ -23,7 +22,7 @@ from .measurements import Measurements
 from .playing import Confusions, Stage
 from .prediction import Three, three
 from .states import Laboratories, LaboratoryPrior
-from .trials import Trials
+from .trials import AnswerScore, Trials, score_person, score_pooled
 
 NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit.

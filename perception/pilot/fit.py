@@ -17,12 +17,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..experiments.measure import Condition
-from .answers import plugin_information
 from .measurement_likelihood import Predicted, log_errors, person_covariance, shared_covariance
 from .measurements import Measurements
 from .playing import Confusions
 from .prediction import COVER, Three, median_three
-from .trials import Trials
+from .trials import Trials, plugin_information
 
 EXPERIMENTS = 1000
 LEAST_PEOPLE = 3

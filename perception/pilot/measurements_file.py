@@ -60,7 +60,7 @@ LONGEST_RAMP_S = 120.0
 
 def is_measurements(path: str | Path) -> bool:
     """Whether the header of a file is that of measurements, not of trials."""
-    header = {cell.lower() for cell in table_in(Path(path), (), EXAMPLE, WHAT)[0].header}
+    header = {cell.lower() for cell in table_in(Path(path), (), EXAMPLE, "table of trials or measurements")[0].header}
     return "presented" not in header and any(mark in header for mark in MARKS_OF_KIND)
 
 

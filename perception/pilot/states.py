@@ -19,11 +19,10 @@ from thermicon.circuit.records import Table
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Norm
-from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
-from ..observer.from_draw import observer_with
+from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws, laboratory_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People, draw_people
+from ..observer.people import People
 from ..observer.priors import Prior, priors_of
 from ..sensation.parameters import ObserverParameter, latin, memory_parameters
 
@@ -151,9 +150,7 @@ class LaboratoryPrior:
     def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, by a row of `values`, and people who come there."""
         named = dict(zip(self.names, values.tolist(), strict=True))
-        observer = observer_with(self.base, named)
-        crowd = draw_people(people, seed, spreads=named)
-        return observer, crowd.less_sensitive(*(-named[name] for name in OFFSETS))
+        return laboratory_with(self.base, named, (named[OFFSETS[0]], named[OFFSETS[1]]), people, seed)
 
 
 def _scores(parameter: ObserverParameter, draws: PosteriorDraws) -> Array:

@@ -19,8 +19,7 @@ from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.observer import Observer
 from ..observer.variants import Variable, receptor_input
 from .percept import uniform_clock
-from .receptors import receptor_drive
-from .sensation import sensation
+from .sensation import receptor_drive, sensation
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

@@ -25,8 +25,7 @@ from ..observer.observer import Observer
 from ..observer.variants import receptor_input
 from .coverage import outside_data
 from .detection import channel_name, detect
-from .receptors import receptor_drive
-from .sensation import sense
+from .sensation import receptor_drive, sense
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

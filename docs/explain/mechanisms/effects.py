@@ -21,8 +21,7 @@ from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.transducer import Transducer
 from thermicon.perception.sensation.detection import detect
-from thermicon.perception.sensation.receptors import receptor_drive
-from thermicon.perception.sensation.sensation import sensation, sensitivity
+from thermicon.perception.sensation.sensation import receptor_drive, sensation, sensitivity
 
 Look = Literal["cold", "warm", "reference", "off", "other"]
 """How a curve is drawn: in a channel's colour, thin for a reference, dashed grey for a mechanism turned off."""

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from thermicon.notebooks.report.answers_text import USEFUL_PEOPLE, observed_sentences
-from thermicon.perception.pilot.answers import score_person, score_pooled
-from thermicon.perception.pilot.trials import Trials
+from thermicon.perception.pilot.trials import Trials, score_person, score_pooled
 
 FEW = "Two participants allow hardly any interval of all"
 UNEVEN = "participants with more trials count more; the mean of the participants is"

@@ -15,8 +15,7 @@ from thermicon.notebooks.timeline.scene import MOST_ROWS, TAIL_S, Scene, scene, 
 from thermicon.notebooks.workbench.knobs import aged
 from thermicon.perception import Observer, perceive
 from thermicon.perception.sensation.features import passing_s
-from thermicon.perception.sensation.receptors import receptor_drive
-from thermicon.perception.sensation.sensation import sensation
+from thermicon.perception.sensation.sensation import receptor_drive, sensation
 
 DIP = "cue 1\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4 s\n  return at 3 °C/s\n}\n"
 BROKEN = DIP.replace("6 °C", "6")

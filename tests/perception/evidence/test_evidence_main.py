@@ -31,7 +31,7 @@ def sampled(r_hat: float) -> Sampled:
     size = len(posterior.priors)
     chains = shipped_vector(posterior) + 0.3 * np.random.default_rng(0).standard_normal((4, 300, size))
     found = Diagnostics(posterior.priors.names, np.full(size, r_hat), np.full(size, 900.0))
-    return Sampled(posterior, chains, np.zeros((4, 300)), 5000, 0.4, found, 0)
+    return Sampled(posterior, chains, 5000, found, 0)
 
 
 def test_draws_of_converged_chains_are_written(

@@ -46,7 +46,7 @@ def test_depth_follows_the_closed_form(slab: Rig) -> None:
     expected = 2 * q * math.sqrt(3.0 / math.pi) / effusivity * math.exp(-near * near) - q * x / 0.4 * math.erfc(near)
     assert warmed.warm_receptor_K[-1] == pytest.approx(expected, rel=0.01)
     assert warmed.warm_receptor_W_per_m2[-1] == pytest.approx(q * math.erfc(near), rel=0.02)
-    assert warmed.cold_receptor_K[-1] > warmed.warm_receptor_K[-1]
+    assert warmed.surface_K[-1] > warmed.warm_receptor_K[-1]
 
 
 def test_the_flux_scales_it(slab: Rig) -> None:

@@ -22,8 +22,7 @@ from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
 from thermicon.perception.sensation.detection import detect
 from thermicon.perception.sensation.first_passage import ResponseTimes, response_times
-from thermicon.perception.sensation.receptors import receptor_drive
-from thermicon.perception.sensation.sensation import sensitivity
+from thermicon.perception.sensation.sensation import receptor_drive, sensitivity
 
 NOBODY_DIFFERS = (
     "cold sensitivity between people",

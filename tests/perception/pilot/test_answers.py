@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception.identification.measures import information_bits
-from thermicon.perception.pilot.answers import plugin_information, score_person, score_pooled, wilson
-from thermicon.perception.pilot.trials import Trials
+from thermicon.perception.pilot.trials import Trials, plugin_information, score_person, score_pooled, wilson
 
 CHANCES = np.array([[0.7, 0.2, 0.1], [0.2, 0.7, 0.1], [0.1, 0.2, 0.7]])
 

@@ -1,7 +1,8 @@
-"""Judged on people who were left out: made-up laboratories, the next set predicted from a pilot with another one."""
+"""Judged on made-up laboratories: what a pilot says of people who were left out, of the next set, of measurements."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,98 +13,134 @@ from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
 from thermicon.circuit.cores import quiet_blas
 from thermicon.icons import read_cue
+from thermicon.perception.experiments.measure import Setting
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE
-from thermicon.perception.pilot.likelihood import (
-    PooledLikelihood,
-    effective,
-    log_likelihoods,
-    normalised_weights,
-)
+from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
+from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
 from thermicon.perception.pilot.playing import Confusions, stage
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
-from thermicon.perception.pilot.synthetic import answers_of, spread
+from thermicon.perception.pilot.synthetic import USUAL, answers_of, measurements_of, spread
 
 ENDS = (0.025, 0.975)
+RIG = Rig.load("thenar")
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Bench:
-    """Laboratories to predict with, and others to predict: their participants, and their people who were left out."""
+    """Laboratories to predict with (`some`), and others to predict (`true`), each made from the draw `own`."""
 
-    answered: Confusions
-    predicted: tuple[Confusions, Confusions]
-    participants: Confusions
-    left_out: tuple[Confusions, Confusions]
+    prior: LaboratoryPrior
+    some: Laboratories
+    true: Laboratories
     own: NDArray[np.int64]
-    place: NDArray[np.float64]
+    rng: np.random.Generator
 
-    def judged(self, participants: int, trials: int, seed: int) -> dict[str, float]:
-        """Coverage of both sets, and the median factor by which the interval of the first narrowed."""
-        rng, rows = np.random.default_rng(seed), []
+    @classmethod
+    def of(cls, laboratories: int, truths: int, seed: int) -> Bench:
+        rng, prior = np.random.default_rng(seed), LaboratoryPrior(PosteriorDraws.load(), "episodes")
+        own = rng.choice(laboratories, truths, replace=False)
+        return cls(prior, prior.first(laboratories, 1), prior.first(laboratories, 77).of(own), own, rng)
+
+    def other_people(self, some: Laboratories) -> Laboratories:
+        """The same laboratories with people who did not take part."""
+        return Laboratories(some.place, self.rng.integers(SEEDS, size=len(some)))
+
+    def judged(
+        self, weights_of: Callable[[int], tuple[Floats, float]], *predictions: tuple[Floats, Floats]
+    ) -> tuple[float, list[float], list[float]]:
+        """Median effective size, coverage of each prediction of a truth, and median factor of narrowing.
+
+        `weights_of` gives log weights of the laboratories by what the k-th true one found, and the effective size.
+        """
+        rows = []
         for k in range(len(self.own)):
-            place = np.array([k])
-            presented = np.stack([spread(trials, 6, rng) for _ in range(participants)])
-            invited = rng.integers(self.participants.probability.shape[1], size=participants)
-            counts = answers_of(self.participants.of(place), invited, presented, rng)
-            logs = log_likelihoods(self.answered.probability, counts).sum(axis=1)
-            logs[self.own[k]] = -np.inf  # the draw that the laboratory was made from
-            weights = normalised_weights(logs)
-            row = [effective(weights)]
-            if row[0] < min(LEAST_EFFECTIVE, LEAST_SHARE * len(weights)):  # as `condition` does, without fresh ones
-                logs = PooledLikelihood.fit(self.place, self.answered, counts)(self.place)
-                logs[self.own[k]] = -np.inf
-                weights = normalised_weights(logs)
-            for guess, truth in zip(self.predicted, self.left_out, strict=True):
-                low, high = weighted_quantile(guess.correct, weights, ENDS)
-                first, last = np.quantile(guess.correct, ENDS)
-                row += [low <= truth.correct[k] <= high, (last - first) / (high - low)]
+            logs, size = weights_of(k)
+            row = [size]
+            for guess, truth in predictions:
+                low, high = weighted_quantile(guess, normalised_weights(logs), ENDS)
+                first, last = np.quantile(guess, ENDS)
+                row += [float(low <= truth[k] <= high), float((last - first) / (high - low))]
             rows.append(row)
         each = np.array(rows)
-        return {
-            "effective": float(np.median(each[:, 0])),
-            "set": float(each[:, 1].mean()),
-            "narrower": float(np.median(each[:, 2])),
-            "next set": float(each[:, 3].mean()),
-        }
+        covered, narrower = each[:, 1::2].mean(axis=0), np.median(each[:, 2::2], axis=0)
+        return float(np.median(each[:, 0])), covered.tolist(), narrower.tolist()
 
 
-def bench(laboratories: int, truths: int, other: str) -> Bench:
-    rig, rng = Rig.load("thenar"), np.random.default_rng(8)
-    prior = LaboratoryPrior(PosteriorDraws.load(), "episodes")
-    first, second = (stage(read_cue(name), rig, prior) for name in ("six-icons", other))
-    some = prior.first(laboratories, 1)
-    people = Laboratories(some.place, rng.integers(SEEDS, size=laboratories))
-    every = prior.first(laboratories, 77)
-    own = rng.choice(laboratories, truths, replace=False)
-    true = every.of(own)
-    left = Laboratories(true.place, rng.integers(SEEDS, size=truths))
-    return Bench(
-        first.confusions(some),
-        (first.confusions(people), second.confusions(people)),
-        first.confusions(true),
-        (first.confusions(left), second.confusions(left)),
-        own,
-        some.place,
-    )
+@dataclass(frozen=True)
+class Answering:
+    """A bench whose laboratories name six icons, and whose people who were left out name them and another set."""
+
+    bench: Bench
+    answered: Confusions
+    participants: Confusions
+    predictions: tuple[tuple[Floats, Floats], ...]
+
+    @classmethod
+    def of(cls, laboratories: int, truths: int, other: str) -> Answering:
+        bench = Bench.of(laboratories, truths, 8)
+        first, second = (stage(read_cue(name), RIG, bench.prior) for name in ("six-icons", other))
+        people, left = bench.other_people(bench.some), bench.other_people(bench.true)
+        pairs = [(each.confusions(people).correct, each.confusions(left).correct) for each in (first, second)]
+        return cls(bench, first.confusions(bench.some), first.confusions(bench.true), tuple(pairs))
+
+    def judged(self, participants: int, trials: int, seed: int) -> tuple[float, list[float], list[float]]:
+        rng, own = np.random.default_rng(seed), self.bench.own
+
+        def weights_of(k: int) -> tuple[Floats, float]:
+            presented = np.stack([spread(trials, 6, rng) for _ in range(participants)])
+            invited = rng.integers(self.participants.probability.shape[1], size=participants)
+            counts = answers_of(self.participants.of(np.array([k])), invited, presented, rng)
+            logs = log_likelihoods(self.answered.probability, counts).sum(axis=1)
+            logs[own[k]] = -np.inf  # the draw that the laboratory was made from
+            size = effective(normalised_weights(logs))
+            if size < min(LEAST_EFFECTIVE, LEAST_SHARE * len(logs)):  # as `condition` does, without fresh ones
+                logs = PooledLikelihood.fit(self.bench.some.place, self.answered, counts)(self.bench.some.place)
+                logs[own[k]] = -np.inf
+            return logs, size
+
+        return self.bench.judged(weights_of, *self.predictions)
 
 
 @pytest.mark.slow
 def test_a_pilot_of_a_few_people_narrows_and_still_covers() -> None:
-    pilot = bench(150, 50, "six-icons").judged(3, 20, 3)
-    assert pilot["narrower"] > 1.05
-    assert pilot["set"] >= 0.86
-    assert pilot["effective"] > 20.0
+    size, covered, narrower = Answering.of(150, 50, "six-icons").judged(3, 20, 3)
+    assert narrower[0] > 1.05
+    assert covered[0] >= 0.86
+    assert size > 20.0
 
 
 @pytest.mark.slow
 def test_intervals_cover_two_hundred_laboratories_and_twenty_trials_narrow_a_little() -> None:
-    many = bench(1000, 200, "pulse-sequences")
+    many = Answering.of(1000, 200, "pulse-sequences")
     with quiet_blas():
-        found = {size: many.judged(*size, 3) for size in ((1, 20), (4, 20))}
-    for each in found.values():
-        assert 0.90 <= each["set"] <= 0.995
-        assert 0.90 <= each["next set"] <= 0.995
-    assert 1.02 <= found[1, 20]["narrower"] <= 1.12  # docs/how-to/your-pilot.md says 1.06
-    assert 1.12 <= found[4, 20]["narrower"] <= 1.3
-    assert found[4, 20]["effective"] > 150
+        found = {people: many.judged(people, 20, 3) for people in (1, 4)}
+    for _, covered, _ in found.values():
+        assert all(0.90 <= each <= 0.995 for each in covered)
+    assert 1.02 <= found[1][2][0] <= 1.12  # docs/how-to/your-pilot.md says 1.06
+    assert 1.12 <= found[4][2][0] <= 1.3
+    assert found[4][0] > 150
+
+
+@pytest.mark.slow
+def test_intervals_cover_two_hundred_laboratories_of_measurements() -> None:
+    """Four participants each: the set, and the mean limits."""
+    bench = Bench.of(1000, 200, 9)
+    true, setting, values = bench.other_people(bench.true), Setting.of(RIG), bench.prior.values(bench.true)
+    each, other = (predicted(bench.prior, which, setting, USUAL) for which in (bench.some, true))
+    icons = stage(read_cue("six-icons"), RIG, bench.prior)
+    guess, truth = (icons.confusions(which).correct for which in (bench.other_people(bench.some), true))
+
+    def weights_of(k: int) -> tuple[Floats, float]:
+        found = measurements_of(bench.prior, values[k], setting, USUAL, 4, 10, bench.rng)
+        logs = log_likelihood(found, each)
+        logs[bench.own[k]] = -np.inf
+        return logs, effective(normalised_weights(logs))
+
+    with quiet_blas():
+        size, covered, narrower = bench.judged(weights_of, (guess, truth), (each.mean[:, 0], other.mean[:, 0]))
+    assert size > 40.0
+    assert all(0.90 <= share <= 0.995 for share in covered)
+    assert 1.15 <= narrower[1] <= 1.35  # docs/how-to/your-pilot.md says 1.24
+    assert 1.03 <= narrower[0] <= 1.16  # and 1.09

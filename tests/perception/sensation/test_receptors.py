@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import Receptor
-from thermicon.perception.sensation.receptors import receptor_drive
+from thermicon.perception.sensation.sensation import receptor_drive
 
 
 def low_pass_of_ramp(t: np.ndarray, slope: float, tau: float) -> np.ndarray:
