@@ -21,13 +21,6 @@ _KINDS: dict[str, Kind] = {
 }
 
 
-def unit_fault(unit: str) -> str | None:
-    """Return what keeps a text from being a unit of a parameter, or None; a count has the unit ``""``."""
-    if any(unit in units for units in UNITS.values()):
-        return None
-    return f"{unit!r} is not a unit"
-
-
 @dataclass(frozen=True, slots=True, repr=False)
 class Parameter:
     """What varies in a family: ``listed`` values, or a ``span`` of (low, high, step), as numbers in ``unit``.
@@ -52,8 +45,10 @@ class Parameter:
         if self.span is not None:
             low, high, step = (float(value) + 0.0 for value in self.span)
             object.__setattr__(self, "span", (low, high, step))
-        if wrong := name_fault(self.name) or unit_fault(self.unit):
+        if wrong := name_fault(self.name):
             raise ValueError(f"parameter {self.name}: {wrong}")
+        if not any(self.unit in units for units in UNITS.values()):
+            raise ValueError(f"parameter {self.name}: {self.unit!r} is not a unit")
         if any(self.name in units for units in UNITS.values()):
             raise ValueError(f"parameter {self.name}: this is the name of a unit")
         if bool(self.listed) == (self.span is not None):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .differences import Aligned, quantity, unit_of_difference
-from .style import BROAD, COOL, GREY, INK, TARGET, WARM, on_one_clock, plain
+from .style import BROAD, COOL, GREY, INK, PLACES, TARGET, WARM, on_one_clock, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,8 +24,6 @@ LEAST = 0.005
 """The panel of differences shows at least this much to both sides, in its own unit."""
 
 ACROSS = 3
-PLACES = (("skin", "skin_C", INK, "-"), ("cold receptor", "cold_receptor_C", COOL, "-."),
-          ("warm receptor", "warm_receptor_C", WARM, "--"))  # fmt: skip
 
 
 def compare_figure(pairs: Sequence[tuple[str, Aligned]], across: int = ACROSS) -> Figure:
@@ -120,9 +118,10 @@ def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.
     axes[0].plot(time_s, delivered.display_C, color=GREY, lw=1.1, ls=(0, (6, 2)), label="display, delivered")
     axes[0].set_ylabel("temperature (°C)")
     _drive_panel(axes[1], delivery)
-    for name, column, colour, style in PLACES:
+    for name, (color, dashes, _) in list(PLACES.items())[1:]:
+        column = f"{name.replace(' ', '_')}_C"
         apart = 1e3 * (getattr(delivered, column) - getattr(designed, column))
-        axes[2].plot(time_s, apart, color=colour, lw=1.2, ls=style, label=name)
+        axes[2].plot(time_s, apart, color=color, lw=1.2, ls=dashes, label=name)
     axes[2].set_ylabel("delivered −\ndesigned (mK)")
     on_one_clock(figure, axes, "time on the device's clock (s)", title_of(one))
     return figure

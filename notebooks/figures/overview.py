@@ -12,7 +12,7 @@ import numpy
 from thermicon.circuit.rig.load import LOAD_SITES
 
 from .print_figure import write_figure
-from .style import COOL, GREY, INK, LIMIT, SCREEN, TARGET, WARM, Look, key_beside, on_one_clock
+from .style import COOL, GREY, INK, LIMIT, PLACES, SCREEN, TARGET, WARM, Look, key_beside, on_one_clock
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,13 +74,10 @@ def _temperatures(trace: Trace, ax: Axes) -> None:
     t = trace.time_s
     if numpy.isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
         ax.plot(t, trace.target_C, color=TARGET, lw=5.0, solid_capstyle="butt", label="target")
-    ax.plot(t, trace.display_C, color=GREY, lw=1.2, ls=(0, (6, 2)), label="display")
-    if trace.site in LOAD_SITES:
-        ax.plot(t, trace.skin_C, color=INK, lw=1.6, label=trace.site)
-    else:
-        ax.plot(t, trace.skin_C, color=INK, lw=1.6, label="skin")
-        ax.plot(t, trace.cold_receptor_C, color=COOL, lw=1.4, ls="-.", label="cold receptor")
-        ax.plot(t, trace.warm_receptor_C, color=WARM, lw=1.4, ls="--", label="warm receptor")
+    for name, (color, dashes, width) in PLACES.items():
+        if trace.site not in LOAD_SITES or "receptor" not in name:
+            shown = trace.site if trace.site in LOAD_SITES and name == "skin" else name
+            ax.plot(t, getattr(trace, f"{name.replace(' ', '_')}_C"), color=color, lw=width, ls=dashes, label=shown)
     ax.set_ylabel("temperature (°C)")
 
 
@@ -91,9 +88,9 @@ def _heat_flow(trace: Trace, ax: Axes) -> None:
         ax.plot(t, trace.heat_flow_skin_W_per_m2 / 1e3, color=INK, lw=1.6, label="display")
         ax.set_ylabel(f"heat flow into\nthe {trace.site} (kW/m²)")
         return
-    ax.plot(t, trace.heat_flow_skin_W_per_m2 / 1e3, color=INK, lw=1.6, label="skin surface")
-    ax.plot(t, trace.heat_flow_cold_receptor_W_per_m2 / 1e3, color=COOL, lw=1.4, ls="-.", label="cold receptor")
-    ax.plot(t, trace.heat_flow_warm_receptor_W_per_m2 / 1e3, color=WARM, lw=1.4, ls="--", label="warm receptor")
+    for name, (color, dashes, width) in list(PLACES.items())[1:]:
+        flow = getattr(trace, f"heat_flow_{name.replace(' ', '_')}_W_per_m2") / 1e3
+        ax.plot(t, flow, color=color, lw=width, ls=dashes, label="skin surface" if name == "skin" else name)
     ax.set_ylabel("heat flow\ninto skin (kW/m²)")
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .style import COOL, GREY, INK, LIMIT, NEAR_K, WARM, on_one_clock, skin_limits
+from .style import COOL, GREY, INK, LIMIT, NEAR_K, PLACES, WARM, on_one_clock, skin_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,14 +80,9 @@ def _changes(session: Session, ax: Axes, scale: float) -> None:
 def _temperatures(session: Session, ax: Axes, scale: float) -> None:
     trace = session.trace
     _mark_plays(session, ax, scale)
-    for values, label, color, dashes, width in (
-        (trace.display_C, "display", GREY, (0, (6, 2)), 1.0),
-        (trace.skin_C, "skin", INK, "-", 1.4),
-        (trace.cold_receptor_C, "cold receptor", COOL, "-.", 1.1),
-        (trace.warm_receptor_C, "warm receptor", WARM, "--", 1.1),
-    ):
-        time, drawn = envelope(trace.time_s * scale, values)
-        ax.plot(time, drawn, color=color, ls=dashes, lw=width, label=label)
+    for name, (color, dashes, width) in PLACES.items():
+        time, drawn = envelope(trace.time_s * scale, getattr(trace, f"{name.replace(' ', '_')}_C"))
+        ax.plot(time, drawn, color=color, ls=dashes, lw=0.8 * width, label=name)
     ax.set_ylabel("temperature (°C)")
     skin_limits(ax, session)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..messages import usage
 
@@ -19,6 +19,13 @@ COOL, WARM = "#2166ac", "#e08214"
 BROAD = "#b9bec4"
 """A broad line below a thin one: the first of two, or what was predicted before."""
 INK, GREY, TARGET, LIMIT = "#1a1a1a", "#6a6a6a", "#cfe3cf", "#b2182b"
+PLACES: dict[str, tuple[str, Any, float]] = {
+    "display": (GREY, (0, (6, 2)), 1.2),
+    "skin": (INK, "-", 1.6),
+    "cold receptor": (COOL, "-.", 1.4),
+    "warm receptor": (WARM, "--", 1.4),
+}
+"""Colour, dashes and width of what is measured at each place: dashes differ too, so that it can be printed in grey."""
 NEAR_K = 6.0
 """Limits of the skin that are nearer than this to what is drawn get a line."""
 MM = {"mm": 1.0, "cm": 10.0, "in": 25.4}

@@ -12,7 +12,8 @@ from importlib import resources
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from .bids import (
+from .build import FELT, UNFELT, Plan, levels_K, plays_of
+from .schedule import (
     Pace,
     dataset_description,
     events_description,
@@ -22,7 +23,6 @@ from .bids import (
     planned_plays,
     table,
 )
-from .build import FELT, UNFELT, Plan, levels_K, plays_of
 from .study_file import labels_of
 
 if TYPE_CHECKING:
