@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import pairwise
 
 from ..arrays import Array
@@ -162,38 +163,53 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
 
 
 def _electrical(rig: Rig, corners: list[tuple[float, float]]) -> Iterator[str]:
-    gain, module = rig.driver.transconductance_A_per_V, rig.module
+    gain = rig.driver.transconductance_A_per_V
     yield from _section("driver: a voltage-controlled current source")
     yield "Vcommand command 0 PWL("
     yield from (f"+ {time!r} {current / gain!r}" for time, current in corners)
     yield "+ )"
     yield f"Gdriver 0 plus command 0 {gain!r}"
     yield from _section("the module's electrical port")
-    yield "Vsense plus ohmic 0"
-    yield f"Rmodule ohmic seebeck {module.resistance_ohm!r}"
-    yield f"Bseebeck seebeck 0 V={module.seebeck_V_per_K!r}*(V(hot)-V(cold))"
+    yield from electrical_lines(partial(_value, rig), "0")
 
 
 def _module(rig: Rig) -> Iterator[str]:
-    module, cells = rig.module, rig.module.leg_nodes
-    alpha, square = module.seebeck_V_per_K, "I(Vsense)*I(Vsense)"
-    joule = "" if cells else f"{module.resistance_ohm / 2!r}*{square}"
     yield from _section(f"the module's thermal side; {ZERO_C_IN_K!r} makes kelvin of degC")
-    yield f"Bcold cold 0 I={alpha!r}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense){joule and '-' + joule}"
-    yield f"Bhot 0 hot I={alpha!r}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense){joule and '+' + joule}"
+    yield from thermal_lines(partial(_value, rig), rig.module.leg_nodes)
+
+
+def _value(rig: Rig, name: str, part: int = 1) -> str:
+    return repr(getattr(rig.module, name) / part)
+
+
+Value = Callable[..., str]
+"""Writes a number of the module by its name in a rig file, and by how many it is divided."""
+
+
+def electrical_lines(value: Value, minus: str) -> Iterator[str]:
+    """The module between `plus` and another node: an ammeter, its resistance, and its Seebeck voltage."""
+    yield "Vsense plus ohmic 0"
+    yield f"Rmodule ohmic seebeck {value('resistance_ohm')}"
+    yield f"Bseebeck seebeck {minus} V={value('seebeck_V_per_K')}*(V(hot)-V(cold))"
+
+
+def thermal_lines(value: Value, cells: int) -> Iterator[str]:
+    """Both plates and the legs between them, which store heat in so many cells, or conduct alone where that is 0."""
+    alpha, square = value("seebeck_V_per_K"), "I(Vsense)*I(Vsense)"
+    joule = "" if cells else f"{value('resistance_ohm', 2)}*{square}"
+    yield f"Bcold cold 0 I={alpha}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense){joule and '-' + joule}"
+    yield f"Bhot 0 hot I={alpha}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense){joule and '+' + joule}"
     if cells:
         yield "* the legs: cells that store heat, from the hot plate to the cold one"
-        chain = ["hot", *(f"leg{cell + 1}" for cell in range(cells)), "cold"]
-        for place, (above, below) in enumerate(pairwise(chain)):
-            part = 2 * cells if place in (0, cells) else cells
-            yield f"Rtheta{place} {above} {below} {module.thermal_resistance_K_per_W / part!r}"
-        for leg in chain[1:-1]:
-            yield f"C{leg} {leg} 0 {module.leg_capacity_J_per_K / cells!r}"
-            yield f"B{leg} 0 {leg} I={module.resistance_ohm / cells!r}*{square}"
-    else:
-        yield f"Rtheta hot cold {module.thermal_resistance_K_per_W!r}"
-    yield f"Chot hot 0 {module.hot_plate_J_per_K!r}"
-    yield f"Ccold cold 0 {module.cold_plate_J_per_K!r}"
+    chain = ["hot", *(f"leg{cell + 1}" for cell in range(cells)), "cold"]
+    for place, (above, below) in enumerate(pairwise(chain)):
+        part = max(1, 2 * cells if place in (0, cells) else cells)
+        yield f"Rtheta{place if cells else ''} {above} {below} {value('thermal_resistance_K_per_W', part)}"
+    for leg in chain[1:-1]:
+        yield f"C{leg} {leg} 0 {value('leg_capacity_J_per_K', cells)}"
+        yield f"B{leg} 0 {leg} I={value('resistance_ohm', cells)}*{square}"
+    yield f"Chot hot 0 {value('hot_plate_J_per_K')}"
+    yield f"Ccold cold 0 {value('cold_plate_J_per_K')}"
 
 
 def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:

@@ -12,11 +12,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..program import own_version
-from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..solver.landing import refuse_landing
 from ..solver.network import network_of
-from .netlist import _comment, _section
+from .netlist import _comment, _section, electrical_lines, thermal_lines
 
 MM, CM2 = 1e-3, 1e-4
 """One mm in m, one cm² in m²: parameters have the units of rig files, elements those of SI."""
@@ -80,34 +79,24 @@ def _definition(name: str, ports: str, parameters: dict[str, float]) -> Iterator
 
 def _module(rig: Rig) -> Iterator[str]:
     module, cells = rig.module, rig.module.leg_nodes
-    parameters = {
-        "seebeck_V_per_K": float(module.seebeck_V_per_K),
-        "resistance_ohm": float(module.resistance_ohm),
-        "thermal_resistance_K_per_W": float(module.thermal_resistance_K_per_W),
-        "hot_plate_J_per_K": float(module.hot_plate_J_per_K),
-        "cold_plate_J_per_K": float(module.cold_plate_J_per_K),
-    }
-    if cells:
-        parameters["leg_capacity_J_per_K"] = float(module.leg_capacity_J_per_K)
-    square = "I(Vsense)*I(Vsense)"
-    joule = "" if cells else f"{{resistance_ohm/2}}*{square}"
+    names = [
+        "seebeck_V_per_K",
+        "resistance_ohm",
+        "thermal_resistance_K_per_W",
+        "hot_plate_J_per_K",
+        "cold_plate_J_per_K",
+    ]
+    names += ["leg_capacity_J_per_K"] if cells else []
+    parameters = {name: float(getattr(module, name)) for name in names}
     yield from _section("module")
     yield from _definition("thermicon_module", "plus minus hot cold", parameters)
-    yield "Vsense plus ohmic 0"
-    yield "Rmodule ohmic seebeck {resistance_ohm}"
-    yield "Bseebeck seebeck minus V={seebeck_V_per_K}*(V(hot)-V(cold))"
-    yield f"Bcold cold 0 I={{seebeck_V_per_K}}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense){joule and '-' + joule}"
-    yield f"Bhot 0 hot I={{seebeck_V_per_K}}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense){joule and '+' + joule}"
-    chain = ["hot", *(f"leg{cell + 1}" for cell in range(cells)), "cold"]
-    for place, (above, below) in enumerate(pairwise(chain)):
-        part = "" if not cells else f"/{2 * cells}" if place in (0, cells) else f"/{cells}"
-        yield f"Rtheta{place} {above} {below} {{thermal_resistance_K_per_W{part}}}"
-    for leg in chain[1:-1]:
-        yield f"C{leg} {leg} 0 {{leg_capacity_J_per_K/{cells}}}"
-        yield f"B{leg} 0 {leg} I={{resistance_ohm/{cells}}}*{square}"
-    yield "Chot hot 0 {hot_plate_J_per_K}"
-    yield "Ccold cold 0 {cold_plate_J_per_K}"
+    yield from electrical_lines(_parameter, "minus")
+    yield from thermal_lines(_parameter, cells)
     yield ".ends thermicon_module"
+
+
+def _parameter(name: str, part: int = 1) -> str:
+    return f"{{{name}}}" if part == 1 else f"{{{name}/{part}}}"
 
 
 def _skin(rig: Rig) -> Iterator[str]:

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Array
 from ..solver.trace import Trace
 from .log import Log, LogError
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SHIFTED_BY = ("display_C", "skin_C", "voltage_V", "current_A", "hot_plate_C")
 """Columns that a shift is found from, the best first."""
@@ -76,14 +72,6 @@ class Overlay:
     def __repr__(self) -> str:
         parts = [f"{item.column} rms {item.rms:.2g}, largest {item.largest:+.2g}" for item in self.columns]
         return f"Overlay({self.name!r}, shifted by {self.shift_s:.3f} s: {'; '.join(parts)})"
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return one row per column: rms and largest difference measured − simulated, and where it is in s."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            [{"column": c.column, "rms": c.rms, "largest": c.largest, "largest_s": c.largest_s} for c in self.columns]
-        )
 
 
 def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:

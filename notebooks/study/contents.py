@@ -154,7 +154,7 @@ def _session_facts(session: Session) -> dict[str, object]:
 
 def _volts_of_setpoints(plan: Plan) -> bool:
     """Whether set-points of a controller go out as a voltage, which the player of NI devices does."""
-    from thermicon.circuit.delivery.formats.setpoint_csv import has_voltage
+    from thermicon.circuit.delivery.formats.tables import has_voltage
 
     device = plan.materials.device
     return device.driven_by == "temperatures" and has_voltage(device)

@@ -1,4 +1,4 @@
-"""thermicon.circuit.delivery.formats: a delivered drive → the bytes of a file; one writer per module, loaded lazily."""
+"""thermicon.circuit.delivery.formats: a delivered drive → the bytes of a file; writers are loaded when asked for."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from thermicon.icons.near_words import did_you_mean
 from .form import Format, FormatError
 
 MODULES = {
-    "csv": "csv_table",
-    "setpoint-csv": "setpoint_csv",
+    "csv": "tables",
+    "setpoint-csv": "tables",
     "tdms": "tdms",
     "wav": "wav",
     "c-array": "c_array",
-    "tcs2-serial": "tcs2_serial",
-    "tcs2-protocol-ini": "tcs2_protocol",
+    "tcs2-serial": "tcs2",
+    "tcs2-protocol-ini": "tcs2",
     "psychopy": "psychopy",
 }
 """Formats by name, each with the module that writes it."""
@@ -33,8 +33,8 @@ def load_format(name: str) -> Format:
     """
     if name not in MODULES:
         raise FormatError(f"{name}: no such format; {did_you_mean(name, MODULES, most=2)}")
-    found: Format = import_module(f"{__name__}.{MODULES[name]}").FORMAT
-    return found
+    there = vars(import_module(f"{__name__}.{MODULES[name]}")).values()
+    return next(each for each in there if isinstance(each, Format) and each.name == name)
 
 
 __all__ = ["Format", "FormatError", "format_names", "load_format"]

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 from ..delivered_drive import DeliveredDrive
 from ..prevent import MustPrevent
-from . import csv_table, setpoint_csv, tcs2_serial
 from .c_player import command_for, filled
 from .form import Column, Format, Played, events_in, samples_of
-from .setpoint_csv import has_voltage, volts_of
+from .tables import CSV, SETPOINT_CSV, has_voltage, volts_of
+from .tcs2 import SERIAL
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
 FROZEN_S = 5.0
@@ -66,7 +66,7 @@ def _player(delivery: DeliveredDrive, must: MustPrevent) -> bytes:
     """The player for what the device takes: NI volts, a thermode's commands, or set-points sent one by one."""
     driven_by, device = delivery.device.driven_by, delivery.device
     on, parts = "on an NI analogue output", ["guard", "polarity", "ni"]
-    off, off_V = "_off", "0.0"
+    off_V = "0.0"
     if driven_by == "set-points":
         on, parts = "on a QST.Lab TCS II", ["guard", "tcs2"]
     elif driven_by == "temperatures" and not has_voltage(device):
@@ -87,7 +87,7 @@ def _player(delivery: DeliveredDrive, must: MustPrevent) -> bytes:
         "TEST_S": repr(must.test_s),
         "TEST_FALL_K": repr(must.test_fall_K),
         "FROZEN_S": "math.inf" if driven_by == "set-points" else repr(FROZEN_S),
-        "OFF": off,
+        "OFF": "_off",
         "OFF_V": off_V,
     }
     return b"".join(filled(f"player-{part}.py.txt", values) for part in parts)
@@ -115,8 +115,8 @@ def _column(name: str, k: int) -> str:
 
 
 def _drive(delivery: DeliveredDrive) -> Format:
-    by_kind = {"set-points": tcs2_serial.FORMAT, "temperatures": setpoint_csv.FORMAT}
-    return by_kind.get(delivery.device.driven_by, csv_table.FORMAT)
+    by_kind = {"set-points": SERIAL, "temperatures": SETPOINT_CSV}
+    return by_kind.get(delivery.device.driven_by, CSV)
 
 
 def _suffix(delivery: DeliveredDrive) -> str:

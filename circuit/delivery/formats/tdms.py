@@ -15,7 +15,7 @@ from .form import (
     command_column,
     samples_of,
 )
-from .setpoint_csv import VOLTAGE, has_voltage, volts_of
+from .tables import VOLTAGE, has_voltage, volts_of
 
 GROUP = "thermicon"
 LARGEST = 2**31 - 1

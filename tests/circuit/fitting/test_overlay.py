@@ -26,7 +26,7 @@ def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> 
         float(np.std(display.difference) ** 2 + np.mean(display.difference) ** 2) ** 0.5
     )
     assert abs(display.largest) == pytest.approx(float(np.abs(display.difference).max()))
-    assert "late.csv" in repr(found) and list(found.to_frame()["column"]) == [each.column for each in found.columns]
+    assert "late.csv" in repr(found)
 
 
 def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:

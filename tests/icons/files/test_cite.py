@@ -6,12 +6,16 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.icons.files.bibtex import AUTHORS, LICENCE, TITLE, bibtex, escaped
 from thermicon.icons.files.methods import course, methods
 from thermicon.icons.files.references import (
+    AUTHORS,
+    LICENCE,
+    TITLE,
     BibliographyError,
     Reference,
+    bibtex,
     cited,
+    escaped,
     plain_doi,
     read_references,
     references,

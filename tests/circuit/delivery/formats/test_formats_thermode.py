@@ -21,7 +21,7 @@ from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.formats.tcs2_protocol import stimulus_of
+from thermicon.circuit.delivery.formats.tcs2 import stimulus_of
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.icons import Icon, load_library, parse

@@ -1,4 +1,7 @@
-"""TCS II protocol file: baseline, trigger, and one stimulation that ramps, holds and returns."""
+"""TCS II: the commands of its serial line, which play any profile on all five zones, and its protocol file.
+
+A protocol holds a baseline, a trigger, and one stimulation that ramps, holds and returns.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,73 @@ from thermicon.icons.model.corners import Corners
 
 from ...solver.inverse import baseline_C
 from ..delivered_drive import DeliveredDrive
-from .form import PLAYS_SETPOINTS, Column, Format, FormatError
+from ..setpoints import Setpoints
+from .form import PLAYS_SETPOINTS, Column, Format, FormatError, setpoints_in
+
+ALL_ZONES = "11111"
+ABOVE_K, MOST = 1.0, 600
+"""The greatest temperature of a stimulation (Om) is set this far above the highest set-point, up to the 60 °C that the
+instrument reaches, in tenths of a degree."""
+
+
+TICK_S, STEP_K, LARGEST = 0.01, 0.1, 999
+"""Units of the commands: segments last ticks of 10 ms, levels are tenths of a degree, each in three digits."""
+
+
+def serial_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
+    """The commands, one per line."""
+    return (
+        Column("N", "0.1 °C", "baseline"),
+        Column("Om", "0.1 °C", "greatest temperature that the C command may ask for"),
+        Column("Uw", "10 ms, 0.1 °C", "zones, number of segments, then duration and level at the end of each"),
+        Column("Ue", "", "zones that play the profile"),
+        Column("L", "", "start; send it when the trial begins"),
+    )
+
+
+def serial_write(delivery: DeliveredDrive) -> bytes:
+    """Return the commands; the last, L, starts the stimulation."""
+    setpoints = setpoints_in(delivery)
+    _check(setpoints, delivery.device.name)
+    greatest = max(setpoints.baseline, *(level for _, level in setpoints.segments)) + round(ABOVE_K / setpoints.step_K)
+    segments = "".join(f"{ticks:03d}{level:03d}" for ticks, level in setpoints.segments)
+    commands = [
+        f"N{setpoints.baseline:03d}",
+        f"Om{min(greatest, MOST):03d}",
+        f"Uw{ALL_ZONES}{len(setpoints.segments):03d}{segments}",
+        f"Ue{ALL_ZONES}",
+        "L",
+    ]
+    return ("\n".join(commands) + "\n").encode("ascii")
+
+
+def _check(setpoints: Setpoints, device: str) -> None:
+    """Raise FormatError where the commands would differ from the set-points."""
+    if abs(setpoints.tick_s - TICK_S) > 1e-9 or abs(setpoints.step_K - STEP_K) > 1e-9:
+        raise FormatError(
+            f"tcs2-serial counts ticks of {TICK_S * 1e3:g} ms and steps of {STEP_K:g} K; {device} has "
+            f"{setpoints.tick_s * 1e3:g} ms and {setpoints.step_K:g} K: use qst-tcs2"
+        )
+    numbers = [setpoints.baseline, len(setpoints.segments), *(n for segment in setpoints.segments for n in segment)]
+    if wrong := [number for number in numbers if not 0 <= number <= LARGEST]:
+        raise FormatError(
+            f"tcs2-serial writes numbers of three digits, 0 to {LARGEST}; {wrong[0]} is needed for {device}: use "
+            f"levels from 0 to {LARGEST * STEP_K:g} °C, and segments and ticks up to {LARGEST}"
+        )
+
+
+SERIAL = Format(
+    name="tcs2-serial",
+    title="commands for the serial line of a QST.Lab TCS II",
+    suffix=".tcs2.txt",
+    takes=PLAYS_SETPOINTS,
+    device="qst-tcs2",
+    source="pytcsii (mpcoll), list of commands in its header",
+    how="115,200 baud: send each line without its line feed; wait at the baseline before L; A aborts",
+    write=serial_write,
+    columns=serial_columns,
+)
+
 
 ZONES = (1, 2, 3, 4, 5)
 MOST_OFF = 0.01
@@ -55,7 +124,7 @@ def stimulus_of(corners: Corners, fastest_K_per_s: float) -> Stimulus:
     return Stimulus(base, target, rates[0], rates[1], back)
 
 
-def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
+def protocol_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Keys of a zone."""
     return (
         Column("temperature", "°C", "target"),
@@ -66,7 +135,7 @@ def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     )
 
 
-def write(delivery: DeliveredDrive) -> bytes:
+def protocol_write(delivery: DeliveredDrive) -> bytes:
     """Return the protocol; raises FormatError for a cue that is not a ramp, plateau and return of the display."""
     icon = delivery.icon
     if icon.context.control != "display":
@@ -108,7 +177,7 @@ def _three(what: str, value: float, unit: str) -> str:
     return f"{value:.3f}"
 
 
-FORMAT = Format(
+PROTOCOL = Format(
     name="tcs2-protocol-ini",
     title="protocol file of a QST.Lab TCS II",
     suffix=".protocol.ini",
@@ -116,6 +185,6 @@ FORMAT = Format(
     device="qst-tcs2",
     source="pytcsii (mpcoll), tcsii_protocol_generator",
     how="copy it to the instrument on a USB stick; it waits for a trigger",
-    write=write,
-    columns=columns,
+    write=protocol_write,
+    columns=protocol_columns,
 )

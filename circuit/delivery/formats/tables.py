@@ -1,0 +1,114 @@
+"""CSV: one row per update, with the current that flows, or with the set-point at which a controller holds the display.
+
+`thermicon simulate --current FILE --hold` replays the first.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+from ...arrays import Array
+from ..delivered_drive import DeliveredDrive
+from ..device import Device
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, command_column, events_in, samples_of
+
+FIRST = "rest"
+TIME = Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next")
+CURRENT = Column("current_A", "A", "current through the module, held until the next row; positive cools the skin")
+CODE = Column("code", "", "the command as a whole number of the device's steps")
+VOLTAGE = Column("command_V", "V", "voltage that stands for the set-point: offset + gain · display_C")
+EVENT = Column("event", "", "what the icon prescribes from this row on; the last row marks the end")
+
+
+def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
+    """Time, current (not for a bridge, whose current switches), command, code, event."""
+    current = () if delivery.device.driven_by == "duty" else (CURRENT,)
+    return (TIME, *current, command_column(delivery), CODE, EVENT)
+
+
+def setpoint_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
+    """Time, set-point, its voltage where the device states a gain, event."""
+    return (TIME, command_column(delivery), *((VOLTAGE,) if has_voltage(delivery.device) else ()), EVENT)
+
+
+def write(delivery: DeliveredDrive) -> bytes:
+    """Return the table; numbers are written so that they are read back exactly, each event in the first row of its own.
+
+    A device with more than 10,000 updates a second gets a row for each change of the command.
+    """
+    samples = samples_of(delivery)
+    rows = samples.rows()
+    times = samples.time_s[rows]
+    current = () if delivery.device.driven_by == "duty" else (delivery.delivered.at(times),)
+    numbers = zip(*(map(repr, each.tolist()) for each in (times, *current, samples.command[rows])), strict=True)
+    cells = ([*each, code] for each, code in zip(numbers, samples.codes[rows].tolist(), strict=True))
+    return _written(delivery, columns(delivery), times, cells)
+
+
+def write_setpoints(delivery: DeliveredDrive) -> bytes:
+    """Return the table; temperatures have as many decimals as the device's step."""
+    samples, device = samples_of(delivery), delivery.device
+    times, levels = samples.time_s, samples.command
+    decimals = max(0, int(np.ceil(-np.log10(samples.scale.step) - 1e-9)))
+    volts = volts_of(device, levels) if has_voltage(device) else None
+    cells = (
+        [repr(time), f"{level:.{decimals}f}", *(() if volts is None else (f"{volts[row]:.6f}",))]
+        for row, (time, level) in enumerate(zip(times.tolist(), levels.tolist(), strict=True))
+    )
+    return _written(delivery, setpoint_columns(delivery), times, cells)
+
+
+def _written(
+    delivery: DeliveredDrive, names: Sequence[Column], time_s: Array, cells: Iterable[Sequence[object]]
+) -> bytes:
+    """A table with the events as its last column: the rest in the first row, each event in the first row of its own."""
+    marks, last = {0: [FIRST]}, len(time_s) - 1
+    for event in events_in(delivery):
+        row = last if event.name == "end" else min(int(np.searchsorted(time_s, event.time_s - 1e-8)), last)
+        marks.setdefault(row, []).append(event.name)
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(column.name for column in names)
+    rows.writerows([*each, "; ".join(marks.get(row, ()))] for row, each in enumerate(cells))
+    return text.getvalue().encode("utf-8")
+
+
+def has_voltage(device: Device) -> bool:
+    """Whether set-points can be put out as a voltage."""
+    return device.record("set-point gain") is not None
+
+
+def volts_of(device: Device, display_C: Array) -> Array:
+    """Voltage in V for set-points in °C, by the gain and offset that a device states."""
+    gain, offset = device.record("set-point gain"), device.record("set-point offset")
+    assert gain is not None
+    return (0.0 if offset is None else offset.central) + gain.central * display_C
+
+
+CSV = Format(
+    name="csv",
+    title="table with a row for each update",
+    suffix=".csv",
+    takes=PLAYS_SAMPLES,
+    device="dac-16",
+    source="thermicon's own columns, described in the sidecar",
+    how="put out each row's command at its time and hold it until the next",
+    write=write,
+    columns=columns,
+)
+
+SETPOINT_CSV = Format(
+    name="setpoint-csv",
+    title="table of set-points for a temperature controller",
+    suffix=".csv",
+    takes=PLAYS_TEMPERATURES,
+    device="closed-loop-controller",
+    source="thermicon's own columns, described in the sidecar",
+    how="give the controller each row's display_C at its time; it holds the display there until the next row",
+    write=write_setpoints,
+    columns=setpoint_columns,
+)
