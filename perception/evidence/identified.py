@@ -126,7 +126,7 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
         return lambda p: float(np.percentile(proportion_correct(p), share))
 
     def bits(p: Array) -> float:
-        return plugin_bits(p, trials, seed, EXPERIMENTS).mean
+        return plugin_bits(p, trials, seed, EXPERIMENTS)
 
     asked: list[tuple[str, str, Score, float]] = [
         ("proportion correct", "proportion", lambda p: float(proportion_correct(p).mean()), 1.0),

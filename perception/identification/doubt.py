@@ -31,9 +31,6 @@ class Doubt:
         """The keys of the ranking file."""
         return {"constant": self.name, "share_of_variance": self.share}
 
-    def __repr__(self) -> str:
-        return f"Doubt({self.name}: {100 * self.share:.0f} % of the variance)"
-
 
 def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
     """Constants that act on the set and carry at least 2 % of the variance of the proportion correct, largest first.

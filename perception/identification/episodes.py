@@ -50,13 +50,6 @@ class Episode:
     pause_s: float
     cut: bool
 
-    def __repr__(self) -> str:
-        length = "cut by the end" if self.cut else f"{self.length_s:.2f} s"
-        return (
-            f"Episode({self.channel} at {self.start_s:.2f} s, {self.peak:.3g} times threshold, "
-            f"rise {self.rate_per_s:.3g}/s, {length})"
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class Episodes:

@@ -6,25 +6,10 @@ Published information is the plug-in estimate of a few dozen trials, which is bi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-
-
-@dataclass(frozen=True, slots=True)
-class PluginInformation:
-    """Plug-in information (bits) of simulated experiments: mean, and the interval of 95 % of them."""
-
-    mean: float
-    low: float
-    high: float
-    trials: int
-
-    def __repr__(self) -> str:
-        return f"PluginInformation({self.mean:.3f} bits [{self.low:.3f}, {self.high:.3f}] from {self.trials} trials)"
 
 
 def proportion_correct(confusion: ArrayLike) -> Array:
@@ -72,21 +57,19 @@ def information_bits(confusion: ArrayLike) -> Array:
     return np.maximum(_mutual_information(joint), 0.0)
 
 
-def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> PluginInformation:
-    """What experiments of `trials` trials report, by the plug-in estimator on their counts.
+def plugin_bits(confusion: ArrayLike, trials: int, seed: int = 0, experiments: int = 1000) -> float:
+    """What experiments of `trials` trials report in the mean, by the plug-in estimator on their counts, bits.
 
-    Presentations are spread over the icons as evenly as possible. With `confusion` of shape
-    (people, m, m), every person takes part in `experiments` experiments.
+    With `confusion` of shape (people, m, m), every person takes part in `experiments` experiments.
     """
     people = np.asarray(confusion, dtype=np.float64)
-    bits = experiments_bits(people[None] if people.ndim == 2 else people, trials, seed, experiments)
-    low, high = np.percentile(bits, [2.5, 97.5])
-    return PluginInformation(float(bits.mean()), float(low), float(high), trials)
+    return float(experiments_bits(people[None] if people.ndim == 2 else people, trials, seed, experiments).mean())
 
 
 def experiments_bits(confusion: Array, trials: int, seed: int, experiments: int, first: int = 0) -> Array:
     """Bits that each experiment of a person reports, (people, experiments), from `confusion` (people, m, m).
 
+    Presentations are spread over the icons as evenly as possible.
     A person's experiments depend on the seed and on the person's number, which counts from `first`.
     """
     if trials < 1:

@@ -70,12 +70,6 @@ class Assumption:
         """How far the proportion correct moves between both values."""
         return abs(self.correct_at_high - self.correct_at_low)
 
-    def __repr__(self) -> str:
-        return (
-            f"Assumption({self.name}: {100 * self.correct_at_low:.0f} % correct at {self.low:.3g} {self.unit}, "
-            f"{100 * self.correct_at_high:.0f} % at {self.high:.3g} {self.unit})"
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class Assumptions:

@@ -7,7 +7,7 @@ depends only on the icons and their length, not on the number of workers.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from pathlib import Path
@@ -36,7 +36,6 @@ from .batch_store import BatchStore
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.circuit.solver.batch import Batch
     from thermicon.icons import Icon
 
 DT_S = 1.0 / RATE_HZ
@@ -52,8 +51,8 @@ class BatchResult:
 
     `detected` (p, m), `cold_share` (p, m) of the reports and `confusion` (p, m, m) are probabilities, `reported`
     (1, m, n) is the number of people who have reported by each time, `d_prime` (p, q) from memory, `correct` (p, m)
-    0–1, `bits`, `plugin` (p,) information and what experiments report of it, `stress` (p,), `other_correct`
-    (p, norms, m) by the other norms. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
+    0–1, `bits`, `plugin` (p,) information and what experiments report of it, `other_correct` (p, norms, m) by
+    the other norms. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
     """
 
     detected: Array
@@ -64,7 +63,6 @@ class BatchResult:
     correct: Array
     bits: Array
     plugin: Array
-    stress: Array
     other_correct: Array
     cold_C: Array
     warm_C: Array
@@ -149,25 +147,16 @@ def run(job: Job, number: int) -> BatchResult:
         tracking=job.tracking,
         probes=PROBES,
     )
-    return judge_people(job, crowd, batch, model, start)
-
-
-def judge_people(job: Job, crowd: People, batch: Batch, model: ObserverModel, start: int) -> BatchResult:
-    """Judge the people of a batch, of whom `start` come before, by what their receptors went through."""
     played = ReceptorTemperatures.of_batch(batch, job.icons, job.rig)
     observer = model.nominal
     felt = respond(played, crowd, observer, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
-    others = [
-        np.diagonal(
-            identify(felt, n, crowd, observer, job.seed, _other_samples(n, len(job.icons)), start, job.task)[
-                1
-            ].probability,
-            axis1=1,
-            axis2=2,
-        )
-        for n in job.other_norms
-    ]
+    others = []
+    for norm in job.other_norms:
+        # Fewer trials than of the norm that counts, the fewer the more templates naming goes through.
+        samples = OTHER_SAMPLES if norm != "naming" else max(4, OTHER_NAMED // len(job.icons) ** 2)
+        other = identify(felt, norm, crowd, observer, job.seed, samples, start, job.task)[1].probability
+        others.append(np.diagonal(other, axis1=1, axis2=2))
     named = confusion.probability
     first, second = np.triu_indices(len(job.icons), 1)
     first_people = played.thinned(max(0, min(start + len(crowd), PEOPLE) - start), EVERY)
@@ -180,35 +169,10 @@ def judge_people(job: Job, crowd: People, batch: Batch, model: ObserverModel, st
         correct=np.diagonal(named, axis1=1, axis2=2).copy(),
         bits=information_bits(named),
         plugin=experiments_bits(named, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1),
-        stress=confusion.stress,
         other_correct=np.stack(others, axis=1),
         cold_C=first_people.cold_C,
         warm_C=first_people.warm_C,
     )
-
-
-def _other_samples(norm: Norm, icons: int) -> int:
-    """Trials of an icon to a person by a norm that is only compared: fewer where naming goes through all templates."""
-    return OTHER_SAMPLES if norm != "naming" else max(4, OTHER_NAMED // icons**2)
-
-
-def locally(job: Job, numbers: list[int], workers: int | None = None) -> Iterator[tuple[int, BatchResult]]:
-    """Compute batches in threads of this process, by default one per core, and yield them in order.
-
-    At most two batches per worker are in memory.
-    """
-    from thermicon.circuit.cores import cores
-
-    each = in_order(lambda number: run(job, number), numbers, workers or cores())
-    yield from zip(numbers, each, strict=True)
-
-
-def time_s(job: Job, every: int) -> Array:
-    """Clock of every k-th instant of the job."""
-    from thermicon.circuit.solver.simulate import rows_until
-
-    clock: Array = rows_until(job.end_s, RATE_HZ)[::every]
-    return clock
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,7 +195,7 @@ class PooledResult:
     """Responses of all people to m icons.
 
     `detection` (m,) is that of a person drawn at random; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m);
-    `each_correct` (people, m); `bits`, `plugin`, `stress` (people,); `by_norm` (m,) proportion correct of each icon by
+    `each_correct` (people, m); `bits`, `plugin` (people,); `by_norm` (m,) proportion correct of each icon by
     the other norms. `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and
     of one person.
     """
@@ -242,7 +206,6 @@ class PooledResult:
     each_correct: Array
     bits: Array
     plugin: Array
-    stress: Array
     by_norm: dict[Norm, Array]
     standard_error: float
     person_standard_error: float
@@ -284,6 +247,8 @@ class PooledResult:
 
 def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) -> PooledResult:
     """Compute or read every batch; `step` is called after each. Place and order of work do not change the result."""
+    from thermicon.circuit.solver.simulate import rows_until
+
     people = job.people
     parts: dict[int, BatchResult] = {}
     pooled: dict[int, Array] = {}
@@ -314,14 +279,13 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
         each_correct=joined("correct"),
         bits=joined("bits"),
         plugin=joined("plugin"),
-        stress=joined("stress"),
         by_norm=dict(zip(job.other_norms, other, strict=True)),
         standard_error=_sampling_error(job, mean, people),
         person_standard_error=blur,
         thin=ReceptorTemperatures(
             joined("cold_C"),
             joined("warm_C"),
-            time_s(job, EVERY),
+            rows_until(job.end_s, RATE_HZ)[::EVERY],
             job.rig.site,
             job.rig.contact.area_m2,
             tuple(icon.name for icon in job.icons),
@@ -340,12 +304,17 @@ def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResu
             yield number, BatchResult(**arrays)
     if not missing:
         return
+    results: Iterable[tuple[int, BatchResult]]
     if isinstance(execution.workers, str):
         from .cluster import on_cluster
 
         results = on_cluster(job, missing, execution.workers)
     else:
-        results = locally(job, missing, execution.workers)
+        from thermicon.circuit.cores import cores
+
+        # At most two batches per thread are in memory.
+        each = in_order(lambda number: run(job, number), missing, execution.workers or cores())
+        results = zip(missing, each, strict=True)
     for number, result in results:
         if store is not None:
             store.put(number, {field.name: getattr(result, field.name) for field in fields(result)})

@@ -54,9 +54,6 @@ class Reason:
     values: dict[str, float]
     unit: str
 
-    def __repr__(self) -> str:
-        return f"Reason({self.text})"
-
 
 def pair_reasons(
     a: Trace,

@@ -68,12 +68,6 @@ class Effect:
     at_low: float
     at_high: float
 
-    def __repr__(self) -> str:
-        return (
-            f"Effect({self.constant}: {100 * self.proportion_correct:.0f} % of the variance of the proportion correct, "
-            f"which is {100 * self.at_low:.0f} % at the low end and {100 * self.at_high:.0f} % at the high end)"
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class Reduction:
@@ -83,9 +77,6 @@ class Reduction:
     constants: tuple[str, ...]
     proportion_correct: float
     information_bits: float
-
-    def __repr__(self) -> str:
-        return f"Reduction({100 * self.proportion_correct:.0f} % of the variance: {self.measurement})"
 
 
 @dataclass(frozen=True, slots=True)

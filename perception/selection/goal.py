@@ -46,7 +46,7 @@ class GoalError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """What a part may be about: its comparison, units as factors to the unit of its value, and its bounds."""
+    """What a part may be about: its comparison, units as factors to the unit of its value, bounds, and an example."""
 
     comparison: str
     units: Mapping[str, float]
@@ -54,29 +54,24 @@ class Quantity:
     most: float
     people: bool
     meaning: str
+    example: str
 
 
 SHARE = {"%": 0.01, "": 1.0}
 SECONDS = {"s": 1.0, "ms": 1e-3, "min": 60.0}
 QUANTITIES: Mapping[str, Quantity] = {
-    "correct": Quantity(">=", SHARE, 0.0, 1.0, True, "share of icons that are named correctly"),
-    "detected": Quantity(">=", SHARE, 0.0, 1.0, True, "detection of the icon that is detected least"),
-    "bits": Quantity(">=", {"bits": 1.0, "bit": 1.0, "": 1.0}, 0.0, 20.0, True, "information of the set"),
-    "d_prime": Quantity(">=", {"": 1.0}, 0.0, 20.0, False, "median d′ of the worst pair"),
-    "time": Quantity("<=", SECONDS, 0.0, math.inf, False, "duration of all icons together"),
-    "energy": Quantity("<=", {"J": 1.0, "mJ": 1e-3, "kJ": 1e3}, 0.0, math.inf, False, "energy of all icons together"),
-    "onset": Quantity("<=", SECONDS, 0.0, math.inf, False, "onset of the icon that is felt last"),
-    "count": Quantity(">=", {"": 1.0}, 2.0, 10_000.0, False, "number of icons that can be played"),
-}
-EXAMPLES: Mapping[str, str] = {
-    "correct": "correct >= 90 %",
-    "detected": "detected >= 95 %",
-    "bits": "bits >= 2",
-    "d_prime": "d_prime >= 2.5",
-    "time": "time <= 10 s",
-    "energy": "energy <= 5 J",
-    "onset": "onset <= 1.5 s",
-    "count": "count 6",
+    "correct": Quantity(">=", SHARE, 0.0, 1.0, True, "share of icons that are named correctly", "correct >= 90 %"),
+    "detected": Quantity(
+        ">=", SHARE, 0.0, 1.0, True, "detection of the icon that is detected least", "detected >= 95 %"
+    ),
+    "bits": Quantity(">=", {"bits": 1.0, "bit": 1.0, "": 1.0}, 0.0, 20.0, True, "information of the set", "bits >= 2"),
+    "d_prime": Quantity(">=", {"": 1.0}, 0.0, 20.0, False, "median d′ of the worst pair", "d_prime >= 2.5"),
+    "time": Quantity("<=", SECONDS, 0.0, math.inf, False, "duration of all icons together", "time <= 10 s"),
+    "energy": Quantity(
+        "<=", {"J": 1.0, "mJ": 1e-3, "kJ": 1e3}, 0.0, math.inf, False, "energy of all icons together", "energy <= 5 J"
+    ),
+    "onset": Quantity("<=", SECONDS, 0.0, math.inf, False, "onset of the icon that is felt last", "onset <= 1.5 s"),
+    "count": Quantity(">=", {"": 1.0}, 2.0, 10_000.0, False, "number of icons that can be played", "count 6"),
 }
 NEEDS_DRAWS = (
     "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
@@ -250,7 +245,7 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
         raise GoalError(f"{where}: there is no quantity {name!r}: {did_you_mean(name, {*QUANTITIES, SAFETY})}")
     known = QUANTITIES[name]
     if tree.data == "verdict" or (tree.data == "exactly" and name != "count"):
-        raise GoalError(f"{where}: {name} needs a comparison and a number, such as '{EXAMPLES[name]}'")
+        raise GoalError(f"{where}: {name} needs a comparison and a number, such as '{known.example}'")
     comparison, value, unit, people = _pieces(tree)
     if comparison is not None and comparison != known.comparison:
         raise GoalError(f"{where}: {name} ({known.meaning}) is wanted {known.comparison} a number, not {comparison}")

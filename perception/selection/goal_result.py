@@ -130,9 +130,6 @@ class GoalPartResult:
             value = (*VERDICTS, "red")[int(self.value)]
         return {"text": self.part.text, "met": self.met, "value": value, "wanted": wanted}
 
-    def __repr__(self) -> str:
-        return f"GoalPartResult({self.part.text}: {self.value}, {'met' if self.met else 'not met'})"
-
 
 @dataclass(frozen=True, slots=True)
 class GoalResult:

@@ -54,9 +54,6 @@ class Trial:
     gain: float
     result: GoalResult
 
-    def __repr__(self) -> str:
-        return f"Trial({self.words}: {'met' if self.met else f'nearer by {self.gain:.2f}'})"
-
 
 @dataclass(frozen=True, slots=True)
 class Advice:

@@ -127,20 +127,15 @@ def drawn_rigs(rigs: Sequence[Rig], seed: int) -> list[Rig]:
     """
     streams = np.random.SeedSequence([seed, 11]).spawn(3)
     ambient, gain, sink = (np.random.default_rng(stream).standard_normal(len(rigs)) for stream in streams)
-    return [
-        rig.with_(
-            **{
-                "ambient.temperature_C": rig.ambient.temperature_C + AMBIENT_SD_K * float(np.clip(ambient[k], -2, 2)),
-                **(_pump_drawn(rig, float(sink[k]), float(gain[k])) if rig.thermode is None else {}),
+    drawn = []
+    for k, rig in enumerate(rigs):
+        changes = {
+            "ambient.temperature_C": rig.ambient.temperature_C + AMBIENT_SD_K * float(np.clip(ambient[k], -2, 2))
+        }
+        if rig.thermode is None:  # which has neither heat sink nor module of its own
+            changes |= {
+                "heat_sink.resistance_K_per_W": rig.heat_sink.resistance_K_per_W * math.exp(SINK_SD * float(sink[k])),
+                "module.seebeck_V_per_K": rig.module.seebeck_V_per_K * math.exp(GAIN_SD * float(gain[k])),
             }
-        )
-        for k, rig in enumerate(rigs)
-    ]
-
-
-def _pump_drawn(rig: Rig, sink: float, gain: float) -> dict[str, float]:
-    """Heat sink and module with their draws; a thermode has neither."""
-    return {
-        "heat_sink.resistance_K_per_W": rig.heat_sink.resistance_K_per_W * math.exp(SINK_SD * sink),
-        "module.seebeck_V_per_K": rig.module.seebeck_V_per_K * math.exp(GAIN_SD * gain),
-    }
+        drawn.append(rig.with_(**changes))
+    return drawn

@@ -39,27 +39,6 @@ def _tally(counts: Any, size: int, draws: int, lapse: float) -> tuple[float, flo
     return correct / size, bits
 
 
-def _scores_of(half: Any, push: Any, lapse: Any, chosen: Any) -> Any:
-    """Proportion correct and bits (2, people) of one subset, for every person."""
-    people, draws = push.shape[0], push.shape[2]
-    size = chosen.size
-    each = np.empty((2, people))
-    for p in range(people):
-        counts = np.zeros((size, size))
-        for s in range(draws):
-            for a in range(size):
-                best = a
-                least = -push[p, chosen[a], s]
-                for b in range(size):
-                    value = half[p, chosen[a], chosen[b]] - push[p, chosen[b], s]
-                    if value < least:
-                        least = value
-                        best = b
-                counts[a, best] += 1.0
-        each[0, p], each[1, p] = tally(counts, size, draws, lapse[p])
-    return each
-
-
 def _swapped(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others: Any) -> Any:
     """Proportion correct and bits (2, others, people) of a subset with one icon replaced by each of `others`.
 
@@ -185,6 +164,5 @@ def _all_subsets(
 _compile: Any = kernel(nogil=True)
 valued: Callable[[float, float, float, int], float] = _compile(_valued)
 tally: Callable[..., tuple[float, float]] = _compile(_tally)
-scores_of: Callable[[Array, Array, Array, Any], Array] = _compile(_scores_of)
 swapped: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_swapped)
 all_subsets: Callable[..., None] = _compile(_all_subsets)

@@ -6,7 +6,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
-from thermicon.perception import Ranking, perceive, rank
+from thermicon.perception import Ranking, rank
 from thermicon.perception.identification.confusion import sampling_error
 from thermicon.perception.identification.naming import SAMPLES as NAMED
 
@@ -285,22 +285,12 @@ def test_the_worst_pair_by_rules_is_the_one_nearest_to_failing(rig: Rig) -> None
     assert pair.rules_margin < 0
 
 
-def test_a_real_trace_is_perceived(rig: Rig) -> None:
-    from thermicon.circuit import simulate
-
-    percept = perceive(simulate(load_library("six-icons")["cooling-step"], rig, tail_s=10.0))
-    assert percept.channel == "cold"
-    assert percept.time_s[-1] == pytest.approx(18.0)
-
-
 def test_messages(rig: Rig) -> None:
     icons = load_library("six-icons")
     with pytest.raises(ValueError, match=r"there is no norm 'mean'"):
         rank(icons, rig, norm="mean")
     with pytest.raises(ValueError, match=r"a ranking is by model or rules, not by 'luck'"):
         rank(icons, rig, by="luck")
-    with pytest.raises(ValueError, match=r"at least one person"):
-        rank(icons, rig, people=0, parameters=0)
 
 
 def test_direct_naming_states_the_error_of_its_own_trials(rig: Rig) -> None:
