@@ -5,15 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from thermicon.perception.evidence.conditioning import (
-    EDGE,
-    ConditionedRow,
-    Conditioning,
-    InferredConstant,
-    experiment_title,
-)
+from thermicon.perception.evidence.conditioning import Conditioning, experiment_title, suspected
 from thermicon.perception.evidence.magnitudes import CHANGES_K, OnsetStages
-from thermicon.perception.evidence.results import UNMOVED_SD, AblatedRow
+from thermicon.perception.evidence.results import EDGE, UNMOVED_SD, AblatedRow, Constant, PredictedRow
 from thermicon.perception.evidence.table_text import UNITS, number, signed, span
 from thermicon.perception.observer.variants import VARIABLES
 
@@ -39,10 +33,10 @@ IN_LABEL = ("ln", "log10", "ln per decade")
 def show_conditioning(known: Conditioning) -> None:
     """Print rows, misses, constants, ablation, onsets and sizes."""
     show(TITLE, summary_text(known), KEY, "")
-    for key in dict.fromkeys(each.row.experiment for each in known.rows):
+    for key in dict.fromkeys(each.experiment for each in known.rows):
         rows = table("", *HEADS, numbers=HEADS, names=HEADS)
         for each in known.rows:
-            if each.row.experiment == key:
+            if each.experiment == key:
                 rows.add_row(*_row(each))
         show(heading(key), rows, "")
     show("Left out, these rows are missed:", *(f"  - {missed_text(each)}" for each in known.missed), "")
@@ -79,32 +73,31 @@ def summary_text(known: Conditioning) -> str:
     )
 
 
-def missed_text(each: ConditionedRow) -> str:
+def missed_text(row: PredictedRow) -> str:
     """State a missed row with its size and the mechanism suspected."""
-    row = each.row
     return (
         f"{row.label.removesuffix(', both')} ({row.experiment}): published {number(row.published)}, predicted "
         f"{number(row.left_out)} [{span(row.left_out_low, row.left_out_high)}], {signed(row.score, 1)} SD. Suspected: "
-        f"{each.suspected}."
+        f"{suspected(row)}."
     )
 
 
 def unmoved_text(known: Conditioning) -> str:
     """Name the constants that the evidence did not move."""
-    names = ", ".join(each.constant.name for each in known.unmoved)
+    names = ", ".join(each.name for each in known.unmoved)
     return f"Not moved (SD left above {UNMOVED_SD:g}), as good as assumed: {names or 'none'}."
 
 
 def edge_text(known: Conditioning) -> str:
     """Name the constants at an edge of their prior."""
     names = "; ".join(
-        f"{each.constant.name} ({'upper' if each.quantile > 0.5 else 'lower'} {100 * tail(each):.0f} %)"
+        f"{each.name} ({'upper' if each.quantile > 0.5 else 'lower'} {100 * tail(each):.0f} %)"
         for each in known.at_edge
     )
     return f"At an edge of the prior (outer {100 * EDGE:.0f} % at either end): {names or 'none'}."
 
 
-def tail(each: InferredConstant) -> float:
+def tail(each: Constant) -> float:
     """Share of the prior beyond the value, at the nearer end."""
     return min(each.quantile, 1.0 - each.quantile)
 
@@ -137,8 +130,7 @@ def row_unit(unit: str) -> str:
     return ROW_UNITS.get(unit, unit)
 
 
-def _row(each: ConditionedRow) -> tuple[str, ...]:
-    row = each.row
+def _row(row: PredictedRow) -> tuple[str, ...]:
     unit = "" if row.unit in IN_LABEL else row_unit(row.unit)
     error = 0.5 * (row.published_high - row.published_low)
     label = row.label.removesuffix(", both")
@@ -146,7 +138,7 @@ def _row(each: ConditionedRow) -> tuple[str, ...]:
         f"{label}{f', {unit}' if unit else ''}",
         f"{_short(row.published)} ±{_short(error)}",
         "".join(f"{_short(value):>6}" for value in (row.fitted, row.heat_flow)),
-        f"{_short(row.left_out)}, {_both(row.left_out_low, row.left_out_high)} {'✓' if each.covered else '✗'}",
+        f"{_short(row.left_out)}, {_both(row.left_out_low, row.left_out_high)} {'✓' if row.covered else '✗'}",
     )
 
 
@@ -167,15 +159,14 @@ def _both(low: float, high: float) -> str:
 
 def _constants(known: Conditioning) -> Table:
     rows = table("", "value", "95 %", "prior 95 %", "SD left", numbers=("value", "95 %", "prior 95 %", "SD left"))
-    for each in known.constants:
-        constant = each.constant
+    for constant in known.constants:
         unit = UNITS.get(constant.unit, constant.unit)
         rows.add_row(
             f"{constant.name}{f', {unit}' if unit else ''}",
             number(constant.value),
             _both(constant.low, constant.high),
             _both(constant.prior_low, constant.prior_high),
-            f"{constant.narrowed:.2f}{' =' if not each.moved else ' ↕' if each.at_edge else '  '}",
+            f"{constant.narrowed:.2f}{' =' if not constant.moved else ' ↕' if constant.at_edge else '  '}",
         )
     return rows
 
