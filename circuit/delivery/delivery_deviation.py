@@ -42,14 +42,6 @@ class DeliveryDeviation:
         limit = loss_limit("receptor difference")
         return tuple(place for place in self.places if "receptor" in place.place and place.rms_K > limit)
 
-    def losses(self) -> tuple[str, ...]:
-        """A sentence for each receptor whose rms deviation is over the stated loss."""
-        limit = loss_limit("receptor difference")
-        return tuple(
-            f"the {place.place} differs by {place.rms_K:.3f} K (rms) from the design, over the stated {limit:g} K"
-            for place in self.lost
-        )
-
 
 def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
     """Return how far the delivered trace deviates from the designed one; both have the same rows.

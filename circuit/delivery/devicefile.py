@@ -5,20 +5,18 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
-from pydantic_core import ErrorDetails
 
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import signed
 
 from ..inputs import (
     LONGEST_NAME,
-    TEXT_FAULT,
     InputError,
     one_line,
     paragraph,
-    quoted,
     read_toml,
 )
+from ..key_faults import Place, key_faults
 from ..records import Record, RecordError
 
 
@@ -140,8 +138,7 @@ def read_device_table(text: str, where: str) -> DeviceTable:
     try:
         table = DeviceTable.model_validate(document)
     except ValidationError as problem:
-        findings = [_in_words(error) for error in problem.errors(include_url=False)]
-        raise DeviceError("\n".join(f"{where}: {finding}" for finding in findings)) from None
+        raise DeviceError("\n".join(f"{where}: {fault}" for fault in key_faults(problem, _nearest))) from None
     faults = _faults(table)
     if faults:
         raise DeviceError("\n".join(f"{where}: {fault}" for fault in faults))
@@ -238,21 +235,5 @@ def _interval_fault(record: RecordTable) -> str | None:
     return None
 
 
-def _in_words(error: ErrorDetails) -> str:
-    key = ".".join(str(part) for part in error["loc"])
-    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
-    if kind == TEXT_FAULT:
-        return f"{subject}: {context['fault']}"
-    if kind == "extra_forbidden":
-        table = RecordTable if error["loc"][0] == "record" else DeviceTable
-        return f"{key}: unknown key; {did_you_mean(str(error['loc'][-1]), table.model_fields)}"
-    if kind == "missing":
-        return f"{key} is missing; add it"
-    if kind == "literal_error":
-        return f"{subject}: must be {context.get('expected')}"
-    if kind in ("float_type", "finite_number"):
-        return f"{subject}: must be a finite number without quotes or unit"
-    if kind == "bool_type":
-        return f"{subject}: must be true or false"
-    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+def _nearest(place: Place) -> str:
+    return did_you_mean(str(place[-1]), (RecordTable if place[0] == "record" else DeviceTable).model_fields)

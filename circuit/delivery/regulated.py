@@ -21,8 +21,7 @@ from ..solver.trace import Trace
 from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
-from .setpoints import Setpoints, closed, setpoints_of
-from .thermode import display_of
+from .setpoints import Setpoints, closed, display_of, setpoints_of
 
 
 def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:

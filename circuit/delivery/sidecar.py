@@ -17,9 +17,8 @@ from .delivery_deviation import DeliveryDeviation, loss_table
 from .device import Device
 from .formats.form import Format, events_in
 from .samples import Samples
-from .setpoints import Setpoints
+from .setpoints import Setpoints, lag_of
 from .spread import OpenLoopSpread
-from .thermode import lag_of
 
 NO_CLEARANCE = (
     "A simulation was checked against limits. This is not a medical or ethical clearance. Hardware that touches people "

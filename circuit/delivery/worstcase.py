@@ -19,8 +19,7 @@ from ..solver.drive import Drive
 from .controlled import gate_controlled
 from .delivered_drive import DeliveredDrive
 from .formats.form import samples_of
-from .setpoints import Setpoints
-from .thermode import display_of, lag_of
+from .setpoints import Setpoints, display_of, lag_of
 
 AT_ONCE, LAGGED = "followed at once", "followed with its lag"
 

@@ -7,19 +7,17 @@ from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
-from pydantic_core import ErrorDetails
 
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from ..inputs import (
     LONGEST_NAME,
-    TEXT_FAULT,
     InputError,
     one_line,
     paragraph,
-    quoted,
     read_toml,
 )
+from ..key_faults import Place, key_faults
 from .heat_sink import heat_sink_faults
 from .keyunits import unit_of
 from .load import LoadTable, load_faults
@@ -315,8 +313,8 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
     try:
         return RigTable.model_validate(dict(document))
     except ValidationError as problem:
-        findings = [line for error in problem.errors(include_url=False) for line in _in_words(error).splitlines()]
-        raise RigError("\n".join(f"{where}: {finding}" for finding in findings)) from None
+        faults = key_faults(problem, _nearest, unit_of)
+        raise RigError("\n".join(f"{where}: {fault}" for fault in faults)) from None
 
 
 @cache
@@ -355,39 +353,15 @@ def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
 
 def unknown_key(key: str) -> str:
     """Return the message for an unknown key."""
+    return f"{key}: unknown key; {_nearest(key.split('.'))}"
+
+
+def _nearest(parts: Place) -> str:
+    """What an unknown key may have been meant to be."""
+    key = ".".join("0" if isinstance(part, int) else part for part in parts)
     known = set(rig_keys()) | {known.rpartition(".")[0] for known in rig_keys() if "." in known}
     place, dot, name = key.rpartition(".")
     beside = [other.rpartition(".")[2] for other in known if other.rpartition(".")[0] == place]
-    close = nearest_words(name, beside, 2)
-    if close:
-        return f"{key}: unknown key; did you mean {' or '.join(place + dot + other for other in close)}?"
-    return f"{key}: unknown key; {did_you_mean(key, known if dot and place not in known else beside)}"
-
-
-def _in_words(error: ErrorDetails) -> str:
-    key = ".".join(str(part) for part in error["loc"])
-    unit = unit_of(key)
-    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
-    if kind == "extra_forbidden":
-        plain = ".".join("0" if isinstance(part, int) else str(part) for part in error["loc"])
-        return unknown_key(plain).replace(plain + ":", key + ":", 1)
-    if kind == TEXT_FAULT:
-        return f"{subject}: {context['fault']}"
-    if kind == "value_error":  # a sentence from a table's own validator
-        return str(context["error"])
-    if kind == "missing":
-        return f"{key} is missing; add it{f', in {unit}' if unit else ''}"
-    if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
-        limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
-        if kind == "greater_than_equal" and 0 < limit < 0.01 and value <= 0:
-            kind, limit = "greater_than", 0
-        words = {"greater_than": "greater than", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
-        return f"{subject}{f' {unit}' if unit else ''}: must be {words} {limit:g}{f' {unit}' if unit else ''}"
-    if kind == "finite_number":
-        return f"{subject}: must be a finite number{f' in {unit}' if unit else ''}"
-    if kind in ("float_type", "int_type"):
-        return f"{subject}: must be a {'whole ' if kind == 'int_type' else ''}number{f' in {unit}' if unit else ''}"
-    if kind == "literal_error":
-        return f"{subject}: must be {context.get('expected')}"
-    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+    if close := nearest_words(name, beside, 2):
+        return f"did you mean {' or '.join(place + dot + other for other in close)}?"
+    return did_you_mean(key, known if dot and place not in known else beside)

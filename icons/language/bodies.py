@@ -24,9 +24,8 @@ from ..model.statements import (
 )
 from ..model.units import MOST_REPEATS, UNITS, Kind
 from ..model.words import nearest
-from .build import Builder, Place, rule_of, span
+from .build import Builder, FamilyParameters, Place, parameters_of, rule_of, span
 from .failed_statement import short
-from .family_parameters import FamilyParameters, parameters_of
 from .source import Edit
 
 _USES: dict[str, tuple[Kind, ...]] = {

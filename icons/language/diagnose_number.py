@@ -19,14 +19,7 @@ from ..model.words import (
 from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Edit, Finding, Piece
 
-_UNIT_KINDS: dict[str, Kind] = {
-    "ABSOLUTE": "absolute",
-    "DIFFERENCE": "difference",
-    "RATE": "rate",
-    "TIME": "time",
-    "CURRENT": "current",
-    "CURRENT_RATE": "current_rate",
-}
+_UNIT_KINDS: dict[str, Kind] = {kind.upper(): kind for kind in UNITS if kind not in ("change", "count")}
 _CONNECTIVES = ("at", "over", "by", "to", "for", "every", "starting", "cut")
 _WANTED = {
     **dict.fromkeys(("for", "over", "every", "total", "most", "least"), "time"),

@@ -122,21 +122,11 @@ class Expander:
         if size > _MOST_KEPT:
             return make
         known: dict[Any, Made] = {}
-        if len(used) == 1:
-            (first,) = used
 
-            def one(places: Places) -> Made:
-                key = places[first]
-                if key not in known:
-                    known[key] = make(places)
-                return known[key]
-
-            return one
-
-        def many(places: Places) -> Made:
+        def kept(places: Places) -> Made:
             key = tuple([places[place] for place in used])
             if key not in known:
                 known[key] = make(places)
             return known[key]
 
-        return many
+        return kept

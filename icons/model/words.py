@@ -58,46 +58,44 @@ EXAMPLES: dict[str, str] = {
     "play": 'for example: "play other-icon"',
 }
 
-WORD_ALIASES: dict[str, str] = {
-    "heat": "warm",
-    "warming": "warm",
-    "raise": "warm",
-    "chill": "cool",
-    "cooling": "cool",
-    "lower": "cool",
-    "stay": "hold",
-    "keep": "hold",
-    "wait": "hold",
-    "pause": "rest",
-    "loop": "repeat",
-    "back": "return",
-    "meaning": "means",
-    "author": "by",
-    "license": "licence",
-    "tag": "tags",
-    "version": "cue",
-    "pattern": "icon",
-    "each": "every",
-    "sinus": "sine",
-    "ramp": "change",
-    "total-time": "total",
-    "duration": "total",
-}
+
+def _meant(words: dict[str, str]) -> dict[str, str]:
+    """What people write instead, by itself, from lists of it by what is meant."""
+    return {written: meant for meant, listed in words.items() for written in listed.split()}
+
+
+WORD_ALIASES = _meant({
+    "warm": "heat warming raise",
+    "cool": "chill cooling lower",
+    "hold": "stay keep wait",
+    "rest": "pause",
+    "repeat": "loop",
+    "return": "back",
+    "means": "meaning",
+    "by": "author",
+    "licence": "license",
+    "tags": "tag",
+    "cue": "version",
+    "icon": "pattern",
+    "every": "each",
+    "sine": "sinus",
+    "change": "ramp",
+    "total": "total-time duration",
+})  # fmt: skip
 # What a wave or a step may have been meant to do first.
-STARTS: dict[str, str] = {
-    **dict.fromkeys(("warm", "hot", "warming", "heating", "up", "upwards", "high", "rising"), "warm"),
-    **dict.fromkeys(("cool", "cold", "cooling", "down", "downwards", "low", "falling"), "cool"),
-}
-BOUNDS: dict[str, str] = {
-    **dict.fromkeys(("most", "<", "<=", "≤", "under", "below", "max", "maximum", "up"), "at most"),
-    **dict.fromkeys(("least", ">", ">=", "≥", "over", "above", "min", "minimum"), "at least"),
-}
-NUMBER_WORDS: dict[str, str] = {
-    **{"one": "1", "two": "2", "three": "3", "four": "4", "five": "5", "six": "6", "seven": "7", "eight": "8"},
-    **{"nine": "9", "ten": "10", "eleven": "11", "twelve": "12", "twenty": "20", "half": "0.5", "zero": "0"},
-    **{"a": "1", "an": "1", "once": "1", "twice": "2", "thrice": "3"},
-    **{"½": "0.5", "¼": "0.25", "¾": "0.75"},
-}
+STARTS = _meant({
+    "warm": "warm hot warming heating up upwards high rising",
+    "cool": "cool cold cooling down downwards low falling",
+})  # fmt: skip
+BOUNDS = _meant({
+    "at most": "most < <= ≤ under below max maximum up",
+    "at least": "least > >= ≥ over above min minimum",
+})  # fmt: skip
+NUMBER_WORDS = _meant({
+    "1": "one a an once", "2": "two twice", "3": "three thrice", "4": "four", "5": "five", "6": "six", "7": "seven",
+    "8": "eight", "9": "nine", "10": "ten", "11": "eleven", "12": "twelve", "20": "twenty", "0": "zero",
+    "0.5": "half ½", "0.25": "¼", "0.75": "¾",
+})  # fmt: skip
 # What is written for a minus sign: the language takes the first two.
 DASHES = ("-", "−", "–", "—", "‐", "‑", "‒", "―", "﹣", "－")
 JOINERS = (",", "and", "then", "&", "afterwards")
@@ -127,46 +125,20 @@ _SCALED: dict[str, tuple[str, Fraction]] = {
     "A/ms": ("A/s", Fraction(1000)),
     "mA/ms": ("A/s", Fraction(1)),
 }
-_UNIT_ALIASES: dict[str, str] = {
-    "c": "°C",
-    "°c": "°C",
-    "celsius": "°C",
-    "deg": "°C",
-    "°": "°C",
-    "degree": "°C",
-    "degrees": "°C",
-    "kelvin": "K",
-    "kelvins": "K",
-    "k": "K",
-    "c/s": "°C/s",
-    "°c/s": "°C/s",
-    "°c/sec": "°C/s",
-    "deg/s": "°C/s",
-    "degrees/s": "°C/s",
-    "c/min": "°C/min",
-    "°c/min": "°C/min",
-    "k/sec": "K/s",
-    "k/s": "K/s",
-    "sec": "s",
-    "secs": "s",
-    "second": "s",
-    "seconds": "s",
-    "msec": "ms",
-    "millisecond": "ms",
-    "milliseconds": "ms",
-    "m": "min",
-    "mins": "min",
-    "minute": "min",
-    "minutes": "min",
-    "a": "A",
-    "amp": "A",
-    "amps": "A",
-    "ampere": "A",
-    "amperes": "A",
-    "ma": "mA",
-    "a/s": "A/s",
-    "ma/s": "mA/s",
-}
+_UNIT_ALIASES = _meant({
+    "°C": "c °c celsius deg ° degree degrees",
+    "K": "kelvin kelvins k",
+    "°C/s": "c/s °c/s °c/sec deg/s degrees/s",
+    "°C/min": "c/min °c/min",
+    "K/s": "k/sec k/s",
+    "s": "sec secs second seconds",
+    "ms": "msec millisecond milliseconds",
+    "min": "m mins minute minutes",
+    "A": "a amp amps ampere amperes",
+    "mA": "ma",
+    "A/s": "a/s",
+    "mA/s": "ma/s",
+})  # fmt: skip
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:

@@ -105,6 +105,15 @@ def shown(value: float) -> str:
     return signed(value, ".4g")
 
 
+def icon_count(count: int) -> str:
+    """Return a number of icons for people.
+
+    >>> icon_count(1), icon_count(1000)
+    ('1 icon', '1,000 icons')
+    """
+    return f"{count:,} icon{'' if count == 1 else 's'}"
+
+
 def spread(low: float, high: float, unit: str) -> str:
     """Return a span of values with their unit, or the one value.
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from ..files.shipped import library_names, load_library
 from ..model.iconset import IconSet
 from ..model.words import nearest
+from .curve_style import icon_count
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -75,7 +76,7 @@ class Library(Mapping[str, IconSet]):
 
     def __repr__(self) -> str:
         wide = max(len(name) for name in self) + 2
-        counts = [_count(one.count) for one in self.entries]
+        counts = [icon_count(one.count) for one in self.entries]
         narrow = max(map(len, counts)) + 2
         rows = []
         for one, count in zip(self.entries, counts, strict=True):
@@ -127,7 +128,3 @@ def _shipped(name: str, icons: IconSet) -> Shipped:
     known = (icons.metadata.by, icons.metadata.doi)
     source = "; ".join(text for text in known if text) or "not stated"
     return Shipped(name, icons.title, intent, source, len(icons))
-
-
-def _count(count: int) -> str:
-    return f"{count:,} icon{'' if count == 1 else 's'}"

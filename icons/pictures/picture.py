@@ -17,7 +17,19 @@ from ..drawn import Drawn
 from ..model.family import Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet
-from .curve_style import COLOURS, STAY, Direction, Points, chosen, directions, envelope, shown, spread, ticks
+from .curve_style import (
+    COLOURS,
+    STAY,
+    Direction,
+    Points,
+    chosen,
+    directions,
+    envelope,
+    icon_count,
+    shown,
+    spread,
+    ticks,
+)
 
 if TYPE_CHECKING:
     from ..model.corners import Corners
@@ -75,7 +87,7 @@ def _grid(icons: IconSet) -> str:
     all_curves = _alike([_curves(entry, max(3, MOST_MEMBERS // max(1, families))) for entry in entries])
     found = icons.summary()
     unit = "A" if icons.context.control == "current" else "°C"
-    count = f"{len(icons):,} icon{'' if len(icons) == 1 else 's'}"
+    count = icon_count(len(icons))
     control = f"control {icons.context.control}"
     baseline = "baseline not given, 32 °C assumed" if icons.context.control != "current" else "rest 0 A"
     if icons.context.baseline_C is not None:
@@ -123,7 +135,7 @@ def _curves(entry: Icon | Family, most: int, alone: bool = False) -> Curves:
     drawn = f"{len(places)} drawn · " if len(places) < len(entry) else ""
     found = entry.summary()
     over = drawn + "; ".join(map(str, entry.parameters))
-    name = f"{entry.name}: {len(entry):,} icon{'' if len(entry) == 1 else 's'}"
+    name = f"{entry.name}: {icon_count(len(entry))}"
     corners = tuple(_fine(entry[place]) for place in places)
     return Curves(corners, found.lowest, found.highest, found.longest_s, name, (over, *lines), axis)
 

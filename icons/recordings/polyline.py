@@ -30,13 +30,13 @@ def fit_corners(
     tolerance bridges is a step, and two corners then have that time. Beside few corners, exact holds, levels that
     return and short decimals are preferred, as far as the tolerance allows. ``start`` prescribes the first value.
 
-    Raises ValueError for arrays of other shapes, numbers that are not finite, times that fall, a tolerance that is not
-    positive, a ``start`` further than the tolerance from the first reading, or when 500 corners are not enough.
+    Times rise or stand twice and all numbers are finite, as `read_readings` gives them. Raises ValueError when 500
+    corners are not enough.
 
     >>> fit_corners([0, 1, 2, 3, 4, 5], [32.01, 31.99, 29, 26, 26.01, 25.99], tolerance=0.05)
     ((0.0, 1.0, 3.0, 5.0), (32.0, 32.0, 26.0, 26.0))
     """
-    time, reading = _checked(time_s, value, tolerance, start)
+    time, reading = np.array(time_s, dtype=np.float64), np.array(value, dtype=np.float64)
     course = course_of(time, reading, tolerance, start)
     path = _sparse(course, _inside(course))
     if len(path[0]) > MOST_CORNERS:
@@ -55,29 +55,6 @@ def noise(value: Array) -> float:
     """
     bends = np.abs(np.diff(value, 2))
     return float(np.median(bends)) / (0.6745 * math.sqrt(6)) if bends.size else 0.0
-
-
-def _checked(
-    time_s: Sequence[float] | Array, value: Sequence[float] | Array, tolerance: float, start: float | None
-) -> tuple[Array, Array]:
-    time, reading = np.array(time_s, dtype=np.float64), np.array(value, dtype=np.float64)
-    if time.ndim != 1 or time.shape != reading.shape:
-        raise ValueError(f"one value is needed for each time; got shapes {time.shape} and {reading.shape}")
-    if len(time) < 2:
-        raise ValueError(f"{len(time)} readings; at least two are needed")
-    if not (np.isfinite(time).all() and np.isfinite(reading).all()):
-        raise ValueError("times and values must be finite numbers")
-    if (np.diff(time) < 0).any() or time[0] == time[-1]:
-        raise ValueError("times must not fall, and must not all be the same")
-    if (three := np.flatnonzero(time[2:] == time[:-2])).size:
-        raise ValueError(f"the time {time[three[0]]:g} s stands more than twice; two readings at one time are a step")
-    if not (math.isfinite(tolerance) and tolerance > 0):
-        raise ValueError(f"tolerance must be positive, not {tolerance!r}")
-    if start is not None and not abs(start - reading[0]) <= tolerance:
-        raise ValueError(
-            f"start {start:g} is further than the tolerance {tolerance:g} from the first value {reading[0]:g}"
-        )
-    return time, reading
 
 
 def _inside(course: Course) -> Path:

@@ -11,8 +11,7 @@ from ..report.choices import goal_lines
 from ..report.tables import show, table
 
 if TYPE_CHECKING:
-    from thermicon.perception.selection.frontier import Frontier
-    from thermicon.perception.selection.frontier_point import FrontierPoint
+    from thermicon.perception.selection.frontier import Frontier, FrontierPoint
 
 
 def show_frontier(found: Frontier, title: str) -> None:

@@ -240,8 +240,8 @@ def report_of(
     from thermicon.perception.kernels.parallel import beside
     from thermicon.perception.progress import step_counter
     from thermicon.perception.ranking.rank import with_intervals
+    from thermicon.perception.selection.edit import cheapest_edits
     from thermicon.perception.selection.goal_result import judge_goal
-    from thermicon.perception.selection.pair_edits import cheapest_edits
     from thermicon.perception.selection.request import check_selection
 
     from ..report.set_report import SetReport

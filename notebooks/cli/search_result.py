@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from thermicon.perception.selection.search import SearchResult
 
 REFINING_PEOPLE = 24
-"""As in `thermicon.perception.selection.evaluators`, repeated here to avoid its imports."""
+"""As in `thermicon.perception.selection.evaluator`, repeated here to avoid its imports."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 MOST_TRIALS = 3

@@ -64,8 +64,7 @@ def _compared(
     from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
     from thermicon.circuit.solver.simulate import duration_s
-    from thermicon.perception.identification.delivered import judge_delivered
-    from thermicon.perception.identification.delivered_people import PEOPLE, detected_as_delivered
+    from thermicon.perception.identification.delivered import PEOPLE, detected_as_delivered, judge_delivered
     from thermicon.perception.identification.run_end import TAIL_S, run_end_s
 
     everyone = [one.delivery for one in ready]

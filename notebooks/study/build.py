@@ -1,4 +1,4 @@
-"""A study from its file to the bytes of its folder: derived pauses, orders, verdicts, script, tables and figure."""
+"""A study from its file to a plan: what it names, derived pauses, orders, verdicts, and the steps of a threshold."""
 
 from __future__ import annotations
 
@@ -10,20 +10,26 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from thermicon.icons import Icon, IconSet
+from thermicon.icons.model.context import Context, Metadata
+from thermicon.icons.model.statements import Hold, Ramp, Return
 from thermicon.icons.near_words import did_you_mean
 
 from .judging import Judged, Progress, judge_drives, judge_sessions
-from .keys import MOST_ASKED, Study
-from .levels import level_icons
+from .keys import MOST_ASKED, Study, Threshold
 from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
 from .study_file import StudyError, parse_study, study_hash, study_text
 from .timing import Landing, find_gap, find_landing, regulated
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Rig
-    from thermicon.icons import Icon, IconSet
 
 ProgressBar = Callable[[str], AbstractContextManager[Progress | None]]
+
+FELT, UNFELT = "felt", "not-felt"
+"""Answers in a threshold run."""
 
 MOST_SUGGESTED = 2000
 """In a larger set, the names of families are suggested in place of those of their members."""
@@ -164,3 +170,30 @@ def _whole_session(rig: Rig, plays: int, mean_s: float, gap_s: float) -> Rig:
     if rig.thermode is None or 60.0 * minutes <= rig.limits.session_s:
         return rig
     return rig.with_(**{"safety.session_min": float(minutes)})
+
+
+def levels_K(threshold: Threshold) -> tuple[float, ...]:
+    """Changes in K, from the smallest to the greatest, rounded to 1 mK.
+
+    >>> levels_K(Threshold(direction="cool", least_K=0.1, most_K=1.0, levels=3))
+    (0.1, 0.316, 1.0)
+    """
+    spaced = np.geomspace(threshold.least_K, threshold.most_K, threshold.levels)
+    return tuple(round(float(change), 3) for change in spaced)
+
+
+def level_icons(threshold: Threshold, rig: Rig) -> IconSet:
+    """Return the steps as a set of icons for the display, from the skin's rest, named after their place.
+
+    >>> from thermicon.circuit import Rig
+    >>> [icon.name for icon in level_icons(Threshold(direction="cool", levels=3), Rig.load("thenar"))]
+    ['cool-01', 'cool-02', 'cool-03']
+    """
+    verb, rate = threshold.direction, threshold.rate_K_per_s
+    context, icons = Context("display", rig.skin.rest_C, rig.site), []
+    for place, change_K in enumerate(levels_K(threshold), 1):
+        hold = (Hold(threshold.hold_s),) if threshold.hold_s else ()
+        body = (Ramp(verb, by_K=change_K, rate_K_per_s=rate), *hold, Return(rate))
+        known = Metadata(means=f"a change of {change_K:g} K", by="thermicon")
+        icons.append(Icon(f"{verb}-{place:02d}", body, context, known))
+    return IconSet(f"steps-{verb}", "Steps for a threshold", context, Metadata(), tuple(icons))

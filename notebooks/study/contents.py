@@ -22,8 +22,7 @@ from .bids import (
     planned_plays,
     table,
 )
-from .build import Plan, plays_of
-from .levels import FELT, UNFELT, levels_K
+from .build import FELT, UNFELT, Plan, levels_K, plays_of
 from .study_file import labels_of
 
 if TYPE_CHECKING:

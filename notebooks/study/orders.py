@@ -81,7 +81,7 @@ def orders_of(
     if rule == "williams":
         return _williams(rng, icons, repetitions, blocks, participants)
     make: dict[str, Callable[[Random, int, int, int], list[int]]]
-    make = {"balanced": _balanced, "random": _random, "shuffled": _shuffled}
+    make = {"balanced": _balanced, "random": _drawn, "shuffled": _shuffled}
     return tuple(
         tuple(_blocks(make[rule](rng, icons, repetitions, blocks), icons * repetitions)) for _ in range(participants)
     )
@@ -125,11 +125,7 @@ def _balanced(rng: Random, icons: int, repetitions: int, blocks: int) -> list[in
     return min(tries, key=lambda order: sum(count**2 for count in first_order_counts([tuple(order)]).values()))
 
 
-def _random(rng: Random, icons: int, repetitions: int, blocks: int) -> list[int]:
-    return _drawn(rng, icons, repetitions, blocks, balanced=False)
-
-
-def _drawn(rng: Random, icons: int, repetitions: int, blocks: int, *, balanced: bool) -> list[int]:
+def _drawn(rng: Random, icons: int, repetitions: int, blocks: int, *, balanced: bool = False) -> list[int]:
     """An order without immediate repeats; balanced: the next icon has followed the last one least often so far."""
     for _ in range(MOST_TRIES):
         order: list[int] = []

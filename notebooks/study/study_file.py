@@ -8,12 +8,11 @@ from collections import Counter
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
-from pydantic_core import ErrorDetails
 
-from thermicon.circuit.inputs import TEXT_FAULT, InputError, quoted, read_text, read_toml
+from thermicon.circuit.inputs import InputError, read_text, read_toml
+from thermicon.circuit.key_faults import Place, key_faults
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from .keys import TABLES, Study, Table
@@ -63,7 +62,7 @@ def parse_study(text: str, where: str) -> Study:
     try:
         study = Study.model_validate(document)
     except ValidationError as problem:
-        findings = [_in_words(error) for error in problem.errors(include_url=False)]
+        findings = key_faults(problem, _nearest, _unit_of, _shape)
     else:
         findings = _faults(study)
         if not findings:
@@ -135,35 +134,11 @@ def _threshold_faults(study: Study) -> list[str]:
     return faults
 
 
-def _in_words(error: ErrorDetails) -> str:
-    """One fault of a key in a sentence with the limit and its unit."""
-    place = list(error["loc"])
-    key, last = ".".join(map(str, place)), str(place[-1]) if place else ""
-    unit = next((f" {unit}" for end, unit in reversed(UNITS.items()) if last.endswith(end)), "")
-    value, kind, context = error.get("input"), error["type"], error.get("ctx", {})
-    subject = f"{key} = {quoted(value)}" if isinstance(value, (int, float, str, bool)) else key
-    if kind == "extra_forbidden":
-        return f"{key}: unknown key; {_nearest(place)}"
-    if kind == TEXT_FAULT:
-        return f"{subject}: {context['fault']}"
-    if kind == "missing":
-        return f"{key} is missing; add it"
-    if kind in ("greater_than", "greater_than_equal", "less_than_equal"):
-        limit = next(context[name] for name in ("gt", "ge", "le") if name in context)
-        words = {"greater_than": "above", "greater_than_equal": "at least", "less_than_equal": "at most"}[kind]
-        return f"{subject}{unit}: must be {words} {limit:g}{unit}"
-    if kind == "literal_error":
-        return f"{subject}: must be {context.get('expected')}"
-    if kind == "string_pattern_mismatch":
-        return f"{subject}: {_shape(last, place)}"
-    if kind in ("float_type", "int_type", "finite_number", "int_from_float"):
-        return (
-            f"{subject}: must be a {'whole ' if 'int' in kind[:4] else ''}number without quotes{unit and f', in{unit}'}"
-        )
-    return f"{subject}: {error['msg'][:1].lower()}{error['msg'][1:]}"
+def _unit_of(key: str) -> str:
+    return next((unit for end, unit in reversed(UNITS.items()) if key.endswith(end)), "")
 
 
-def _nearest(place: list[Any]) -> str:
+def _nearest(place: Place) -> str:
     """The known key nearest to an unknown one, also where it stands in the wrong table."""
     known: type[Table] = TABLES.get(str(place[0]), Study) if len(place) > 1 else Study
     word = str(place[-1])
@@ -174,7 +149,8 @@ def _nearest(place: list[Any]) -> str:
     return did_you_mean(word, known.model_fields)
 
 
-def _shape(last: str, place: list[Any]) -> str:
+def _shape(key: str) -> str:
+    last = key.rpartition(".")[2]
     if last == "marker":
         return "must be none, serial:PORT, parallel:ADDRESS or ni:LINES"
     if last.endswith("_key"):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
     from thermicon.circuit.fitting.overlay import Overlay
 
-    from ..editing.cue_check import Trouble
     from .scene import Drawing, Scene
 
     Floats = NDArray[np.float32]
@@ -129,16 +128,11 @@ def _said(scene: Scene) -> dict[str, Any]:
     return {
         "icons": list(scene.names),
         "icon": scene.icon,
-        "troubles": [_trouble(each) for each in scene.troubles],
+        "troubles": [asdict(each) for each in scene.troubles],
         "stale": scene.stale,
         "badge": {"colour": badge.colour, "text": badge.text, "more": list(badge.more)},
         "notes": list(scene.notes),
     }
-
-
-def _trouble(trouble: Trouble) -> dict[str, Any]:
-    names = ("line", "column", "end_column", "code", "headline", "hint", "suggestion")
-    return {name: getattr(trouble, name) for name in names}
 
 
 def _temperature(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
@@ -204,7 +198,7 @@ def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     ]
     # A label that changed with the icon would have the page build its panels anew.
     label = f"sensation (d′) of the nominal person, {percept.clock} clock"
-    terms = ("d′", "sensation ψ", "onset", "clock", "nominal person")
+    terms = terms_of("d′", "sensation ψ", "onset", "clock", "nominal person")
     return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False, digits=1, terms=terms)
 
 
@@ -214,44 +208,22 @@ def _panel(
     label: str,
     height: float,
     series: list[dict[str, Any]],
-    *,
-    bands: Sequence[dict[str, Any]] = (),
-    levels: Sequence[dict[str, Any]] = (),
-    marks: Sequence[dict[str, Any]] = (),
     missed: bool = True,
-    digits: int = 2,
-    terms: Sequence[str] = (),
+    **more: Any,
 ) -> dict[str, Any]:
+    """A panel of the canvas; `more` are its bands, levels, marks, digits and terms, where it has any."""
     spans = [{"from": span.from_s, "to": span.to_s, "label": span.label} for span in drawing.missed if missed]
-    return {
-        "key": key,
-        "label": label,
-        "height": height,
-        "series": series,
-        "bands": list(bands),
-        "levels": list(levels),
-        "spans": spans,
-        "marks": list(marks),
-        "digits": digits,
-        "terms": terms_of(*terms),
-    }
+    own = {"key": key, "label": label, "height": height, "series": series, "spans": spans}
+    return {**own, "bands": [], "levels": [], "marks": [], "digits": 2, "terms": [], **more}
 
 
 def _handles(drawing: Drawing) -> list[dict[str, Any]]:
     panel = "current" if drawing.trace.control == "current" else "temperature"
-    return [
-        {
-            "t": handle.time_s,
-            "y": handle.level,
-            "panel": panel,
-            "moves_time": handle.moves_time,
-            "moves_level": handle.moves_level,
-            "why": handle.why,
-            "line": handle.line,
-            "straight": handle.straight,
-        }
-        for handle in drawing.handles
-    ]
+    made = []
+    for handle in drawing.handles:
+        told = asdict(handle)
+        made.append({"t": told.pop("time_s"), "y": told.pop("level"), "panel": panel, **told})
+    return made
 
 
 _ROLES: dict[str, Role] = {"cold": "cool", "warm": "warm"}

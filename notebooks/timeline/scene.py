@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
     from thermicon.perception import Observer, Percept
 
-    from .event_times import EventTime, Span
-    from .threshold_band import ThresholdBand
+    from .marks import EventTime, Span, ThresholdBand
 
 TAIL_S = 10.0
 """Seconds of sensation simulated after the last corner, as in ``thermicon simulate --figure``."""
@@ -143,8 +142,7 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     from thermicon.circuit.solver.steady import steady_state
     from thermicon.perception import perceive
 
-    from .event_times import event_times_of, missed_spans
-    from .threshold_band import threshold_bands
+    from .marks import event_times_of, missed_spans, threshold_bands
 
     lasts = duration_s(icon, rig)
     rate = RATE_HZ if (lasts + TAIL_S) * RATE_HZ <= MOST_ROWS else float(MOST_ROWS // (lasts + TAIL_S + 1.0))

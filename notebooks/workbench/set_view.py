@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
 
-from ..editing.apply_edit import with_edit
 from ..editing.cue_check import read_text
 from ..editing.icon_edits import only
+from ..editing.number_literals import with_edit
 from ..figures.map_drawing import map_svg
 from ..report.blocks import fragment
 from ..report.choices import NAMES

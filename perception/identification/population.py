@@ -14,7 +14,6 @@ from ..sensation.detection import Detection, detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .confusion import SAMPLES, Confusion, confuse
 from .episodes import Episodes, episode_distances
-from .measures import information_bits, proportion_correct
 from .naming import SAMPLES as NAMED_SAMPLES
 from .naming import name_directly
 from .task import USUAL, Task
@@ -101,15 +100,6 @@ class PopulationResponse:
         if self.detection is None:
             raise ValueError("detection was not asked for: call respond with detection")
         return self.detection
-
-
-@dataclass(frozen=True, slots=True)
-class Scores:
-    """Scores by one observer: proportion correct and bits of every person, detected share of every icon."""
-
-    proportion_correct: Array
-    information_bits: Array
-    detected: Array
 
 
 def respond(
@@ -202,18 +192,3 @@ def identify(
         )  # fmt: skip
         return d_prime, named
     return d_prime, confuse(d_prime, lapse=crowd.lapse, bias=bias, seed=seed, samples=samples, first=first)
-
-
-def score(
-    played: ReceptorTemperatures,
-    crowd: People,
-    observer: Observer,
-    norm: Norm,
-    seed: int,
-    samples: int,
-    task: Task = USUAL,
-) -> Scores:
-    """Scores by one observer, without what only a report needs."""
-    felt = respond(played, crowd, observer)
-    confusion = identify(felt, norm, crowd, observer, seed, samples, task=task)[1].probability
-    return Scores(proportion_correct(confusion), information_bits(confusion), felt.probability.mean(axis=0))

@@ -42,9 +42,9 @@ def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool 
     return axes
 
 
-def plot_distance(ranking: Ranking, ax: Axes | None = None, *, clustered: bool = True) -> Axes:
+def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
     """Draw the predicted d′ of every pair, the median over people; similar icons are adjacent."""
-    order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
+    order = clustered_order(ranking.d_prime)
     names = [ranking.marked[k] for k in order]
     matrix = ranking.d_prime[np.ix_(order, order)]
     axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * DISTINGUISHABLE_DPRIME))

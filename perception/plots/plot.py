@@ -6,19 +6,28 @@ import io
 from functools import singledispatch
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from thermicon.circuit.solver.draw import COOL, WARM, new_axes
+
 from ..identification.map import PerceptualMap
 from ..ranking.ranking import Ranking
 from ..ranking.sensitivity import Sensitivity
 from ..selection.frontier import Frontier
 from ..sensation.percept import Percept
-from .draw_frontier import plot_frontier
 from .draw_heat import plot_confusion
 from .draw_map import plot_map
-from .draw_sensation import plot_sensation
-from .draw_sensitivity import plot_sensitivity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+
+CLOCK = "response clock: with conduction and decision"
+NOMINAL = "by the nominal person"
+DARK, GREY = "0.15", "0.55"
+HEIGHT = 0.38
+MOST = 16
+"""Further constants explain less than chance does."""
 
 
 @singledispatch
@@ -50,6 +59,78 @@ def plot(result: object, ax: Axes | None = None) -> Axes:
     """
     names = "Percept, Ranking, Sensitivity, Frontier or PerceptualMap"
     raise TypeError(f"a {type(result).__name__} has no picture; a {names} has")
+
+
+def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
+    """Both sensations on the clock of the receptors, and when the first is reported, which is later."""
+    axes = new_axes(ax, (6.0, 3.2))
+    axes.plot(percept.time_s, percept.psi_cold, color=COOL, lw=1.8, label="cold")
+    axes.plot(percept.time_s, percept.psi_warm, color=WARM, lw=1.8, ls=(0, (5, 1.2)), label="warm")
+    if percept.onset_s is not None:
+        said = f"reported as {percept.channel} at {percept.onset_s:.2f} s {NOMINAL}\n({CLOCK})"
+        axes.axvline(percept.onset_s, color="0.35", linewidth=1.0, linestyle=":", label=said)
+    else:
+        axes.plot([], [], " ", label=f"not felt {NOMINAL} (p {percept.detected_probability:.2f})")
+    axes.set_xlabel(f"time (s), {percept.clock} clock")
+    axes.set_ylabel("sensation (d′)")
+    axes.set_title(percept.icon or "percept")
+    axes.set_xlim(0.0, float(percept.time_s[-1]))
+    axes.set_ylim(bottom=0.0)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(fontsize="small", framealpha=0.8)
+    return axes
+
+
+def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
+    """Draw the mean over people, what 95 % of them reach, chance, and the total time at every point."""
+    axes = new_axes(ax, (8.2, 4.2))
+    sizes = np.array([len(point.icons) for point in found.points])
+    correct = np.array([100.0 * point.proportion_correct for point in found.points])
+    low = np.array([100.0 * point.reached for point in found.points])
+    reach = "95 % of people reach, people and model" if found.draws else "95 % of people reach, nominal model"
+    axes.fill_between(sizes, low, correct, color="0.9", linewidth=0)
+    axes.plot(sizes, correct, color=DARK, marker="o", label="mean over people")
+    axes.plot(sizes, low, color=GREY, marker="v", linestyle="--", label=reach)
+    axes.plot(sizes, 100.0 / sizes, color=GREY, linestyle=":", label="chance")
+    for size, value, point in zip(sizes.tolist(), correct.tolist(), found.points, strict=True):
+        axes.annotate(
+            f"{point.total_s:.0f} s", (size, value), (0, 7), textcoords="offset points", ha="center", fontsize=8
+        )
+    axes.set_xticks(sizes)
+    axes.set_ylim(0.0, 112.0)
+    axes.set_yticks(range(0, 101, 20))
+    axes.set_xlim(float(sizes.min()) - 0.5, float(sizes.max()) + 0.5)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(axis="y", alpha=0.25, linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.set_xlabel(f"number of icons, the best of {found.pool} by {found.objective}\n(above the points: total time)")
+    axes.set_ylabel("correct (%)")
+    axes.set_title("How many icons are distinguishable", loc="left")
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)
+    return axes
+
+
+def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
+    """Draw the shares of the constants that count most, proportion correct above bits."""
+    shown = found.effects[:MOST]
+    axes = new_axes(ax, (7.6, 1.4 + 0.34 * len(shown)))
+    names = [effect.constant for effect in shown]
+    places = np.arange(len(names))
+    correct = np.array([effect.proportion_correct for effect in shown])
+    bits = np.array([effect.information_bits for effect in shown])
+    axes.barh(places - HEIGHT / 2, correct, HEIGHT, color="0.3", label="proportion correct")
+    axes.barh(places + HEIGHT / 2, bits, HEIGHT, color="0.68", label="bits")
+    axes.set_yticks(places, names)
+    axes.invert_yaxis()
+    axes.set_xlim(left=0.0)
+    axes.tick_params(axis="y", length=0)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.grid(axis="x", alpha=0.25, linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.set_xlabel("share of the variance between draws of the posterior")
+    axes.set_title("Constants that carry the doubt", loc="left")
+    axes.legend(frameon=False, loc="lower right")
+    return axes
 
 
 plot.register(Percept, plot_sensation)

@@ -19,9 +19,8 @@ from ..sensation.percept import Percept
 from .batches import PooledResult
 from .distance_components import components_of
 from .reasons import pair_reasons
-from .rule_score import icon_score, pair_margin
 from .rules import icon_rules, pair_rules
-from .scores import IconScore, PairScore
+from .scores import IconScore, PairScore, icon_score, pair_margin
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

@@ -23,8 +23,8 @@ from ..sensation.percept import perceive
 from .assemble import assemble, objection, playable_pairs, worst_of
 from .batches import Execution, Job, collect_batches
 from .ranking import Ranking
-from .rule_score import disagreements, worst_by_rules
 from .rules import rig_rules
+from .scores import disagreements, worst_by_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -18,9 +18,8 @@ from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
 from ..identification.map import PersonSpread
 from .assumptions import Assumptions, assumptions_of
-from .rule_score import counted
 from .rules import RuleResult
-from .scores import IconScore, PairScore
+from .scores import IconScore, PairScore, counted
 
 if TYPE_CHECKING:
     import pandas as pd

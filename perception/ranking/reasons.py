@@ -6,6 +6,8 @@ The numbers come from the two nominal traces and percepts through the public fun
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,7 +16,7 @@ import numpy as np
 from thermicon.icons.number_text import decimals, fixed, verdict
 
 from ..arrays import Array
-from ..identification.episodes import Episodes, remembered
+from ..identification.episodes import PARTS, Episode, Episodes, distance_shares, remembered
 from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, check_norm
 from ..observer.observer import Observer
 from ..sensation.features import (
@@ -26,13 +28,22 @@ from ..sensation.features import (
     receptor_C,
 )
 from ..sensation.percept import Percept
-from .remembered_reasons import carrying_feature
+from .distance_components import most_different
 from .rules import load_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
 
 VERBS = {"cold": "cool", "warm": "warm"}
+ALIKE_DPRIME = 0.3
+"""Below this no feature is named: two icons are then distinguished in less than 56 % of trials."""
+FEATURES = {
+    "intensity": ("how strong they are", "times threshold"),
+    "rate": ("how fast they start", "times threshold per second"),
+    "duration": ("how long they last", "s at half the peak"),
+    "pause": ("the pause before an episode", "s"),
+}
+"""Part of a distance: the feature in words, and its unit in words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +83,47 @@ def pair_reasons(
     person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
     if episodes is None:
         episodes, places = remembered((felt_a, felt_b), person), (0, 1)
-    carries = Reason(*carrying_feature((_name(a), _name(b)), episodes, places, person, chosen), "d′")
+    carries = _carries((_name(a), _name(b)), episodes, places, person, chosen)
     found = [carries, _direction(a, b)]
     for channel in shared:
         found.append(_peaks(a, b, channel))
         found.append(_rates(a, b, channel))
     found.append(_onsets(a, b, felt_a, felt_b))
     return tuple(found)
+
+
+def _carries(
+    names: tuple[str, str], episodes: Episodes, places: tuple[int, int], observer: Observer, norm: Norm
+) -> Reason:
+    """What distinguishes two of the first person's icons from memory: the feature that carries most of it."""
+    shares = distance_shares(episodes, places[0], episodes, places[1], observer, norm)
+    total = math.sqrt(sum(shares.values()))
+    parts = {part: math.sqrt(share) for part, share in shares.items()}
+    values = {"d_prime": total, **parts}
+    both = " and ".join(names)
+    one, other = (episodes.listed(0, place) for place in places)
+    if not one and not other:
+        return Reason(f"neither {names[0]} nor {names[1]} is felt, so their names are guessed", values, "d′")
+    if total < ALIKE_DPRIME:
+        return Reason(f"{both} are remembered alike: d′ {total:.1f} for a nominal person", values, "d′")
+    most = max(PARTS, key=lambda part: shares[part])
+    size = f"d′ {parts[most]:.1f} of {total:.1f} for a nominal person"
+    if most == "direction":
+        felt = f"{names[0]} {_said(one)}, {names[1]} {_said(other)}"
+        return Reason(f"mostly distinguished by what is felt: {felt}: {size}", values, "d′")
+    words, unit = FEATURES[most]
+    first, second = (value or 0.0 for value in most_different(one, other, most))
+    values.update(a=first, b=second)
+    sizes = f"{names[0]} {_number(first)}, {names[1]} {_number(second)} {unit}"
+    return Reason(f"mostly distinguished by {words}: {sizes}: {size}", values, "d′")
+
+
+def _said(episodes: Sequence[Episode]) -> str:
+    return ", then ".join(episode.channel for episode in episodes) or "nothing"
+
+
+def _number(value: float) -> str:
+    return f"{value:.3g}" if value < 100.0 else f"{value:.0f}"
 
 
 def _direction(a: Trace, b: Trace) -> Reason:

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
 
-    from ..observer.observer_model import ObserverModel
     from .ranking import Ranking
 
 SITE, AGE = "site", "people.age_years"
@@ -99,7 +98,6 @@ def measured_rows(
     people: int = 60,
     parameters: int = 64,
     seed: int = 0,
-    observer: ObserverModel | None = None,
 ) -> dict[str, dict[str, float | None]]:
     """Rank a set under changed conditions and return, by the name of each icon and `ALL`, what was measured.
 
@@ -113,7 +111,7 @@ def measured_rows(
         Keys of the rig file, `site` and `people.age_years` with their values.
     measures
         Names out of `MEASURES`.
-    people, parameters, seed, observer
+    people, parameters, seed
         As in `rank`. The same seed has the same people and noise at every value.
 
     Returns
@@ -126,7 +124,7 @@ def measured_rows(
     from ..observer.observer_model import ObserverModel
     from .rank import rank
 
-    model = ObserverModel.of(observer)
+    model = ObserverModel.load()
     if AGE in changes:
         model = model.aged(float(changes[AGE]))
     found = rank(icons, rig_under(rig, changes), people=people, parameters=parameters, seed=seed, observer=model)

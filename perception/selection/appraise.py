@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..identification.confusion import SAMPLES, Confusion
 from ..identification.measures import information_bits, proportion_correct
 from ..identification.population import (
     PopulationResponse,
@@ -68,7 +67,6 @@ def appraise(
     seed: int = 0,
     tracking: str | None = None,
     norm: Norm = USUAL_NORM,
-    samples: int = SAMPLES,
     task: Task = USUAL,
     observer: Observer | None = None,
 ) -> Appraisal:
@@ -85,43 +83,20 @@ def appraise(
     if len(icons) < 2:
         raise ValueError("at least two icons are needed to be distinguished")
     crowd = draw_people(people, seed) if isinstance(people, int) else people
-    d_prime, named, durations = identified(
-        icons, rig, crowd, tracking, norm, seed=seed, samples=samples, task=task, observer=observer
-    )
-    return _appraisal([icon.name for icon in icons], d_prime, named.probability, durations)
-
-
-def identified(
-    icons: Sequence[Icon],
-    rig: Rig,
-    crowd: People,
-    tracking: str | None,
-    norm: Norm,
-    *,
-    seed: int = 0,
-    samples: int = SAMPLES,
-    task: Task = USUAL,
-    observer: Observer | None = None,
-) -> tuple[Array, Confusion, Array]:
-    """d′ and confusions (people, icons, icons) and durations (s) of icons that people know alone, as in `rank`."""
     nominal = Observer.load() if observer is None else observer
-    felt, durations = population_response(icons, rig, crowd, tracking, norm, observer=nominal)
-    return *identify(felt, norm, crowd, nominal, seed, samples, task=task), durations
-
-
-def _appraisal(names: Sequence[str], d_prime: Array, probability: Array, durations_s: Array) -> Appraisal:
-    """An appraisal from d′ and confusions (people, icons, icons) and durations (s)."""
-    bits = float(information_bits(probability).mean())
+    felt, durations = population_response(icons, rig, crowd, tracking, observer=nominal)
+    d_prime, named = identify(felt, norm, crowd, nominal, seed, task=task)
+    bits = float(information_bits(named.probability).mean())
     middle = np.median(d_prime, axis=0)
-    first, second = np.triu_indices(len(names), 1)
+    first, second = np.triu_indices(len(icons), 1)
     k = int(middle[first, second].argmin())
     a, b = int(first[k]), int(second[k])
     return Appraisal(
-        worst_pair=(names[a], names[b]),
+        worst_pair=(icons[a].name, icons[b].name),
         d_prime=float(middle[a, b]),
-        proportion_correct=float(proportion_correct(probability).mean()),
+        proportion_correct=float(proportion_correct(named.probability).mean()),
         information_bits=bits,
-        bits_per_s=bits / float(np.mean(durations_s)),
+        bits_per_s=bits / float(np.mean(durations)),
     )
 
 
@@ -133,7 +108,6 @@ def population_dprime(
     norm: Norm = USUAL_NORM,
     *,
     rigs: Sequence[Rig] | None = None,
-    rate_Hz: float = RATE_HZ,
     end_s: float | None = None,
     task: Task = USUAL,
     observer: Observer | None = None,
@@ -144,9 +118,7 @@ def population_dprime(
     nominal one (None: the shipped one).
     """
     nominal = Observer.load() if observer is None else observer
-    felt, durations = population_response(
-        icons, rig, crowd, tracking, norm, rigs=rigs, rate_Hz=rate_Hz, end_s=end_s, observer=nominal
-    )
+    felt, durations = population_response(icons, rig, crowd, tracking, rigs=rigs, end_s=end_s, observer=nominal)
     return memory_dprime(felt, norm, crowd.memory, nominal, task), durations
 
 
@@ -155,19 +127,17 @@ def population_response(
     rig: Rig,
     crowd: People,
     tracking: str | None = None,
-    norm: Norm = USUAL_NORM,
     *,
     rigs: Sequence[Rig] | None = None,
     rate_Hz: float = RATE_HZ,
     end_s: float | None = None,
-    observer: Observer | None = None,
+    observer: Observer,
 ) -> tuple[PopulationResponse, Array]:
     """What every person feels of every icon, and durations (s) of the icons; arguments as for `population_dprime`."""
     from thermicon.circuit.solver.simulate import duration_s
 
-    nominal = Observer.load() if observer is None else observer
     durations = np.array([duration_s(icon, rig) for icon in icons])
     end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
     each = crowd.rigs(rig) if rigs is None else rigs
     played = ReceptorTemperatures.simulated(icons, each, rig, end, rate_Hz, tracking)
-    return respond(played, crowd, nominal, detection=False), durations
+    return respond(played, crowd, observer, detection=False), durations

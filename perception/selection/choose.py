@@ -20,8 +20,9 @@ from ..identification.run_end import RATE_HZ
 from ..progress import Progress, step_counter
 from .appraise import Appraisal, appraise
 from .max_min_subset import Limits, max_min_subset
-from .pick import SubsetChoice, limits_of, nothing_fits, pick
-from .request import ChoiceError, Selection, usable_icons
+from .pick import SubsetChoice, pick
+from .pool import Pool
+from .request import ChoiceError, Selection
 from .subset_identification import Objective, SubsetIdentification
 
 if TYPE_CHECKING:
@@ -171,25 +172,23 @@ def choose(
     >>> len(choose(pool, Selection(2), parameters=0).icons)
     2
     """
-    from thermicon.circuit.solver.simulate import simulate_all
-
     job, felt, model = ranking.job, ranking.felt, ranking.model
     draws = model.draw_count(parameters, DRAWS)
     step, crowd = step_counter(progress, 1 + draws), model.people(job.people, job.seed)
-    traces = simulate_all(job.icons, job.rig, end_s=job.end_s, rate_Hz=RATE_HZ)
     icons, d_prime = job.icons, felt.d_prime
-    pool = usable_icons(asked, icons, traces, job.rig)
-    places = list(pool.places)
+    whole = Pool.of(icons, job.rig, model.nominal, end_s=job.end_s, rate_Hz=RATE_HZ)
+    places, excluded = whole.usable(asked, model.nominal)
+    pool = whole.some(places)
     d = d_prime[:, places][:, :, places]
-    must = [k for k, place in enumerate(places) if icons[place].name in asked.must]
-    limits = limits_of(asked, pool)
+    must = [k for k, icon in enumerate(pool.icons) if icon.name in asked.must]
+    limits = pool.limits(asked.most_s, asked.most_J)
     namings = None
     if asked.objective != "worst":
         favour = replace(job.task, places=tuple(places)).favour(0, len(d), len(places), job.seed)
         namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, job.seed, favour=favour)
     picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, job.seed)
     if picked is None:
-        raise ChoiceError(nothing_fits(asked, pool))
+        raise ChoiceError(pool.nothing_fits(asked))
     chosen = [places[k] for k in picked.chosen]
     names = [icons[k].name for k in chosen]
     share, loss = _for_people(d, picked, must, limits) if asked.objective == "worst" else (None, None)
@@ -229,7 +228,7 @@ def choose(
         pool=len(places),
         people=len(d) if namings is None else len(namings.lapse),
         seen=picked.seen,
-        excluded=pool.excluded,
+        excluded=excluded,
         best_share=share,
         loss=loss,
         at_own_range=own,

@@ -17,15 +17,13 @@ from ..identification.laboratory import Nominal, new_laboratory
 from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.population import ReceptorTemperatures
 from ..identification.run_end import RATE_HZ, run_end_s
-from ..observer.observer import Norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .appraise import Appraisal, appraise
-from .goal import Goal, GoalPart
-from .subset_identification import Objective
+from .evaluator import Evaluator
+from .goal import GoalPart
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import Icon
 
 JUDGED = ("correct", "bits", "d_prime")
@@ -36,27 +34,23 @@ JUDGED = ("correct", "bits", "d_prime")
 class FinalJudge:
     """How the last sets of a search are judged: by the parts of a goal about what people perceive, then an objective.
 
-    Raises `GoalError` for a goal for a share of people without draws of the posterior.
+    `by` is the evaluator of the search, `crowd` all people. Raises `GoalError` for a goal for a share of people without
+    draws of the posterior.
     """
 
-    rig: Rig
-    objective: Objective
-    norm: Norm
+    by: Evaluator
     model: ObserverModel
     crowd: People
-    seed: int
-    tracking: str | None
     draws: int
-    goal: Goal | None = None
 
     def __post_init__(self) -> None:
-        if self.goal is not None:
-            self.goal.check_draws(0 if self.draws < 2 or self.model.posterior is None else self.draws)
+        if self.by.goal is not None:
+            self.by.goal.check_draws(0 if self.draws < 2 or self.model.posterior is None else self.draws)
 
     @property
     def parts(self) -> tuple[GoalPart, ...]:
         """Parts of the goal that sets are judged by, those for a share of people first."""
-        held = () if self.goal is None else self.goal.parts
+        held = () if self.by.goal is None else self.by.goal.parts
         some = [part for part in held if part.quantity in JUDGED or part.people is not None]
         return tuple(sorted(some, key=lambda part: (part.people is None, -(part.people or 0.0))))
 
@@ -72,26 +66,26 @@ class FinalJudge:
 
     def appraisal(self, icons: Sequence[Icon]) -> Appraisal:
         """What all people make of a set."""
+        by = self.by
         return appraise(
-            icons, self.rig, people=self.crowd, seed=self.seed, tracking=self.tracking, norm=self.norm,
-            observer=self.model.nominal,
-        )  # fmt: skip
+            icons, by.rig, people=self.crowd, seed=by.seed, tracking=by.tracking, norm=by.norm, observer=by.observer
+        )
 
     def merit(self, icons: Sequence[Icon], scores: Appraisal) -> tuple[float, ...]:
         """What the better set has more of: nearness to the goal, then values of its parts, then of the objective."""
         persons = self._persons(icons, scores) if any(part.people is not None for part in self.parts) else {}
         values = [_value(part, scores, persons) for part in self.parts]
         missing = [max(0.0, 1.0 - value / part.limit) for part, value in zip(self.parts, values, strict=True)]
-        return (-max(missing, default=0.0), *values, scores.value(self.objective))
+        return (-max(missing, default=0.0), *values, scores.value(self.by.objective))
 
     def _persons(self, icons: Sequence[Icon], scores: Appraisal) -> dict[str, Array]:
         """Values of single people of all draws, laid about what all people reach, as in `rank`."""
         from thermicon.circuit.solver.simulate import duration_s
 
-        durations = [duration_s(icon, self.rig) for icon in icons]
-        end = run_end_s(durations)
+        by = self.by
+        end = run_end_s(duration_s(icon, by.rig) for icon in icons)
         few = self.crowd.part(0, min(PEOPLE, len(self.crowd)))
-        met = ReceptorTemperatures.simulated(icons, few.rigs(self.rig), self.rig, end, RATE_HZ, self.tracking)
+        met = ReceptorTemperatures.simulated(icons, few.rigs(by.rig), by.rig, end, RATE_HZ, by.tracking)
         played = met.thinned(len(few), EVERY)
         n = len(icons)
         # Single people are laid about correct and bits alone; the rest of the prediction is not used.
@@ -99,7 +93,7 @@ class FinalJudge:
             scores.proportion_correct, scores.information_bits, np.zeros(n), np.zeros((n, n)), np.zeros(n)
         )
         return new_laboratory(
-            played, self.crowd, predicted, self.norm, model=self.model, draws=self.draws, seed=self.seed
+            played, self.crowd, predicted, by.norm, model=self.model, draws=self.draws, seed=by.seed
         ).persons
 
 
@@ -116,6 +110,7 @@ def _value(part: GoalPart, scores: Appraisal, persons: dict[str, Array]) -> floa
 def in_words(part: GoalPart) -> str:
     """What a part is about.
 
+    >>> from thermicon.perception import Goal
     >>> in_words(Goal.parse("correct >= 90 % for 95 % of people").parts[0])
     'correct for 95 % of people'
     """

@@ -6,38 +6,93 @@ For each number of icons the best choice is found as in `choose`, and judged by 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..arrays import Array
 from ..drawn import Drawn
 from ..identification.confusion import confuse
-from ..identification.laboratory import DRAWS
-from ..identification.run_end import RATE_HZ, run_end_s
+from ..identification.laboratory import DRAWS, Nominal, new_laboratory
+from ..identification.measures import information_bits, proportion_correct
+from ..identification.population import identify
+from ..identification.run_end import RATE_HZ
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
+from ..observer.people import People
 from ..progress import Progress, step_counter
-from ..ranking.batches import Execution, Job, collect_batches
-from .appraise import identified
-from .frontier_point import FrontierPoint, PointJudge
+from ..ranking.batches import Execution, Job, PooledResult, collect_batches
+from .appraise import population_response
 from .goal import Goal
-from .nominal import end_of, sense
-from .pick import limits_of, nothing_fits, pick
-from .request import ChoiceError, Selection, UsableIcons, check_selection, usable_icons
-from .search_request import SearchRequest, soft_finding
+from .goal_result import GoalResult, SetOutcome, judge_goal
+from .pick import SubsetChoice, pick
+from .pool import Pool, soft_finding
+from .request import ChoiceError, Selection, check_selection
 from .subset_identification import Objective, SubsetIdentification
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from thermicon.circuit import Rig
-    from thermicon.icons import Icon, IconSet
+    from thermicon.icons import IconSet
 
 MOST = 12
 """Most icons that a choice has unless more are asked for."""
+REACHED_BY = 0.95
+"""Share of people who reach what a choice is also judged by."""
+
+
+@dataclass(frozen=True, slots=True)
+class FrontierPoint:
+    """The best choice of one size.
+
+    Attributes
+    ----------
+    icons
+        Names of the chosen.
+    proportion_correct, low
+        Mean over people, and what 95 % of them reach at the nominal constants, 0–1.
+    low_with_model
+        What 95 % of people reach, people and uncertainty of the model together, as in a goal, 0–1; None without draws.
+    information_bits
+        Information, bits.
+    d_prime
+        Median d′ of the worst pair.
+    total_s, total_J
+        Time and energy of all of them; NaN on a thermode, which states no energy.
+    optimal
+        Whether no other choice of the size is better by the objective.
+    amber
+        Names of the chosen that pass a soft limit of safety.
+    goal
+        The goal judged for the choice; None without one.
+    """
+
+    icons: tuple[str, ...]
+    proportion_correct: float
+    low: float
+    information_bits: float
+    d_prime: float
+    total_s: float
+    total_J: float
+    optimal: bool
+    low_with_model: float | None = None
+    amber: tuple[str, ...] = ()
+    goal: GoalResult | None = None
+
+    @property
+    def reached(self) -> float:
+        """What 95 % of people reach: with the uncertainty of the model, where there are draws of it."""
+        return self.low if self.low_with_model is None else self.low_with_model
+
+    def __repr__(self) -> str:
+        return (
+            f"FrontierPoint({len(self.icons)} icons: {100 * self.proportion_correct:.0f} % correct, {self.total_s:g} s)"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +174,6 @@ def frontier(
     seed: int = 0,
     tracking: str | None = None,
     norm: str = USUAL_NORM,
-    most_s: float | None = None,
     goal: Goal | str | None = None,
     parameters: int | None = None,
     observer: ObserverModel | Path | str | None = None,
@@ -139,8 +193,6 @@ def frontier(
         What a choice maximises: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
     people, seed, tracking, norm
         As in `rank`.
-    most_s
-        Most time of all chosen icons together, s; None: any.
     goal
         What is wanted: icons are left out that miss its `safety`, or for the nominal person its `detected` or `onset`,
         its `time` and `energy` are kept, and every choice is judged by it.
@@ -173,8 +225,6 @@ def frontier(
     >>> [len(point.icons) for point in found.points]
     [2, 3]
     """
-    from thermicon.circuit.solver.simulate import duration_s, simulate_all
-
     members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
     if most < 2:
         raise ChoiceError(f"a choice of {most} has no pair to compare: give 2 or more")
@@ -182,70 +232,92 @@ def frontier(
     draws = model.draw_count(parameters, DRAWS)
     if wanted is not None:
         wanted.check_draws(draws)
-    request = SearchRequest(most_s, None, wanted)
-    time, energy = request.totals
+    time, energy = (None, None) if wanted is None else wanted.totals
     asked = Selection(2, objective, most_s=time, most_J=energy)
     check_selection(asked, [icon.name for icon in members])
-    end = run_end_s(duration_s(icon, rig) for icon in members)
-    traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
-    pool = usable_icons(asked, members, traces, rig)
-    if wanted is not None:
-        pool = _fit_for(request, members, pool, rig, model)
-    amber = {members[k].name for k in pool.places if soft_finding(traces[k])}
-    able = [members[k] for k in pool.places]
-    job = Job(tuple(able), rig, end, people, seed, 1, tracking, chosen, observer=model.for_jobs())
-    largest = min(most, len(able))
+    whole = Pool.of(members, rig, model.nominal, rate_Hz=RATE_HZ)
+    places, excluded = whole.usable(asked, model.nominal, wanted)
+    pool = whole.some(places)
+    job = Job(pool.icons, rig, pool.end_s, people, seed, 1, tracking, chosen, observer=model.for_jobs())
+    largest = min(most, len(pool))
     step = step_counter(progress, job.batches + largest - 1)
     pooled, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
-
-    def named(places: Sequence[int]) -> Array:
-        """Confusions of people who know only these icons; what is named directly is felt again."""
-        if chosen == "naming":
-            alone = [able[k] for k in places]
-            return identified(alone, rig, crowd, tracking, chosen, seed=seed, observer=model.nominal)[1].probability
-        own = pooled.d_prime[:, places][:, :, places]
-        return confuse(own, lapse=crowd.lapse, seed=seed).probability
-
-    names = [icon.name for icon in able]
-    judge = PointJudge(pooled, crowd, pool, names, amber, chosen, model, draws, seed, wanted, named)
     namings = SubsetIdentification.of(pooled.d_prime, crowd.lapse, pool.durations_s, seed)
-    limits = limits_of(asked, pool)
+    limits = pool.limits(time, energy)
     points: list[FrontierPoint] = []
     for count in range(2, largest + 1):
         picked = pick(pooled.middle, namings, count, objective, (), limits, seed)
         if picked is None:
             break
-        points.append(judge.point(picked))
+        points.append(_point(picked, pool, pooled, job, crowd, model, draws, wanted))
         step()
     for _ in range(len(points) + 1, largest):  # sizes that no longer keep the limits
         step()
     if not points:
-        raise ChoiceError(nothing_fits(asked, pool))
+        raise ChoiceError(pool.nothing_fits(asked))
     changes = tuple(rig.changes)
     return Frontier(
-        rig.name, changes, people, seed, chosen, objective, len(able), pool.excluded, tuple(points), draws, wanted
+        rig.name, changes, people, seed, chosen, objective, len(pool), excluded, tuple(points), draws, wanted
     )
 
 
-def _fit_for(
-    request: SearchRequest, members: Sequence[Icon], pool: UsableIcons, rig: Rig, model: ObserverModel
-) -> UsableIcons:
-    """The pool without icons that miss what a goal asks of single icons; the same as in a search."""
-    from thermicon.circuit.solver.simulate import duration_s
-
-    able = [members[k] for k in pool.places]
-    felt = sense(able, rig, end_of([duration_s(icon, rig) for icon in able]), model.nominal)
-    reasons = request.objections(felt, model.nominal, rig)
-    left = [place for place, reason in enumerate(reasons) if reason is None]
-    missed = [(icon.name, reason) for icon, reason in zip(able, reasons, strict=True) if reason is not None]
-    if len(left) < 2:
-        raise ChoiceError(
-            f"fewer than two of {len(members)} icons are left by the goal, the first of the others: "
-            f"{missed[0][0]} {missed[0][1]}"
-        )
-    return UsableIcons(
-        tuple(pool.places[k] for k in left),
-        pool.durations_s[left],
-        pool.energies_J[left],
-        (*pool.excluded, *missed),
+def _point(
+    picked: SubsetChoice,
+    pool: Pool,
+    pooled: PooledResult,
+    job: Job,
+    crowd: People,
+    model: ObserverModel,
+    draws: int,
+    goal: Goal | None,
+) -> FrontierPoint:
+    """A choice as people who know it alone identify it, and a goal judged for it."""
+    places = list(picked.chosen)
+    few, own = pool.some(places), pooled.d_prime[:, places][:, :, places]
+    if job.norm == "naming":  # what is named directly is felt again
+        felt, _ = population_response(few.icons, job.rig, crowd, job.tracking, observer=model.nominal)
+        named = identify(felt, job.norm, crowd, model.nominal, job.seed)[1].probability
+    else:
+        named = confuse(own, lapse=crowd.lapse, seed=job.seed).probability
+    each, middle = proportion_correct(named), np.median(own, axis=0)
+    first, second = np.triu_indices(len(places), 1)
+    at = int(middle[first, second].argmin())
+    names = tuple(icon.name for icon in few.icons)
+    nearest = names[first[at]], names[second[at]]
+    correct, bits = float(each.mean()), float(information_bits(named).mean())
+    detected, onset_s = pooled.detected[places], pooled.detection.onset_s[places]
+    persons: dict[str, Array] = {}
+    if draws:
+        predicted = Nominal(correct, bits, detected, middle, onset_s)
+        persons = new_laboratory(
+            pooled.thin.of(places), crowd, predicted, job.norm, model=model, draws=draws, seed=job.seed
+        ).persons
+    amber = tuple(name for name, trace in zip(names, few.traces, strict=True) if soft_finding(trace))
+    outcome = SetOutcome(
+        names=names,
+        correct=correct,
+        bits=bits,
+        d_prime=float(middle[first, second].min()),
+        detected=detected,
+        onset_s=onset_s,
+        durations_s=few.durations_s,
+        energies_J=few.energies_J,
+        worst_pair=nearest,
+        nearest_pair=nearest,
+        amber=amber,
+        red=(),
+        persons=persons,
+    )
+    return FrontierPoint(
+        icons=names,
+        proportion_correct=correct,
+        low=float(np.quantile(each, 1.0 - REACHED_BY)),
+        information_bits=bits,
+        d_prime=outcome.d_prime,
+        total_s=math.fsum(outcome.durations_s),
+        total_J=math.fsum(outcome.energies_J),
+        optimal=picked.optimal,
+        low_with_model=float(np.quantile(persons["correct"], 1.0 - REACHED_BY)) if persons else None,
+        amber=amber,
+        goal=None if goal is None else judge_goal(goal, outcome),
     )

@@ -182,6 +182,11 @@ class Goal:
             return None
         return max(limits) if quantity in QUANTITIES and QUANTITIES[quantity].comparison == ">=" else min(limits)
 
+    @property
+    def totals(self) -> tuple[float | None, float | None]:
+        """Most time in s and most energy in J of all icons together; None: any."""
+        return self.of("time"), self.of("energy")
+
     def check_count(self, count: int | None) -> None:
         """Raise a GoalError where fewer icons are chosen than the goal asks for.
 

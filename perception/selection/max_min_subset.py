@@ -8,14 +8,13 @@ a pair nearer than t at most one; totals within their limits".
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
-from .cliques import StepsExhaustedError, find_clique
 
 MOST_STEPS = 20_000
 """Steps of the exhaustive search before the integer program takes over: about 0.02 s."""
@@ -24,6 +23,10 @@ MOST_NODES = 20_000
 give the same answer on every machine."""
 LIMIT_REACHED = 1
 """Status of `scipy.optimize.milp`."""
+
+
+class StepsExhaustedError(Exception):
+    """The search stopped before it was complete."""
 
 
 class UndecidedError(Exception):
@@ -69,7 +72,6 @@ def max_min_subset(
     count: int,
     must: Sequence[int] = (),
     limits: Limits | None = None,
-    most_nodes: int = MOST_NODES,
     ties: bool = True,
 ) -> MaxMinSubset | None:
     """Choose the `count` things whose nearest pair is farthest apart.
@@ -84,8 +86,6 @@ def max_min_subset(
         Things that every choice contains.
     limits
         Totals to keep (None: no limit).
-    most_nodes
-        Branches that a single integer program may take.
     ties
         Whether equal choices are decided by their next nearest pair, and so on.
 
@@ -114,7 +114,7 @@ def max_min_subset(
         raise ValueError(f"{count} of {n} things cannot be chosen: at least 2 are needed, and no more than there are")
     if len(must) > count:
         raise ValueError(f"{len(must)} things must be among {count}")
-    return _Bisection(d, count, tuple(must), limits or Limits.none(n), most_nodes).best(ties)
+    return _Bisection(d, count, tuple(must), limits or Limits.none(n)).best(ties)
 
 
 def nearest_pair(distances: Array, chosen: Sequence[int]) -> float:
@@ -124,8 +124,8 @@ def nearest_pair(distances: Array, chosen: Sequence[int]) -> float:
 
 
 class _Bisection:
-    def __init__(self, d: Array, count: int, must: tuple[int, ...], limits: Limits, most_nodes: int) -> None:
-        self.d, self.count, self.must, self.limits, self.most_nodes = d, count, must, limits, most_nodes
+    def __init__(self, d: Array, count: int, must: tuple[int, ...], limits: Limits) -> None:
+        self.d, self.count, self.must, self.limits = d, count, must, limits
         self.thresholds = 0
 
     def best(self, ties: bool) -> MaxMinSubset | None:
@@ -164,7 +164,7 @@ class _Bisection:
 
     def _ties_broken(self, chosen: tuple[int, ...]) -> tuple[int, ...]:
         """Of the choices with the same nearest pair the one whose next is widest: the pair is fixed, then ignored."""
-        rest = _Bisection(self.d.copy(), self.count, self.must, self.limits, self.most_nodes)
+        rest = _Bisection(self.d.copy(), self.count, self.must, self.limits)
         try:
             while len(rest.must) < self.count:
                 members = sorted(chosen)
@@ -243,7 +243,7 @@ class _Bisection:
             integrality=np.ones(left.size, dtype=np.int64),
             bounds=Bounds(np.isin(left, self.must).astype(np.float64), 1.0),
             constraints=constraints,
-            options={"node_limit": self.most_nodes},
+            options={"node_limit": MOST_NODES},
         )
         if result.x is not None:
             return tuple(int(k) for k in left[result.x > 0.5])
@@ -260,3 +260,51 @@ class _Bisection:
                 return left
             left = left[keep]
         return None
+
+
+def find_clique(
+    compatible: NDArray[np.bool_],
+    size: int,
+    must: Sequence[int],
+    accepts: Callable[[Sequence[int]], bool],
+    most_steps: int,
+) -> tuple[int, ...] | None:
+    """`size` mutually compatible things that contain `must` and are accepted; None where there are none.
+
+    The things of `must` are taken to be compatible with each other. Raises `StepsExhaustedError` after `most_steps`.
+    """
+    neighbours = [sum(1 << int(k) for k in np.flatnonzero(row)) & ~(1 << i) for i, row in enumerate(compatible)]
+    steps = 0
+
+    def outside_groups(candidates: int, groups: int) -> int:
+        """What is left of candidates without so many groups in which no pair is compatible: each gives one at most."""
+        for _ in range(groups):
+            group = candidates
+            while group:
+                one = group.bit_length() - 1
+                candidates &= ~(1 << one)
+                group &= ~(neighbours[one] | 1 << one)
+        return candidates
+
+    def extended(clique: tuple[int, ...], candidates: int) -> tuple[int, ...] | None:
+        nonlocal steps
+        steps += 1
+        if steps > most_steps:
+            raise StepsExhaustedError
+        missing = size - len(clique)
+        if missing == 0:
+            return clique if accepts(clique) else None
+        tried = outside_groups(candidates, missing - 1)  # whatever completes the clique has one of these
+        while tried:
+            last = tried.bit_length() - 1
+            tried &= ~(1 << last)
+            candidates &= ~(1 << last)
+            complete = extended((*clique, last), candidates & neighbours[last])
+            if complete is not None:
+                return complete
+        return None
+
+    candidates = (1 << len(neighbours)) - 1
+    for thing in must:
+        candidates &= neighbours[thing]
+    return extended(tuple(must), candidates)

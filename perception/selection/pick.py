@@ -5,21 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
 from .max_min_subset import Limits, UndecidedError, max_min_subset
-from .request import ChoiceError, Selection, UsableIcons
+from .request import ChoiceError
 from .subset_identification import Objective, SubsetIdentification
-from .upper_bounds import upper_bound
 
 ENUMERATED = 20
 MOST_SUBSETS = 200_000
 """Pools of up to 20 icons, and all with at most this many choices, are enumerated completely."""
+ALIKE = -1.0
+"""Stands for d′ between two icons that are never chosen together, such as members of one family."""
+LEAST_GAIN = 1e-9
+"""A swap that gains no more is rounding."""
 RESTARTS = 6
 """Random choices that larger pools are also climbed from."""
+FARTHEST = 12.0
+"""d′ beyond which two icons alone lose nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,66 +79,102 @@ def _climbed(
     """The best of the widest choice and of random ones, each improved by single swaps until none helps."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 6]))
     others = [k for k in range(len(middle)) if k not in must]
-    starts = [pick(middle, None, count, "worst", must, limits)]
-    if starts[0] is None:
+    widest = pick(middle, None, count, "worst", must, limits)
+    if widest is None:
         return None
-    first = starts[0].chosen
     drawn = [
-        [*must, *sorted(int(k) for k in rng.choice(others, count - len(must), replace=False))] for _ in range(RESTARTS)
+        (*must, *sorted(int(k) for k in rng.choice(others, count - len(must), replace=False))) for _ in range(RESTARTS)
     ]
-    best, value, seen = first, -math.inf, 0
-    for start in [list(first), *(one for one in drawn if limits.kept(one))]:
-        chosen, score = start, namings.score(start, objective)
-        while True:
-            allowed = swaps(chosen, must, limits, len(middle))
-            found = namings.swapped(chosen, objective, allowed)
-            seen += int(allowed.sum())
-            place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
-            if not found[place, other] > score:
-                break
-            score, chosen[place] = float(found[place, other]), other
-        ordered = tuple(sorted(chosen))
+    best, value, seen = widest.chosen, -math.inf, 0
+    for start in [widest.chosen, *(one for one in drawn if limits.kept(one))]:
+        chosen, score, looked = climb(namings, start, objective, middle, must, limits)
+        seen += looked
         if score > value + 1e-12:
-            best, value = ordered, namings.score(ordered, objective)
+            best = tuple(sorted(chosen))
+            value = namings.score(best, objective)
     bound = upper_bound(namings, count, objective)
     return SubsetChoice(best, value, max(bound, value), value >= bound, seen)
 
 
-def swaps(chosen: Sequence[int], must: Sequence[int], limits: Limits, n: int) -> NDArray[np.bool_]:
-    """Which icon (chosen, n) may replace a chosen one: not one of those that must stay, and within the limits."""
-    allowed = np.ones((len(chosen), n), dtype=bool)
+def climb(
+    namings: SubsetIdentification,
+    start: Sequence[int],
+    objective: Objective,
+    middle: Array,
+    must: Sequence[int],
+    limits: Limits,
+) -> tuple[list[int], float, int]:
+    """Single swaps that improve an objective until none does: the places, their score, and how many were tried."""
+    chosen, score, tried = list(start), namings.score(start, objective), 0
+    while True:
+        allowed = swaps(chosen, middle, must, limits)
+        found = namings.swapped(chosen, objective, allowed)
+        tried += int(allowed.sum())
+        place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
+        if not found[place, other] > score + LEAST_GAIN:
+            return chosen, score, tried
+        score, chosen[place] = float(found[place, other]), other
+
+
+def swaps(chosen: Sequence[int], middle: Array, must: Sequence[int], limits: Limits) -> NDArray[np.bool_]:
+    """Which icon (chosen, n) may replace a chosen one: not one that must stay, none alike another, within limits."""
+    allowed = np.ones((len(chosen), len(middle)), dtype=bool)
     allowed[:, list(chosen)] = False
     for place, thing in enumerate(chosen):
-        if thing in must:
-            allowed[place] = False
-        elif limits.most:
-            rest = [k for k in chosen if k != thing]
+        rest = [k for k in chosen if k != thing]
+        allowed[place] &= (middle[rest] > ALIKE).all(axis=0) & (thing not in must)
+        if limits.most:
             for other in np.flatnonzero(allowed[place]):
                 allowed[place, other] = limits.kept([*rest, int(other)])
     return allowed
 
 
-def limits_of(asked: Selection, pool: UsableIcons) -> Limits:
-    """The totals that a request sets to the icons of a pool."""
-    rows = [
-        (costs, most)
-        for costs, most in ((pool.durations_s, asked.most_s), (pool.energies_J, asked.most_J))
-        if most is not None
-    ]
-    if not rows:
-        return Limits.none(len(pool.places))
-    return Limits(np.stack([costs for costs, _ in rows]), tuple(most for _, most in rows))
+def upper_bound(pool: SubsetIdentification, count: int, objective: Objective) -> float:
+    """What no `count` icons of the pool exceed: proportion correct, bits, or bits a second.
+
+    Every k icons hold a pair at least as bad as the worst pair of the best k; without that pair the k − 2 left hold one
+    at least as bad as that of the best k − 2; and so on. Each of these pairs costs what it costs two icons alone. The
+    bound may be loose: it knows nothing of three icons that confuse each other. For bits, it is one of noise-free
+    presentations; the share that finitely many of them add is allowed for.
+    """
+    kept = float(np.mean(1.0 - pool.lapse))
+    if objective == "correct":
+        return kept + (1.0 - kept) / count - _disjoint(pool.pair_errors(), count) / count
+    lost = _disjoint(pair_losses(pool), count) * 2.0 / count
+    draws = pool.push.shape[2]
+    allowed = (count - 1) ** 2 / (2.0 * count * draws * math.log(2.0))
+    bits = float(min(math.log2(count) - lost + allowed, math.log2(count)))
+    if objective == "bits":
+        return bits
+    return bits / float(np.sort(pool.durations_s)[:count].mean())
 
 
-def nothing_fits(asked: Selection, pool: UsableIcons) -> str:
-    """Why no choice keeps the totals of a request, with the least that so many icons take."""
-    totals = []
-    for costs, most, unit, what in (
-        (pool.durations_s, asked.most_s, "s", "shortest last"),
-        (pool.energies_J, asked.most_J, "J", "most frugal take"),
-    ):
-        if most is not None:
-            least = math.fsum(np.sort(costs)[: asked.count])
-            totals.append(f"{most:g} {unit} (the {asked.count} {what} {least:.3g} {unit})")
-    forced = f" with {', '.join(asked.must)} among them" if asked.must else ""
-    return f"no {asked.count} of the {len(pool.places)} icons{forced} stay within a total of {' and '.join(totals)}"
+def pair_losses(pool: SubsetIdentification) -> Array:
+    """Bits lost between the two of each pair by the best that anybody could do, mean over people: (n, n)."""
+    distances = np.sqrt(2.0 * np.maximum(pool.half, 0.0))
+    grid, lost = _loss_table()
+    losses: Array = np.interp(distances, grid, lost, right=0.0).mean(axis=0)
+    np.fill_diagonal(losses, 0.0)
+    return losses
+
+
+def _disjoint(badness: Array, count: int) -> float:
+    """The least that the worst pairs of any `count` things add up to, taken one after the other without overlap."""
+    total = 0.0
+    for left in range(count, 1, -2):
+        found = max_min_subset(-badness, left)
+        if found is not None:
+            total += max(-found.bound, 0.0)
+    return total
+
+
+@lru_cache(maxsize=1)
+def _loss_table() -> tuple[Array, Array]:
+    """Uncertainty (bits) that is left about which of two points d apart was felt with unit noise."""
+    x = np.linspace(-9.0, 9.0, 2001)
+    density = np.exp(-0.5 * x * x) / math.sqrt(2.0 * math.pi)
+    grid = np.linspace(0.0, FARTHEST, 601)
+    odds = grid[:, None] * x + 0.5 * grid[:, None] ** 2
+    # log2(1 + e^-odds): what a presentation leaves to ask, whichever of the two it was.
+    left = np.asarray(np.trapezoid(density * np.logaddexp(0.0, -odds) / math.log(2.0), x, axis=1))
+    return grid, left

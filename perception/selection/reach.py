@@ -96,8 +96,6 @@ def what_would_help(
     objective: Objective = "worst",
     count: int | None = None,
     must: Sequence[str] | None = None,
-    most_s: float | None = None,
-    most_J: float | None = None,
     seed: int = 0,
     tracking: str | None = None,
     norm: str = "episodes",
@@ -117,7 +115,7 @@ def what_would_help(
         try:
             return search(
                 icons, where, count=count, objective=objective, evaluations=EVALUATIONS, people=PEOPLE, seed=seed,
-                tracking=tracking, norm=norm, must=must, most_s=most_s, most_J=most_J, goal=wanted, parameters=draws,
+                tracking=tracking, norm=norm, must=must, goal=wanted, parameters=draws,
                 observer=model,
             ).found  # fmt: skip
         except ChoiceError:

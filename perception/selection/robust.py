@@ -1,28 +1,21 @@
-"""Which of several sets is best when people, contact, ambient and rig vary.
+"""How probably one set is better than another by its worst pair, when people, contact, ambient and rig vary.
 
 Each draw is one virtual person on one rig: contact and skin are the person's, ambient, module and heat sink are drawn
-about the rig. Every set meets the same draws and the same noise, so that what differs is the set.
+about the rig. Both sets meet the same draws and the same noise, so that what differs is the set.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arrays import Array
-from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import PopulationResponse, identify, memory_dprime
-from ..identification.task import USUAL
-from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, Observer, check_norm
-from ..observer.people import People, draw_people
-from .appraise import population_response
+from ..observer.people import draw_people
+from .appraise import population_dprime
 from .request import ChoiceError
-from .subset_identification import OBJECTIVES, Objective
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -33,26 +26,8 @@ AMBIENT_SD_K = 2.0
 GAIN_SD = 0.05
 SINK_SD = 0.2
 """Assumed, for want of data: a room within 2 K, a current within 5 %, a heat sink within 20 % (SD)."""
-
-
-@dataclass(frozen=True, slots=True)
-class SetRobustness:
-    """Names of sets; `best` is the share of draws in which each is best, ties shared, so that they add up to 1.
-
-    `values` (sets, draws) is the objective in every draw, `median` and `low` its middle and its 5th per cent.
-    """
-
-    names: tuple[str, ...]
-    objective: Objective
-    draws: int
-    best: tuple[float, ...]
-    median: tuple[float, ...]
-    low: tuple[float, ...]
-    values: Array
-
-    def __repr__(self) -> str:
-        shares = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(self.names, self.best, strict=True))
-        return f"SetRobustness(best by {self.objective} in {self.draws} draws: {shares})"
+TIED = 1e-12
+"""Values that differ by no more are equal."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +41,7 @@ class SetComparison:
     standard_error
         Standard error of `probability`.
     gain
-        Median gain of A over B, in units of the objective.
-    objective
-        What is compared.
+        Median gain of A over B in the d′ of the worst pair.
     draws
         Number of persons and rigs.
 
@@ -80,13 +53,12 @@ class SetComparison:
     probability: float
     standard_error: float
     gain: float
-    objective: Objective
     draws: int
 
     def __repr__(self) -> str:
         return (
-            f"SetComparison(P(A better by {self.objective}) = {self.probability:.2f} ± {self.standard_error:.2f}, "
-            f"median gain {self.gain:+.3g}, {self.draws} draws)"
+            f"SetComparison(P(A better) = {self.probability:.2f} ± {self.standard_error:.2f}, "
+            f"median gain d′ {self.gain:+.3g}, {self.draws} draws)"
         )
 
 
@@ -95,11 +67,8 @@ def compare_sets(
     b: Sequence[Icon] | IconSet,
     rig: Rig,
     *,
-    objective: Objective = "worst",
     draws: int = DRAWS,
     seed: int = 0,
-    tracking: str | None = None,
-    norm: str = USUAL_NORM,
 ) -> SetComparison:
     """Predict how probably set A is better than set B for a person and a rig drawn at random.
 
@@ -109,16 +78,10 @@ def compare_sets(
         The sets.
     rig
         The nominal rig; contact and skin are each person's, ambient, module and heat sink vary about it.
-    objective
-        What is compared: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
     draws
         Number of persons and rigs.
     seed
         Seed of the draws.
-    tracking
-        What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
-    norm
-        How episodes are remembered: `episodes` or `naming`.
 
     Returns
     -------
@@ -129,8 +92,6 @@ def compare_sets(
     ------
     ChoiceError
         For a set of fewer than two icons, and for no draws.
-    ValueError
-        For an unknown norm.
 
     Examples
     --------
@@ -141,61 +102,21 @@ def compare_sets(
     >>> compare_sets(few, six, Rig.load("thenar"), draws=8).probability
     1.0
     """
-    found = best_set_probability(
-        {"A": a, "B": b}, rig, objective=objective, draws=draws, seed=seed, tracking=tracking, norm=norm
-    )
-    p = found.best[0]
-    gain = float(np.median(found.values[0] - found.values[1]))
-    return SetComparison(p, math.sqrt(max(p * (1.0 - p), 0.0) / draws), gain, objective, draws)
-
-
-def best_set_probability(
-    choices: Mapping[str, Sequence[Icon] | IconSet],
-    rig: Rig,
-    *,
-    objective: Objective = "worst",
-    draws: int = DRAWS,
-    seed: int = 0,
-    tracking: str | None = None,
-    norm: str = USUAL_NORM,
-) -> SetRobustness:
-    """Which of several sets is best, and how often, over people, contact, ambient and rig.
-
-    `worst` is the d′ of the worst pair for the person, the others as in `Selection`. Icons that sets share are played
-    once. Raises `ChoiceError` for fewer than two sets, a set of one icon, and no draws.
-    """
-    from thermicon.circuit.solver.simulate import duration_s
-
-    if objective not in OBJECTIVES:
-        raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
     if draws < 1:
         raise ChoiceError(f"at least one draw is needed, not {draws}")
-    sets = {name: tuple(each) for name, each in choices.items()}
-    if len(sets) < 2:
-        raise ChoiceError("at least two sets are needed for a comparison")
     pool: list[Icon] = []
-    for name, each in sets.items():
+    for name, each in (("A", a), ("B", b)):
         if len(each) < 2:
             raise ChoiceError(f"{name} has only {len(each)} icon: at least two are needed to be distinguished")
         pool += [icon for icon in each if icon not in pool]
-    rows = {name: [pool.index(icon) for icon in each] for name, each in sets.items()}
-    durations = np.array([duration_s(icon, rig) for icon in pool])
-    crowd, chosen = draw_people(draws, seed), check_norm(norm)
-    felt, _ = population_response(pool, rig, crowd, tracking, chosen, rigs=drawn_rigs(crowd.rigs(rig), seed))
-    values = np.array(
-        [_values(felt.of(rows[name]), crowd, chosen, durations[rows[name]], objective, seed) for name in sets]
-    )
-    top = values >= values.max(axis=0) - 1e-12
-    best = (top / top.sum(axis=0)).mean(axis=1)
-    return SetRobustness(
-        names=tuple(sets),
-        objective=objective,
-        draws=draws,
-        best=tuple(map(float, best)),
-        median=tuple(map(float, np.median(values, axis=1))),
-        low=tuple(map(float, np.percentile(values, 5.0, axis=1))),
-        values=values,
-    )
+    crowd = draw_people(draws, seed)
+    apart, _ = population_dprime(pool, rig, crowd, rigs=drawn_rigs(crowd.rigs(rig), seed))
+    rows = ([pool.index(icon) for icon in each] for each in (a, b))
+    first, second = (apart[:, some][:, :, some][:, *np.triu_indices(len(some), 1)].min(axis=1) for some in rows)
+    gains = first - second
+    p = float(np.mean(gains > TIED)) + 0.5 * float(np.mean(np.abs(gains) <= TIED))
+    error = math.sqrt(max(p * (1.0 - p), 0.0) / draws)
+    return SetComparison(p, error, float(np.median(gains)), draws)
 
 
 def drawn_rigs(rigs: Sequence[Rig], seed: int) -> list[Rig]:
@@ -223,19 +144,3 @@ def _pump_drawn(rig: Rig, sink: float, gain: float) -> dict[str, float]:
         "heat_sink.resistance_K_per_W": rig.heat_sink.resistance_K_per_W * math.exp(SINK_SD * sink),
         "module.seebeck_V_per_K": rig.module.seebeck_V_per_K * math.exp(GAIN_SD * gain),
     }
-
-
-def _values(
-    felt: PopulationResponse, crowd: People, norm: Norm, durations_s: Array, objective: Objective, seed: int
-) -> Array:
-    """The objective (people,) of icons that are a set of their own."""
-    observer = Observer.load()
-    if objective == "worst":
-        own = memory_dprime(felt, norm, crowd.memory, observer, USUAL)
-        least: Array = own[:, *np.triu_indices(own.shape[-1], 1)].min(axis=1)
-        return least
-    probability = identify(felt, norm, crowd, observer, seed)[1].probability
-    if objective == "correct":
-        return proportion_correct(probability)
-    bits = information_bits(probability)
-    return bits if objective == "bits" else bits / float(durations_s.mean())

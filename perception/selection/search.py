@@ -22,15 +22,12 @@ from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
 from ..progress import Progress
 from .appraise import Appraisal
-from .candidates import Candidate
-from .evaluators import NominalEvaluator, PopulationEvaluator
+from .candidates import Candidate, at_ends, found_set, listed_only, names_of
+from .evaluator import Evaluator
 from .finalists import FinalJudge, in_words
-from .found_icons import at_ends, found_set, listed_only, names_of
 from .goal import Goal
 from .request import ChoiceError
-from .search_request import SearchRequest, split_icons
-from .search_run import SearchRun
-from .share_evaluator import ShareEvaluator
+from .search_run import SearchRun, better
 from .subset_identification import OBJECTIVES, Objective
 
 if TYPE_CHECKING:
@@ -113,8 +110,6 @@ def search(
     tracking: str | None = None,
     norm: str = USUAL_NORM,
     must: Sequence[str] | None = None,
-    most_s: float | None = None,
-    most_J: float | None = None,
     goal: Goal | str | None = None,
     parameters: int | None = None,
     observer: ObserverModel | Path | str | None = None,
@@ -145,8 +140,6 @@ def search(
         What is remembered, as in `rank`.
     must
         Names of the icons of the file that are not families and must stay; None: all of them stay.
-    most_s, most_J
-        Most time in s and energy in J of all icons together; None: any.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
         `safety`, or for the nominal person its `detected` or `onset`. A part such as `correct >= 90 % for 95 % of
@@ -188,15 +181,11 @@ def search(
         wanted.check_count(count)
     if count is None and wanted is not None and wanted.of("count") is not None:
         count = int(wanted.of("count") or 0)
-    fixed, optional, free = split_icons(icons, count, must)
-    run, named = SearchRun(fixed, optional, icons.families, free, count is None), check_norm(norm)
-    model, request = ObserverModel.of(observer), SearchRequest(most_s, most_J, wanted)
-    nominal, few = (
-        NominalEvaluator(rig, objective, named, seed, model, request),
-        PopulationEvaluator(rig, objective, named, seed, model, tracking, request),
-    )
+    run, model = SearchRun(icons, count, must), ObserverModel.of(observer)
+    nominal = Evaluator(rig, objective, check_norm(norm), seed, model.nominal, tracking, wanted)
+    few = nominal.with_people(model)
     draws = model.draw_count(parameters, DRAWS)
-    judge = FinalJudge(rig, objective, named, model, model.people(people, seed), seed, tracking, draws, wanted)
+    judge = FinalJudge(nominal, model, model.people(people, seed), draws)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
     def tell(tried: int) -> None:
@@ -204,20 +193,20 @@ def search(
             progress(min(tried, evaluations), evaluations)
 
     start = run.start(nominal, rng)
-    rounds = max(0, round((evaluations - run.tried) / (BATCH * free)))
+    rounds = max(0, round((evaluations - run.tried) / (BATCH * run.free)))
     last = max(1, rounds // PER_ROUND)
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
     screened = run.tried
     if (part := judge.climbed) is None:
-        best = run.improve(few.better(start, held), few, last, REFINING, rng, REFINED, tell)
+        best = run.improve(better(few, start, held), few, last, REFINING, rng, REFINED, tell)
         finalists = _different([start, best, held])
     else:
-        shared = ShareEvaluator(rig, part, named, seed, model, draws, tracking, request)
-        few = PopulationEvaluator(rig, shared.objective, named, seed, model, tracking, request)
+        few = replace(few, objective="bits" if part.quantity == "bits" else "correct")
+        shared = few.with_share(part, model, draws)
         # Short searches do without: people take longer over the listed icons than over the rest.
-        widest, start = run.listed(few, shared, start, seed) if len(run.pool) <= evaluations else (start, start)
-        middle = run.improve(few.better(widest, held), few, last, REFINING, rng, REFINED, tell)
-        best = run.improve(shared.better(start, middle, held), shared, last, REFINING, rng, REFINED, tell)
+        widest, start = run.listed(few, shared, start) if len(run.pool) <= evaluations else (start, start)
+        middle = run.improve(better(few, widest, held), few, last, REFINING, rng, REFINED, tell)
+        best = run.improve(better(shared, start, middle, held), shared, last, REFINING, rng, REFINED, tell)
         finalists = _different([start, best, middle, widest, held])
     scores = [judge.appraisal([candidate.icon for candidate in candidates]) for candidates in finalists]
     merits = [

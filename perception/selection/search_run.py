@@ -7,75 +7,68 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array
 from .candidates import Candidate, sample_candidates
-from .evaluators import NominalEvaluator, PopulationEvaluator
+from .evaluator import Evaluator
 from .max_min_subset import Limits, max_min_subset, nearest_pair
-from .pick import pick, swaps
+from .pick import ALIKE, climb, pick, swaps
+from .pool import Pool
 from .request import ChoiceError
-from .share_evaluator import ShareEvaluator
-from .subset_identification import Objective, SubsetIdentification
 
 if TYPE_CHECKING:
-    from thermicon.icons import Family, Icon
+    from thermicon.icons import Family, Icon, IconSet
 
 SAMPLED = 400
 """Listed icons that a search starts from, at most; of more, so many are drawn."""
 SHRINK, FINEST = 0.85, 0.005
 """By what a step shrinks where nothing better is found, and the smallest one, as a share of a range."""
-ALIKE = -1.0
-"""Stands for d′ between two members of one family, where each family gives one icon."""
 SHORTLIST = 8
 """Listed icons per place of a set that are tried for a share of people: those whose swap serves the mean best."""
 
 
 @dataclass(frozen=True, slots=True)
 class JudgedPool:
-    """Candidates with their d′ (people, n, n) and its median (n, n), in which members of one family may be alike."""
+    """Candidates that can be chosen, with their d′ (people, n, n) and its median (n, n), and totals to keep.
+
+    Where each family gives one icon, its members are `ALIKE` in the median.
+    """
 
     candidates: list[Candidate]
+    pool: Pool
     d_prime: Array
     middle: Array
-    limits: Limits | None
-
-    @property
-    def icons(self) -> list[Icon]:
-        """Their icons."""
-        return [candidate.icon for candidate in self.candidates]
+    limits: Limits
 
 
 class SearchRun:
-    """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`."""
+    """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`.
 
-    def __init__(
-        self, fixed: tuple[Icon, ...], optional: tuple[Icon, ...], families: tuple[Family, ...], free: int, each: bool
-    ) -> None:
+    `fixed` icons stay, `optional` ones may be left out, and `free` places are for those and members of the families;
+    with `each`, every family has one place. `tried` counts icons.
+    """
+
+    def __init__(self, icons: IconSet, count: int | None, must: Sequence[str] | None) -> None:
+        fixed, optional, self.free = split_icons(icons, count, must)
         self.fixed, self.optional = [Candidate(icon) for icon in fixed], [Candidate(icon) for icon in optional]
-        self.families, self.free, self.each = families, free, each
+        self.families, self.each = icons.families, count is None
+        self.must = tuple(range(len(fixed)))
+        self.count = len(fixed) + self.free
         self.pool: list[Candidate] = []
         self.tried = 0
 
-    def start(self, judge: NominalEvaluator | PopulationEvaluator, rng: np.random.Generator) -> list[Candidate]:
+    def start(self, judge: Evaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
-        pool = [*self.fixed, *self.optional, *sample_candidates(self.families, SAMPLED, rng)]
-        self.pool = pool
-        found = self.best(pool, judge, None)
+        self.pool = [*self.fixed, *self.optional, *sample_candidates(self.families, SAMPLED, rng)]
+        found = self.best(self.pool, judge, None)
         if found is None:
-            bad = [reason for reason in judge.objections if reason is not None]
-            good = [place for place, reason in enumerate(judge.objections) if reason is None]
-            raise ChoiceError(
-                f"no {self.free + len(self.fixed)} icons can be chosen within the limits: {len(bad)} of {len(pool)} "
-                f"that were tried cannot be chosen at all{', the first of which ' + bad[0] if bad else ''}"
-                + judge.request.least_totals(judge.limits, good, self.free + len(self.fixed))
-            )
+            raise ChoiceError(self._nothing(judge))
         return found
 
     def improve(
         self,
         held: list[Candidate],
-        judge: NominalEvaluator | PopulationEvaluator,
+        judge: Evaluator,
         rounds: int,
         batch: int,
         rng: np.random.Generator,
@@ -96,19 +89,24 @@ class SearchRun:
         return held
 
     def listed(
-        self, mean: PopulationEvaluator, share: ShareEvaluator, start: list[Candidate], seed: int
+        self, mean: Evaluator, share: Evaluator, start: list[Candidate]
     ) -> tuple[list[Candidate], list[Candidate]]:
         """The best listed sets: for the mean of a few people, as in a frontier, and for the share of a goal."""
         pool = self._judged(self.pool, mean)
-        count, must = self.free + len(self.fixed), len(self.fixed)
-        chosen = None if pool is None else self._picked(pool, mean, count, must, seed)
-        if pool is None or chosen is None:
+        if pool is None:
             return start, start
-        namings = mean.namings(pool.d_prime, pool.icons)
-        swapped = namings.swapped(chosen, mean.objective, _swaps(chosen, pool.middle, must, pool.limits))
+        namings = mean.namings(pool.d_prime, pool.pool)
+        if self.each:
+            chosen = self._best_places(pool, mean, None)
+        else:
+            picked = pick(pool.middle, namings, self.count, mean.objective, self.must, pool.limits, mean.seed)
+            chosen = None if picked is None else list(picked.chosen)
+        if chosen is None:
+            return start, start
+        swapped = namings.swapped(chosen, mean.objective, swaps(chosen, pool.middle, self.must, pool.limits))
         near = {int(k) for row in swapped for k in np.argsort(-row)[:SHORTLIST] if np.isfinite(row[k])}
         by_mean = self._ordered(pool, chosen)
-        held = share.better(by_mean, start)
+        held = better(share, by_mean, start)
         others = [
             candidate
             for candidate in (*by_mean, *start, *(pool.candidates[k] for k in sorted(near)))
@@ -117,83 +115,109 @@ class SearchRun:
         by_share = self.best([*held, *dict.fromkeys(others)], share, held)
         return by_mean, held if by_share is None else by_share
 
-    def _picked(
-        self, pool: JudgedPool, judge: PopulationEvaluator, count: int, must: int, seed: int
-    ) -> list[int] | None:
-        """Places of the best set of a pool, as a frontier picks them; of one icon per family, by a single climb."""
-        namings = judge.namings(pool.d_prime, pool.icons)
-        if not self.each:
-            picked = pick(pool.middle, namings, count, judge.objective, tuple(range(must)), pool.limits, seed)
-            return None if picked is None else list(picked.chosen)
-        first = max_min_subset(pool.middle, count, tuple(range(must)), pool.limits)
+    def best(self, pool: list[Candidate], judge: Evaluator, held: list[Candidate] | None) -> list[Candidate] | None:
+        """The best set out of a pool that begins with the held one, plain icons first; None: no set can be played."""
+        found = self._judged(pool, judge)
+        chosen = None if found is None else self._best_places(found, judge, held)
+        return None if found is None or chosen is None else self._ordered(found, chosen)
+
+    def _best_places(self, pool: JudgedPool, judge: Evaluator, held: list[Candidate] | None) -> list[int] | None:
+        first = max_min_subset(pool.middle, self.count, self.must, pool.limits)
         if first is None or nearest_pair(pool.middle, first.chosen) <= ALIKE:
             return None
-        return climbed(namings, list(first.chosen), judge.objective, pool.middle, must, pool.limits)
+        if judge.objective == "worst":
+            return list(first.chosen)
+        begin = first.chosen if held is None else range(self.count)
+        namings = judge.namings(pool.d_prime, pool.pool)
+        return climb(namings, begin, judge.objective, pool.middle, self.must, pool.limits)[0]
 
-    def best(
-        self, pool: list[Candidate], judge: NominalEvaluator | PopulationEvaluator, held: list[Candidate] | None
-    ) -> list[Candidate] | None:
-        """The best set out of a pool, plain icons first; None where no set can be played."""
-        found, must = self._judged(pool, judge), len(self.fixed)
-        if found is None:
+    def _judged(self, candidates: list[Candidate], judge: Evaluator) -> JudgedPool | None:
+        """The icons that can be chosen, as people feel them; None where they are too few."""
+        self.tried += len(candidates)
+        pool = judge.pool([candidate.icon for candidate in candidates])
+        d = judge.d_prime(pool)
+        good = self._good(pool, judge)
+        if len(good) < self.count:
             return None
-        first = max_min_subset(found.middle, must + self.free, tuple(range(must)), found.limits)
-        if first is None or nearest_pair(found.middle, first.chosen) <= ALIKE:
-            return None
-        chosen = list(first.chosen)
-        if judge.objective != "worst":
-            begin = list(range(must + self.free)) if held is not None else chosen
-            namings = judge.namings(found.d_prime, found.icons)
-            chosen = climbed(namings, begin, judge.objective, found.middle, must, found.limits)
-        return self._ordered(found, chosen)
-
-    def _judged(self, pool: list[Candidate], judge: NominalEvaluator | PopulationEvaluator) -> JudgedPool | None:
-        """The icons of a pool that can be chosen, as people feel them; None where they are too few."""
-        self.tried += len(pool)
-        d = judge.pairwise_dprime([candidate.icon for candidate in pool])
-        must = len(self.fixed)
-        good = [k for k in range(len(pool)) if k < must or judge.objections[k] is None]
-        candidates, d = [pool[k] for k in good], d[:, good][:, :, good]
-        if len(candidates) < must + self.free:
-            return None
+        left, d, pool = [candidates[k] for k in good], d[:, good][:, :, good], pool.some(good)
         middle = np.median(d, axis=0)
         if self.each:
-            own = np.array([self._place(candidate) for candidate in candidates])
+            own = np.array([self._place(candidate) for candidate in left])
             middle[(own[:, None] == own) & (own >= 0)] = ALIKE
-        limits = None if judge.limits is None else Limits(judge.limits.costs[:, good], judge.limits.most)
-        return JudgedPool(candidates, d, middle, limits)
+        return JudgedPool(left, pool, d, middle, pool.limits(*totals(judge)))
+
+    def _good(self, pool: Pool, judge: Evaluator) -> list[int]:
+        reasons = pool.objections(judge.goal, judge.observer)
+        return [k for k, reason in enumerate(reasons) if k in self.must or reason is None]
+
+    def _nothing(self, judge: Evaluator) -> str:
+        """Why no set of the first pool can be chosen."""
+        pool = judge.pool([candidate.icon for candidate in self.pool])
+        bad = [reason for reason in pool.objections(judge.goal, judge.observer) if reason is not None]
+        left = pool.some(self._good(pool, judge))
+        first = f", the first of which {bad[0]}" if bad else ""
+        over = f"; the totals: {left.totals_text(self.count, *totals(judge))}" if any(totals(judge)) else ""
+        return (
+            f"no {self.count} icons can be chosen within the limits: {len(bad)} of {len(pool)} that were tried cannot "
+            f"be chosen at all{first}{over}"
+        )
 
     def _ordered(self, pool: JudgedPool, chosen: Sequence[int]) -> list[Candidate]:
-        must = len(self.fixed)
-        order = sorted(chosen, key=lambda k: (k >= must, self._place(pool.candidates[k]), k))
+        order = sorted(chosen, key=lambda k: (k not in self.must, self._place(pool.candidates[k]), k))
         return [pool.candidates[k] for k in order]
 
     def _place(self, candidate: Candidate) -> int:
         return -1 if candidate.family is None else self.families.index(candidate.family)
 
 
-def climbed(
-    namings: SubsetIdentification,
-    chosen: list[int],
-    objective: Objective,
-    middle: Array,
-    must: int,
-    limits: Limits | None = None,
-) -> list[int]:
-    """Single swaps that improve an objective until none does; the first `must` stay, and no two alike come in."""
-    score = namings.score(chosen, objective)
-    while True:
-        found = namings.swapped(chosen, objective, _swaps(chosen, middle, must, limits))
-        place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
-        if not found[place, other] > score + 1e-9:
-            return chosen
-        score, chosen[place] = float(found[place, other]), other
+def better(judge: Evaluator, *sets: list[Candidate]) -> list[Candidate]:
+    """The best of some sets for the people of an evaluator; the first of those that are equal."""
+    values = []
+    for candidates in sets:
+        pool = judge.pool([candidate.icon for candidate in candidates])
+        d = judge.d_prime(pool)
+        if judge.objective == "worst":
+            values.append(nearest_pair(np.median(d, axis=0), range(len(pool))))
+        else:
+            values.append(judge.namings(d, pool).score(range(len(pool)), judge.objective))
+    return sets[max(range(len(sets)), key=lambda k: values[k])]
 
 
-def _swaps(chosen: Sequence[int], middle: Array, must: int, limits: Limits | None) -> NDArray[np.bool_]:
-    """Which icon (chosen, n) may replace a chosen one, and is not alike one that stays."""
-    allowed = swaps(chosen, range(must), limits or Limits.none(len(middle)), len(middle))
-    for place in range(len(chosen)):
-        rest = [k for other, k in enumerate(chosen) if other != place]
-        allowed[place] &= (middle[rest] > ALIKE).all(axis=0)
-    return allowed
+def totals(judge: Evaluator) -> tuple[float | None, float | None]:
+    """Most time and energy of all icons together."""
+    return (None, None) if judge.goal is None else judge.goal.totals
+
+
+def split_icons(
+    icons: IconSet, count: int | None, must: Sequence[str] | None
+) -> tuple[tuple[Icon, ...], tuple[Icon, ...], int]:
+    """Plain icons that stay, plain icons that may be left out, and how many icons are free; `must` None: all stay.
+
+    Raises `ChoiceError` for a file without families, unknown names, and numbers of icons that leave nothing to search.
+    """
+    from thermicon.icons import Icon
+    from thermicon.icons.model.icon import played_icons
+    from thermicon.icons.near_words import did_you_mean
+
+    families: tuple[Family, ...] = icons.families
+    if not families:
+        raise ChoiceError("nothing to search: the file has no family, such as icon dip(depth in 1..6 step 1 °C) { … }")
+    for family in families:
+        if next(iter(played_icons(family.template)), None) is not None:
+            raise ChoiceError(f"family {family.name} plays another icon, which a search cannot carry along")
+    plain = tuple(entry for entry in icons.entries if isinstance(entry, Icon))
+    names = [icon.name for icon in plain]
+    for name in must or ():
+        if name not in names:
+            known = did_you_mean(name, names) if names else "the file has families only"
+            raise ChoiceError(f"no plain icon is called {name!r}, which must be in the set: {known}")
+    if must and count is None:
+        raise ChoiceError("which icons must stay is a question only where some are chosen: give --choose K as well")
+    fixed = plain if must is None else tuple(icon for icon in plain if icon.name in must)
+    optional = tuple(icon for icon in plain if icon not in fixed)
+    wanted = len(fixed) + len(families) if count is None else count
+    if wanted < 2:
+        raise ChoiceError("one icon is never confused: ask for 2 or more with --choose K, or give a second family")
+    if wanted <= len(fixed):
+        raise ChoiceError(f"{wanted} icons leave nothing to search: {len(fixed)} that are not families must stay")
+    return fixed, optional, wanted - len(fixed)

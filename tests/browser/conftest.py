@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.browser.jupyter import Server, end_kernels, page_of, page_of_file, running
+from tests.browser.jupyter import Server, end_kernels, page_of, running
 from thermicon.notebooks.cli.lab import PROMPT
 
 if TYPE_CHECKING:
@@ -92,25 +92,10 @@ def lab(jupyterlab: Server) -> Iterator[Server]:
 
 
 @pytest.fixture
-def serve_page(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Callable[[Path], Server]]:
-    """``serve_page(folder)`` serves the ``workbench.ipynb`` of a folder, as ``thermicon lab --page`` does."""
+def serve_page(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Callable[..., Server]]:
+    """``serve_page(place, "--rig", name)`` serves the workbench of a folder or of a cue file, as the command does."""
     with ExitStack() as stack:
-
-        def serve(folder: Path) -> Server:
-            return stack.enter_context(page_of(folder, tmp_path_factory.mktemp("page")))
-
-        yield serve
-
-
-@pytest.fixture
-def serve_file(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Callable[[Path, str], Server]]:
-    """``serve_file(file, rig)`` serves the workbench on one cue file and one rig."""
-    with ExitStack() as stack:
-
-        def serve(file: Path, rig: str) -> Server:
-            return stack.enter_context(page_of_file(file, rig, tmp_path_factory.mktemp("page")))
-
-        yield serve
+        yield lambda place, *options: stack.enter_context(page_of(place, tmp_path_factory.mktemp("page"), *options))
 
 
 @pytest.fixture

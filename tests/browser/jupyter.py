@@ -19,9 +19,6 @@ from pathlib import Path
 import nbformat
 from playwright.sync_api import Locator, Page
 
-from thermicon.notebooks.cli.lab import command_of
-from thermicon.notebooks.files.start_folder import VARIABLE
-
 STARTS_WITHIN_S = 60.0
 RUNS_WITHIN_S = 90.0
 SETTINGS = {
@@ -53,31 +50,16 @@ def running(module: str, options: Sequence[str], folder: Path, own: Path) -> Ite
 
 
 @contextmanager
-def page_of(folder: Path, own: Path) -> Iterator[Server]:
-    """The page of a folder's workbench as ``thermicon lab --page`` serves it; its address has the token."""
-    own.mkdir(parents=True, exist_ok=True)
-    empty = own / "empty"
-    empty.mkdir()
-    port, log = free_port(), own / "page.log"
-    command = command_of(folder, page=True, no_browser=True, port=port)
-    places = {**environment(own), "PYTHONSAFEPATH": "1", VARIABLE: str(folder.resolve())}
-    with _started(command, empty, places, log, f"http://localhost:{port}"):
-        told = re.search(rf"http://localhost:{port}/\?token=\S+", log.read_text(encoding="utf-8"))
-        assert told is not None, log.read_text(encoding="utf-8")
-        yield Server(told[0], folder, log)
-
-
-@contextmanager
-def page_of_file(file: Path, rig: str, own: Path) -> Iterator[Server]:
-    """The page of one cue file, by the command itself: ``thermicon lab --page FILE --rig RIG``."""
+def page_of(place: Path, own: Path, *options: str) -> Iterator[Server]:
+    """The page of a folder or of a cue file as ``thermicon lab --page`` serves it; its address has the token."""
     own.mkdir(parents=True, exist_ok=True)
     port, log = free_port(), own / "page.log"
-    options = ["lab", "--page", str(file), "--rig", rig, "--no-browser", f"--port={port}"]
-    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *options]
+    words = ["lab", "--page", str(place), *options, "--no-browser", f"--port={port}"]
+    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *words]
     with _started(command, own, environment(own), log, f"http://localhost:{port}"):
         told = re.search(rf"http://localhost:{port}/\?token=\S+", log.read_text(encoding="utf-8"))
         assert told is not None, log.read_text(encoding="utf-8")
-        yield Server(told[0], file.parent, log)
+        yield Server(told[0], place, log)
 
 
 @contextmanager
@@ -220,11 +202,6 @@ def dark(page: Page, wanted: bool = True) -> None:
 def save(page: Page) -> None:
     """Save the notebook, as Ctrl-S does."""
     command(page, "docmanager:save")
-
-
-def set_cell(page: Page, place: int, text: str) -> None:
-    """Write another text into the cell at a place, counted from 0, as pasting over it does."""
-    page.evaluate(f"([place, text]) => {PANEL}.content.widgets[place].model.sharedModel.setSource(text)", [place, text])
 
 
 def errors_in(page: Page) -> list[str]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
-from importlib.resources import files
 from typing import Any
 
 import numpy
@@ -47,20 +45,6 @@ TROUBLE = {
     "suggestion": "  hold for 4 s",
 }
 ROWS = 600
-WORKBENCH = (files("thermicon.notebooks") / "workbench.css").read_text(encoding="utf-8")
-# Of the style sheet of ipywidgets 8 what gives the knobs their places, and its mark of a lost kernel.
-IPYWIDGETS = """
-.jupyter-widgets { margin: 2px; box-sizing: border-box; color: black; overflow: visible; }
-.widget-box { box-sizing: border-box; display: flex; margin: 0; overflow: auto; }
-.widget-vbox { flex-direction: column; }
-.widget-inline-hbox { box-sizing: border-box; display: flex; flex-direction: row; align-items: baseline; }
-.widget-inline-hbox > * { flex-shrink: 0; }
-.widget-html-content { align-self: stretch; flex-grow: 1; flex-shrink: 1; line-height: 28px; }
-.widget-slider { height: 28px; line-height: 28px; width: 300px; align-items: center; }
-.slider-container { flex: 1 1 148px; height: 28px; }
-.jupyter-button { padding: 0 10px; border: 0; overflow: hidden; text-overflow: ellipsis; white-space: nowrap; }
-.jupyter-widgets-disconnected::before { content: "x"; display: inline-block; font: 900 14px/1 serif; padding: 3px; }
-"""
 # How much of a canvas is drawn on; the picture of the numbers on an axis; how many pixels are light, and how many dark.
 PIXELS = "c.getContext('2d').getImageData(0, 0, c.width, c.height).data"
 INKED = f"c => new Uint32Array({PIXELS}.buffer).filter((pixel) => pixel).length"
@@ -77,23 +61,6 @@ SHADES = f"""() => {{
   }}
   return [light, dark];
 }}"""
-
-
-def knobs_page(labels: Sequence[str], width_px: int) -> str:
-    """The knobs as ipywidgets puts them, all changed, in a box of a width."""
-    box = "jupyter-widgets widget-container widget-box"
-    line = "jupyter-widgets widget-inline-hbox"
-    knobs = "".join(
-        f'<div class="{box} widget-vbox thermicon-knob"><div class="{line} widget-html">'
-        f'<div class="widget-html-content"><span class="changed">{label}</span></div></div>'
-        f'<div class="{line} widget-slider" style="width: auto"><div class="slider-container"></div>'
-        '<div class="widget-readout">10.5</div></div></div>'
-        for label in labels
-    )
-    button = "jupyter-widgets jupyter-button widget-button thermicon-reset"
-    reset = f'<button class="{button}" style="width: 68px; height: 26px; margin: 0">Reset</button>'
-    inner = f'<div class="{box} thermicon-knobs">{knobs}{reset}</div>'
-    return f'<div class="{box} widget-vbox thermicon" style="width: {width_px}px; font: 13px sans-serif">{inner}</div>'
 
 
 def packed(values: Any) -> str:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Callable
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -38,8 +36,6 @@ def told(found: list[dict[str, Any]]) -> str:
 def test_no_view_of_the_page_has_a_serious_finding(
     page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path], scheme: Any
 ) -> None:
-    with resources.as_file(resources.files("thermicon.notebooks") / "workbench.ipynb") as shipped:
-        shutil.copy(shipped, tmp_path / "workbench.ipynb")
     page.emulate_media(color_scheme=scheme)
     page.goto(serve_page(tmp_path).url)
     wait_until_drawn(page)

@@ -75,12 +75,9 @@ def test_words_numbers_and_units_are_coloured(drawn: Bench) -> None:
         ["tm-number", "3"],
         ["tm-unit", "°C/s"],
     ]
-
-
-def test_lines_are_as_far_apart_as_the_font_asks(drawn: Bench) -> None:
     pitch = "e => [e.getBoundingClientRect().height, parseFloat(getComputedStyle(e).fontSize)]"
-    height, font = drawn.page.locator(".cm-line >> nth=3").evaluate(pitch)
-    assert 1.35 < height / font < 1.6
+    height, font = line.evaluate(pitch)
+    assert 1.35 < height / font < 1.6, "lines are as far apart as the font asks"
 
 
 def test_an_error_is_marked_and_named_with_its_cure(drawn: Bench) -> None:
@@ -168,13 +165,10 @@ def test_brackets_close_and_the_text_can_be_searched(drawn: Bench) -> None:
     page.wait_for_function("document.querySelectorAll('.cm-searchMatch').length === 2")
     page.keyboard.press("Escape")
     page.locator(".cm-search").wait_for(state="detached")
-
-
-def test_enter_keeps_the_indentation(drawn: Bench) -> None:
     drawn.set_caret(17)
-    drawn.page.keyboard.press("Enter")
-    drawn.page.keyboard.type("rest")
-    assert drawn.text.startswith("cue 1\n\nicon dip {\n  rest\n  cool")
+    page.keyboard.press("Enter")
+    page.keyboard.type("rest")
+    assert drawn.text.startswith("cue 1\n\nicon dip {\n  rest\n  cool"), "the indentation is kept"
 
 
 def test_a_drag_sends_the_newest_place_and_ends_once(drawn: Bench) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 import pytest
 
-from tests.browser.staticpage import IPYWIDGETS, OWN_URL, SHADES, TEXT, WORKBENCH, Bench, design, knobs_page, open_bench
+from tests.browser.staticpage import OWN_URL, SHADES, TEXT, Bench, design, open_bench
 
 
 @pytest.fixture
@@ -52,35 +52,6 @@ def test_a_page_of_another_machine_never_opens_the_direct_line(page: Any, made: 
     made.show()
     page.evaluate("deliver({ type: 'line', port: 9, token: 'secret', sliders: {} }, [])")
     assert page.evaluate("window.opened ?? false") is False
-
-
-@pytest.mark.parametrize("inside", [814, 952, 1094])
-def test_a_changed_knob_is_read_in_full_and_a_lost_kernel_moves_nothing(page: Any, inside: int) -> None:
-    said = (
-        "contact resistance (×) · rig 1 ×",
-        "contact area (cm²) · rig 9 cm²",
-        "rest temperature (°C) · rig 32 °C",
-        "site · rig hand-dorsum",
-        "age (years) · rig 25 years",
-        "current limit (A) · rig 1.5 A",
-    )
-    page.set_content(f"<style>{IPYWIDGETS}{WORKBENCH}</style>" + knobs_page(said, inside))
-    cut = """all => all.filter((label) => {
-      const span = label.querySelector("span").getBoundingClientRect(), box = label.getBoundingClientRect();
-      return span.width > box.width + 0.5 || span.top < box.top - 1 || span.bottom > box.bottom + 1;
-    }).map((label) => label.textContent)"""
-    assert page.locator(".thermicon-knob .widget-html").evaluate_all(cut) == []
-    reset, knobs = page.locator(".thermicon-reset"), page.locator(".thermicon-knobs")
-    assert reset.evaluate("e => e.scrollWidth <= e.clientWidth")
-    places = "all => all.map((e) => JSON.stringify(e.getBoundingClientRect()))"
-    before = page.locator(".jupyter-widgets").evaluate_all(places)
-    around = knobs.bounding_box()
-    at = reset.bounding_box()
-    for axis, size in (("x", "width"), ("y", "height")):
-        assert at[axis] + at[size] <= around[axis] + around[size] + 0.5
-    lose = "all => all.forEach((e) => e.classList.add('jupyter-widgets-disconnected'))"
-    page.locator(".jupyter-widgets").evaluate_all(lose)
-    assert page.locator(".jupyter-widgets").evaluate_all(places) == before
 
 
 def test_themes_change_the_colours_that_are_drawn(page: Any, made: Bench) -> None:

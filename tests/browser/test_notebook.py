@@ -13,10 +13,8 @@ from tests.browser.jupyter import (
     errors_in,
     make_notebook,
     open_notebook,
-    restart_kernel,
     run_all,
     save,
-    set_cell,
 )
 
 MOST_SAVED = 300_000
@@ -39,21 +37,6 @@ def test_the_first_notebook_runs_and_shows_its_pictures(page: Page, lab: Server,
     saved = lab.folder / "01_first_icon.ipynb"
     assert saved.stat().st_size < MOST_SAVED
     assert any(cell.get("outputs") for cell in nbformat.read(saved, as_version=4).cells)
-
-
-def test_a_mistake_in_a_cue_cell_is_told_and_the_kernel_can_be_restarted(page: Page, lab: Server) -> None:
-    right = "%%cue\nicon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }"
-    make_notebook(lab.folder / "slip.ipynb", "%load_ext thermicon.notebooks", right.replace("3 °C", "3", 1))
-    notebook = open_notebook(page, lab, "slip.ipynb")
-    run_all(page)
-    told = errors_in(page)
-    assert len(told) == 1
-    assert "E102 missing unit" in told[0]
-    restart_kernel(page)
-    set_cell(page, 1, right)
-    run_all(page)
-    assert errors_in(page) == []
-    assert notebook.locator(".jp-OutputArea-output svg").count() == 1
 
 
 def test_a_notebook_is_served_as_a_page(

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
-from importlib import resources
 from pathlib import Path
 
-import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import Server
 from tests.browser.onbench import (
-    SETTLES_MS,
     TWO,
     click_a_confusion,
     expect_text,
-    open_tab,
     root,
     type_below_the_first_screen,
     type_drag_and_err,
@@ -25,38 +20,29 @@ from tests.browser.onbench import (
     write_drives,
 )
 
+Serve = Callable[..., Server]
 
-def open_page(page: Page, serve_page: Callable[[Path], Server], tmp_path: Path) -> None:
-    notebook = tmp_path / "workbench.ipynb"
-    with resources.as_file(resources.files("thermicon.notebooks") / "workbench.ipynb") as shipped:
-        shutil.copy(shipped, notebook)
-    page.goto(serve_page(tmp_path).url)
+
+def open_page(page: Page, serve_page: Serve, place: Path) -> None:
+    page.goto(serve_page(place).url)
     wait_until_drawn(page)
     expect(root(page)).to_have_attribute("data-icon", "cooling-step")
 
 
-def test_the_page_starts_and_shows_the_curve_of_what_is_typed(
-    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path
-) -> None:
+def test_the_page_starts_and_shows_the_curve_of_what_is_typed(page: Page, serve_page: Serve, tmp_path: Path) -> None:
     open_page(page, serve_page, tmp_path)
     type_drag_and_err(page)
-
-
-@pytest.mark.parametrize("width", [1280, 900])
-def test_text_below_the_first_screen_can_be_edited(
-    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, width: int
-) -> None:
-    page.set_viewport_size({"width": width, "height": 800})
-    open_page(page, serve_page, tmp_path)
-    type_below_the_first_screen(page)
 
 
 def test_the_page_designs_compares_and_exports(
-    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path]
+    page: Page, serve_page: Serve, tmp_path: Path, shot: Callable[[str], Path]
 ) -> None:
+    page.set_viewport_size({"width": 900, "height": 800})
     open_page(page, serve_page, tmp_path)
+    type_below_the_first_screen(page)
+    page.set_viewport_size({"width": 1280, "height": 800})
     shot("page-design")
-    type_drag_and_err(page)
+    type_text(page, TWO)
     click_a_confusion(page)
     shot("page-set")
     write_drives(page, tmp_path / "drives")
@@ -65,11 +51,11 @@ def test_the_page_designs_compares_and_exports(
 
 
 def test_unsaved_text_of_a_closed_tab_is_offered_and_saved_to_its_file(
-    page: Page, serve_file: Callable[[Path, str], Server], tmp_path: Path
+    page: Page, serve_page: Serve, tmp_path: Path
 ) -> None:
     file = tmp_path / "alerts.cue"
     file.write_text(TWO, encoding="utf-8")
-    server = serve_file(file, "fingertip")
+    server = serve_page(file, "--rig", "fingertip")
     page.goto(server.url)
     wait_until_drawn(page)
     expect(page.locator(".thermicon-file")).to_have_text("alerts.cue")
@@ -91,41 +77,3 @@ def test_unsaved_text_of_a_closed_tab_is_offered_and_saved_to_its_file(
     expect(again.locator(".thermicon-project")).to_contain_text("saved alerts.cue")
     assert file.read_text(encoding="utf-8") == typed
     assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]
-
-
-def test_a_goal_a_version_and_a_log_on_the_page(
-    page: Page, serve_file: Callable[[Path, str], Server], tmp_path: Path, shot: Callable[[str], Path]
-) -> None:
-    file, log = tmp_path / "alerts.cue", tmp_path / "rig.csv"
-    file.write_text(TWO, encoding="utf-8")
-    rows = (f"{k / 10:.1f},{32 + min(4.0, 0.2 * k) * (k < 50):.2f}" for k in range(120))
-    log.write_text("time_s,display_C\n" + "\n".join(rows) + "\n", encoding="utf-8")
-    page.goto(serve_file(file, "thenar").url)
-    wait_until_drawn(page)
-    open_tab(page, "Versions")
-    page.get_by_role("button", name="Keep this version").click()
-    open_tab(page, "Design")
-    type_text(page, TWO.replace("3.6 °C", "6 °C"))
-    page.get_by_role("button", name="Log", exact=True).click()
-    with page.expect_file_chooser() as chooser:
-        page.locator(".thermicon-panel").get_by_role("button", name="Upload").click()
-    chooser.value.set_files(log)
-    expect(page.locator(".tm-measured")).to_contain_text("rig.csv: display rms")
-    expect(page.locator('.tm-entry[data-series="measured display_C"]')).to_be_visible()
-    page.get_by_role("button", name="Log", exact=True).click()
-    shot("page-measured")
-    open_tab(page, "Set")
-    page.get_by_label("goal").fill("correct >= 90 % for")
-    page.get_by_label("goal").press("Enter")
-    expect(page.locator(".thermicon-goal")).to_contain_text("it ends too early")
-    page.get_by_label("goal").fill("count 3, time <= 2 s")
-    page.get_by_label("goal").press("Enter")
-    expect(page.locator(".thermicon-goal")).to_contain_text("goal not met", timeout=SETTLES_MS)
-    expect(page.locator(".thermicon-goal")).to_contain_text("s over; ")
-    open_tab(page, "Versions")
-    versions = page.locator(".thermicon-versions")
-    expect(versions.locator(".changes")).to_contain_text("+ icon nearer { warm by 6 °C", use_inner_text=True)
-    shot("page-versions")
-    page.get_by_label("kept").focus()
-    page.get_by_role("button", name="Restore", exact=True).click()
-    expect_text(page, TWO)

@@ -4,14 +4,10 @@ import subprocess
 import sys
 
 from matplotlib.colors import to_rgb
-from matplotlib.figure import Figure
 
 import thermicon.icons
-from thermicon.icons import Icon, load_library
-from thermicon.icons.model.context import Context
-from thermicon.icons.model.statements import Hold
+from thermicon.icons import load_library
 from thermicon.icons.pictures.curve_style import COOL, STAY, WARM
-from thermicon.icons.pictures.draw import plot_icon
 
 
 def test_all_names_exist() -> None:
@@ -54,12 +50,6 @@ def test_cool_and_warm_differ_in_grey() -> None:
     grey = [0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in map(to_rgb, (COOL, WARM, STAY))]
     assert grey[1] - grey[0] > 0.25
     assert grey[1] - grey[2] > 0.25
-
-
-def test_a_plot_draws_on_the_axes_it_is_given() -> None:
-    ax = Figure().add_subplot()
-    assert plot_icon(load_library("wave-shapes")["sine"], ax) is ax
-    assert Icon("x", (Hold(1),), Context("current")).plot().get_ylabel() == "current (A)"
 
 
 def test_pictures_for_notebooks() -> None:

@@ -251,7 +251,7 @@ class TestSetpoints:
         found = deliver(load_library("six-icons")["cooling-step"], RIG, self.THERMODE)
         late = found.trace.display_C[150:200] - found.designed_trace.display_C[150:200]
         assert late == pytest.approx(3.0 * 0.21, rel=1e-3)
-        assert found.deviation.losses() == ()
+        assert found.deviation.lost == ()
         assert found.outcome is not None
         assert found.outcome.reached
 

@@ -88,7 +88,7 @@ def test_a_device_of_ones_own(tmp_path: Path) -> None:
             r"driven_by = 'watts': must be 'volts', 'amperes', 'duty', 'set-points' or 'temperatures'",
         ),
         (('"data sheet"', '" "'), r"record\.1 \(resolution\): the record has no source: add source"),
-        (("value = 12", 'value = "12"'), r"record\.1\.value = '12': must be a finite number without quotes or unit"),
+        (("value = 12", 'value = "12"'), r"record\.1\.value = '12': must be a number, without quotes"),
         (("value = 12", "bits = 12"), r"record\.1\.bits: unknown key; known: "),
         (("value = 12", "value = 1"), r"record\.1 \(resolution\): value = 1 bit: must be 2 to 32 bit"),
         (('unit = "Hz"', 'unit = "kHz"'), r"record\.2 \(update rate\): unit = 'kHz': must be Hz"),

@@ -11,6 +11,7 @@ from thermicon.circuit.delivery.delivery_deviation import (
     loss_table,
 )
 from thermicon.circuit.delivery.formats.form import events_of
+from thermicon.circuit.delivery.refusal import lost_text
 from thermicon.icons import load_library
 from thermicon.icons.model.corners import Corners
 
@@ -45,7 +46,7 @@ def test_losses_are_records_with_a_source() -> None:
 
 def test_a_loss_is_told_with_its_limit() -> None:
     apart = DeliveryDeviation((Deviation("skin", 0.3, 1.0, 0.2), Deviation("cold receptor", 0.1, 1.0, 0.0612)))
-    assert apart.losses() == ("the cold receptor differs by 0.061 K (rms) from the design, over the stated 0.05 K",)
+    assert lost_text(apart) == "the cold receptor differs by 0.061 K (rms) from the design, over the stated 0.05 K"
     assert repr(apart) == "DeliveryDeviation(skin +300 mK (rms 200), cold receptor +100 mK (rms 61.2))"
 
 

@@ -52,7 +52,7 @@ class TestDeliveredDrive:
         assert found.trace.has_current
         assert np.abs(found.trace.display_C - found.designed_trace.display_C).max() < 0.05
         assert found.trace.current_A.max() <= RIG.driver.current_max_A
-        assert found.deviation.losses() == ()
+        assert found.deviation.lost == ()
         again = simulate_current(found.delivered, RIG)
         assert again.skin_C == pytest.approx(found.trace.skin_C, abs=1e-9)
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device
-from thermicon.circuit.delivery.setpoints import Setpoints
-from thermicon.circuit.delivery.thermode import display_of, lag_of
+from thermicon.circuit.delivery.setpoints import Setpoints, display_of, lag_of
 from thermicon.circuit.solver.prescribed import shown
 
 TCS = Device.load("qst-tcs2")

@@ -14,17 +14,12 @@ def errors_of(text: str | bytes) -> tuple[CueError, ...]:
 
 
 @pytest.mark.parametrize("mistake", ALL, ids=lambda mistake: f"{mistake.code}-{mistake.words[:20]}")
-def test_a_mistake_is_told(mistake: Mistake) -> None:
+def test_a_mistake_is_told_and_a_suggestion_cures_its_line(mistake: Mistake) -> None:
     (error,) = errors_of(mistake.source)
     assert (error.code, error.line, error.column) == (mistake.code, mistake.line, mistake.column)
     assert mistake.words in error.render()
     if mistake.suggestion is not None:
         assert (error.suggestion or "") == mistake.suggestion
-
-
-@pytest.mark.parametrize("mistake", ALL, ids=lambda mistake: f"{mistake.code}-{mistake.words[:20]}")
-def test_a_suggestion_cures_its_line(mistake: Mistake) -> None:
-    (error,) = errors_of(mistake.source)
     if error.suggestion is None:
         return
     lines = mistake.source.split("\n")

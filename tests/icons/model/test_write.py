@@ -1,6 +1,4 @@
-"""Statements built in Python are those that the text gives, and mistakes are told in the caller's own words."""
-
-from collections.abc import Callable
+"""Statements built in Python are those that the text gives, in °C and in A."""
 
 import numpy as np
 import pytest
@@ -49,16 +47,6 @@ def read(line: str, settings: str = "") -> Statement:
         (wave("triangle", by=3, every=4, duration=8), "triangle by 3 °C every 4 s for 8 s"),
         (wave("sawtooth", by=3, every=4, duration=8, starting="warm"), "sawtooth by 3 °C every 4 s for 8 s"),
         (repeat(3, hold(1), pulse(by=2, duration=1)), "repeat 3 { hold for 1 s; pulse by 2 °C for 1 s }"),
-    ],
-    ids=repr,
-)
-def test_a_builder_gives_what_the_text_gives(made: Statement, line: str) -> None:
-    assert made == read(line)
-
-
-@pytest.mark.parametrize(
-    ("made", "line"),
-    [
         (current(to=0.5, at=1), "to 0.5 A at 1 A/s"),
         (current(to=-0.5, over=2), "to -500 mA over 2 s"),
         (step(by_A=-0.5), "step by -0.5 A"),
@@ -68,8 +56,8 @@ def test_a_builder_gives_what_the_text_gives(made: Statement, line: str) -> None
     ],
     ids=repr,
 )
-def test_amperes(made: Statement, line: str) -> None:
-    assert made == read(line, "control current")
+def test_a_builder_gives_what_the_text_gives(made: Statement, line: str) -> None:
+    assert made == read(line, "control current" if " A " in f"{line} " or "mA" in line else "")
 
 
 def test_an_icon_of_builders_is_the_icon_of_the_text() -> None:
@@ -89,24 +77,3 @@ def test_numbers_of_any_kind_become_floats() -> None:
         assert hold(value) == hold(2.0)  # type: ignore[arg-type]
         assert type(hold(value).duration_s) is float  # type: ignore[arg-type]
     assert repeat(np.int64(3), hold(1)).count == 3  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: cool(at=3), "Ramp needs either by_K or to_C"),
-        (lambda: ramp(by=0, at=3), "Ramp.by_K = 0.0: a change must not be zero"),
-        (lambda: current(to=None, at=1), "Current.to_A must be a number, not None"),
-        (lambda: hold("4 s"), "Hold.duration_s must be a number, not '4 s'"),
-        (lambda: back(), "Return needs either rate_per_s or duration_s"),
-        (lambda: step(by=1, to=2, by_A=3), "Step needs either by_K or to_C or by_A or to_A"),
-        (lambda: wave("sine", by_A=-3, every=4, duration=4), 'an amplitude is positive; .*start "down"'),
-        (lambda: repeat(3), "Repeat.body must hold at least one statement"),
-        (lambda: repeat("3", hold(1)), "Repeat.count must be a whole number from 1 to .*, not '3'"),
-        (lambda: repeat(3, [hold(1)]), "Repeat.body must hold .* nothing else"),
-        (lambda: play("dip"), "Play.icon must be an Icon, not 'dip'"),
-    ],
-)
-def test_a_mistake_names_the_field_of_the_statement(make: Callable[[], object], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        make()

@@ -14,7 +14,6 @@ from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.corners import Corners
 from thermicon.icons.model.statements import Hold
 from thermicon.icons.pictures.curve_style import COOL, STAY, WARM, chosen, directions, envelope, evenly, ticks
-from thermicon.icons.pictures.draw import plot_icon, plot_icons
 from thermicon.icons.pictures.picture import picture, thumbnail
 
 SIX = load_library("six-icons")
@@ -227,6 +226,7 @@ def test_a_set_plots_with_names_and_its_title() -> None:
         "Six thermal icons after Singhal and Jones",
         "display temperature (°C)",
     )
+    assert CURRENT.plot().get_ylabel() == "current (A)"
     assert HUGE.plot().get_title() == "1,000 icons (24 of 1,000 drawn)"
 
 
@@ -243,18 +243,8 @@ def test_dollars_in_titles_are_no_formula() -> None:
     assert ax.get_title() == "costs $1 and ${"
 
 
-def test_what_cannot_share_axes_is_refused() -> None:
-    with pytest.raises(ValueError, match="there are no icons to draw"):
-        plot_icons([])
-    with pytest.raises(ValueError, match=r"control current are in A, the others in °C: draw them on separate axes"):
-        plot_icons([CURRENT["drive"], SIX["cooling-step"]])
-    mixed = plot_icons([Icon("a", (Hold(1),), Context("skin")), Icon("b", (Hold(1),), Context("display"))])
-    assert mixed.get_ylabel() == "temperature (°C)"
-    assert plot_icons([CURRENT["drive"]]).get_ylabel() == "current (A)"
-
-
 def test_steps_are_thinner_than_ramps_in_a_plot() -> None:
-    (lines,) = plot_icon(SHAPES["step"]).collections
+    (lines,) = SHAPES["step"].plot().collections
     assert list(lines.get_linewidths()) == [1.5, 2.5, 1.5, 2.5]
     assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM, STAY)]
 

@@ -1,6 +1,5 @@
 """Corners of recordings: those that were there are found again, with few of them, and the tolerance is kept."""
 
-import math
 from itertools import pairwise
 
 import numpy as np
@@ -186,27 +185,3 @@ def test_the_scatter_of_readings_is_told_from_their_course() -> None:
     time = np.arange(20_000) / 1000
     readings = 32 + 3 * np.sin(time) + np.random.default_rng(0).normal(0, 0.03, len(time))
     assert noise(readings) == pytest.approx(0.03, rel=0.05)
-
-
-READINGS = [32.0, 31.0]
-
-
-@pytest.mark.parametrize(
-    ("time", "value", "more", "message"),
-    [
-        ([0, 1, 2], READINGS, {}, r"one value is needed for each time; got shapes \(3,\) and \(2,\)"),
-        ([0], [32.0], {}, "1 readings; at least two are needed"),
-        ([0, math.nan], READINGS, {}, "must be finite numbers"),
-        ([1, 0], READINGS, {}, "times must not fall"),
-        ([1, 1], READINGS, {}, "must not all be the same"),
-        ([0, 1, 1, 1], READINGS * 2, {}, "the time 1 s stands more than twice"),
-        ([0, 1], READINGS, {"tolerance": 0.0}, "tolerance must be positive, not 0.0"),
-        ([0, 1], READINGS, {"tolerance": math.inf}, "tolerance must be positive, not inf"),
-        ([0, 1], READINGS, {"start": 32.2}, "start 32.2 is further than the tolerance 0.05 from the first value 32"),
-    ],
-)
-def test_arrays_that_cannot_be_fitted(
-    time: list[float], value: list[float], more: dict[str, float], message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        fit_corners(time, value, **{"tolerance": 0.05, **more})

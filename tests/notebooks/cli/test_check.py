@@ -106,12 +106,3 @@ def test_the_mode_of_a_file_stays_and_a_link_is_followed(cli: Cli, tmp_path: Pat
     assert link.is_symlink()
     assert path.read_text(encoding="utf-8") == TIDY
     assert stat.S_IMODE(path.stat().st_mode) == 0o640
-
-
-def test_a_file_that_cannot_be_written_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path = written(tmp_path / "a.cue", LOOSE)
-    monkeypatch.setattr("os.access", lambda *_: False)
-    said = cli("check", "--fix", path)
-    assert said.exit_code == 1
-    assert f"cannot write {path}" in said.stderr
-    assert path.read_text(encoding="utf-8") == LOOSE

@@ -13,7 +13,7 @@ import pytest
 
 from thermicon.notebooks.figures.compare_figure import compare_figure
 from thermicon.notebooks.figures.differences import align, differences
-from thermicon.notebooks.files.trace_files import Curves, LogError, read_curves
+from thermicon.notebooks.files.trace_files import Curves, LogError
 
 Cli = Callable[..., Any]
 GOOD = "time_s,skin_C\n0,30\n1,31\n2,32\n"
@@ -93,16 +93,6 @@ def test_two_sets_without_a_common_name_are_scored(cli: Cli, two: Path, tmp_path
     assert rows[0][2:6] == rows[1][2:6]
 
 
-@pytest.mark.slow
-def test_sets_on_several_rigs_are_a_table(cli: Cli, two: Path) -> None:
-    said = cli("compare", two, "six-icons", "--rigs", "thenar, fingertip")
-    assert said.exit_code == 0, said.stderr
-    rows = [line.split()[:3] for line in said.stdout.splitlines() if " thenar " in line or " fingertip " in line]
-    assert rows == [
-        [name, rig, n] for name, n in ((two.name, "2"), ("six-icons", "6")) for rig in ("thenar", "fingertip")
-    ]
-
-
 def measured(folder: Path, cli: Cli, two: Path) -> tuple[Path, Path]:
     """A trace, and a log made from it: other times, fewer columns, skin 0.2 K warmer, one reading lost."""
     trace = folder / "trace.csv"
@@ -145,13 +135,6 @@ def test_a_trace_file_with_several_icons_needs_a_name(cli: Cli, two: Path, tmp_p
         said = cli("compare", both, log, *more)
         assert said.exit_code == code
         assert words in " ".join(said.stderr.split())
-
-
-def test_lines_that_end_as_on_an_old_macintosh(cli: Cli, tmp_path: Path) -> None:
-    old, good = tmp_path / "old.csv", tmp_path / "good.csv"
-    old.write_bytes(GOOD.replace("\n", "\r").encode())
-    good.write_text(GOOD, encoding="utf-8")
-    assert cli("compare", old, good).stdout.replace("old.csv", "good.csv") == cli("compare", good, good).stdout
 
 
 def test_a_parquet_file_without_pyarrow(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -208,13 +191,6 @@ def test_what_was_not_measured_is_left_out() -> None:
     assert (row["rows"], row["mean"]) == (2, 1.0)
     with pytest.raises(LogError, match="no column with values in both"):
         align(curves("a", [0, 1], skin_C=[np.nan] * 2), curves("b", [0, 1], skin_C=[1.0] * 2))
-
-
-def test_the_columns_of_further_probes_are_read(tmp_path: Path) -> None:
-    path = tmp_path / "log.csv"
-    path.write_text("time_s, probe_finger_C, room\n0, 30, 1\n1, 31, 1\n\n", encoding="utf-8")
-    found = read_curves(str(path))
-    assert (list(found.columns), found.ignored, found.whole) == (["probe_finger_C"], ("room",), False)
 
 
 def test_the_figure_has_a_panel_of_differences_below_each_of_curves() -> None:

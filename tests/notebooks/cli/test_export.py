@@ -133,14 +133,6 @@ class TestRefused:
         assert "--force exports it" not in said.stderr
         assert not (tmp_path / "out").exists()
 
-    @pytest.mark.slow
-    def test_amber_is_written_with_its_worst_case_as_a_warning(self, cli: Cli, tmp_path: Path) -> None:
-        path = one_icon(tmp_path, "warm", "warm by 7 °C at 3 °C/s; hold for 3 s; return at 3 °C/s", "display")
-        said = cli("export", path, "--to", "csv", "-o", tmp_path / "out")
-        assert said.exit_code == 0, said.stderr
-        assert "safety amber in 195 scenarios" in said.stderr
-        assert re.search(r"warning: warm: skin surface reaches \S+ °C at \S+ s, with .* soft limit", said.stderr)
-
     @pytest.mark.parametrize(
         ("to", "more", "words"),
         [
@@ -165,12 +157,6 @@ class TestRefused:
         assert told["forced"] is True
         assert told["forced_over"][0].startswith(("NOT reached: ", "loses too much"))
         assert told["reached"] is (to != "csv")
-
-    @pytest.mark.slow
-    def test_a_rest_outside_its_own_limit_is_told_at_once(self, cli: Cli, two: Path, tmp_path: Path) -> None:
-        said = cli("export", two, "--to", "csv", "-o", tmp_path / "out", "--set", "safety.skin_lowest_C=35", *SURE)
-        assert said.exit_code == 3
-        assert "warning: the resting skin of 32 °C (skin.rest_C) is itself below the hard limit" in said.stderr
 
 
 @pytest.mark.parametrize(
@@ -235,10 +221,3 @@ def test_the_duties_of_a_bridge_are_not_replayed_and_the_message_says_why(cli: C
     said = cli("simulate", "--current", out / "cool-step.csv", "--hold", "-o", tmp_path / "trace.csv")
     assert said.exit_code == 1
     assert "cool-step.csv:1: these are duties of a bridge" in said.stderr
-
-
-def test_one_of_two_names_that_differ_in_capitals_is_exported(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "names.cue"
-    cue = "{ hold for 1 s }"
-    path.write_text(f"cue 1\nset s {{ control display }}\nicon a-b {cue}\nicon A-B {cue}\n", encoding="utf-8")
-    assert cli("export", path, "--icon", "A-B", "--to", "csv", "-o", tmp_path / "out", *SURE).exit_code == 0

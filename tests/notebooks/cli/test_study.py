@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.surerig import sure_rig
 from tests.notebooks.study.conftest import QUICK, make, write_study
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
@@ -35,7 +36,7 @@ def test_the_folder_has_everything(out: Path) -> None:
     }
     assert "study_questplus.py" not in names
     assert [icon.name for icon in read_cue(out / "icons.cue")] == ["dip", "glow"]
-    assert Rig.load(out / "rig.toml").uncertainty == Rig.load(out / "rig.toml").uncertainty
+    assert Rig.load(out / "rig.toml").uncertainty == sure_rig().uncertainty
     assert (out / "timeline.png").read_bytes().startswith(b"\x89PNG")
 
 
@@ -53,15 +54,12 @@ def test_study_json_states_what_was_derived_and_judged(out: Path) -> None:
     assert "not a medical or ethical clearance" in facts["what_it_is_not"]
 
 
-def test_conditions_name_files_that_are_there(out: Path) -> None:
+def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) -> None:
     for who in "AB":
         with (out / f"sub-{who}_task-quick_conditions.csv").open(newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         assert len(rows) == 10
         assert all((out / row["drive_file"]).is_file() and (out / row["sidecar_file"]).is_file() for row in rows)
-
-
-def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) -> None:
     said = cli("export", "--verify", out)
     assert said.exit_code == 0, said.stderr
     copy = tmp_path / "copy"
@@ -145,21 +143,15 @@ def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli) -> None:
     assert said.exit_code == 1
     assert "out holds a study already and was kept; give another folder with -o" in " ".join(said.stderr.split())
     assert [path.name for path in out.iterdir()] == ["study.json"]
+    (out / "study.json").rename(out / "README.txt")
+    said = cli("study", tmp_path / "study.toml", "-o", out)
+    assert "README.txt already exists and was kept; give another folder with -o" in " ".join(said.stderr.split())
     (out / "data").mkdir()
     (out / "data" / "dataset_description.json").write_text("{}", encoding="utf-8")
     assert "holds a study already" in " ".join(cli("study", tmp_path / "study.toml", "-o", out).stderr.split())
     (out / "data" / "sub-A_task-quick_answers.csv").write_text("participant\n", encoding="utf-8")
     said = cli("study", tmp_path / "study.toml", "-o", out)
     assert "holds the answers of 1 participant (data/) already and was kept" in " ".join(said.stderr.split())
-
-
-def test_one_file_of_a_study_is_kept_too(tmp_path: Path, cli: Cli) -> None:
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "README.txt").write_text("mine", encoding="utf-8")
-    said = cli("study", write_study(tmp_path, QUICK), "-o", out)
-    assert said.exit_code == 1
-    assert "README.txt already exists and was kept; give another folder with -o" in " ".join(said.stderr.split())
 
 
 def test_a_read_only_folder_is_said_before_anything_is_simulated(

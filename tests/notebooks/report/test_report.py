@@ -21,8 +21,8 @@ from thermicon.notebooks.report.blocks import as_html
 from thermicon.notebooks.report.report import LIMITS, SAFETY, report
 from thermicon.notebooks.report.set_report import SetReport
 from thermicon.perception import Ranking, choose, rank
+from thermicon.perception.selection.edit import cheapest_edits
 from thermicon.perception.selection.goal_result import judge_goal
-from thermicon.perception.selection.pair_edits import cheapest_edits
 from thermicon.perception.selection.request import Selection
 
 Cli = Callable[..., Any]

@@ -10,9 +10,8 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import MOST_NAMES, mended, read_text
-from thermicon.notebooks.timeline.event_times import missed_spans
+from thermicon.notebooks.timeline.marks import missed_spans, threshold_change_K
 from thermicon.notebooks.timeline.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
-from thermicon.notebooks.timeline.threshold_band import threshold_change_K
 from thermicon.notebooks.workbench.knobs import aged
 from thermicon.perception import Observer, perceive
 from thermicon.perception.sensation.features import passing_s

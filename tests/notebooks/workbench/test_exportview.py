@@ -21,6 +21,9 @@ TWO = """cue 1
 icon dip { cool by 3 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }
 icon glow { warm by 3 °C at 1 °C/s; hold for 1 s; return at 1 °C/s }
 """
+HOT = "cue 1; icon hot { warm by 14 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }"
+STEEP = "cue 1; icon cold { cool by 8 °C at 9 °C/s; hold for 1 s; return at 1 °C/s }"
+FAR = "cue 1; icon cold { cool by 31 °C at 1 °C/s; return at 1 °C/s }"
 
 
 class Bench:
@@ -55,27 +58,18 @@ def test_a_drive_is_prepared_judged_and_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_detection_is_that_of_the_ranking_and_says_whose_it_is(tmp_path: Path) -> None:
+def test_all_icons_are_written_with_the_detection_of_the_ranking_and_kept_unless_overwritten(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
     bench.view.which.value = "all"
     bench.wait()
     ranking = rank(parse(TWO), sure_rig(), people=200, parameters=0)
     assert "detected by 200 virtual people" in bench.said("delivered")
     bench.view.button.click()
-    for score in ranking.icons:
-        sidecar = json.loads((tmp_path / f"{score.name}.json").read_text(encoding="utf-8"))
-        assert sidecar["perception"]["detected_by"] == "200 virtual people"
-        designed = sidecar["perception"]["detected_probability"]["designed"]
-        assert designed == pytest.approx(score.detected_probability, abs=1e-6)
-
-
-@pytest.mark.slow
-def test_all_icons_and_what_is_there_is_kept(tmp_path: Path) -> None:
-    bench = Bench(tmp_path)
-    bench.view.which.value = "all"
-    bench.wait()
-    bench.view.button.click()
     assert len(list(tmp_path.iterdir())) == 4
+    for score in ranking.icons:
+        felt = json.loads((tmp_path / f"{score.name}.json").read_text(encoding="utf-8"))["perception"]
+        assert felt["detected_by"] == "200 virtual people"
+        assert felt["detected_probability"]["designed"] == pytest.approx(score.detected_probability, abs=1e-6)
     bench.view.button.click()
     assert "nothing was written" in bench.said("written")
     assert "tick overwrite" in bench.said("written")
@@ -86,11 +80,11 @@ def test_all_icons_and_what_is_there_is_kept(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_what_is_not_safe_is_never_written(tmp_path: Path) -> None:
-    bench = Bench(tmp_path, "cue 1; icon hot { warm by 14 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }")
-    assert bench.view.button.disabled
+    bench = Bench(tmp_path, HOT)
+    for insist in (False, True):
+        bench.view.insist.value = insist
+        assert bench.view.button.disabled
     assert "unsafe icons are never written" in bench.said("status")
-    bench.view.insist.value = True
-    assert bench.view.button.disabled
     assert "NOT SAFE" in bench.said("delivered")
     assert "safety red" in bench.said("gate")
     assert bench.view.ready is not None
@@ -99,24 +93,30 @@ def test_what_is_not_safe_is_never_written(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_is_not_reached_is_written_only_on_request(tmp_path: Path) -> None:
-    bench = Bench(tmp_path, "cue 1; icon cold { cool by 8 °C at 9 °C/s; hold for 1 s; return at 1 °C/s }")
-    assert bench.view.button.disabled
-    assert "only if you tick the box" in bench.said("status")
-    bench.view.insist.value = True
-    assert not bench.view.button.disabled
-    bench.view.button.click()
-    assert (tmp_path / "cold.csv").exists()
+def test_what_is_not_reached_is_written_only_on_request_and_not_into_a_file(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    for folder, said in ((tmp_path / "file", "it is a file"), (tmp_path / "drives", "wrote 1 drive")):
+        bench = Bench(folder, STEEP)
+        assert bench.view.button.disabled
+        assert "only if you tick the box" in bench.said("status")
+        bench.view.insist.value = True
+        bench.view.button.click()
+        assert said in bench.said("written")
+    assert (tmp_path / "drives" / "cold.csv").exists()
 
 
 @pytest.mark.slow
-def test_a_device_offers_the_formats_that_it_takes(tmp_path: Path) -> None:
+def test_a_device_offers_the_formats_that_it_takes_and_says_what_it_cannot_play(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
     bench.view.device.value = "qst-tcs2"
     assert [name for _, name in bench.view.form.options] == ["tcs2-serial", "tcs2-protocol-ini", "psychopy"]
     bench.wait()
     assert bench.view.ready is not None
     assert bench.view.ready.device.name == "qst-tcs2"
+    bench.design.receive({"type": "text", "text": FAR})
+    bench.wait()
+    assert bench.view.button.disabled
+    assert "qst-tcs2" in bench.said("status") or "refused" in bench.said("status")
 
 
 def test_a_text_with_errors_is_not_exported(tmp_path: Path) -> None:
@@ -129,22 +129,6 @@ def test_a_text_with_errors_is_not_exported(tmp_path: Path) -> None:
     bench.design.receive({"type": "text", "text": TWO})
     bench.wait()
     assert not bench.view.button.disabled
-
-
-def test_a_folder_that_cannot_be_is_said(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("x", encoding="utf-8")
-    bench = Bench(tmp_path / "file")
-    bench.view.button.click()
-    assert "it is a file" in bench.said("written")
-
-
-@pytest.mark.slow
-def test_a_device_that_cannot_play_it_is_said(tmp_path: Path) -> None:
-    bench = Bench(tmp_path, "cue 1; icon cold { cool by 31 °C at 1 °C/s; return at 1 °C/s }")
-    bench.view.device.value = "qst-tcs2"
-    bench.wait()
-    assert bench.view.button.disabled
-    assert "qst-tcs2" in bench.said("status") or "refused" in bench.said("status")
 
 
 def test_preparing_tells_how_far_it_is() -> None:

@@ -12,8 +12,8 @@ from tests.builders import few_draws, missing
 from tests.notebooks.workbench.openbench import SAID
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.notebooks.editing.apply_edit import with_edit
 from thermicon.notebooks.editing.icon_edits import CannotEdit, only
+from thermicon.notebooks.editing.number_literals import with_edit
 from thermicon.notebooks.report.rank_text import number_lines
 from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
@@ -259,16 +259,11 @@ def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
     assert done[-1] == "newest"
 
 
-def test_an_edit_keeps_all_that_is_not_edited() -> None:
-    icon = parse(TWO)["near"]
-    by = numbers_of(icon, 32.0)[0]
-    edited = with_edit(TWO, with_number(icon, by, 4.3), "old", "new")
-    assert edited == TWO.replace("by 4 °C", "by 4.3 °C")
-
-
 @pytest.mark.parametrize("name", ["near", "nearer"])
-def test_a_repeat_is_put_around_what_moves(name: str) -> None:
+def test_an_edit_keeps_all_that_is_not_edited_and_a_repeat_is_put_around_what_moves(name: str) -> None:
     icon = parse(TWO)[name]
+    longer = with_number(icon, numbers_of(icon, 32.0)[0], 4.3)
+    assert with_edit(TWO, longer, "old", "new") == TWO.replace(f"by {'4' if name == 'near' else '3.6'} °C", "by 4.3 °C")
     edited = with_edit(TWO, repeated(icon, 2), "its 3 statements", "repeat 2 { its 3 statements }")
     assert parse(edited)[name].statements == repeated(icon, 2).statements
     assert "# as far as is pleasant" in edited

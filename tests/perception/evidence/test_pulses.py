@@ -13,7 +13,7 @@ from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.icons import IconSet, load_library, read_cue
 from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
-from thermicon.perception import choose, dprime_from_memory, perceive, rank
+from thermicon.perception import Observer, choose, dprime_from_memory, perceive, rank
 from thermicon.perception.arrays import Array
 from thermicon.perception.evidence.identified import CUES, RIG
 from thermicon.perception.identification.carry_over import carry_over
@@ -22,7 +22,7 @@ from thermicon.perception.identification.delivered import judge_delivered
 from thermicon.perception.identification.episodes import EpisodesError
 from thermicon.perception.observer.people import draw_people
 from thermicon.perception.selection.appraise import population_dprime
-from thermicon.perception.selection.nominal import dprimes, sense
+from thermicon.perception.selection.pool import Pool
 from thermicon.perception.selection.request import Selection
 
 HEAD = "cue 1\nset pulses { site thenar; control skin; baseline 32 °C }\n"
@@ -126,11 +126,12 @@ def test_it_is_named_wherever_it_is_met() -> None:
     rig = Rig.load(RIG)
     icons = list(parse(HEAD.replace("control skin", "control display").replace("thenar", "forearm") + LONG + PLAIN))[:2]
     traces = simulate_all(icons, rig, end_s=75.0)
+    pools = [Pool.of(some, rig, Observer.load(), end_s=75.0) for some in (icons[:1], icons[1:])]
     for met in (
         lambda: dprime_from_memory(*map(perceive, traces)),
         lambda: carry_over(icons, rig, 75.0, 3.0),
         lambda: judge_delivered(["long", "other"], traces, traces),
-        lambda: dprimes(sense(icons[:1], rig, 75.0), sense(icons[1:], rig, 75.0), "episodes"),
+        lambda: pools[0].dprimes(pools[1], "episodes", Observer.load()),
     ):
         with pytest.raises(EpisodesError, match=r"^long: felt as"):
             met()

@@ -9,7 +9,7 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, perceive
-from thermicon.perception.identification.from_memory import dprime_from_memory
+from thermicon.perception.identification.episodes import dprime_from_memory
 from thermicon.perception.ranking.distance_components import COMPONENTS, DistanceComponent, distance_components
 
 Cue = Callable[..., Any]

@@ -5,8 +5,8 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import parse
 from thermicon.perception import Observer, perceive
-from thermicon.perception.ranking.rule_score import counted, icon_score, pair_margin
 from thermicon.perception.ranking.rules import icon_rules, pair_rules
+from thermicon.perception.ranking.scores import counted, icon_score, pair_margin
 
 
 def test_a_score_is_the_share_passed_without_those_of_the_model(cue: Any, observer: Observer) -> None:

@@ -6,8 +6,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Goal, choose, rank
-from thermicon.perception.selection.goal_result import judge_goal
-from thermicon.perception.selection.outcome import SetOutcome
+from thermicon.perception.selection.goal_result import SetOutcome, judge_goal
 from thermicon.perception.selection.request import Selection
 
 OUTCOME = SetOutcome(

@@ -8,9 +8,8 @@ import pytest
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.measures import information_bits, proportion_correct
 from thermicon.perception.selection.max_min_subset import Limits
-from thermicon.perception.selection.pick import pick
+from thermicon.perception.selection.pick import pair_losses, pick, upper_bound
 from thermicon.perception.selection.subset_identification import Objective, SubsetIdentification
-from thermicon.perception.selection.upper_bounds import pair_losses, upper_bound
 
 OBJECTIVES: tuple[Objective, ...] = ("correct", "bits", "bits-per-s")
 

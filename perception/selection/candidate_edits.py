@@ -1,0 +1,214 @@
+"""Edits of a pair that separate it for the nominal person: how they are made, screened and bisected."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..identification.run_end import run_end_s
+from ..observer.observer import Norm, Observer
+from ..ranking.assemble import objection
+from .icon_numbers import Number, line_of, numbers_of, repeated, with_number
+from .pool import RATE_HZ, Pool
+
+if TYPE_CHECKING:
+    from thermicon.icons import Icon
+
+PER_SECOND = 0.1
+TOLERANCE = 0.1
+FAR = 2.0
+"""A pair that falls by more than 0.1 d′ is made worse, unless it stays beyond twice the wanted d′."""
+GRID = 6
+ROUNDS = 4
+"""Changes that every number is tried with in each direction, and how often the interval that is left is halved."""
+DEARER = 1.5
+"""Numbers whose change must be more than so many times the smallest one that is enough are not followed."""
+REPEATS = (2, 3)
+MOST_LONGER_S = 30.0
+"""By more than this no edit makes an icon longer."""
+
+Way = tuple[int, Number, bool]
+"""Which icon, which of its numbers, and whether it becomes larger."""
+
+
+@dataclass(frozen=True, slots=True)
+class CandidateEdit:
+    """An edit that is looked at: which icon, its line before and after, what it costs, and how much longer it is, s.
+
+    `way` is the place of its number in the list of ways, None for a repeat, and `step` which of its trials this is;
+    `apart` (icons,) is its d′ to the icons as they are, once it was felt.
+    """
+
+    place: int
+    icon: Icon
+    old: str
+    new: str
+    cost: float
+    added_s: float
+    way: int | None
+    step: int
+    apart: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Screening:
+    """The set as the nominal person feels it, with d′ (icons, icons), and the pair that is to be separated."""
+
+    kept: Pool
+    now: Array
+    pair: tuple[int, int]
+    wanted: float
+    norm: Norm
+    observer: Observer
+
+
+@dataclass(slots=True)
+class Vain:
+    """What was tried in vain: the largest d′ of a playable icon that is too small, and whether others were harmed."""
+
+    closest: float = 0.0
+    opposed: bool = False
+
+
+def worse(before: Array, after: Array, wanted: float) -> NDArray[np.bool_]:
+    """Which pairs an edit makes worse."""
+    return (after < before - TOLERANCE) & (after < FAR * wanted)
+
+
+def offers(of: Screening, target: float, largest: float, vain: Vain) -> list[CandidateEdit]:
+    """Edits that bring the pair to a target d′ for the nominal person, the cheapest first."""
+    free = [place for place in of.pair if not _played(of, place)]
+    ways = [
+        (place, number, up)
+        for place in free
+        for number in numbers_of(of.kept.icons[place], _baseline(of, place))
+        for up in (True, False)
+    ]
+    logs = np.log(largest) * np.linspace(0.0, 1.0, GRID + 1)[1:] ** 2
+    tried = [one for w, way in enumerate(ways) for g, log in enumerate(logs) for one in _changed(of, way, w, g, log)]
+    good = _good(of, [*tried, *(one for place in free for one in _repeats(of, place))], target, vain)
+    found = [one for one in good if one.way is None]
+    first: dict[int, int] = {}
+    for one in good:
+        if one.way is not None:
+            first[one.way] = min(first.get(one.way, GRID), one.step)
+    spans = {w: (0.0 if g == 0 else float(logs[g - 1]), float(logs[g])) for w, g in first.items()}
+    # A number that is far from enough where another is dear already cannot become the cheapest.
+    most = DEARER * min((high for _, high in spans.values()), default=0.0)
+    spans = {w: (low, high) for w, (low, high) in spans.items() if low <= most}
+    for _ in range(ROUNDS):
+        middle = {w: 0.5 * (low + high) for w, (low, high) in spans.items()}
+        trial = [one for w, log in middle.items() for one in _changed(of, ways[w], w, 0, log)]
+        done = {one.way for one in _good(of, trial, target, vain)}
+        spans = {w: (low, middle[w]) if w in done else (middle[w], high) for w, (low, high) in spans.items()}
+    last = [one for w, (_, high) in spans.items() for d in (2, 3) for one in _changed(of, ways[w], w, d, high, d)]
+    # Of each number the edit with the fewest digits; those come first.
+    shortest: dict[int | None, CandidateEdit] = {}
+    for one in _good(of, last, target, vain):
+        shortest.setdefault(one.way, one)
+    best = {(one.place, one.new): one for one in sorted([*found, *shortest.values()], key=lambda one: -one.cost)}
+    return sorted(best.values(), key=lambda one: (one.cost, one.place, one.new))
+
+
+def _changed(of: Screening, way: Way, w: int, step: int, log: float, digits: int = 4) -> list[CandidateEdit]:
+    """The icon with one number changed by a log ratio; nothing where the language or the whole icon forbids it."""
+    place, number, up = way
+    value = number.times(math.exp(log if up else -log))
+    value = _outwards(value, number, digits) if number.field != "count" else value
+    if value == number.value or (number.field == "count" and value < 1):
+        return []
+    icon = of.kept.icons[place]
+
+    def described(new: Icon) -> tuple[str, str, float]:
+        return line_of(icon, number.path), line_of(new, number.path), number.ratio_to(value)
+
+    return _valid(of, place, lambda: with_number(icon, number, value), described, w, step)
+
+
+def _repeats(of: Screening, place: int) -> list[CandidateEdit]:
+    icon = of.kept.icons[place]
+    count_of = len(icon.statements)
+    once = "its one statement" if count_of == 1 else f"its {count_of} statements"
+
+    def tried(count: int) -> list[CandidateEdit]:
+        described = (once, f"repeat {count} {{ {once} }}", math.log(count))
+        return _valid(of, place, lambda: repeated(icon, count), lambda _: described, None, count)
+
+    return [one for count in REPEATS for one in tried(count)]
+
+
+def _valid(
+    of: Screening,
+    place: int,
+    make: Callable[[], Icon],
+    described: Callable[[Icon], tuple[str, str, float]],
+    way: int | None,
+    step: int,
+) -> list[CandidateEdit]:
+    from thermicon.circuit.solver.simulate import duration_s
+    from thermicon.icons import CueErrors
+
+    try:
+        new = make()
+        added = duration_s(new, of.kept.rig) - float(of.kept.durations_s[place])
+    except (CueErrors, ValueError):
+        return []
+    if added > MOST_LONGER_S:
+        return []
+    old, line, ratio = described(new)
+    cost = ratio + PER_SECOND * max(added, 0.0)
+    return [CandidateEdit(place, new, old, line, cost, added, way, step, np.empty(0))]
+
+
+def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, vain: Vain) -> list[CandidateEdit]:
+    """Those that part the pair for the nominal person, are safe and reached, and leave the others apart."""
+    if not tried:
+        return []
+    longest = max(float(of.kept.durations_s[one.place]) + one.added_s for one in tried)
+    end_s = max(of.kept.end_s, run_end_s([longest], RATE_HZ))
+    felt = Pool.of([one.icon for one in tried], of.kept.rig, of.observer, end_s=end_s)
+    good = []
+    for trace, one, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.norm, of.observer), strict=True):
+        other = of.pair[1] if one.place == of.pair[0] else of.pair[0]
+        fallen = worse(of.now[one.place], row, of.wanted)
+        fallen[[one.place, other]] = False
+        parted = bool(row[other] >= target)
+        # Judged only where it matters, since it takes long.
+        if not (parted or row[other] > vain.closest) or objection(trace) is not None:
+            continue
+        if not parted:
+            vain.closest = max(vain.closest, float(row[other]))
+        elif fallen.any():
+            vain.opposed = True
+        else:
+            good.append(replace(one, apart=row))
+    return good
+
+
+def _played(of: Screening, place: int) -> bool:
+    """Whether another icon of the set plays this one, and would change with it."""
+    from thermicon.icons.model.icon import all_played
+
+    name = of.kept.icons[place].name
+    return any(one.name == name for icon in of.kept.icons for one in all_played(icon.statements))
+
+
+def _baseline(of: Screening, place: int) -> float:
+    from thermicon.circuit.solver.inverse import baseline_C
+
+    return baseline_C(of.kept.icons[place], of.kept.rig)
+
+
+def _outwards(value: float, number: Number, digits: int) -> float:
+    """A value with `digits` digits, rounded away from the old one so that its effect is kept."""
+    if value == 0:
+        return value
+    place = 10.0 ** (digits - 1 - math.floor(math.log10(abs(value))))
+    rounded = math.ceil if value > number.value else math.floor
+    return rounded(value * place - (1e-9 if value > number.value else -1e-9)) / place

@@ -1,0 +1,203 @@
+"""A pool: icons that were simulated once on a rig, what a nominal person feels, and what speaks against each."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from ..identification.episodes import dprimes_from_memory
+from ..identification.run_end import run_end_s
+from ..observer.observer import Norm, Observer
+from ..ranking.assemble import energy_J, objection
+from ..sensation.detection import detect
+from ..sensation.percept import perceive_many, uniform_clock
+from .goal import SAFETY, Goal
+from .max_min_subset import Limits
+from .request import ChoiceError, Selection, check_selection, too_few
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig, Trace
+    from thermicon.icons import Icon
+
+RATE_HZ = 25.0
+"""Rows a second of a pool that is only tried out."""
+BLOCK = 4
+"""Fewer icons are solved together with repetitions: by the code that people need anyway, not by another for one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pool:
+    """Icons with their traces on one clock and durations (s), and sensations (icons, n_time) of the nominal person."""
+
+    icons: tuple[Icon, ...]
+    rig: Rig
+    end_s: float
+    traces: tuple[Trace, ...]
+    durations_s: Array
+    cold: Array
+    warm: Array
+    dt_s: float
+
+    @classmethod
+    def of(
+        cls,
+        icons: Sequence[Icon],
+        rig: Rig,
+        observer: Observer,
+        *,
+        end_s: float | None = None,
+        rate_Hz: float = RATE_HZ,
+    ) -> Pool:
+        """Play icons on the rig until `end_s`, by default until the longest of them has faded, and feel them."""
+        from thermicon.circuit.solver.simulate import duration_s, simulate_all
+
+        durations = np.array([duration_s(icon, rig) for icon in icons])
+        end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
+        padded = [*icons, *[icons[-1]] * (BLOCK - len(icons))]
+        traces = simulate_all(padded, rig, end_s=end, rate_Hz=rate_Hz)[: len(icons)]
+        dt, rows = uniform_clock(traces[0].time_s)
+        cold, warm = perceive_many(
+            np.array([trace.cold_receptor_C[:rows] for trace in traces]),
+            np.array([trace.warm_receptor_C[:rows] for trace in traces]),
+            dt,
+            observer,
+            area_m2=rig.contact.area_m2,
+            site=rig.site,
+        )
+        return cls(tuple(icons), rig, end, tuple(traces), durations, cold, warm, dt)
+
+    def __len__(self) -> int:
+        return len(self.icons)
+
+    def some(self, places: Sequence[int]) -> Pool:
+        """The icons at some places."""
+        at = list(places)
+        return replace(
+            self,
+            icons=tuple(self.icons[k] for k in at),
+            traces=tuple(self.traces[k] for k in at),
+            durations_s=self.durations_s[at],
+            cold=self.cold[at],
+            warm=self.warm[at],
+        )
+
+    @property
+    def energies_J(self) -> Array:
+        """Energy (J) that each icon takes of the driver; NaN on a thermode."""
+        return np.array([energy_J(*each) for each in zip(self.traces, self.durations_s.tolist(), strict=True)])
+
+    def dprimes(self, kept: Pool, norm: Norm, observer: Observer) -> Array:
+        """d′ from memory (these, kept) of the nominal person, on the longer clock."""
+        n = max(self.cold.shape[1], kept.cold.shape[1])
+        one, other = ((_held(pool.cold, n), _held(pool.warm, n)) for pool in (self, kept))
+        names = [[trace.icon or "" for trace in pool.traces] for pool in (self, kept)]
+        return dprimes_from_memory(one, other, self.dt_s, observer, norm, (names[0], names[1]))
+
+    def limits(self, most_s: float | None, most_J: float | None) -> Limits:
+        """The totals that a choice must keep, as costs of every icon."""
+        costs = (self.durations_s, most_s), (self.energies_J if most_J is not None else self.durations_s, most_J)
+        rows = [(each, most) for each, most in costs if most is not None]
+        if not rows:
+            return Limits.none(len(self))
+        return Limits(np.stack([each for each, _ in rows]), tuple(most for _, most in rows))
+
+    def totals_text(self, count: int, most_s: float | None, most_J: float | None) -> str:
+        """The totals that a choice must keep, each with the least that so many icons take."""
+        totals = []
+        for costs, most, unit, what in (
+            (self.durations_s, most_s, "s", "shortest last"),
+            (self.energies_J, most_J, "J", "most frugal take"),
+        ):
+            if most is not None:
+                least = math.fsum(np.sort(costs)[:count])
+                totals.append(f"{most:g} {unit} (the {count} {what} {least:.3g} {unit})")
+        return f"a total of {' and '.join(totals)}"
+
+    def objections(self, goal: Goal | None, observer: Observer) -> tuple[str | None, ...]:
+        """What speaks against each icon: it cannot be played, or it misses what a goal asks of single icons."""
+        plain = tuple(map(objection, self.traces))
+        if goal is None:
+            return plain
+        detected, onset = goal.of("detected"), goal.of("onset")
+        asked = detected is not None or onset is not None
+        path = observer.path_m(self.rig.site)
+        found = detect(self.cold, self.warm, self.dt_s, observer, path_m=path) if asked else None
+        made: list[str | None] = []
+        for place, reason in enumerate(plain):
+            why = reason
+            if why is None and goal.of(SAFETY) == 0.0:
+                soft = soft_finding(self.traces[place])
+                why = None if soft is None else f"is amber: {soft}"
+            if why is None and found is not None:
+                share, felt_s = float(found.probability[place]), float(found.onset_s[place])
+                if detected is not None and share < detected:
+                    why = f"is detected in {100.0 * share:.0f} % of trials only"
+                elif onset is not None and not felt_s <= onset:
+                    why = "is not felt" if math.isnan(felt_s) else f"is felt at {felt_s:.2f} s only"
+            made.append(why)
+        return tuple(made)
+
+    def usable(
+        self, asked: Selection, observer: Observer, goal: Goal | None = None
+    ) -> tuple[list[int], tuple[tuple[str, str], ...]]:
+        """Places of the icons that can be chosen, and why others cannot: they move like an earlier one, or have an
+        objection.
+
+        Raises `ChoiceError` for an icon that must be in and is unknown or sorted out, and where too few are left.
+        """
+        names = [icon.name for icon in self.icons]
+        check_selection(asked, names)
+        if asked.most_J is not None and self.rig.thermode is not None:
+            raise ChoiceError(
+                f"rig {self.rig.name} is a thermode, which states no energy: leave out energy of the goal, or most_J"
+            )
+        shapes: dict[object, str] = {}
+        excluded: dict[str, str] = {}
+        objections = self.objections(goal, observer)
+        for k in sorted(range(len(self)), key=lambda k: (names[k] not in asked.must, k)):
+            why = objections[k]
+            twin = None if why else shapes.setdefault(_shape_of(self.icons[k], self.rig), names[k])
+            if why is not None:
+                excluded[names[k]] = why
+            elif twin != names[k]:
+                excluded[names[k]] = f"moves in the same way as {twin}"
+        for name in asked.must:
+            if name in excluded:
+                raise ChoiceError(f"{name} must be among the chosen but cannot be: it {excluded[name]}")
+        listed = tuple((name, excluded[name]) for name in names if name in excluded)
+        places = [k for k, name in enumerate(names) if name not in excluded]
+        if len(places) < asked.count:
+            raise ChoiceError(too_few(asked.count, len(self), listed))
+        return places, listed
+
+    def nothing_fits(self, asked: Selection) -> str:
+        """Why no choice of these icons keeps the totals of a request."""
+        forced = f" with {', '.join(asked.must)} among them" if asked.must else ""
+        totals = self.totals_text(asked.count, asked.most_s, asked.most_J)
+        return f"no {asked.count} of the {len(self)} icons{forced} stay within {totals}"
+
+
+def soft_finding(trace: Trace) -> str | None:
+    """The first soft limit of safety that an icon passes, in words; None for none."""
+    from thermicon.circuit.safety.limits import judge_safety
+
+    return next((str(each) for each in judge_safety(trace).findings if each.severity != "hard"), None)
+
+
+def _held(psi: Array, n: int) -> Array:
+    return np.pad(psi, ((0, 0), (0, n - psi.shape[1])), mode="edge")
+
+
+def _shape_of(icon: Icon, rig: Rig) -> object:
+    """What two icons share that play alike: control and corner points."""
+    from thermicon.circuit.solver.inverse import baseline_C
+    from thermicon.circuit.solver.steady import steady_state
+
+    base = baseline_C(icon, rig)
+    start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
+    return icon.context.control, base, icon.corners(start)
