@@ -12,7 +12,6 @@ from thermicon.perception.evidence.results import (
     UNMOVED_SD,
     AblatedRow,
     Constant,
-    PredictedRow,
     load_ablation,
     load_constants,
     load_predictions,
@@ -22,7 +21,6 @@ from thermicon.perception.evidence.statistics import load_evidence
 from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
 from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.observer.people import people_records
-from thermicon.perception.observer.priors import WITHIN_95
 
 GROUPS = {
     "receptors": ("depth", "skin", "quality", "adaptation"),
@@ -121,7 +119,7 @@ def left_out_table() -> str:
     """Every row: published, fitted, and predicted by a fit without its experiment; misses are bold."""
     lines = []
     for row in load_predictions():
-        mark = "" if covered(row) else "**"
+        mark = "" if row.covered else "**"
         unit = {"1": "", "0-100": "of 100"}.get(row.unit, row.unit)
         numbers = (number(row.published), number(row.fitted), number(row.left_out))
         interval = span(row.left_out_low, row.left_out_high)
@@ -132,16 +130,11 @@ def left_out_table() -> str:
 def coverage_sentence() -> str:
     """How many rows lie inside the 95 % interval of their prediction without their experiment."""
     rows = load_predictions()
-    missed = [f"{row.label} ({row.experiment}, {signed(row.score, 1)} SD)" for row in rows if not covered(row)]
+    missed = [f"{row.label} ({row.experiment}, {signed(row.score, 1)} SD)" for row in rows if not row.covered]
     inside = f"{len(rows) - len(missed)} of {len(rows)} rows lie inside the 95 % interval"
     if not missed:
         return f"{inside}."
     return f"{inside}; {0.95 * len(rows):.0f} are expected. The others: {'; '.join(missed)}."
-
-
-def covered(row: PredictedRow) -> bool:
-    """Whether the 95 % interval of what would be measured contains what was."""
-    return abs(row.score) <= WITHIN_95
 
 
 def predicted_table() -> str:

@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from thermicon.perception.evidence.conditioning import EDGE, ConditionedRow, Conditioning, experiment_title
-from thermicon.perception.evidence.results import UNMOVED_SD
+from thermicon.perception.evidence.conditioning import Conditioning, experiment_title, suspected
+from thermicon.perception.evidence.results import EDGE, UNMOVED_SD, PredictedRow
 from thermicon.perception.evidence.table_text import number, signed, span
 from thermicon.perception.evidence.verdicts import value_text
 from thermicon.perception.observer.variants import VARIABLES
@@ -34,8 +34,8 @@ def validate_report(report: ValidationReport) -> list[Block]:
     """Report every number, published and predicted, and how many agree."""
     known = report.conditioning
     made: list[Block] = [Heading(TITLE, 1), Text(f"{summary_text(known)}\n{KEY}")]
-    for key in dict.fromkeys(each.row.experiment for each in known.rows):
-        rows = [_row(each) for each in known.rows if each.row.experiment == key]
+    for key in dict.fromkeys(each.experiment for each in known.rows):
+        rows = [_row(each) for each in known.rows if each.experiment == key]
         made += [Heading(heading(key)), grid(("", *HEADS), rows, HEADS, HEADS)]
     made += [
         Text("Left out, these rows are missed:"),
@@ -104,35 +104,33 @@ def summary_text(known: Conditioning) -> str:
     )
 
 
-def missed_text(each: ConditionedRow) -> str:
+def missed_text(row: PredictedRow) -> str:
     """State a missed row with its size and the mechanism suspected."""
-    row = each.row
     return (
         f"{row.label.removesuffix(', both')} ({row.experiment}): published {number(row.published)}, predicted "
         f"{number(row.left_out)} [{span(row.left_out_low, row.left_out_high)}], {signed(row.score, 1)} SD. Suspected: "
-        f"{each.suspected}."
+        f"{suspected(row)}."
     )
 
 
 def unmoved_text(known: Conditioning) -> str:
     """Name the constants that the evidence did not move."""
-    names = ", ".join(each.constant.name for each in known.unmoved)
+    names = ", ".join(each.name for each in known.unmoved)
     return f"Not moved (SD left above {UNMOVED_SD:g}), as good as assumed: {names or 'none'}."
 
 
 def edge_text(known: Conditioning) -> str:
     """Name the constants at an edge of their prior."""
     names = "; ".join(
-        f"{each.constant.name} (upper {100 * (1.0 - each.quantile):.0f} %)"
+        f"{each.name} (upper {100 * (1.0 - each.quantile):.0f} %)"
         if each.quantile > 0.5
-        else f"{each.constant.name} (lower {100 * each.quantile:.0f} %)"
+        else f"{each.name} (lower {100 * each.quantile:.0f} %)"
         for each in known.at_edge
     )
     return f"At an edge of the prior (outer {100 * EDGE:.0f} % at either end): {names or 'none'}."
 
 
-def _row(each: ConditionedRow) -> tuple[str, ...]:
-    row = each.row
+def _row(row: PredictedRow) -> tuple[str, ...]:
     unit = "" if row.unit in IN_LABEL else ROW_UNITS.get(row.unit, row.unit)
     error = 0.5 * (row.published_high - row.published_low)
     label = row.label.removesuffix(", both")
@@ -141,7 +139,7 @@ def _row(each: ConditionedRow) -> tuple[str, ...]:
         f"{label}{f', {unit}' if unit else ''}",
         f"{_short(row.published)} ±{_short(error)}",
         "".join(f"{_short(value):>6}" for value in (row.fitted, row.heat_flow)),
-        f"{_short(row.left_out)}, {ends} {'✓' if each.covered else '✗'}",
+        f"{_short(row.left_out)}, {ends} {'✓' if row.covered else '✗'}",
     )
 
 

@@ -6,16 +6,14 @@ whole experiment, so that its prediction rests on the other nine. `conditioning_
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
-from statistics import NormalDist, median
+from statistics import median
 from typing import Any
 
-from ..observer.priors import WITHIN_95
 from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude, OnsetStages, magnitudes, stages_of_six
-from .posterior import Posterior
 from .results import (
+    EDGE,
     UNMOVED_SD,
     AblatedRow,
     Constant,
@@ -24,12 +22,8 @@ from .results import (
     load_constants,
     load_predictions,
 )
-from .rows import load_rows
 from .statistics import load_evidence
 
-EDGE = 0.1
-"""A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
-OFFSETS = "laboratories"
 TITLES = {
     "thenar": "Forced choice at the thenar",
     "wrist": "Forced choice at the wrist",
@@ -60,69 +54,28 @@ SUSPECTED = {
 
 
 @dataclass(frozen=True, slots=True)
-class ConditionedRow:
-    """A published number that the constants were inferred from, with its fits and its prediction when left out.
-
-    `log` says on which scale the row is judged, `suspected` the mechanism behind a miss (nothing where it is covered).
-    """
-
-    row: PredictedRow
-    log: bool
-    suspected: str
-
-    @property
-    def covered(self) -> bool:
-        """Whether the 95 % interval of what would be measured contains what was."""
-        return abs(self.row.score) <= WITHIN_95
-
-    @property
-    def half_width(self) -> float:
-        """Half the 95 % interval: a factor above 1 on a log scale, otherwise a share of the published number."""
-        low, high = self.row.left_out_low, self.row.left_out_high
-        return math.sqrt(high / low) if self.log else 0.5 * (high - low) / abs(self.row.published)
-
-
-@dataclass(frozen=True, slots=True)
-class InferredConstant:
-    """A constant with its prior; `quantile` is the place of its value in the prior, 0 to 1."""
-
-    constant: Constant
-    quantile: float
-
-    @property
-    def moved(self) -> bool:
-        """Whether the evidence narrowed it to less than `UNMOVED_SD` of the prior's."""
-        return self.constant.narrowed <= UNMOVED_SD
-
-    @property
-    def at_edge(self) -> bool:
-        """Whether its value lies in an outer tenth of the prior."""
-        return not EDGE <= self.quantile <= 1.0 - EDGE
-
-
-@dataclass(frozen=True, slots=True)
 class Conditioning:
     """The evidence behind the constants, and what the constants say of onsets and sizes."""
 
-    rows: tuple[ConditionedRow, ...]
-    constants: tuple[InferredConstant, ...]
-    offsets: tuple[InferredConstant, ...]
+    rows: tuple[PredictedRow, ...]
+    constants: tuple[Constant, ...]
+    offsets: tuple[Constant, ...]
     ablation: tuple[AblatedRow, ...]
     stages: tuple[OnsetStages, ...]
     magnitudes: tuple[Magnitude, ...]
 
     @property
-    def missed(self) -> tuple[ConditionedRow, ...]:
+    def missed(self) -> tuple[PredictedRow, ...]:
         """Rows outside of their interval, the worst first."""
-        return tuple(sorted((r for r in self.rows if not r.covered), key=lambda r: -abs(r.row.score)))
+        return tuple(sorted((r for r in self.rows if not r.covered), key=lambda r: -abs(r.score)))
 
     @property
-    def unmoved(self) -> tuple[InferredConstant, ...]:
+    def unmoved(self) -> tuple[Constant, ...]:
         """Constants that the evidence did not move."""
         return tuple(each for each in self.constants if not each.moved)
 
     @property
-    def at_edge(self) -> tuple[InferredConstant, ...]:
+    def at_edge(self) -> tuple[Constant, ...]:
         """Constants at an edge of their prior."""
         return tuple(each for each in self.constants if each.at_edge)
 
@@ -145,11 +98,12 @@ def load_conditioning() -> Conditioning:
     >>> load_conditioning()
     Conditioning(49 of 54 rows covered when left out; 42 constants, 9 not moved, 4 at an edge of the prior)
     """
-    constants = tuple(_placed(each) for each in load_constants())
+    constants = load_constants()
+    # The spread between laboratories is a constant; the offset of a single one, in SDs of it, is not.
     return Conditioning(
-        rows=_rows(),
-        constants=tuple(each for each in constants if each.constant.mechanism != OFFSETS or _shared(each)),
-        offsets=tuple(each for each in constants if each.constant.mechanism == OFFSETS and not _shared(each)),
+        rows=load_predictions(),
+        constants=tuple(each for each in constants if each.unit != "SD"),
+        offsets=tuple(each for each in constants if each.unit == "SD"),
         ablation=tuple(sorted(load_ablation(), key=lambda run: run.difference)),
         stages=stages_of_six(),
         magnitudes=magnitudes(),
@@ -165,24 +119,11 @@ def experiment_title(key: str) -> str:
     return TITLES[key] if key in TITLES else load_evidence().experiment(key).title
 
 
-def _rows() -> tuple[ConditionedRow, ...]:
-    log = {row.key: row.log for row in load_rows()}
-    rows = []
-    for row in load_predictions():
-        key = (row.experiment, row.statistic, row.channel)
-        missed = abs(row.score) > WITHIN_95
-        rows.append(ConditionedRow(row, log[key], SUSPECTED.get(key, "none named yet") if missed else ""))
-    return tuple(rows)
-
-
-def _placed(each: Constant) -> InferredConstant:
-    prior = next(prior for prior in Posterior().priors.each if prior.name == each.name)
-    return InferredConstant(each, NormalDist(prior.middle, prior.sd).cdf(prior.to_place(each.value)))
-
-
-def _shared(each: InferredConstant) -> bool:
-    """The spread between laboratories is a constant; the offset of a single laboratory, in SDs of it, is not."""
-    return each.constant.unit != "SD"
+def suspected(row: PredictedRow) -> str:
+    """The mechanism behind a miss; nothing where the row is covered."""
+    if row.covered:
+        return ""
+    return SUSPECTED.get((row.experiment, row.statistic, row.channel), "none named yet")
 
 
 def conditioning_file(known: Conditioning) -> dict[str, Any]:
@@ -207,8 +148,7 @@ def conditioning_file(known: Conditioning) -> dict[str, Any]:
     }
 
 
-def _row(each: ConditionedRow) -> dict[str, Any]:
-    row = each.row
+def _row(row: PredictedRow) -> dict[str, Any]:
     return {
         "experiment": row.experiment,
         "title": experiment_title(row.experiment),
@@ -216,7 +156,7 @@ def _row(each: ConditionedRow) -> dict[str, Any]:
         "channel": row.channel,
         "row": row.label,
         "unit": row.unit,
-        "log_scale": each.log,
+        "log_scale": row.log,
         "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
         "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
         "left_out": {
@@ -224,14 +164,13 @@ def _row(each: ConditionedRow) -> dict[str, Any]:
             "interval": [row.left_out_low, row.left_out_high],
             "miss_sd": row.score,
             "log_score": row.log_score,
-            "covered": each.covered,
+            "covered": row.covered,
         },
-        "mechanism_suspected": each.suspected or None,
+        "mechanism_suspected": suspected(row) or None,
     }
 
 
-def _constant(each: InferredConstant) -> dict[str, Any]:
-    constant = each.constant
+def _constant(constant: Constant) -> dict[str, Any]:
     return {
         "name": constant.name,
         "mechanism": constant.mechanism,
@@ -241,9 +180,9 @@ def _constant(each: InferredConstant) -> dict[str, Any]:
         "prior_interval": [constant.prior_low, constant.prior_high],
         "prior_source": constant.source,
         "sd_over_prior": constant.narrowed,
-        "prior_quantile": each.quantile,
-        "moved": each.moved,
-        "at_edge": each.at_edge,
+        "prior_quantile": constant.quantile,
+        "moved": constant.moved,
+        "at_edge": constant.at_edge,
     }
 
 

@@ -6,7 +6,7 @@ What sampled draws say of each constant is a `Summary`: median, interval, and ho
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -32,8 +32,6 @@ FARTHEST = 30.0
 class Posterior:
     """What is inferred, from which rows: vectors are in SDs of the prior, 0 at its middle.
 
-    `observed` stands in for the published values of all rows, on their scales: synthetic data.
-
     >>> posterior = Posterior()
     >>> len(posterior.priors), len(posterior.rows)
     (52, 54)
@@ -42,7 +40,6 @@ class Posterior:
     variable: Variable = "temperature"
     without: Without = frozenset()
     left_out: frozenset[str] = frozenset()
-    observed: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         for name in self.without:
@@ -75,20 +72,7 @@ class Posterior:
     @cached_property
     def rows(self) -> tuple[Row, ...]:
         """The rows that count."""
-        return tuple(row for row in self.all_rows if row.experiment not in self.left_out)
-
-    @cached_property
-    def all_rows(self) -> tuple[Row, ...]:
-        """All rows, left out or not."""
-        if not self.observed:
-            return load_rows()
-        return tuple(replace(row, value=value) for row, value in zip(load_rows(), self.observed, strict=True))
-
-    def synthetic(self, vector: Array, random: np.random.Generator) -> Posterior:
-        """The same posterior of rows that people with these constants would have given, errors drawn at random."""
-        predictions = self.predictions(vector)
-        drawn = tuple(predictions[row.key] + row.sd * random.standard_normal() for row in load_rows())
-        return replace(self, observed=drawn)
+        return tuple(row for row in load_rows() if row.experiment not in self.left_out)
 
     def values(self, vector: Array) -> dict[str, float]:
         """Constants by name from a vector in SDs of the prior."""
@@ -105,7 +89,7 @@ class Posterior:
     def misses(self, vector: Array) -> Array:
         """Misses of all rows, left out or not, in their SDs."""
         predictions = self.predictions(vector)
-        missed = np.array([(predictions[row.key] - row.value) / row.sd for row in self.all_rows])
+        missed = np.array([(predictions[row.key] - row.value) / row.sd for row in load_rows()])
         clipped: Array = np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
         return clipped
 

@@ -8,22 +8,26 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from functools import lru_cache
 from io import StringIO
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
 
-from ..observer.priors import load_priors
-from ..observer.variants import Variable
+from ..observer.priors import WITHIN_95, load_priors, priors_of
+from ..observer.variants import Variable, check_variable
 from .rows import load_rows
 from .statistics import DATA
 
 UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
+EDGE = 0.1
+"""A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
 CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
 
 
@@ -46,6 +50,22 @@ class Constant:
     mechanism: str
     source: str
 
+    @property
+    def quantile(self) -> float:
+        """Place of its value in the prior, 0 to 1."""
+        prior = next(prior for prior in priors_of(check_variable(self.variable)).each if prior.name == self.name)
+        return NormalDist(prior.middle, prior.sd).cdf(prior.to_place(self.value))
+
+    @property
+    def moved(self) -> bool:
+        """Whether the evidence narrowed it to less than `UNMOVED_SD` of the prior's."""
+        return self.narrowed <= UNMOVED_SD
+
+    @property
+    def at_edge(self) -> bool:
+        """Whether its value lies in an outer tenth of the prior."""
+        return not EDGE <= self.quantile <= 1.0 - EDGE
+
 
 @dataclass(frozen=True, slots=True)
 class PredictedRow:
@@ -66,6 +86,23 @@ class PredictedRow:
     left_out_high: float
     score: float
     log_score: float
+
+    @property
+    def log(self) -> bool:
+        """Whether it is judged on a log scale."""
+        key = self.experiment, self.statistic, self.channel
+        return next(row.log for row in load_rows() if row.key == key)
+
+    @property
+    def covered(self) -> bool:
+        """Whether the 95 % interval of what would be measured, left out, contains what was."""
+        return abs(self.score) <= WITHIN_95
+
+    @property
+    def half_width(self) -> float:
+        """Half the 95 % interval: a factor above 1 on a log scale, otherwise a share of the published number."""
+        low, high = self.left_out_low, self.left_out_high
+        return math.sqrt(high / low) if self.log else 0.5 * (high - low) / abs(self.published)
 
 
 @dataclass(frozen=True, slots=True)

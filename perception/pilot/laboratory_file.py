@@ -12,7 +12,7 @@ people are, so that the few nearest ones are asked again with other people.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -87,53 +87,37 @@ def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
 
 
 def laboratory_texts(draws: PosteriorDraws, version: str, provenance: Sequence[str]) -> tuple[str, str]:
-    """Texts of the parameter file (TOML) and of the table of draws (CSV) of one laboratory."""
-    head = (f"Observer of one laboratory, written by thermicon pilot ({version}).", *provenance)
-    return observer_text(draws, head), draws_text(draws, provenance)
+    """Texts of the parameter file (TOML) and of the table of draws (CSV) of one laboratory.
 
-
-def draws_text(draws: PosteriorDraws, lines: Sequence[str]) -> str:
-    """The table of draws with further lines of provenance in its header."""
+    The first has constants and memory of the first draw, with 95 % intervals of all; both name the provenance.
+    """
     columns, values = (*draws.names, *draws.memory_names), np.hstack([draws.draws, draws.memory])
+    each = dict(zip(columns, values.T, strict=True))
+    records = tuple(_narrowed(record, each, draws.memory_names) for record in draws.table(0))
+    head = (f"Observer of one laboratory, written by thermicon pilot ({version}).", *provenance)
     first, rest = to_text(draws.header, columns, values).split("\n", 1)
-    return "\n".join([first, *(f"# {line}" for line in (*lines, OF_SOURCE)), rest])
+    table = "\n".join([first, *(f"# {line}" for line in (*provenance, OF_SOURCE)), rest])
+    return dump_records(Table("laboratory", records), comment="\n".join(head)), table
 
 
-def observer_text(draws: PosteriorDraws, lines: Sequence[str]) -> str:
-    """The parameter file: constants and memory of the first draw, with 95 % intervals of all."""
-    each = dict(zip((*draws.names, *draws.memory_names), np.hstack([draws.draws, draws.memory]).T, strict=True))
-    return dump_records(
-        Table("laboratory", tuple(_record(record, each, draws.memory_names) for record in draws.table(0))),
-        comment="\n".join(lines),
-    )
-
-
-def _record(record: Record, each: dict[str, Array], remembered: Sequence[str]) -> Record:
+def _narrowed(record: Record, each: Mapping[str, Array], remembered: Sequence[str]) -> Record:
+    """A record with the interval of the draws, where they have its constant."""
     name = f"{record.channel} {record.quantity}" if record.channel in CHANNELS else record.quantity
-    if record.quantity == "memory noise":
-        name = NOISE
-    moved = name in remembered or record.method.startswith("draw ")
-    if name in each and record.value is not None and moved:
-        return _narrowed(record, record.value, each[name])
-    return record
-
-
-def _narrowed(record: Record, value: float, each: Array) -> Record:
-    low, high = (float(f"{number:.5g}") for number in np.percentile(each, [2.5, 97.5]).tolist())
-    low, high = min(low, value), max(high, value)
-    return replace(record, low=low, value=value, high=high, method=_method(record), use="calibrate")
-
-
-def _method(record: Record) -> str:
-    """The method of a record is the norm where it is memory's, and must then stay."""
-    return record.method if record.quantity.startswith("memory noise") else "conditioned on a laboratory's own answers"
+    name = NOISE if record.quantity == "memory noise" else name
+    if name not in each or record.value is None or not (name in remembered or record.method.startswith("draw ")):
+        return record
+    low, high = (float(f"{number:.5g}") for number in np.percentile(each[name], [2.5, 97.5]).tolist())
+    # The method of a record is the norm where it is memory's, and must then stay.
+    method = record.method if name == NOISE else "conditioned on a laboratory's own answers"
+    low, high = min(low, record.value), max(high, record.value)
+    return replace(record, low=low, high=high, method=method, use="calibrate")
 
 
 NEAREST, AGAIN = 6, 8
 """How many laboratories are asked again, and how often: the score of each is then known to within a point."""
 
 
-def middle_of(some: Laboratories, constants: Array, predicted: Array, played: Stage, *, seed: int = 0) -> int:
+def middle_of(some: Laboratories, constants: Array, predicted: Array, played: Stage) -> int:
     """Number of the laboratory in the middle.
 
     Parameters
@@ -145,9 +129,7 @@ def middle_of(some: Laboratories, constants: Array, predicted: Array, played: St
     predicted
         What each predicts (laboratories, numbers), to be near its means; the first column is the proportion correct.
     played
-        The set, to ask the nearest once more.
-    seed
-        Seed of their other people.
+        The set, to ask the nearest once more, with other people.
 
     """
     _, first, group, times = np.unique(some.place, axis=0, return_index=True, return_inverse=True, return_counts=True)
@@ -159,7 +141,7 @@ def middle_of(some: Laboratories, constants: Array, predicted: Array, played: St
     distance = off_middle(constants)[first] + np.square(off).mean(axis=1) + np.square(off[:, 0])
     near = np.argsort(distance, kind="stable")[:NEAREST]
     chosen = first[near]
-    rng = np.random.default_rng(np.random.SeedSequence([seed, 41]))
+    rng = np.random.default_rng(np.random.SeedSequence([0, 41]))
     asked = np.repeat(chosen, AGAIN)
     # Each has people of its own: one group for all would shift the score of whichever is chosen.
     again = Laboratories(some.place[asked], rng.integers(SEEDS, size=len(asked)))

@@ -15,6 +15,7 @@ from thermicon.notebooks.cli import validation
 from thermicon.notebooks.cli.validation import COMPUTED, KEPT, executed_notebook, json_text, write_report
 from thermicon.notebooks.report.terminal import show
 from thermicon.notebooks.report.validate_report import TITLE, validate_report
+from thermicon.perception.evidence.conditioning import suspected
 from thermicon.perception.evidence.validate import ValidationReport, validate
 
 Cli = Callable[..., Any]
@@ -117,7 +118,7 @@ def test_the_table_on_a_terminal(report: ValidationReport, capsys: pytest.Captur
     assert "✓ holds, ✗ misses" in said
     assert "49 of 54 published numbers" in " ".join(said.split())
     for each in report.conditioning.missed:
-        assert each.suspected.split(":")[0] in " ".join(said.split())
+        assert suspected(each).split(":")[0] in " ".join(said.split())
     assert max(len(line) for line in said.splitlines()) <= 80
 
 

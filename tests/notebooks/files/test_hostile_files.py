@@ -127,7 +127,6 @@ READERS: dict[str, tuple[str, str, Callable[[Path], object]]] = {
     "drive": ("a.csv", ROWS, lambda path: repr(read_drive(path))),
     "trace": ("a.csv", ROWS, lambda path: read_curves(str(path)).columns["skin_C"].tolist()),
     "recording": ("a.csv", ROWS, read_readings),
-    "drive": ("a.csv", ROWS, lambda path: repr(read_drive(path))),
     "answers": ("a.csv", ANSWERS, lambda path: read_trials(path, ["cooling-step", "warming-step"]).counts.tolist()),
     "measurements": ("a.csv", VALUES, lambda path: repr(read_measurements(path, Rig.load("thenar")))),
     "order": ("a.txt", "cooling-step\nwarming-step # last\n", lambda path: read_order(path, load_library("six-icons"))),

@@ -6,13 +6,13 @@ import math
 import pytest
 
 from thermicon.perception.evidence.conditioning import (
-    EDGE,
     SUSPECTED,
     conditioning_file,
     experiment_title,
     load_conditioning,
+    suspected,
 )
-from thermicon.perception.evidence.results import load_constants, load_predictions
+from thermicon.perception.evidence.results import EDGE, load_constants, load_predictions
 from thermicon.perception.evidence.validate import ValidationReport
 from thermicon.perception.evidence.validate_file import report_file
 from thermicon.perception.observer.mechanisms import MECHANISMS
@@ -21,22 +21,22 @@ from thermicon.perception.observer.priors import Prior
 
 def test_every_row_is_there_and_every_miss_has_a_suspect() -> None:
     known = load_conditioning()
-    assert [each.row for each in known.rows] == list(load_predictions())
+    assert known.rows == load_predictions()
     for each in known.rows:
-        inside = each.row.left_out_low <= each.row.published <= each.row.left_out_high
+        inside = each.left_out_low <= each.published <= each.left_out_high
         assert each.covered == inside
-        assert bool(each.suspected) == (not each.covered)
-    missed = {(r.row.experiment, r.row.statistic, r.row.channel) for r in known.missed}
+        assert bool(suspected(each)) == (not each.covered)
+    missed = {(r.experiment, r.statistic, r.channel) for r in known.missed}
     assert missed == set(SUSPECTED)
-    scores = [abs(each.row.score) for each in known.missed]
+    scores = [abs(each.score) for each in known.missed]
     assert scores == sorted(scores, reverse=True)
 
 
 def test_widths_are_factors_or_shares() -> None:
     known = load_conditioning()
-    limits = next(each for each in known.rows if each.row.label == "limits, cold")
+    limits = next(each for each in known.rows if each.label == "limits, cold")
     assert limits.log
-    assert limits.row.left_out * limits.half_width == pytest.approx(limits.row.left_out_high, rel=1e-4)
+    assert limits.left_out * limits.half_width == pytest.approx(limits.left_out_high, rel=1e-4)
     widths = sorted(each.half_width for each in known.rows if each.log)
     assert known.median_half_width(log=True) == pytest.approx(widths[len(widths) // 2])
     assert known.median_half_width(log=False) > 0.0
@@ -45,12 +45,12 @@ def test_widths_are_factors_or_shares() -> None:
 def test_constants_and_offsets_are_parted() -> None:
     known = load_conditioning()
     assert len(known.constants) + len(known.offsets) == len(load_constants())
-    assert {each.constant.unit for each in known.offsets} == {"SD"}
+    assert {each.unit for each in known.offsets} == {"SD"}
 
 
 def test_an_edge_is_an_outer_tenth_of_the_prior() -> None:
     for each in load_conditioning().constants:
-        constant = each.constant
+        constant = each
         if constant.prior_low > 0.0 and constant.name.endswith(("time", "between people")):
             middle = math.sqrt(constant.prior_low * constant.prior_high)
             prior = Prior.log("x", "1", middle, constant.prior_low, constant.prior_high, "m", "s")
@@ -75,7 +75,7 @@ def test_the_file_has_the_same_facts(validation_report: ValidationReport) -> Non
     assert file == json.loads(json.dumps(conditioning_file(known)))
     assert file["summary"]["covered"] == sum(each["left_out"]["covered"] for each in file["rows"]) == 49
     assert sum(each["mechanism_suspected"] is not None for each in file["rows"]) == len(known.missed)
-    assert [each["name"] for each in file["constants"] if each["at_edge"]] == [c.constant.name for c in known.at_edge]
+    assert [each["name"] for each in file["constants"] if each["at_edge"]] == [c.name for c in known.at_edge]
     assert len(file["onset_stages"]) == 6
     for each in file["onset_stages"]:
         parts = [each[f"{part}_s"] for part in ("receptor", "nerve", "cord", "decision")]

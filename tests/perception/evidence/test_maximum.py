@@ -1,8 +1,10 @@
-"""The search for the maximum: a known optimum, and the shipped one found again (slow)."""
+"""The search for the maximum: a known optimum, the shipped one found again, and constants that are known (slow)."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -10,7 +12,8 @@ import pytest
 from thermicon.perception.evidence.maximum import LeftOut, maximise
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import load_ablation, load_constants
-from thermicon.perception.evidence.rows import Row
+from thermicon.perception.evidence.rows import Row, load_rows
+from thermicon.perception.evidence.sampling import shipped_vector
 
 
 @dataclass(frozen=True)
@@ -50,3 +53,92 @@ def test_the_search_finds_the_shipped_maximum_again() -> None:
     for each in load_constants():
         low, high = found.interval(each.name, 1.0)
         assert min(low, high) <= each.value <= max(low, high)
+
+
+FEW = (
+    "warm conduction velocity",
+    "cold threshold drive",
+    "warm threshold drive",
+    "cold area exponent",
+    "cold rating exponent",
+    "warm rating at threshold",
+)
+
+
+@contextmanager
+def observed(truth: np.ndarray, random: np.random.Generator) -> Iterator[None]:
+    """In place of the published rows, those that people with these constants would have given, errors at random."""
+    predictions = Posterior().predictions(truth)
+    drawn = tuple(replace(r, value=predictions[r.key] + r.sd * random.standard_normal()) for r in load_rows())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("thermicon.perception.evidence.posterior.load_rows", lambda: drawn)
+        yield
+
+
+@dataclass(frozen=True)
+class Some:
+    """A posterior of a few constants; the others are known."""
+
+    whole: Posterior
+    truth: np.ndarray
+
+    @property
+    def places(self) -> np.ndarray:
+        return np.array([self.whole.priors.names.index(name) for name in FEW])
+
+    @property
+    def priors(self) -> tuple[str, ...]:
+        return FEW
+
+    def filled(self, vector: np.ndarray) -> np.ndarray:
+        full = self.truth.copy()
+        full[self.places] = vector
+        return full
+
+    def residuals(self, vector: np.ndarray) -> np.ndarray:
+        full = self.filled(vector)
+        return np.concatenate([self.whole.misses(full), vector])
+
+    def predictions(self, vector: np.ndarray) -> dict[tuple[str, str, str], float]:
+        return self.whole.predictions(self.filled(vector))
+
+
+@pytest.mark.slow
+def test_a_few_constants_are_found_again_in_three_data_sets() -> None:
+    scores = []
+    for seed in range(3):
+        random = np.random.default_rng(seed)
+        truth = shipped_vector(Posterior())
+        some = Some(Posterior(), truth)
+        truth[some.places] = random.standard_normal(len(FEW)) * 0.7
+        with observed(truth, random):
+            found = maximise(Some(Posterior(), truth), 0.5 * truth[some.places])
+        scores.append((found.vector - truth[some.places]) / found.sd)
+    z = np.concatenate(scores)
+    assert (np.abs(z) < 1.96).mean() >= 0.75
+    assert 0.3 < np.square(z).mean() < 2.5
+    assert np.abs(z).max() < 4.5
+
+
+def test_synthetic_rows_are_the_predictions_but_for_their_errors() -> None:
+    vector = shipped_vector(Posterior())
+    with observed(vector, np.random.default_rng(1)):
+        misses = Posterior().misses(vector)
+    assert np.square(misses).mean() == pytest.approx(1.0, abs=0.6)
+    assert not np.allclose(misses, Posterior().misses(vector))
+
+
+@pytest.mark.slow
+def test_intervals_of_fifty_data_sets_cover_what_they_should() -> None:
+    """Truths are drawn from the prior; the search begins at the truth, since it is the intervals that are tested."""
+    posterior = Posterior()
+    scores = []
+    for seed in range(50):
+        random = np.random.default_rng([seed, 16])
+        truth = np.clip(random.standard_normal(len(posterior.priors)), -2.0, 2.0)
+        with observed(truth, random):
+            found = maximise(posterior, truth)
+        scores.append((found.vector - truth) / found.sd)
+    z = np.stack(scores)
+    assert 0.85 < (np.abs(z) < 1.96).mean() <= 0.99
+    assert (np.abs(z) < 1.96).mean(axis=0).min() > 0.6

@@ -1,14 +1,18 @@
-"""The shipped results: made from the shipped inputs, and at a maximum of the posterior."""
+"""The shipped results: of the shipped inputs, at a maximum of the posterior, sampled, and as good as the pages say."""
 
 from __future__ import annotations
 
 import math
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.evidence.left_out_table import LEFT_OUT, load_left_out
+from thermicon.perception.evidence.posterior import Posterior, summarise
 from thermicon.perception.evidence.results import (
     ABLATION,
     CONSTANTS,
@@ -21,6 +25,7 @@ from thermicon.perception.evidence.results import (
 )
 from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.evidence.statistics import DATA
+from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.draws_file import current_inputs
 from thermicon.perception.observer.mechanisms import MECHANISMS
 
@@ -32,7 +37,7 @@ def vector() -> np.ndarray:
     return (places - posterior.priors.middle) / posterior.priors.sd
 
 
-@pytest.mark.parametrize("name", [CONSTANTS, PREDICTIONS])
+@pytest.mark.parametrize("name", [CONSTANTS, PREDICTIONS, LEFT_OUT])
 def test_tables_were_made_from_the_shipped_inputs(name: str) -> None:
     assert current_inputs(DATA / name) == inputs_digest()
 
@@ -85,3 +90,77 @@ def test_ablation_has_every_mechanism_and_variant() -> None:
 def test_an_unknown_constant_names_the_nearest() -> None:
     with pytest.raises(ValueError, match=r"no constant 'warm limt'.*warm limit"):
         constant("warm limt")
+
+
+def test_draws_have_converged_and_left_nothing_out() -> None:
+    header = PosteriorDraws.load().header
+    assert header.converged
+    assert header.r_hat < 1.01
+    assert header.ess > 400.0
+    assert header.left_out == ()
+
+
+def test_draws_lie_around_the_maximum_and_fit_as_well() -> None:
+    draws, posterior = PosteriorDraws.load(), Posterior()
+    for each in load_constants():
+        low, _, high = draws.interval(each.name, 0.98)
+        assert low < each.value < high, each.name
+    priors = posterior.priors
+    for k in range(0, 1000, 250):
+        places = priors.places(dict(draws.draw(k)))
+        residuals = posterior.residuals((places - priors.middle) / priors.sd)
+        # Twice the negative log density of a draw is about that of the maximum plus the number of constants.
+        assert 60.0 < float(np.square(residuals).sum()) < 190.0
+
+
+def test_every_row_is_predicted_without_its_experiment() -> None:
+    rows = load_left_out()
+    assert sorted((row.experiment, row.statistic, row.channel) for row in rows) == sorted(r.key for r in load_rows())
+    assert all(row.low < row.lower < row.median < row.upper < row.high for row in rows)
+    assert all((row.method == "weights") <= (row.k_hat <= 0.7) for row in rows)
+    for row in rows:
+        assert row.covered(0.95) == (row.low <= row.published <= row.high)
+
+
+def test_left_out_predictions_cover_and_beat_the_naive_baseline() -> None:
+    rows = load_left_out()
+    assert 0.85 <= np.mean([row.covered(0.95) for row in rows]) <= 0.99
+    assert 0.35 <= np.mean([row.covered(0.5) for row in rows]) <= 0.75
+    compared = [row for row in rows if not math.isnan(row.naive)]
+    assert len(compared) > 15
+    assert sum(row.log_score - row.naive for row in compared) > 0.0
+
+
+def test_summaries_say_what_was_not_moved() -> None:
+    found = {each.name: each for each in summarise(PosteriorDraws.load())}
+    assert found["softness of the limits"].unmoved
+    assert not found["warm threshold drive"].unmoved
+    assert found["warm threshold drive"].narrowed < 0.4
+
+
+def parted(text: str) -> tuple[dict[str, str], list[str], np.ndarray]:
+    """Lines of the header by their first words, names of the columns, and draws (draws, columns)."""
+    lines = text.splitlines()
+    header = dict(line[1:].split(":", 1) for line in lines if line.startswith("#") and ":" in line)
+    names, *rows = [line for line in lines if not line.startswith("#")]
+    return header, names.split(","), np.array([row.split(",") for row in rows], dtype=np.float64)
+
+
+@pytest.mark.slow
+def test_sampling_makes_draws_of_the_shipped_distribution_from_their_seed(tmp_path: Path) -> None:
+    """Six minutes of processor time. The draws themselves are the same only where a computer rounds alike."""
+    made = tmp_path / "draws.csv"
+    command = [sys.executable, "-m", "thermicon.perception.evidence", "sample", "--seed", "0", "-o", made]
+    subprocess.run(command, check=True, capture_output=True)
+    (header, names, shipped), (own_header, own_names, own) = (
+        parted(path.read_text("utf-8")) for path in (DATA / "posterior.csv", made)
+    )
+    assert own_names == names
+    assert {key: own_header[key] for key in (" evidence", " priors")} == {
+        key: header[key] for key in (" evidence", " priors")
+    }
+    assert own.shape == shipped.shape == (1000, len(names))
+    spread = shipped.std(axis=0)
+    # With 400 effective draws each, means differ by 0.07 of the spread (1 SD), spreads by 5 %.
+    assert (np.abs(own.mean(axis=0) - shipped.mean(axis=0)) / spread).max() < 0.35
+    assert np.abs(np.log(own.std(axis=0) / spread)).max() < 0.3

@@ -40,7 +40,6 @@ def test_the_shipped_draws_belong_to_the_shipped_inputs(posterior: PosteriorDraw
     assert posterior.header.inputs == inputs_digest() == current_inputs()
     assert posterior.names == Posterior().priors.names
     assert len(posterior) == 1000
-    assert posterior.header.left_out == ()
 
 
 def test_a_draw_is_one_consistent_observer(posterior: PosteriorDraws) -> None:
