@@ -59,13 +59,12 @@ def report(
     rig: Rig,
     command: str = "",
     cures: Mapping[str, str] | None = None,
-    date: str = "",
     as_text: bool = False,
 ) -> str:
     """Write the page as HTML text, or as Markdown without pictures: the same bytes for the same arguments.
 
     ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
-    an icon could be reached, and a ``date`` is printed only if it is given.
+    an icon could be reached. No date is printed.
     """
     result = made.to_dict(mapped=False)  # the map is drawn, not printed
     title, count = icons.title or "Thermal icons", len(result["icons"])
@@ -75,7 +74,7 @@ def report(
         Text(f"{lead}: a model's, not measured", "lead"),
         *(Text(f"warning: {line}", "warn") for line in result["warnings"]),
         *rank_report(made, "", cures, details=True),
-        *_settings(result, rig, command, date),
+        *_settings(result, rig, command),
         *_components(result),
         *view_parts(made.ranking),
         *_pairs(result),
@@ -92,13 +91,12 @@ def report(
     return as_markdown(parts) if as_text else as_html(parts, f"{title}: predicted ranking")
 
 
-def _settings(result: dict[str, Any], rig: Rig, command: str, date: str) -> Iterator[Block]:
+def _settings(result: dict[str, Any], rig: Rig, command: str) -> Iterator[Block]:
     changes = ", ".join(result["rig_changes"]) or "none"
     draws = result["set"]["posterior_draws"]
     versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     rows = [
         ("command", command),
-        ("date", date),
         ("rig", f"{result['rig']}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²; changes: {changes}"),
         ("people", f"{result['people']} virtual, seed {result['seed']}"),
         ("same for all people", f"{result['tracking']} tracking"),
