@@ -10,8 +10,8 @@ from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.records import Record
 from thermicon.circuit.rig.rules import LONGEST_SESSION_MIN, Limits, limit_table
 from thermicon.circuit.rig.uncertainty import uncertainty_table
-from thermicon.circuit.safety.endings import ENDING_S, ENDINGS, LATER_S
 from thermicon.circuit.safety.demanded import TEST_A, TEST_S
+from thermicon.circuit.safety.endings import ENDING_S, ENDINGS, LATER_S
 from thermicon.circuit.safety.repeated import LONGEST_PAUSE_S
 from thermicon.circuit.safety.single import RECOVERED_K
 from thermicon.circuit.safety.single_faults import BEYOND_K, INSTANTS, MARGIN, REACTIONS_S
