@@ -98,7 +98,7 @@ def between_C() -> float:
 def test_what_only_a_block_from_rest_exceeds_is_a_caution(between_C: float) -> None:
     rig = sure_rig().with_(**{"safety.skin_lowest_soft_C": between_C})
     session = judged(course("A", WARM, COLD), rig)
-    assert (session.sessions["A"].verdict, session.after_breaks["A"].verdict) == ("green", "amber")
+    assert (session.sessions["A"].verdict, session.after_breaks["A"].colour) == ("green", "amber")
     (caution,) = session.cautions
     assert caution.startswith("blocks of participant A, each from rest: skin surface reaches ")
     assert judged(course("A", (*WARM, *COLD)), rig).after_breaks == {}
