@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -144,61 +143,6 @@ def simulate_many(
 def _frozen(rows: Array, probes: Sequence[str], values: Array) -> Batch:
     values.setflags(write=False)
     return Batch(rows, tuple(probes), values)
-
-
-def simulate_stream(
-    icons: Iterable[Icon],
-    rig: Rig,
-    *,
-    end_s: float,
-    rate_Hz: float = 100.0,
-    probes: Sequence[str] = USUAL,
-    at_once: int = 256,
-) -> Iterator[tuple[tuple[Icon, ...], Batch]]:
-    """Simulate any number of cues on one rig, a part of them in memory at a time.
-
-    Parameters
-    ----------
-    icons
-        The cues.
-    rig
-        The rig.
-    end_s
-        Time in s until which every run continues.
-    rate_Hz
-        Rows per second.
-    probes
-        Columns of a trace to record.
-    at_once
-        Number of cues in memory.
-
-    Yields
-    ------
-    icons : tuple of Icon
-        The cues of a part, in order.
-    batch : Batch
-        Their runs.
-
-    Raises
-    ------
-    RigError
-        Where the rig cannot hold a baseline.
-
-    Examples
-    --------
-    >>> from thermicon.icons import load_library
-    >>> parts = list(simulate_stream(load_library("six-icons"), Rig.load("thenar"), end_s=9.0, at_once=4))
-    >>> [(len(cues), batch.values.shape) for cues, batch in parts]
-    [(4, (3, 1, 4, 901)), (2, (3, 1, 2, 901))]
-    """
-    if at_once < 1:
-        raise RigError(f"at_once = {at_once}: at least one cue must be in memory at a time")
-    waiting = iter(icons)
-    while cues := tuple(itertools.islice(waiting, at_once)):
-        yield (
-            cues,
-            simulate_many(cues, [rig], nominal=rig, end_s=end_s, rate_Hz=rate_Hz, probes=probes),
-        )
 
 
 @dataclass(frozen=True, slots=True)

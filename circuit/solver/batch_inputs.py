@@ -212,7 +212,7 @@ def run_on(
             leg_room(wide, cells),
         )  # fmt: skip
 
-    _on_all_cores(work, len(rig_of), len(intervals.edges_s), alone)
+    _in_blocks(work, len(rig_of), len(intervals.edges_s), alone)
     return out, State(bank.joined(final, cells, None if warm is None else sinks[:, 0].copy(), rig_of), sinks)
 
 
@@ -256,19 +256,18 @@ def _run_periods(
         legs = (leg_room(wide, cells) for _ in range(rooms))
         kernel(wide, blocks, rig_of, *given, bank.arrays, core, current, reached, why, cells, warm, *legs)
 
-    _on_all_cores(work, len(rig_of))
+    _in_blocks(work, len(rig_of))
     return current, reached, why
 
 
 FEWEST = 8
 """Fewer lanes than this are quicker one at a time than in a padded block."""
 
-
 SHORT = 100_000
 """Lanes times intervals below which starting a thread takes longer than the work."""
 
 
-def _on_all_cores(
+def _in_blocks(
     work: Callable[[tuple[int, ...], Index], None], lanes: int, intervals: int = SHORT, alone: bool = False
 ) -> None:
     """Run lanes: most in blocks that do not depend on the number of cores, a few that are left over one by one."""
@@ -276,13 +275,20 @@ def _on_all_cores(
 
     width = len(MANY)
     single = lanes if alone else lanes % width if lanes % width < FEWEST else 0
-    last, every = lanes - single - 1, np.arange(lanes, dtype=np.int64)
-    blocks = np.minimum(np.arange(-(-(last + 1) // width) * width, dtype=np.int64), last).reshape(-1, width)
-    used = min(cores(), len(blocks)) if lanes * intervals >= SHORT else 1
-    if len(blocks) and used == 1:
-        work(MANY, blocks)
-    elif used > 1:
-        with ThreadPoolExecutor(used) as pool:
-            list(pool.map(work, [MANY] * used, np.array_split(blocks, used)))
+    together, every = lanes - single, np.arange(lanes, dtype=np.int64)
+    if together:
+        padded = np.minimum(np.arange(-(-together // width) * width, dtype=np.int64), together - 1)
+        used = None if lanes * intervals >= SHORT else 1
+        on_all_cores(lambda blocks: work(MANY, blocks), padded.reshape(-1, width), used)
     if single:
-        work(ONE, every[last + 1 :, np.newaxis])
+        work(ONE, every[together:, np.newaxis])
+
+
+def on_all_cores(work: Callable[[Index], None], lanes: Index, most: int | None = None) -> None:
+    """Call `work` on lanes, or blocks of them, in a thread for each core; each is computed by itself."""
+    used = min(most or cores(), len(lanes))
+    if used == 1:
+        work(lanes)
+        return
+    with ThreadPoolExecutor(used) as pool:
+        list(pool.map(work, np.array_split(lanes, used)))

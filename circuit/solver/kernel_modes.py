@@ -1,4 +1,4 @@
-"""Compiled sums over modes: each decays by itself, and a reading is a weighted sum of all; a probe's lag is one."""
+"""Compiled sums over modes: each decays by itself, and a reading is a weighted sum of all."""
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.
@@ -94,13 +94,3 @@ def follow_display(above_K, keep, now, then, drive_per_s, reading, direct, offse
             for q in range(readings):
                 out[q, k] += reading[q, m] * mode
         modes[m] = mode
-
-
-@kernel(nogil=True)
-def lagged(time_s, value, lag_s, out):
-    """Fill `out` (rows,) with a first-order lag of `value`, settled at first; exact where it is linear between rows."""
-    out[0] = value[0]
-    for k in range(time_s.size - 1):
-        step = time_s[k + 1] - time_s[k]
-        behind = (value[k + 1] - value[k]) / step * lag_s  # how far a settled lag trails a ramp
-        out[k + 1] = value[k + 1] - behind + (out[k] - value[k] + behind) * math.exp(-step / lag_s)

@@ -5,7 +5,6 @@ import pytest
 
 from thermicon.circuit import Drive, Rig, design, simulate, simulate_current, simulate_many
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.solver.batch import simulate_stream
 from thermicon.circuit.solver.inverse import design_many
 from thermicon.circuit.solver.kernel import ONE
 from thermicon.icons import Icon, load_library
@@ -102,15 +101,6 @@ def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
         assert plan.rest_A == alone.rest_A
 
 
-def test_a_stream_is_the_batch_in_parts() -> None:
-    six = tuple(load_library("six-icons"))
-    whole = simulate_many(six, [THENAR], nominal=THENAR, end_s=9.0, tracking="ideal")
-    parts = list(simulate_stream(iter(six), THENAR, end_s=9.0, at_once=4))
-    assert [len(cues) for cues, _ in parts] == [4, 2]
-    joined = np.concatenate([batch.values for _, batch in parts], axis=2)
-    assert np.abs(joined - whole.values).max() < 1e-4
-
-
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -124,8 +114,3 @@ def test_an_empty_batch_and_an_impossible_end_are_refused(changes: dict[str, obj
     given = {"icons": SIX, "rigs": [THENAR], "nominal": THENAR, "end_s": 9.0, **changes}
     with pytest.raises(RigError, match=words):
         simulate_many(**given)  # type: ignore[arg-type]
-
-
-def test_a_stream_needs_room_for_one() -> None:
-    with pytest.raises(RigError, match="at_once = 0: at least one cue must be in memory"):
-        next(simulate_stream(SIX, THENAR, end_s=9.0, at_once=0))
