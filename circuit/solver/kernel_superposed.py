@@ -18,24 +18,18 @@ import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
 from .kernel import compiled
-from .kernel_follow import greatest_cooling
+from .kernel_follow import FREE, limited
 from .network import COLD, SKIN
 from .plate import (
     ALPHA,
     COLD_J_PER_K,
-    COMPLIANCE_V,
     CONDUCTANCE,
-    HIGHEST_A,
     HOT_J_PER_K,
-    LOWEST_A,
-    PAST_MOST_COOLING,
     RESISTANCE,
     SINK_C,
     SINK_W_PER_K,
 )
 
-AT_ONCE = 8
-"""Lanes that go through time side by side in the processor's vectors."""
 MARGIN_A, MARGIN = 0.01, 0.02
 """A display counts as playable where this much more current either way, in A and as a share, is free of limits too."""
 
@@ -115,55 +109,28 @@ def playable(lanes, rig_of, cue_of, display, flow, hot_C, plates, period_s, fine
 
         αI·T_c − I²R/2 = flow − C_c·dT_c/dt + (T_h − T_c)/Θ,
 
-    and the hot plate, from `hot_C` (lane,) on, follows by implicit steps. Lanes go through time side by side; the
-    limits are those of `kernel.limited`.
+    and the hot plate, from `hot_C` (lane,) on, follows by implicit steps.
     """
-    alpha, ohm, leak, out = np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE)
-    hot_store, cold_store, sink_C = np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE)
-    lowest, highest, volts = np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE)
-    cold, before, heat, hot = np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE)
-    most, free, capped = np.empty(AT_ONCE), np.empty(AT_ONCE), np.empty(AT_ONCE, dtype=np.bool_)
-    for first in range(0, lanes.size, AT_ONCE):
-        block = min(AT_ONCE, lanes.size - first)
-        for i in range(AT_ONCE):
-            lane = lanes[first + min(i, block - 1)]
-            p = plates[rig_of[lane]]
-            alpha[i], ohm[i], leak[i], out[i] = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE], p[SINK_W_PER_K]
-            hot_store[i], cold_store[i], sink_C[i] = p[HOT_J_PER_K] / period_s, p[COLD_J_PER_K] / period_s, p[SINK_C]
-            lowest[i], highest[i], volts[i] = p[LOWEST_A], p[HIGHEST_A], p[COMPLIANCE_V]
-            hot[i], before[i], free[i] = hot_C[lane], display[cue_of[lane], 0], 1.0
-            capped[i] = p[PAST_MOST_COOLING] == 0.0
+    for lane in lanes:
+        p, c = plates[rig_of[lane]], cue_of[lane]
+        alpha, ohm, leak, out = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE], p[SINK_W_PER_K]
+        hot_store, cold_store = p[HOT_J_PER_K] / period_s, p[COLD_J_PER_K] / period_s
+        hot = hot_C[lane]
+        fine[lane] = True
         for k in range(1, display.shape[1]):
-            for i in range(AT_ONCE):
-                lane = lanes[first + min(i, block - 1)]
-                cold[i], heat[i] = display[cue_of[lane], k], flow[lane, k]
-            past_best, left = 0.0, 0.0
-            for i in range(AT_ONCE):
-                taken = heat[i] - cold_store[i] * (cold[i] - before[i])
-                half = alpha[i] * (cold[i] + ZERO_C_IN_K)
-                root = half * half - 2.0 * ohm[i] * (taken + leak[i] * (hot[i] - cold[i]))
-                amperes = (half - math.sqrt(max(root, 0.0))) / ohm[i]
-                spare = MARGIN_A + MARGIN * abs(amperes)
-                most[i] = amperes + spare
-                seebeck = alpha[i] * (hot[i] - cold[i])
-                within = 1.0 if most[i] <= highest[i] and amperes - spare >= lowest[i] else 0.0
-                driven = 1.0 if abs(ohm[i] * amperes + seebeck) + ohm[i] * spare <= volts[i] else 0.0
-                free[i] *= within * driven * (1.0 if root > 0.0 else 0.0)
-                past_best += 1.0 if ohm[i] * most[i] > 0.5 * half else 0.0
-                warm = hot_store[i] * hot[i] + out[i] * sink_C[i] + leak[i] * cold[i] + alpha[i] * amperes * ZERO_C_IN_K
-                hot[i] = (warm + 0.5 * ohm[i] * amperes * amperes) / (
-                    hot_store[i] + out[i] + leak[i] - alpha[i] * amperes
-                )
-                before[i] = cold[i]
-                left += free[i]
-            if left == 0.0:
+            cold = display[c, k]
+            taken = flow[lane, k] - cold_store * (cold - display[c, k - 1])
+            half = alpha * (cold + ZERO_C_IN_K)
+            root = half * half - 2.0 * ohm * (taken + leak * (hot - cold))
+            if root <= 0.0:
+                fine[lane] = False
                 break
-            if past_best > 0.0:
-                for i in range(block):
-                    half = alpha[i] * (cold[i] + ZERO_C_IN_K)
-                    if capped[i] and ohm[i] * most[i] > 0.5 * half:  # the best cooling is never below half of αT_c/R
-                        base, total = out[i] * sink_C[i] + leak[i] * cold[i], out[i] + leak[i]
-                        if most[i] > greatest_cooling(cold[i], base, total, alpha[i], ohm[i], leak[i]):
-                            free[i] = 0.0
-        for i in range(block):
-            fine[lanes[first + i]] = free[i] == 1.0
+            amperes = (half - math.sqrt(root)) / ohm
+            spare = MARGIN_A + MARGIN * abs(amperes)
+            _, above = limited(amperes + spare, hot, cold, p[SINK_C], p)
+            _, below = limited(amperes - spare, hot, cold, p[SINK_C], p)
+            if above != FREE or below != FREE:
+                fine[lane] = False
+                break
+            warm = hot_store * hot + out * p[SINK_C] + leak * cold + alpha * amperes * ZERO_C_IN_K
+            hot = (warm + 0.5 * ohm * amperes * amperes) / (hot_store + out + leak - alpha * amperes)
