@@ -124,7 +124,7 @@ def simulate_many(
     common_lead((*rigs, nominal))
     rows = rows_until(end_s, rate_Hz)
     values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
-    stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
+    stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes), Bank.of([network_of(rig) for rig in rigs]))
     groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
         groups.setdefault((icon.context.control, tracking or usual_tracking(icon)), []).append(place)
@@ -154,6 +154,7 @@ class _Stage:
     end_s: float
     rows: Array
     probes: tuple[str, ...]
+    bank: Bank
 
     def play_corners(self, icon: Icon) -> Array:
         """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
@@ -161,8 +162,7 @@ class _Stage:
         states = [start_under(rig, plan.rest_A) for rig in self.rigs]
         every = np.arange(len(self.rigs), dtype=np.int64)
         intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
-        bank = Bank.of([network_of(rig) for rig in self.rigs])
-        return run_forward(bank, every, np.zeros_like(every), intervals, bank.states(states), self.probes)
+        return run_forward(self.bank, every, np.zeros_like(every), intervals, self.bank.states(states), self.probes)
 
     def replay(self, icons: Sequence[Icon]) -> Array:
         """The currents designed on the nominal rig, on every rig: (probes, rigs, icons, rows)."""
@@ -201,9 +201,9 @@ class _Stage:
         else:
             currents = self._loop(control, targets, bases, np.array([current for current, _ in lanes]), states)
         if self.nominal.contact.lands_s is not None:
-            bank, rig_of = Bank.of([network_of(rig) for rig in self.rigs]), self._lanes(len(icons))[0]
+            rig_of = self._lanes(len(icons))[0]
             every = np.arange(len(rig_of), dtype=np.int64)
-            states = list(led(bank, rig_of, every, currents[:, :lead], self.nominal, bank.states(states)))
+            states = list(led(self.bank, rig_of, every, currents[:, :lead], self.nominal, self.bank.states(states)))
         return self._play(currents[:, lead:], icons, states)
 
     def _superposed(self, targets: Array, bases: Sequence[float], states: Sequence[Array]) -> Array | None:
@@ -213,8 +213,7 @@ class _Stage:
         displays = np.concatenate([np.array(bases)[:, np.newaxis], targets], axis=1)
         if (corners := corners_of(displays)) is None:
             return None
-        bank, update_Hz = Bank.of([network_of(rig) for rig in self.rigs]), self.nominal.driver.update_Hz
-        start = bank.states(states)
+        bank, update_Hz, start = self.bank, self.nominal.driver.update_Hz, self.bank.states(states)
         result = superposed(bank, displays, corners, start, self.probes, 1.0 / update_Hz, self.rows)
         if (near := np.flatnonzero(~result.fine)).size:
             rig_of, cue_of = (places[near] for places in self._lanes(len(targets)))
@@ -236,7 +235,7 @@ class _Stage:
 
     def _follow(self, control: str, targets: Array, states: Sequence[Array]) -> Array:
         """Currents (rigs · cues, periods) that make each rig follow each target from its state."""
-        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        bank, period = self.bank, 1.0 / self.nominal.driver.update_Hz
         rig_of, cue_of = self._lanes(len(targets))
         return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", bank.states(states))[0]
 
@@ -249,7 +248,7 @@ class _Stage:
                 "skin-controlled cues cannot be solved again through a PID loop, which measures only the display; "
                 "use tracking display, or rigs without [controller]"
             )
-        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        bank, period = self.bank, 1.0 / self.nominal.driver.update_Hz
         rig_of, cue_of = self._lanes(len(targets))
         setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
         gains = np.array([gains_of(rig) for rig in self.rigs])
@@ -257,9 +256,8 @@ class _Stage:
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, one row per cue or per lane, on every rig and cue from given states."""
-        bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
         rig_of, cue_of = self._lanes(len(icons))
         if len(currents) == len(rig_of):
             cue_of = np.arange(len(rig_of))
-        out = run_forward(bank, rig_of, cue_of, self._held(currents), bank.states(states), self.probes)
-        return out.reshape(len(self.probes), *shape, len(self.rows))
+        out = run_forward(self.bank, rig_of, cue_of, self._held(currents), self.bank.states(states), self.probes)
+        return out.reshape(len(self.probes), len(self.rigs), len(icons), len(self.rows))

@@ -84,7 +84,7 @@ def superposed(
 
     `states` (rigs · cues, nodes) are the steady ones at the start; rows (rows,) in s lie at ends of periods.
     """
-    from . import kernel_superposed as kernel
+    from . import kernel_modes as kernel
 
     rigs, cues = len(bank.count), len(display_C)
     rig_of, cue_of = (place.ravel() for place in np.indices((rigs, cues)))

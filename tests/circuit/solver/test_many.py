@@ -19,6 +19,8 @@ BLOCK = [*OTHERS, Rig.load("shani2021"), *(THENAR.with_(**{"contact.area_cm2": 5
 """More rigs than one block holds, with different numbers of lumps."""
 SIX = tuple(load_library("six-icons"))[:2]
 SKIN = tuple(load_library("cooling-step-skin"))
+LEGS = {"leg_nodes": 3, "leg_capacity_J_per_K": 0.8}
+PASSIVE = {"capacity_J_per_K": 90.0, "air_resistance_K_per_W": 1.5}
 
 
 def test_shapes_and_reading() -> None:
@@ -81,13 +83,6 @@ def test_the_same_whatever_the_number_of_cores(monkeypatch: pytest.MonkeyPatch) 
     assert simulate_many(SIX, BLOCK, nominal=THENAR, end_s=10.0).values.tobytes() == many.values.tobytes()
 
 
-def test_an_unknown_tracking_and_mixed_drivers_are_refused() -> None:
-    with pytest.raises(RigError, match="tracking 'replays' is not known; it is one of replay, display, ideal"):
-        simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0, tracking="replays")
-    with pytest.raises(RigError, match=r"rigs of one batch must share driver\.update_Hz"):
-        simulate_many(SIX, [THENAR.with_(**{"driver.update_Hz": 50})], nominal=THENAR, end_s=10.0)
-
-
 def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
     weak = THENAR.with_(**{"driver.current_limit_A": 1.0})
     cues = [*load_library("six-icons"), *SKIN, *load_library("wave-shapes")]
@@ -108,9 +103,17 @@ def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
         ({"rigs": []}, "at least one cue and one rig"),
         ({"end_s": float("nan")}, "a batch cannot end at nan s"),
         ({"end_s": -2.0}, "a batch cannot end at -2 s"),
+        ({"tracking": "replays"}, "tracking 'replays' is not known; it is one of replay, display, ideal"),
+        ({"nominal": THENAR.with_(**{"driver.update_Hz": 50})}, r"rigs of one batch must share driver\.update_Hz"),
+        ({"rigs": [THENAR.with_(**{"contact.lands_s": -1.0})]}, r"share contact\.lands_s"),
+        ({"rigs": [THENAR.with_(module=LEGS), THENAR]}, r"share module\.leg_nodes"),
+        (
+            {"rigs": [THENAR.with_(heat_sink=PASSIVE), THENAR]},
+            r"share .* passive heat sink \(heat_sink\.air_resistance_K_per_W\) or none",
+        ),
     ],
 )
-def test_an_empty_batch_and_an_impossible_end_are_refused(changes: dict[str, object], words: str) -> None:
+def test_an_impossible_batch_is_refused(changes: dict[str, object], words: str) -> None:
     given = {"icons": SIX, "rigs": [THENAR], "nominal": THENAR, "end_s": 9.0, **changes}
     with pytest.raises(RigError, match=words):
         simulate_many(**given)  # type: ignore[arg-type]
