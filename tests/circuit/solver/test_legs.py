@@ -73,16 +73,6 @@ def test_nodes_do_not_change_what_is_steady() -> None:
 
 
 @pytest.mark.slow
-def test_the_inverse_reaches_its_target_without_ringing() -> None:
-    for icon in load_library("six-icons"):
-        trace = simulate(icon, legs(5))
-        assert trace.outcome is not None
-        assert trace.outcome.reached
-        assert abs(trace.outcome.largest_miss_K) < 1e-3
-        assert np.abs(np.diff(trace.current_A, 2))[-52:-2].max() < 1e-4
-
-
-@pytest.mark.slow
 def test_columns_of_different_length_share_a_batch() -> None:
     icons, thin = tuple(load_library("six-icons"))[:4], {"skin.layer.muscle.thickness_mm": 4.0}
     rigs = [legs(3), legs(3).with_(**thin)]

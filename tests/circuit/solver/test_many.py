@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, design, simulate, simulate_current, simulate_many
+from thermicon.circuit.cores import at_most
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.inverse import design_many
 from thermicon.circuit.solver.kernel import ONE
+from thermicon.circuit.solver.superposed import PROBES
 from thermicon.icons import Icon, load_library
 
 THENAR = Rig.load("thenar")
@@ -77,10 +79,13 @@ def test_ideal_gives_every_skin_the_same() -> None:
     assert batch["skin_C"][:, 0, held] == pytest.approx(26.0, abs=2e-3)
 
 
-def test_the_same_whatever_the_number_of_cores(monkeypatch: pytest.MonkeyPatch) -> None:
-    many = simulate_many(SIX, BLOCK, nominal=THENAR, end_s=10.0)
-    monkeypatch.setattr("os.cpu_count", lambda: 1)
-    assert simulate_many(SIX, BLOCK, nominal=THENAR, end_s=10.0).values.tobytes() == many.values.tobytes()
+@pytest.mark.parametrize("probes", [("skin_C",), PROBES], ids=["in full", "superposed"])
+def test_the_number_of_cores_changes_no_bit(probes: tuple[str, ...]) -> None:
+    def run(count: int) -> bytes:
+        with at_most(count):
+            return simulate_many(SIX, BLOCK, nominal=THENAR, end_s=9.0, probes=probes).values.tobytes()
+
+    assert run(1) == run(3)
 
 
 def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
