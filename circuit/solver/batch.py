@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -125,7 +124,7 @@ def simulate_many(
     common_lead((*rigs, nominal))
     rows = rows_until(end_s, rate_Hz)
     values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
-    stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes))
+    stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes), Bank.of([network_of(rig) for rig in rigs]))
     groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
         groups.setdefault((icon.context.control, tracking or usual_tracking(icon)), []).append(place)
@@ -146,61 +145,6 @@ def _frozen(rows: Array, probes: Sequence[str], values: Array) -> Batch:
     return Batch(rows, tuple(probes), values)
 
 
-def simulate_stream(
-    icons: Iterable[Icon],
-    rig: Rig,
-    *,
-    end_s: float,
-    rate_Hz: float = 100.0,
-    probes: Sequence[str] = USUAL,
-    at_once: int = 256,
-) -> Iterator[tuple[tuple[Icon, ...], Batch]]:
-    """Simulate any number of cues on one rig, a part of them in memory at a time.
-
-    Parameters
-    ----------
-    icons
-        The cues.
-    rig
-        The rig.
-    end_s
-        Time in s until which every run continues.
-    rate_Hz
-        Rows per second.
-    probes
-        Columns of a trace to record.
-    at_once
-        Number of cues in memory.
-
-    Yields
-    ------
-    icons : tuple of Icon
-        The cues of a part, in order.
-    batch : Batch
-        Their runs.
-
-    Raises
-    ------
-    RigError
-        Where the rig cannot hold a baseline.
-
-    Examples
-    --------
-    >>> from thermicon.icons import load_library
-    >>> parts = list(simulate_stream(load_library("six-icons"), Rig.load("thenar"), end_s=9.0, at_once=4))
-    >>> [(len(cues), batch.values.shape) for cues, batch in parts]
-    [(4, (3, 1, 4, 901)), (2, (3, 1, 2, 901))]
-    """
-    if at_once < 1:
-        raise RigError(f"at_once = {at_once}: at least one cue must be in memory at a time")
-    waiting = iter(icons)
-    while cues := tuple(itertools.islice(waiting, at_once)):
-        yield (
-            cues,
-            simulate_many(cues, [rig], nominal=rig, end_s=end_s, rate_Hz=rate_Hz, probes=probes),
-        )
-
-
 @dataclass(frozen=True, slots=True)
 class _Stage:
     """The setting of a batch: the rigs, the rig that cues are designed for, and what is recorded."""
@@ -210,6 +154,7 @@ class _Stage:
     end_s: float
     rows: Array
     probes: tuple[str, ...]
+    bank: Bank
 
     def play_corners(self, icon: Icon) -> Array:
         """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
@@ -217,8 +162,7 @@ class _Stage:
         states = [start_under(rig, plan.rest_A) for rig in self.rigs]
         every = np.arange(len(self.rigs), dtype=np.int64)
         intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
-        bank = Bank.of([network_of(rig) for rig in self.rigs])
-        return run_forward(bank, every, np.zeros_like(every), intervals, bank.states(states), self.probes)
+        return run_forward(self.bank, every, np.zeros_like(every), intervals, self.bank.states(states), self.probes)
 
     def replay(self, icons: Sequence[Icon]) -> Array:
         """The currents designed on the nominal rig, on every rig: (probes, rigs, icons, rows)."""
@@ -257,9 +201,9 @@ class _Stage:
         else:
             currents = self._loop(control, targets, bases, np.array([current for current, _ in lanes]), states)
         if self.nominal.contact.lands_s is not None:
-            bank, rig_of = Bank.of([network_of(rig) for rig in self.rigs]), self._lanes(len(icons))[0]
+            rig_of = self._lanes(len(icons))[0]
             every = np.arange(len(rig_of), dtype=np.int64)
-            states = list(led(bank, rig_of, every, currents[:, :lead], self.nominal, bank.states(states)))
+            states = list(led(self.bank, rig_of, every, currents[:, :lead], self.nominal, self.bank.states(states)))
         return self._play(currents[:, lead:], icons, states)
 
     def _superposed(self, targets: Array, bases: Sequence[float], states: Sequence[Array]) -> Array | None:
@@ -269,8 +213,7 @@ class _Stage:
         displays = np.concatenate([np.array(bases)[:, np.newaxis], targets], axis=1)
         if (corners := corners_of(displays)) is None:
             return None
-        bank, update_Hz = Bank.of([network_of(rig) for rig in self.rigs]), self.nominal.driver.update_Hz
-        start = bank.states(states)
+        bank, update_Hz, start = self.bank, self.nominal.driver.update_Hz, self.bank.states(states)
         result = superposed(bank, displays, corners, start, self.probes, 1.0 / update_Hz, self.rows)
         if (near := np.flatnonzero(~result.fine)).size:
             rig_of, cue_of = (places[near] for places in self._lanes(len(targets)))
@@ -292,7 +235,7 @@ class _Stage:
 
     def _follow(self, control: str, targets: Array, states: Sequence[Array]) -> Array:
         """Currents (rigs · cues, periods) that make each rig follow each target from its state."""
-        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        bank, period = self.bank, 1.0 / self.nominal.driver.update_Hz
         rig_of, cue_of = self._lanes(len(targets))
         return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", bank.states(states))[0]
 
@@ -305,7 +248,7 @@ class _Stage:
                 "skin-controlled cues cannot be solved again through a PID loop, which measures only the display; "
                 "use tracking display, or rigs without [controller]"
             )
-        bank, period = Bank.of([network_of(rig) for rig in self.rigs]), 1.0 / self.nominal.driver.update_Hz
+        bank, period = self.bank, 1.0 / self.nominal.driver.update_Hz
         rig_of, cue_of = self._lanes(len(targets))
         setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
         gains = np.array([gains_of(rig) for rig in self.rigs])
@@ -313,9 +256,8 @@ class _Stage:
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, one row per cue or per lane, on every rig and cue from given states."""
-        bank, shape = Bank.of([network_of(rig) for rig in self.rigs]), (len(self.rigs), len(icons))
         rig_of, cue_of = self._lanes(len(icons))
         if len(currents) == len(rig_of):
             cue_of = np.arange(len(rig_of))
-        out = run_forward(bank, rig_of, cue_of, self._held(currents), bank.states(states), self.probes)
-        return out.reshape(len(self.probes), *shape, len(self.rows))
+        out = run_forward(self.bank, rig_of, cue_of, self._held(currents), self.bank.states(states), self.probes)
+        return out.reshape(len(self.probes), len(self.rigs), len(icons), len(self.rows))

@@ -14,7 +14,7 @@ from ..arrays import Array, Index
 from ..cores import cores
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .network import RECORDED, SKIN, Network, network_of
+from .network import RECORDED, Network, network_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,36 +79,6 @@ class Bank:
         for row, state in zip(rows, states, strict=True):
             row[: len(state)] = state
         return rows
-
-    def parted(self, nodes_C: Array, rig_of: Index) -> tuple[Array, Array | None, Array | None]:
-        """Return states (lanes, nodes) as the kernels take them: without extras, cells of the legs, passive sinks."""
-        if not self.extras:
-            return nodes_C, None, None
-        lane = np.arange(len(nodes_C))[:, np.newaxis]
-        extra = nodes_C[lane, self._extra_at(rig_of)]
-        cells = np.ascontiguousarray(extra[:, : self.legs]) if self.legs else None
-        return nodes_C[lane, self._core_at(rig_of)], cells, extra[:, -1].copy() if self.passive else None
-
-    def joined(self, core_C: Array, cells: Array | None, warm: Array | None, rig_of: Index) -> Array:
-        """The reverse of `parted`."""
-        if not self.extras:
-            return core_C
-        lane = np.arange(len(core_C))[:, np.newaxis]
-        nodes = np.zeros((len(core_C), core_C.shape[1] + self.extras))
-        nodes[lane, self._core_at(rig_of)] = core_C
-        extra = [part for part in (cells, None if warm is None else warm[:, np.newaxis]) if part is not None]
-        nodes[lane, self._extra_at(rig_of)] = np.concatenate(extra, axis=1)
-        return nodes
-
-    def _extra_at(self, rig_of: Index) -> Index:
-        """Places of the extras (lanes, extras) in states."""
-        return np.asarray(self.count[rig_of][:, np.newaxis] + SKIN + np.arange(self.extras), dtype=np.int64)
-
-    def _core_at(self, rig_of: Index) -> Index:
-        """Places of plates, lumps, deep node and padding (lanes, n + 3) in states."""
-        place = np.arange(self.capacity.shape[1] + 3)
-        behind = place >= self.count[rig_of][:, np.newaxis] + SKIN
-        return np.asarray(place + self.extras * behind, dtype=np.int64)
 
 
 @lru_cache(maxsize=64)
@@ -199,21 +169,16 @@ def run_on(
         places = np.concatenate([places, np.repeat(extra[0][np.newaxis], rigs, axis=0)], axis=1)
         weights = np.concatenate([weights, np.repeat(extra[1][np.newaxis], rigs, axis=0)], axis=1)
     out = np.empty((places.shape[1], len(rig_of), int(intervals.row_of.max()) + 1))
-    sinks, (core, cells, warm) = state.sink.copy(), bank.parted(state.nodes_C, rig_of)
-    final = np.zeros_like(core)
-    if warm is not None:
-        sinks[:] = 0.0
-        sinks[:, 0] = warm
+    sinks, final = state.sink.copy(), np.zeros_like(state.nodes_C)
 
     def work(wide: tuple[int, ...], blocks: Index) -> None:
         forward(
             wide, blocks, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
-            bank.arrays, places, weights, core, sinks, out, final, cells,
-            leg_room(wide, cells),
+            bank.arrays, places, weights, state.nodes_C, sinks, out, final, leg_room(wide, bank.legs),
         )  # fmt: skip
 
-    _on_all_cores(work, len(rig_of), len(intervals.edges_s), alone)
-    return out, State(bank.joined(final, cells, None if warm is None else sinks[:, 0].copy(), rig_of), sinks)
+    _in_blocks(work, len(rig_of), len(intervals.edges_s), alone)
+    return out, State(final, sinks)
 
 
 def run_follow(
@@ -250,25 +215,23 @@ def _run_periods(
 
     shape = (len(rig_of), given[2].shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
-    core, cells, warm = bank.parted(state, rig_of)
 
     def work(wide: tuple[int, ...], blocks: Index) -> None:
-        legs = (leg_room(wide, cells) for _ in range(rooms))
-        kernel(wide, blocks, rig_of, *given, bank.arrays, core, current, reached, why, cells, warm, *legs)
+        legs = (leg_room(wide, bank.legs) for _ in range(rooms))
+        kernel(wide, blocks, rig_of, *given, bank.arrays, state, current, reached, why, *legs)
 
-    _on_all_cores(work, len(rig_of))
+    _in_blocks(work, len(rig_of))
     return current, reached, why
 
 
 FEWEST = 8
 """Fewer lanes than this are quicker one at a time than in a padded block."""
 
-
 SHORT = 100_000
 """Lanes times intervals below which starting a thread takes longer than the work."""
 
 
-def _on_all_cores(
+def _in_blocks(
     work: Callable[[tuple[int, ...], Index], None], lanes: int, intervals: int = SHORT, alone: bool = False
 ) -> None:
     """Run lanes: most in blocks that do not depend on the number of cores, a few that are left over one by one."""
@@ -276,13 +239,20 @@ def _on_all_cores(
 
     width = len(MANY)
     single = lanes if alone else lanes % width if lanes % width < FEWEST else 0
-    last, every = lanes - single - 1, np.arange(lanes, dtype=np.int64)
-    blocks = np.minimum(np.arange(-(-(last + 1) // width) * width, dtype=np.int64), last).reshape(-1, width)
-    used = min(cores(), len(blocks)) if lanes * intervals >= SHORT else 1
-    if len(blocks) and used == 1:
-        work(MANY, blocks)
-    elif used > 1:
-        with ThreadPoolExecutor(used) as pool:
-            list(pool.map(work, [MANY] * used, np.array_split(blocks, used)))
+    together, every = lanes - single, np.arange(lanes, dtype=np.int64)
+    if together:
+        padded = np.minimum(np.arange(-(-together // width) * width, dtype=np.int64), together - 1)
+        used = None if lanes * intervals >= SHORT else 1
+        on_all_cores(lambda blocks: work(MANY, blocks), padded.reshape(-1, width), used)
     if single:
-        work(ONE, every[last + 1 :, np.newaxis])
+        work(ONE, every[together:, np.newaxis])
+
+
+def on_all_cores(work: Callable[[Index], None], lanes: Index, most: int | None = None) -> None:
+    """Call `work` on lanes, or blocks of them, in a thread for each core; each is computed by itself."""
+    used = min(most or cores(), len(lanes))
+    if used == 1:
+        work(lanes)
+        return
+    with ThreadPoolExecutor(used) as pool:
+        list(pool.map(work, np.array_split(lanes, used)))

@@ -185,7 +185,8 @@ def displays_on(
     for r, rig in enumerate(rigs):
         for k in anew:
             displays[k] = design_display(icons[k], rig, float(rows[-1]), finest).display_C
-        read = modes_of(rig).run_many(displays, step, chosen)
+        modes = modes_of(rig)
+        read = np.swapaxes([modes.run(row, step, modes.steady(float(row[0])), chosen)[0] for row in displays], 0, 1)
         if aligned:
             values[felt, r] = read[:, :, : len(rows)]
         else:

@@ -110,28 +110,16 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
 
 def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
     """As `design`, by the inverse of the module alone, without the rig's own control loop."""
-    control = icon.context.control
-    current, state = steady_state(rig, "skin" if control == "skin" else "display", baseline_C(icon, rig))
-    if control == "current":
-        corners = icon.corners(current)
-        times, values = list(corners.time_s), list(corners.value)
-        if end_s > times[-1] + 1e-9:
-            times.append(end_s)
-            values.append(values[-1])
-        lead_A = None if rig.contact.lands_s is None else np.full(lead_of(rig) + 1, current)
-        return Design(Drive(times, values), current, start_under(rig, current), None, lead_A)
-    ends, base = periods(rig, end_s), baseline_C(icon, rig)
-    target = target_at(icon, base, ends)
-    bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
-    period, lead = 1.0 / rig.driver.update_Hz, lead_of(rig)
-    begun = bank.states([start_holding(rig, state)])
-    targets = ahead(target[np.newaxis], np.array([base]), lead)
-    every = run_follow(bank, lane, lane, period, targets, control == "skin", begun)
-    start = led(bank, lane, lane, every[0][:, :lead], rig, begun)[0]
-    currents, reached, why = (values[:, lead:] for values in every)
-    outcome = judge(target, reached[0], period, _limits(why[0], period), steps_at(icon, base))
-    drive = Drive([0.0, *ends], [*currents[0], currents[0, -1]], held=True)
-    return Design(drive, current, start, outcome, _lead(rig, state, every[0][0, :lead]))
+    if icon.context.control != "current":
+        return _designs([icon], rig, icon.context.control, end_s)[0]
+    current, _ = steady_state(rig, "display", baseline_C(icon, rig))
+    corners = icon.corners(current)
+    times, values = list(corners.time_s), list(corners.value)
+    if end_s > times[-1] + 1e-9:
+        times.append(end_s)
+        values.append(values[-1])
+    lead_A = None if rig.contact.lands_s is None else np.full(lead_of(rig) + 1, current)
+    return Design(Drive(times, values), current, start_under(rig, current), None, lead_A)
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
@@ -144,30 +132,32 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
     >>> [plan.outcome.reached for plan in design_many(load_library("six-icons"), Rig.load("thenar"), 9.0)]
     [True, True, True, True, True, True]
     """
-    together = [icon for icon in icons if icon.context.control != "current" and rig.controller is None]
     designs: dict[int, Design] = {}
-    bank, ends, period, lead = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz, lead_of(rig)
-    for control in ("skin", "display"):
-        cues = [icon for icon in together if icon.context.control == control]
-        if not cues:
-            continue
-        bases = [baseline_C(icon, rig) for icon in cues]
-        rest = {base: steady_state(rig, control, base) for base in set(bases)}
-        targets = np.array([target_at(icon, base, ends) for icon, base in zip(cues, bases, strict=True)])
-        lanes = np.arange(len(cues), dtype=np.int64)
-        begun = bank.states([start_holding(rig, rest[base][1]) for base in bases])
-        before = ahead(targets, np.array(bases), lead)
-        every = run_follow(bank, np.zeros_like(lanes), lanes, period, before, control == "skin", begun)
-        starts = led(bank, np.zeros_like(lanes), lanes, every[0][:, :lead], rig, begun)
-        results = (starts, every[0][:, :lead], *(values[:, lead:] for values in every))
-        for icon, base, target, start, led_A, currents, reached, why in zip(
-            cues, bases, targets, *results, strict=True
-        ):
-            outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
-            drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
-            lead_A = _lead(rig, rest[base][1], led_A)
-            designs[id(icon)] = Design(drive, rest[base][0], start, outcome, lead_A)
+    for control in ("skin", "display") if rig.controller is None else ():
+        cues = [icon for icon in icons if icon.context.control == control]
+        if cues:
+            designs.update(zip(map(id, cues), _designs(cues, rig, control, end_s), strict=True))
     return tuple(designs.get(id(icon)) or design(icon, rig, end_s) for icon in icons)
+
+
+def _designs(icons: Sequence[Icon], rig: Rig, control: str, end_s: float) -> list[Design]:
+    """Designs of cues with one kind of control, side by side, by the inverse of the module."""
+    bank, ends, period, lead = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz, lead_of(rig)
+    bases = [baseline_C(icon, rig) for icon in icons]
+    rest = {base: steady_state(rig, control, base) for base in dict.fromkeys(bases)}
+    targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
+    lanes = np.arange(len(icons), dtype=np.int64)
+    begun = bank.states([start_holding(rig, rest[base][1]) for base in bases])
+    before = ahead(targets, np.array(bases), lead)
+    every = run_follow(bank, np.zeros_like(lanes), lanes, period, before, control == "skin", begun)
+    starts = led(bank, np.zeros_like(lanes), lanes, every[0][:, :lead], rig, begun)
+    results = (starts, every[0][:, :lead], *(values[:, lead:] for values in every))
+    designs = []
+    for icon, base, target, start, led_A, currents, reached, why in zip(icons, bases, targets, *results, strict=True):
+        outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
+        drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
+        designs.append(Design(drive, rest[base][0], start, outcome, _lead(rig, rest[base][1], led_A)))
+    return designs
 
 
 def gains_of(rig: Rig) -> tuple[float, float, float, float, float]:

@@ -103,12 +103,12 @@ def room(wide, bank):
 
 
 @compiled
-def begin(wide, block, rig_of, bank, state, x, p, skin, sink, warm):
-    """Load a block's rigs and states (lane, n + 3) in °C; returns h, half the largest number of lumps.
+def begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg):
+    """Load a block's rigs and states (lane, nodes) in °C; returns h, half the largest number of lumps.
 
     Shorter columns are padded at the deep end. The conductance to the deep node is added to the last lump's perfusion
-    (blood and deep node have one temperature), so that g = 0 cuts the padding off. Heat sinks start at their
-    set-points, with the power that holds them there; passive ones at `warm` (lane,) in °C, or None.
+    (blood and deep node have one temperature), so that g = 0 cuts the padding off. Heat sinks with a controller start
+    at their set-points, with the power that holds them there; passive ones are part of the state.
     """
     lanes, h = len(wide), 0
     count, plates, capacity, conductance, perfusion = bank
@@ -133,8 +133,9 @@ def begin(wide, block, rig_of, bank, state, x, p, skin, sink, warm):
         for k in range(SINK_NUMBERS):  # a slice as target would compile the text of its errors as well
             sink[k, lane] = 0.0
         sink[TEMPERATURE, lane] = p[SINK_C, lane]
-        if warm is not None:
-            sink[TEMPERATURE, lane] = warm[block[lane]]
+        place = load_legs(state[block[lane]], n + 2, lane, p[DEEP_C, lane], leg)
+        if p[SINK_AIR_W_PER_K, lane] > 0.0:
+            sink[TEMPERATURE, lane] = state[block[lane], place]
         elif p[SINK_J_PER_K, lane] > 0.0:
             power = -p[SINK_W_PER_K, lane] * (state[block[lane], 0] - p[SINK_C, lane])
             sink[POWER, lane] = sink[REST_POWER, lane] = power
@@ -273,16 +274,16 @@ def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, ro
 
 @compiled
 def forward(
-    wide, blocks, rig_of, cue_of, edges, start_A, end_A, row_of, bank, places, weights, state, sinks, out, final, cells,
+    wide, blocks, rig_of, cue_of, edges, start_A, end_A, row_of, bank, places, weights, state, sinks, out, final,
     leg,
 ):  # fmt: skip
     """Step every lane in `blocks` (blocks, lanes) through the intervals between `edges`, and write the probes of rows.
 
     Lanes of a block share their steps. `bank` holds rigs as `Bank.arrays` gives them; `start_A`, `end_A` (interval,
     cue) are the currents at both ends of an interval; `row_of` (interval + 1,) the row to write at an edge, or −1;
-    `state` (lane, n + 3) the start in °C; `out` (probe, lane, row) and `final` (lane, n + 3) are filled. `sinks`
-    (lane, 4) holds each lane's heat sink (NaN: start at its set-point), and is left as it ends; so are the cells of its
-    legs, `cells` (lane, m) in °C or None, for which `leg` is `leg_room`.
+    `state` (lane, nodes) the start in °C; `out` (probe, lane, row) and `final` (lane, nodes) are filled. `sinks`
+    (lane, 4) holds each lane's heat sink that has a controller (NaN: start at its set-point), and is left as it ends;
+    `leg` is `leg_room`.
     """
     lanes, probes = len(wide), places.shape[1]
     x, p, skin, sink, y, total, first = room(wide, bank)
@@ -291,11 +292,10 @@ def forward(
     at, weight = np.empty((probes, 3, lanes), dtype=np.int64), np.empty((probes, 4, lanes))
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, None)
-        load_legs(cells, block, p, leg)
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg)
         for lane in range(lanes):
             r = rig_of[block[lane]]
-            if not math.isnan(sinks[block[lane], TEMPERATURE]):
+            if p[SINK_AIR_W_PER_K, lane] == 0.0 and not math.isnan(sinks[block[lane], TEMPERATURE]):
                 for k in range(SINK_NUMBERS):
                     sink[k, lane] = sinks[block[lane], k]
             for q in range(probes):
@@ -339,10 +339,14 @@ def forward(
                 advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole, leg)
                 done += step
                 since += step
-        store_legs(cells, block, p, leg)
         for lane in range(lanes):
+            n, deep, last = bank[0][rig_of[block[lane]]], p[DEEP_C, lane], final[block[lane]]
             for k in range(SINK_NUMBERS):
                 sinks[block[lane], k] = sink[k, lane]
-            n = bank[0][rig_of[block[lane]]]
-            for k in range(n + 3):
-                final[block[lane], k] = flat[place_of(k, n, h, lane, lanes)] + p[DEEP_C, lane]
+            for k in range(n + 2):
+                last[k] = flat[place_of(k, n, h, lane, lanes)] + deep
+            place = store_legs(last, n + 2, lane, deep, leg)
+            if p[SINK_AIR_W_PER_K, lane] > 0.0:
+                last[place] = sink[TEMPERATURE, lane]
+                place += 1
+            last[place] = deep

@@ -35,7 +35,6 @@ from .kernel_legs import (
     WARM,
     factor_legs,
     legs_heat,
-    load_legs,
 )
 from .plate import (
     ALPHA,
@@ -116,17 +115,15 @@ def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p, leg,
 
 @compiled
 def follow(
-    wide, blocks, rig_of, cue_of, period, target, face_share, bank, state, current_out, reached, why, cells, warm,
-    leg, period_leg,
+    wide, blocks, rig_of, cue_of, period, target, face_share, bank, state, current_out, reached, why, leg, period_leg,
 ):  # fmt: skip
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
     `target` (cue, period) in °C; `face_share` (rig,) is the weight of the cold plate in what follows it, 1 for the
-    display; `state` (lane, n + 3) is a steady state; `current_out`, `reached` and `why` (lane, period) get the current
+    display; `state` (lane, nodes) is a steady state; `current_out`, `reached` and `why` (lane, period) get the current
     A, the controlled temperature °C at the period's end, and the code of what limited the current. The current comes
-    from a damped prediction (one implicit step over the period); the state moves by the accurate rule. `cells`
-    (lane, m) are those of the legs and `warm` (lane,) passive heat sinks at the start, in °C, or None; `leg` and
-    `period_leg` are `leg_room` for cells.
+    from a damped prediction (one implicit step over the period); the state moves by the accurate rule. `leg` and
+    `period_leg` are `leg_room`.
     """
     lanes = len(wide)
     x, p, skin, sink, y, total, first = room(wide, bank)
@@ -137,8 +134,7 @@ def follow(
     step = period / pieces
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, warm)
-        load_legs(cells, block, p, leg)
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg)
         factor(wide, h, 0.5 * step, p, skin, rows, whole)
         factor(wide, h, period, p, skin, period_rows, period_whole)
         factor_legs(0.5 * step, p, leg)
@@ -167,8 +163,7 @@ def follow(
 
 @compiled
 def regulate(
-    wide, blocks, rig_of, cue_of, period, setpoint, gains, bias, bank, state, current_out, reached, why, cells, warm,
-    leg,
+    wide, blocks, rig_of, cue_of, period, setpoint, gains, bias, bank, state, current_out, reached, why, leg,
 ):  # fmt: skip
     """Find the held current of every period as the controller of each rig gives it.
 
@@ -190,8 +185,7 @@ def regulate(
     past = np.empty((delay.max() + 1, lanes))
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, warm)
-        load_legs(cells, block, p, leg)
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg)
         factor(wide, h, 0.5 * step, p, skin, rows, whole)
         factor_legs(0.5 * step, p, leg)
         weighed(wide, h, rows[WEIGHT], x, first)

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..compiled import kernel
-from .plate import CONDUCTANCE, DEEP_C, LEG_J_PER_K, RESISTANCE
+from .plate import CONDUCTANCE, LEG_J_PER_K, RESISTANCE
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 
@@ -32,27 +32,29 @@ NEAR, ACROSS, WARM, COOL, STORE, EDGE, HEATED, MIDDLE = range(8)
 neither; C/(m·h) of a cell, conductance of half a cell, sum of the weights; the hot plate in the middle of a step."""
 
 
-def leg_room(wide: tuple[int, ...], cells: Array | None) -> tuple[Array, Array] | None:
-    """Room for the cells of a block (6, m, lanes) and their sums (8, lanes), for `cells` (all, m); None for None."""
-    return None if cells is None else (np.zeros((6, cells.shape[1], len(wide))), np.zeros((8, len(wide))))
+def leg_room(wide: tuple[int, ...], cells: int) -> tuple[Array, Array] | None:
+    """Room for the cells of a block (6, m, lanes) and their sums (8, lanes); None for none."""
+    return (np.zeros((6, cells, len(wide))), np.zeros((8, len(wide)))) if cells else None
 
 
 @compiled
-def load_legs(cells, block, p, leg):
-    """Take the cells of a block's lanes (°C) as K above the deep node."""
+def load_legs(state, first, lane, deep, leg):
+    """Take a lane's cells from place `first` of a state in °C on, as K above the deep node; returns the next place."""
     if leg is not None:
-        for lane in range(block.size):
-            for j in range(cells.shape[1]):
-                leg[0][CELL, j, lane] = cells[block[lane], j] - p[DEEP_C, lane]
+        for j in range(leg[0].shape[1]):
+            leg[0][CELL, j, lane] = state[first + j] - deep
+        first += leg[0].shape[1]
+    return first
 
 
 @compiled
-def store_legs(cells, block, p, leg):
-    """Give the cells of a block's lanes back in °C."""
+def store_legs(state, first, lane, deep, leg):
+    """The reverse of `load_legs`."""
     if leg is not None:
-        for lane in range(block.size):
-            for j in range(cells.shape[1]):
-                cells[block[lane], j] = leg[0][CELL, j, lane] + p[DEEP_C, lane]
+        for j in range(leg[0].shape[1]):
+            state[first + j] = leg[0][CELL, j, lane] + deep
+        first += leg[0].shape[1]
+    return first
 
 
 @compiled

@@ -1,4 +1,13 @@
-"""Compiled sums over modes: each decays by itself, and a reading is a weighted sum of all; a probe's lag is one."""
+"""Compiled sums over what is linear: modes that decay each by itself, and a ramp's response that many ramps share.
+
+A reading is a weighted sum of all modes. Skin under a display that is linear between periods is a sum of responses to
+one ramp: a display whose slope changes by s_j K per period at period k_j leads to readings
+
+    y(k) = y(0) + Σ_j s_j · R(k − k_j),
+
+where R is the response to a display that rises by 1 K per period. The module is not linear: `playable` goes through
+the current that such a display needs, and says whether driver and module allow it with a margin.
+"""
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.
@@ -8,8 +17,20 @@ import math
 
 import numpy as np
 
-from ..compiled import kernel
+from ..rig.module import ZERO_C_IN_K
 from .constant_current import FARTHEST
+from .kernel import compiled
+from .kernel_follow import FREE, limited
+from .network import COLD, SKIN
+from .plate import (
+    ALPHA,
+    COLD_J_PER_K,
+    CONDUCTANCE,
+    HOT_J_PER_K,
+    RESISTANCE,
+    SINK_C,
+    SINK_W_PER_K,
+)
 
 FADED = 48.0
 """Beyond this exponent a mode has decayed to less than the rounding of a temperature."""
@@ -17,7 +38,8 @@ FADED = 48.0
 SAME_S, MOST_ROWS = 1e-11, 64
 """Up to 64 rows in equal steps share one exponential and the powers of a factor: rounding stays within 1e-14."""
 
-compiled = kernel(nogil=True, error_model="numpy")
+MARGIN_A, MARGIN = 0.01, 0.02
+"""A display counts as playable where this much more current either way, in A and as a share, is free of limits too."""
 
 
 @compiled
@@ -96,11 +118,103 @@ def follow_display(above_K, keep, now, then, drive_per_s, reading, direct, offse
         modes[m] = mode
 
 
-@kernel(nogil=True)
-def lagged(time_s, value, lag_s, out):
-    """Fill `out` (rows,) with a first-order lag of `value`, settled at first; exact where it is linear between rows."""
-    out[0] = value[0]
-    for k in range(time_s.size - 1):
-        step = time_s[k + 1] - time_s[k]
-        behind = (value[k + 1] - value[k]) / step * lag_s  # how far a settled lag trails a ramp
-        out[k + 1] = value[k + 1] - behind + (out[k] - value[k] + behind) * math.exp(-step / lag_s)
+@compiled
+def ramp_responses(count, cap, g, perf, period_s, places, weights, response):
+    """Fill `response` (rigs, readings + 1, periods + 1): readings in K, then the heat flow in W from skin to display.
+
+    The display rises by 1 K per period from 0 on. Readings are three neighbouring states from `places` (rigs, readings)
+    with `weights` (rigs, readings, 3), as in `Network`; each period is one trapezoidal step, as `kernel` takes it.
+    """
+    readings, rows, most = places.shape[1], response.shape[2], cap.shape[1]
+    x, y = np.empty(most + 5), np.empty(most)
+    keep, link, elim = np.empty(most), np.empty(most), np.empty(most)
+    half = 0.5 * period_s
+    for r in range(count.size):
+        n = count[r]
+        share = 0.0
+        for i in range(n - 1, -1, -1):  # T_i = keep·x_i + link·y_{i+1} + elim·T_{i−1} after an implicit half step
+            inverse = 1.0 / (cap[r, i] / half + g[r, i] + g[r, i + 1] + perf[r, i] - g[r, i + 1] * share)
+            share = g[r, i] * inverse
+            keep[i], link[i], elim[i] = cap[r, i] / half * inverse, g[r, i + 1] * inverse, share
+        for i in range(x.size):
+            x[i] = 0.0
+        for k in range(rows):
+            for q in range(readings):
+                at = places[r, q]
+                response[r, q, k] = (
+                    weights[r, q, 0] * x[at] + weights[r, q, 1] * x[at + 1] + weights[r, q, 2] * x[at + 2]
+                )
+            response[r, readings, k] = g[r, 0] * (x[SKIN] - k)
+            below = 0.0
+            for i in range(n - 1, -1, -1):
+                below = keep[i] * x[SKIN + i] + link[i] * below
+                y[i] = below
+            above = k + 0.5
+            for i in range(n):
+                above = y[i] + elim[i] * above
+                x[SKIN + i] = 2.0 * above - x[SKIN + i]
+            x[COLD] = k + 1.0
+
+
+@compiled
+def superpose(lanes, rig_of, cue_of, corner_at, corner_K, response, begin, row_at, out, flow):
+    """Fill `out` (readings, lane, rows) of lanes at the ends `row_at` (rows,) of periods, `flow` (lane, periods + 1).
+
+    `corner_at` and `corner_K` (cue, corners) are the periods at which the slope changes (−1: no more corners), and its
+    change in K per period; `begin` (lane, readings + 1) is what is read at the start.
+    """
+    readings, periods = out.shape[0], flow.shape[1]
+    course = np.empty(periods)
+    for lane in lanes:
+        r, c = rig_of[lane], cue_of[lane]
+        for q in range(readings + 1):
+            unit = response[r, q]
+            for k in range(periods):
+                course[k] = begin[lane, q]
+            for j in range(corner_at.shape[1]):
+                first, slope = corner_at[c, j], corner_K[c, j]
+                if first < 0:
+                    break
+                for k in range(first, periods):
+                    course[k] += slope * unit[k - first]
+            if q == readings:
+                for k in range(periods):
+                    flow[lane, k] = course[k]
+            else:
+                for k in range(row_at.size):
+                    out[q, lane, k] = course[row_at[k]]
+
+
+@compiled
+def playable(lanes, rig_of, cue_of, display, flow, hot_C, plates, period_s, fine):
+    """Fill `fine` (lane,): whether driver and module produce a display (cue, periods + 1) in °C, with a margin.
+
+    The cold plate's balance gives the current of each period from the heat `flow` (lane, periods + 1) out of the skin,
+
+        αI·T_c − I²R/2 = flow − C_c·dT_c/dt + (T_h − T_c)/Θ,
+
+    and the hot plate, from `hot_C` (lane,) on, follows by implicit steps.
+    """
+    for lane in lanes:
+        p, c = plates[rig_of[lane]], cue_of[lane]
+        alpha, ohm, leak, out = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE], p[SINK_W_PER_K]
+        hot_store, cold_store = p[HOT_J_PER_K] / period_s, p[COLD_J_PER_K] / period_s
+        hot = hot_C[lane]
+        fine[lane] = True
+        for k in range(1, display.shape[1]):
+            cold = display[c, k]
+            taken = flow[lane, k] - cold_store * (cold - display[c, k - 1])
+            half = alpha * (cold + ZERO_C_IN_K)
+            root = half * half - 2.0 * ohm * (taken + leak * (hot - cold))
+            if root <= 0.0:
+                fine[lane] = False
+                break
+            amperes = (half - math.sqrt(root)) / ohm
+            spare = MARGIN_A + MARGIN * abs(amperes)
+            _, above = limited(amperes + spare, hot, cold, p[SINK_C], p)
+            _, below = limited(amperes - spare, hot, cold, p[SINK_C], p)
+            if above != FREE or below != FREE:
+                fine[lane] = False
+                break
+            warm = hot_store * hot + out * p[SINK_C] + leak * cold + alpha * amperes * ZERO_C_IN_K
+            hot = (warm + 0.5 * ohm * amperes * amperes) / (hot_store + out + leak - alpha * amperes)

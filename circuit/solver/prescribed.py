@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,8 +45,12 @@ class SkinModes:
         """Modes (n,) that a display held at a temperature leads to."""
         return np.asarray(self.drive_per_s / self.rate_per_s * (display_C - self.deep_C))
 
-    def run(self, display_C: Array, step_s: float, modes: Array) -> tuple[Array, Array]:
+    def run(
+        self, display_C: Array, step_s: float, modes: Array, rows: Sequence[int] | None = None
+    ) -> tuple[Array, Array]:
         """Return FELT (7, rows) and the modes at the end, for a display (rows,) linear between rows `step_s` apart.
+
+        `rows` are the places of some quantities in FELT; None: all.
 
         >>> modes = modes_of(Rig.load("thenar"))
         >>> felt, _ = modes.run(np.full(3, 32.0), 0.01, modes.steady(32.0))
@@ -55,35 +60,24 @@ class SkinModes:
         from . import kernel_modes
 
         keep, now, then = step_weights(self.rate_per_s, step_s)
-        values, end = np.empty((len(self.reading), len(display_C))), modes.copy()
+        reading, direct, offset = self.reading, self.direct, self.offset_C
+        if rows is not None:
+            reading, direct, offset = reading[list(rows)], direct[list(rows)], offset[list(rows)]
+        values, end = np.empty((len(reading), len(display_C))), modes.copy()
         kernel_modes.follow_display(
-            display_C - self.deep_C, keep, now, then, self.drive_per_s, self.reading, self.direct, self.offset_C, end,
-            values,
-        )  # fmt: skip
+            display_C - self.deep_C, keep, now, then, self.drive_per_s, reading, direct, offset, end, values
+        )
         return values, end
 
-    def run_many(self, display_C: Array, step_s: float, rows: Sequence[int]) -> Array:
-        """Return some rows of FELT (rows, lanes, steps) for displays (lanes, steps), each from rest at its first level.
-
-        >>> modes = modes_of(Rig.load("thenar"))
-        >>> modes.run_many(np.full((2, 3), 32.0), 0.01, [0, 1]).shape
-        (2, 2, 3)
-        """
-        from scipy.signal import lfilter
-
-        above = display_C - self.deep_C
-        keep, now, then = step_weights(self.rate_per_s, step_s)
-        chosen = list(rows)
-        modes = np.empty((len(self.rate_per_s), *above.shape))
-        for k in range(len(modes)):
-            first = self.drive_per_s[k] / self.rate_per_s[k] * above[:, 0]
-            forcing = self.drive_per_s[k] * (now[k] * above[:, :-1] + then[k] * above[:, 1:])
-            modes[k, :, 0] = first
-            if forcing.shape[1]:
-                modes[k, :, 1:], _ = lfilter([1.0], [1.0, -keep[k]], forcing, zi=keep[k] * first[:, np.newaxis])
-        values = np.tensordot(self.reading[chosen], modes, axes=1)
-        values += self.direct[chosen, np.newaxis, np.newaxis] * above + self.offset_C[chosen, np.newaxis, np.newaxis]
-        return np.asarray(values)
+    def at(self, time_s: Array, display_C: Array) -> Array:
+        """First reading (rows,) under a display (rows,) linear between any times, from a steady state."""
+        steps, modes = np.round(np.diff(time_s), 12), self.steady(float(display_C[0]))
+        values = np.empty(len(time_s))
+        breaks = np.flatnonzero(np.diff(steps)) + 1  # equal steps are taken together
+        for begin, end in pairwise([0, *breaks.tolist(), len(steps)]):
+            felt, modes = self.run(display_C[begin : end + 1], float(steps[begin]), modes, [0])
+            values[begin : end + 1] = felt[0]
+        return values
 
     def relax(self, times_s: Array, display_C: float, modes: Array) -> Array:
         """Return FELT (7, times) at times after now, with the display held; `modes` (n,) are those of now."""

@@ -10,7 +10,7 @@ from thermicon.icons import Icon
 from thermicon.icons.number_text import significant
 
 from ..arrays import Array
-from ..rig.module import ZERO_C_IN_K, Peltier
+from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import FEWEST, bank_of, cut, run_forward
@@ -240,7 +240,8 @@ def _trace(
         )
     current = drive.at(rows)
     values = dict(zip(RECORDED, (np.ascontiguousarray(probe) for probe in probes), strict=True))
-    voltage = _voltage(rig.module, current, values["display_C"], values["hot_plate_C"])
+    seebeck_V = rig.module.seebeck_V_per_K * (values["hot_plate_C"] - values["display_C"])
+    voltage = seebeck_V + current * rig.module.resistance_ohm
     limits = (rig.driver.current_min_A, rig.driver.current_max_A)
     return Trace(
         icon=icon,
@@ -262,27 +263,20 @@ def _trace(
     )
 
 
-def _voltage(module: Peltier, current: Array, cold: Array, hot: Array) -> Array:
-    return module.seebeck_V_per_K * (hot - cold) + current * module.resistance_ohm
-
-
 def _beyond(rig: Rig, rows: Array, current: Array, voltage: Array) -> tuple[str, ...]:
     """Sentences for a drive that exceeds the driver."""
     driver, sentences = rig.driver, []
-    excess_A = np.maximum(current - driver.current_max_A, driver.current_min_A - current)
-    if excess_A.max() > 1e-9:
-        most, since = int(np.argmax(excess_A)), float(rows[int(np.argmax(excess_A > 1e-9))])
-        limit = driver.current_max_A if current[most] > 0 else driver.current_min_A
-        sentences.append(
-            f"the drive needs {significant(float(current[most]), limit)[0]} A at {rows[most]:.2f} s; this driver gives "
-            f"{driver.current_min_A:g} … {driver.current_max_A:g} A (passed from {since:.2f} s)"
-        )
-    needed = np.abs(voltage) - driver.voltage_limit_V
-    if needed.max() > 1e-6:
-        most, since = int(np.argmax(needed)), float(rows[int(np.argmax(needed > 1e-6))])
-        limit = float(np.copysign(driver.voltage_limit_V, voltage[most]))
-        sentences.append(
-            f"the drive needs {significant(float(voltage[most]), limit)[0]} V at {rows[most]:.2f} s; this driver gives "
-            f"at most {driver.voltage_limit_V:g} V (passed from {since:.2f} s)"
-        )
+    low, high, volts = driver.current_min_A, driver.current_max_A, driver.voltage_limit_V
+    for values, least, most, close, unit, gives in (
+        (current, low, high, 1e-9, "A", f"{low:g} … {high:g} A"),
+        (voltage, -volts, volts, 1e-6, "V", f"at most {volts:g} V"),
+    ):
+        excess = np.maximum(values - most, least - values)
+        if excess.max() > close:
+            worst, since = int(np.argmax(excess)), float(rows[int(np.argmax(excess > close))])
+            needed = significant(float(values[worst]), most if values[worst] > 0 else least)[0]
+            sentences.append(
+                f"the drive needs {needed} {unit} at {rows[worst]:.2f} s; this driver gives {gives} (passed from "
+                f"{since:.2f} s)"
+            )
     return tuple(sentences)

@@ -7,17 +7,15 @@ the full solution, which is also what the tests compare with (0.5 mK at the rece
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from ..arrays import Array, Index
-from ..cores import cores
 from ..rig.rig import Rig
-from .batch_inputs import Bank
+from .batch_inputs import Bank, on_all_cores
 from .network import COLD, HOT, RECORDED, SKIN
 
 PROBES = ("cold_receptor_C", "warm_receptor_C")
@@ -86,7 +84,7 @@ def superposed(
 
     `states` (rigs · cues, nodes) are the steady ones at the start; rows (rows,) in s lie at ends of periods.
     """
-    from . import kernel_superposed as kernel
+    from . import kernel_modes as kernel
 
     rigs, cues = len(bank.count), len(display_C)
     rig_of, cue_of = (place.ravel() for place in np.indices((rigs, cues)))
@@ -103,7 +101,7 @@ def superposed(
             places[part], weights[part], response[part[0] : part[-1] + 1],
         )  # fmt: skip
 
-    _in_parts(respond, rigs)
+    on_all_cores(respond, np.arange(rigs))
     lane = np.arange(rigs * cues)
     near = places[rig_of][:, :, np.newaxis] + np.arange(3)
     begin = np.empty((len(lane), len(which) + 1))
@@ -117,15 +115,5 @@ def superposed(
         kernel.superpose(part, rig_of, cue_of, *corners, response, begin, row_at, out, flow)
         kernel.playable(part, rig_of, cue_of, display_C, flow, hot_C, bank.plates, period_s, fine)
 
-    _in_parts(add, len(lane))
+    on_all_cores(add, lane)
     return Superposed(out, fine)
-
-
-def _in_parts(work: Callable[[Index], None], count: int) -> None:
-    """Call `work` on lanes, in a thread for each core; each lane is computed by itself."""
-    used = min(cores(), count)
-    if used == 1:
-        work(np.arange(count))
-        return
-    with ThreadPoolExecutor(used) as pool:
-        list(pool.map(work, np.array_split(np.arange(count), used)))

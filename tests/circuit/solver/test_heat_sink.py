@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, simulate, simulate_current, simulate_many
+from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
-from thermicon.icons import load_library
 
 from .dense import Dense
 
@@ -54,20 +53,6 @@ def test_in_the_end_the_sink_is_in_balance_with_its_air() -> None:
     late = simulate_current(Drive([0, 3600], [0.5, 0.5]), WARM, rate_Hz=0.1)
     assert late.hot_plate_C[-1] == pytest.approx(end[0], abs=1e-3)
     assert end[-2] > 29.0
-
-
-def test_the_inverse_follows_while_the_sink_warms() -> None:
-    for icon in load_library("six-icons"):
-        trace = simulate(icon, WARM)
-        assert trace.outcome is not None
-        assert trace.outcome.reached
-        assert abs(trace.outcome.largest_miss_K) < 1e-3
-        assert np.abs(np.diff(trace.current_A, 2))[-52:-2].max() < 1e-4
-
-
-def test_a_batch_has_one_kind_of_sink() -> None:
-    with pytest.raises(RigError, match=r"share .* passive heat sink \(heat_sink\.air_resistance_K_per_W\) or none"):
-        simulate_many(tuple(load_library("six-icons"))[:2], [WARM, THENAR], nominal=THENAR, end_s=9.0)
 
 
 def test_its_air_is_the_rooms_unless_it_is_given() -> None:

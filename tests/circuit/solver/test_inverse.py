@@ -6,7 +6,7 @@ import pytest
 from thermicon.circuit import Rig, Trace, simulate
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.steady import steady_state
-from thermicon.icons import Icon, parse
+from thermicon.icons import Icon, load_library, parse
 
 THENAR, SHANI = Rig.load("thenar"), Rig.load("shani2021")
 
@@ -32,6 +32,24 @@ def test_in_a_hold_the_current_does_not_ring_and_the_target_is_met(rig: Rig, con
     after = trace.time_s > 9.5
     assert np.abs(np.diff(trace.current_A[after], 2)).max() < 0.01
     assert np.abs(controlled(trace) - 32.0)[after].max() < 1e-3
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"heat_sink.temperature_C": 28.0, "heat_sink.capacity_J_per_K": 90.0, "heat_sink.air_resistance_K_per_W": 1.5},
+        pytest.param({"module.leg_nodes": 5, "module.leg_capacity_J_per_K": 0.8}, marks=pytest.mark.slow),
+    ],
+    ids=["a sink that warms", "legs"],
+)
+def test_what_stores_heat_neither_rings_nor_misses(keys: dict[str, object]) -> None:
+    rig = THENAR.with_(**keys)
+    for icon in load_library("six-icons"):
+        trace = simulate(icon, rig)
+        assert trace.outcome is not None
+        assert trace.outcome.reached
+        assert abs(trace.outcome.largest_miss_K) < 1e-3
+        assert np.abs(np.diff(trace.current_A, 2))[-52:-2].max() < 1e-4
 
 
 def test_the_skin_cue_needs_the_whole_driver_and_is_reached() -> None:

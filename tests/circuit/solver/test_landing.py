@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermicon.circuit import Drive, Rig, simulate, simulate_current, simulate_many
+from thermicon.circuit import Drive, Rig, simulate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.landing import landing_state, start_under
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
-from thermicon.icons import Icon, load_library, parse
+from thermicon.icons import Icon, parse
 
 THENAR = Rig.load("thenar")
 
@@ -96,11 +96,6 @@ def test_a_display_that_air_does_not_let_cool_is_refused() -> None:
                                 "skin.deep_C": 34.0})  # fmt: skip
     with pytest.raises(RigError, match=r"baseline|before the hand lands"):
         simulate(hold(18.0), weak)
-
-
-def test_rigs_of_one_batch_land_together() -> None:
-    with pytest.raises(RigError, match=r"share contact\.lands_s"):
-        simulate_many(tuple(load_library("six-icons"))[:1], [lands(-1.0), THENAR], nominal=THENAR, end_s=9.0)
 
 
 @pytest.mark.parametrize(

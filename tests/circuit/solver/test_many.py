@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, design, simulate, simulate_current, simulate_many
+from thermicon.circuit.cores import at_most
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.solver.batch import simulate_stream
 from thermicon.circuit.solver.inverse import design_many
 from thermicon.circuit.solver.kernel import ONE
+from thermicon.circuit.solver.superposed import PROBES
 from thermicon.icons import Icon, load_library
 
 THENAR = Rig.load("thenar")
@@ -20,6 +21,8 @@ BLOCK = [*OTHERS, Rig.load("shani2021"), *(THENAR.with_(**{"contact.area_cm2": 5
 """More rigs than one block holds, with different numbers of lumps."""
 SIX = tuple(load_library("six-icons"))[:2]
 SKIN = tuple(load_library("cooling-step-skin"))
+LEGS = {"leg_nodes": 3, "leg_capacity_J_per_K": 0.8}
+PASSIVE = {"capacity_J_per_K": 90.0, "air_resistance_K_per_W": 1.5}
 
 
 def test_shapes_and_reading() -> None:
@@ -76,17 +79,13 @@ def test_ideal_gives_every_skin_the_same() -> None:
     assert batch["skin_C"][:, 0, held] == pytest.approx(26.0, abs=2e-3)
 
 
-def test_the_same_whatever_the_number_of_cores(monkeypatch: pytest.MonkeyPatch) -> None:
-    many = simulate_many(SIX, BLOCK, nominal=THENAR, end_s=10.0)
-    monkeypatch.setattr("os.cpu_count", lambda: 1)
-    assert simulate_many(SIX, BLOCK, nominal=THENAR, end_s=10.0).values.tobytes() == many.values.tobytes()
+@pytest.mark.parametrize("probes", [("skin_C",), PROBES], ids=["in full", "superposed"])
+def test_the_number_of_cores_changes_no_bit(probes: tuple[str, ...]) -> None:
+    def run(count: int) -> bytes:
+        with at_most(count):
+            return simulate_many(SIX, BLOCK, nominal=THENAR, end_s=9.0, probes=probes).values.tobytes()
 
-
-def test_an_unknown_tracking_and_mixed_drivers_are_refused() -> None:
-    with pytest.raises(RigError, match="tracking 'replays' is not known; it is one of replay, display, ideal"):
-        simulate_many(SIX, OTHERS, nominal=THENAR, end_s=10.0, tracking="replays")
-    with pytest.raises(RigError, match=r"rigs of one batch must share driver\.update_Hz"):
-        simulate_many(SIX, [THENAR.with_(**{"driver.update_Hz": 50})], nominal=THENAR, end_s=10.0)
+    assert run(1) == run(3)
 
 
 def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
@@ -102,15 +101,6 @@ def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
         assert plan.rest_A == alone.rest_A
 
 
-def test_a_stream_is_the_batch_in_parts() -> None:
-    six = tuple(load_library("six-icons"))
-    whole = simulate_many(six, [THENAR], nominal=THENAR, end_s=9.0, tracking="ideal")
-    parts = list(simulate_stream(iter(six), THENAR, end_s=9.0, at_once=4))
-    assert [len(cues) for cues, _ in parts] == [4, 2]
-    joined = np.concatenate([batch.values for _, batch in parts], axis=2)
-    assert np.abs(joined - whole.values).max() < 1e-4
-
-
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -118,14 +108,17 @@ def test_a_stream_is_the_batch_in_parts() -> None:
         ({"rigs": []}, "at least one cue and one rig"),
         ({"end_s": float("nan")}, "a batch cannot end at nan s"),
         ({"end_s": -2.0}, "a batch cannot end at -2 s"),
+        ({"tracking": "replays"}, "tracking 'replays' is not known; it is one of replay, display, ideal"),
+        ({"nominal": THENAR.with_(**{"driver.update_Hz": 50})}, r"rigs of one batch must share driver\.update_Hz"),
+        ({"rigs": [THENAR.with_(**{"contact.lands_s": -1.0})]}, r"share contact\.lands_s"),
+        ({"rigs": [THENAR.with_(module=LEGS), THENAR]}, r"share module\.leg_nodes"),
+        (
+            {"rigs": [THENAR.with_(heat_sink=PASSIVE), THENAR]},
+            r"share .* passive heat sink \(heat_sink\.air_resistance_K_per_W\) or none",
+        ),
     ],
 )
-def test_an_empty_batch_and_an_impossible_end_are_refused(changes: dict[str, object], words: str) -> None:
+def test_an_impossible_batch_is_refused(changes: dict[str, object], words: str) -> None:
     given = {"icons": SIX, "rigs": [THENAR], "nominal": THENAR, "end_s": 9.0, **changes}
     with pytest.raises(RigError, match=words):
         simulate_many(**given)  # type: ignore[arg-type]
-
-
-def test_a_stream_needs_room_for_one() -> None:
-    with pytest.raises(RigError, match="at_once = 0: at least one cue must be in memory"):
-        next(simulate_stream(SIX, THENAR, end_s=9.0, at_once=0))

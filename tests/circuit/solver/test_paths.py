@@ -57,7 +57,7 @@ def replayed(rig: Rig, icon: Icon) -> np.ndarray:
 
 
 def all_at_once(rig: Rig, icon: Icon) -> np.ndarray:
-    trace = simulate_all([icon] * 5, rig, end_s=END_S)[4]
+    trace = simulate_all([icon] * 9, rig, end_s=END_S)[8]
     return np.array([getattr(trace, probe) for probe in PROBES])
 
 
@@ -74,7 +74,7 @@ PATHS: dict[str, Callable[[Rig, Icon], np.ndarray]] = {
     "replay": replayed,
     "all of a set": all_at_once,
     **{f"{tracking}, {kind}": many(tracking, count) for tracking in ("replay", "display", "ideal")
-       for kind, count in (("one lane", 1), ("block", 5))},
+       for kind, count in (("one lane", 1), ("block", 9))},
 }  # fmt: skip
 
 

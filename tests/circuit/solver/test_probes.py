@@ -9,7 +9,7 @@ import pytest
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
 from thermicon.circuit.rig.assemble import insulation_records
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.solver.kernel_modes import lagged
+from thermicon.circuit.solver.probes import reading_of
 from thermicon.circuit.solver.trace import COLUMNS, write_trace
 from thermicon.icons import load_library
 
@@ -120,8 +120,8 @@ def test_between_lumps_a_depth_is_linear_in_thermal_resistance() -> None:
 
 def test_a_lag_is_exact_for_what_is_linear_between_rows() -> None:
     times = np.array([0.0, 0.3, 0.5, 2.0])
-    out = np.empty(4)
-    lagged(times, np.array([1.0, 1.0, 3.0, 3.0]), 0.7, out)
+    rate = np.array([1.0 / 0.7])
+    out = reading_of(0.0, rate, rate, 0.0).at(times, np.array([1.0, 1.0, 3.0, 3.0]))
     ramp = 10.0  # K/s from 0.3 to 0.5 s: the lag trails it by ramp · lag · (1 − e^(−t/lag))
     at_ramp_end = 1.0 + ramp * (0.2 - 0.7 * (1 - np.exp(-0.2 / 0.7)))
     assert out == pytest.approx([1.0, 1.0, at_ramp_end, 3.0 + (at_ramp_end - 3.0) * np.exp(-1.5 / 0.7)], abs=1e-12)

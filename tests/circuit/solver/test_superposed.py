@@ -109,15 +109,3 @@ def test_only_receptors_at_ends_of_periods_are_superposed() -> None:
 def test_a_display_that_bends_everywhere_is_not_worth_it() -> None:
     wave = 30.0 + np.sin(np.linspace(0.0, 6.0, 2 * MOST_CORNERS))
     assert corners_of(wave[np.newaxis]) is None
-
-
-def test_the_number_of_cores_changes_no_bit() -> None:
-    from thermicon.circuit.cores import at_most
-
-    icons, rigs = list(load_library("six-icons"))[:2], people(THENAR)
-
-    def run(count: int) -> bytes:
-        with at_most(count):
-            return simulate_many(icons, rigs, nominal=THENAR, end_s=9.0, probes=PROBES).values.tobytes()
-
-    assert run(1) == run(3)
