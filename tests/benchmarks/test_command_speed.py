@@ -18,8 +18,7 @@ THERMICON = [sys.executable, "-m", "thermicon.notebooks.cli.main"]
 VALIDATED_WITHIN_S = 180.0
 STREAM = """
 import itertools, resource, sys, time
-from thermicon.circuit import Rig
-from thermicon.circuit.solver.batch import simulate_stream
+from thermicon.circuit import Rig, simulate_many
 from thermicon.icons import parse
 count = int(sys.argv[1])
 def icons():
@@ -28,11 +27,12 @@ def icons():
         text = "cue 1\\nset s { control display }\\n" + "".join(
             f"icon c{k} {{ cool by {size:.1f} °C at {rate:.1f} °C/s; hold for 1 s; return at 3 °C/s }}\\n"
             for k, size, rate in part)
-        yield from parse(text)
+        yield parse(text).icons
 rig = Rig.load("thenar")
-next(simulate_stream(icons(), rig, end_s=10.0))
+simulate_many(next(icons()), [rig], nominal=rig, end_s=10.0)
 start, coldest, done = time.perf_counter(), 99.0, 0
-for part, batch in simulate_stream(icons(), rig, end_s=10.0):
+for part in icons():
+    batch = simulate_many(part, [rig], nominal=rig, end_s=10.0)
     coldest, done = min(coldest, float(batch.cold_C.min())), done + len(part)
 print(done, coldest, time.perf_counter() - start, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6)
 """
