@@ -79,7 +79,7 @@ def comparison_line(found: SetComparison) -> str:
     """Report how often A is identified better than B, and by how much.
 
     >>> from thermicon.perception.selection.robust import SetComparison
-    >>> comparison_line(SetComparison(0.93, 0.02, 0.41, "worst", 100))
+    >>> comparison_line(SetComparison(0.93, 0.02, 0.41, 100))
     'predicted: the icons of A are easier to distinguish than those of B in 93 % of 100 draws of person, contact, room \
 and rig; the d′ of its worst pair is larger by 0.4 (median)'
     """

@@ -174,7 +174,7 @@ CONSIDERED = {
     "delivery": {
         "any_loop", "controlled", "deliver", "formats/form", "netlist", "regulated", "spread", "temperatures",
     },
-    "safety": {"corners", "endings", "ensemble", "sessiondrive", "thermode"},
+    "safety": {"corners", "display", "endings", "ensemble", "sessiondrive"},
     "solver": {
         "batch", "batch_inputs", "constant_current", "displayed", "inverse", "landing", "prescribed", "pwm",
         "simulate", "static", "steady",

@@ -100,7 +100,7 @@ class TestFiles:
         assert numbers["REST_S"] == rest != 60.0
         assert numbers["PAUSE_S"] == demands[0].pause_at_least_s != 60.0
         player = pack(glow.prepared, glow.form)["play_icons.py"].decode()
-        assert [verdict(glow, place).demands for place in (0, 1)] == demands
+        assert [str(verdict(glow, place).demands) for place in (0, 1)] == list(map(str, demands))
         assert f"LOW_C, HIGH_C = {low}, {high}" in player
         assert f"\nREST_S = {rest}" in player
         assert f"\nPAUSE_S = {demands[0].pause_at_least_s}" in player

@@ -14,8 +14,7 @@ from thermicon.icons.files.shipped import library_names
 from thermicon.notebooks.report.answers_report import USEFUL_PEOPLE, observed_sentences
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
 from thermicon.perception import Goal
-from thermicon.perception.pilot.answers import score_person, score_pooled
-from thermicon.perception.pilot.trials import Trials
+from thermicon.perception.pilot.trials import Trials, score_person, score_pooled
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
 FEW = "Two participants allow hardly any interval of all"
