@@ -128,7 +128,7 @@ def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
         "'safety.thermal_dose_min_CEM43=0.15', "
     )
     text = HOT.replace("rig_changes = [", f"rig_changes = [{rules}").replace("repetitions = 2", "repetitions = 5")
-    text = text.replace("gap_s = 10", "gap_s = 90")
+    text = text.replace("gap_s = 10", "gap_s = 170")
     said = refused(cli, tmp_path, text)
     assert "refused: session of participant A: NOT SAFE: " in said
     assert "thermal dose" in said
