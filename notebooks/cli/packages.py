@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, distributions, version
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
 from ..startup import hidden_by, installed_folders
 
@@ -48,6 +48,14 @@ class Finding:
     state: State
     text: str
     cure: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.state not in get_args(State):
+            raise ValueError(f"state {self.state!r} is not one of {', '.join(get_args(State))}")
+        if "\n" in f"{self.text}{self.cure}":
+            raise ValueError(f"{self.check}: a finding is one line")
+        if (self.cure is None) != (self.state == "ok"):
+            raise ValueError(f"{self.check}: {self.state} {'without' if self.cure is None else 'with'} a cure")
 
     @property
     def line(self) -> str:

@@ -36,6 +36,20 @@ def installation(folder: Path, *files: str) -> Path:
     return info
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("x", "bad", "y"), "state 'bad' is not one of ok, note, fault"),
+        (("x", "fault", "y"), "x: fault without a cure"),
+        (("x", "ok", "y", "z"), "x: ok with a cure"),
+        (("x", "ok", "y\nz"), "x: a finding is one line"),
+    ],
+)
+def test_a_finding_is_one_line_with_its_cure(arguments: tuple[Any, ...], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        Finding(*arguments)
+
+
 class TestSelfTest:
     """Stored numbers against computed ones, in a process of its own."""
 
