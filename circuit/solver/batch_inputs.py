@@ -155,9 +155,9 @@ class State:
 
 def run_on(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = RECORDED,
-    extra: tuple[Index, Array] | None = None, *, alone: bool = False,
+    extra: tuple[Index, Array] | None = None, *, alone: int = 0,
 ) -> tuple[Array, State]:  # fmt: skip
-    """`run_forward` from any states; also returns the states at the end; `alone`: each lane has steps of its own."""
+    """`run_forward` from any states; also returns the states at the end; the last `alone` lanes have their own steps."""
     from .kernel import forward
     from .kernel_legs import leg_room
 
@@ -224,28 +224,34 @@ def _run_periods(
     return current, reached, why
 
 
-FEWEST = 8
-"""Fewer lanes than this are quicker one at a time than in a padded block."""
+FEWEST = 4
+"""Fewer lanes than this run one at a time, more in padded blocks, where a lane's steps are the same in any batch."""
 
 SHORT = 100_000
 """Lanes times intervals below which starting a thread takes longer than the work."""
 
 
+def left_over(lanes: int) -> int:
+    """How many lanes after the last whole block are quicker alone, since a block takes as long as eight of them."""
+    from .kernel import MANY
+
+    beyond = lanes % len(MANY)
+    return beyond if beyond < len(MANY) // 2 else 0
+
+
 def _in_blocks(
-    work: Callable[[tuple[int, ...], Index], None], lanes: int, intervals: int = SHORT, alone: bool = False
+    work: Callable[[tuple[int, ...], Index], None], lanes: int, intervals: int = SHORT, alone: int = 0
 ) -> None:
-    """Run lanes: most in blocks that do not depend on the number of cores, a few that are left over one by one."""
+    """Run lanes in padded blocks that do not depend on the number of cores; the last `alone`, or a few, one by one."""
     from .kernel import MANY, ONE
 
-    width = len(MANY)
-    single = lanes if alone else lanes % width if lanes % width < FEWEST else 0
-    together, every = lanes - single, np.arange(lanes, dtype=np.int64)
+    together, width = 0 if lanes < FEWEST else lanes - alone, len(MANY)
     if together:
         padded = np.minimum(np.arange(-(-together // width) * width, dtype=np.int64), together - 1)
         used = None if lanes * intervals >= SHORT else 1
         on_all_cores(lambda blocks: work(MANY, blocks), padded.reshape(-1, width), used)
-    if single:
-        work(ONE, every[together:, np.newaxis])
+    if together < lanes:
+        work(ONE, np.arange(together, lanes, dtype=np.int64)[:, np.newaxis])
 
 
 def on_all_cores(work: Callable[[Index], None], lanes: Index, most: int | None = None) -> None:

@@ -6,7 +6,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.solver.batch_inputs import Intervals, State, run_on
+from thermicon.circuit.solver.batch_inputs import Intervals, State, left_over, run_on
 from thermicon.circuit.solver.constant_current import READ, ConstantCurrent
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
@@ -94,15 +94,14 @@ def test_any_rows_are_exponentials_of_their_own() -> None:
         assert np.abs(found[:, lane] - plain).max() < 1e-10
 
 
-def test_a_lane_beyond_the_last_block_is_the_same_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_lane_beyond_the_last_block_is_the_same_alone() -> None:
     every = Ensemble.of(THENAR)
     lanes = np.arange(33, dtype=np.int64)
     times = np.arange(201) * 0.01
     amps = np.repeat(0.5 * every.gain[np.newaxis, :33], len(times) - 1, axis=0)
     intervals = Intervals(times, np.arange(len(times)), amps, amps)
     start = every.at_rest(0.1).take(lanes)
-    alone, _ = run_on(every.bank, lanes, lanes, intervals, start, READ)
-    monkeypatch.setattr("thermicon.circuit.solver.batch_inputs.FEWEST", 1)
+    alone, _ = run_on(every.bank, lanes, lanes, intervals, start, READ, alone=left_over(33))
     padded, _ = run_on(every.bank, lanes, lanes, intervals, start, READ)
     assert (padded[:, :32] == alone[:, :32]).all()
     assert np.abs(padded[:, 32] - alone[:, 32]).max() < 1e-9

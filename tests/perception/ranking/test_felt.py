@@ -82,9 +82,8 @@ def test_the_same_people_whatever_the_batches(ranking: Ranking, monkeypatch: pyt
     monkeypatch.setattr(batches, "SAMPLES_AT_ONCE", 9000)
     found = rank(ICONS, RIG, people=PEOPLE, parameters=0)
     for icon, other in zip(ranking.icons, found.icons, strict=True):
-        # Lanes of a block share the lengths of their steps, so another batch rounds otherwise.
-        assert icon.detected_probability == pytest.approx(other.detected_probability, rel=2e-6)
-        assert icon.onset_s == (None if other.onset_s is None else pytest.approx(other.onset_s, rel=2e-6))
+        assert icon.detected_probability == pytest.approx(other.detected_probability, rel=1e-12)
+        assert icon.onset_s == (None if other.onset_s is None else pytest.approx(other.onset_s, rel=1e-12))
 
 
 def test_the_nominal_person_is_the_observer() -> None:
