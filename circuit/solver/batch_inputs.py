@@ -157,7 +157,7 @@ def run_on(
     bank: Bank, rig_of: Index, cue_of: Index, intervals: Intervals, state: State, probes: Sequence[str] = RECORDED,
     extra: tuple[Index, Array] | None = None, *, alone: int = 0,
 ) -> tuple[Array, State]:  # fmt: skip
-    """`run_forward` from any states; also returns the states at the end; the last `alone` lanes have their own steps."""
+    """`run_forward` from any states, also returns those at the end; the last `alone` lanes have their own steps."""
     from .kernel import forward
     from .kernel_legs import leg_room
 
