@@ -23,11 +23,6 @@ from typer.testing import CliRunner
 from thermicon.notebooks.cli.main import app
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "docs" / "builder"))  # a program and not a package
-
-import posterior_tables  # noqa: E402
-from key_tables import KEY_TABLES  # noqa: E402
-
 README = ROOT / "README.md"
 INDEX = ROOT / "docs" / "README.md"
 PAGES = (README, *sorted((ROOT / "docs").rglob("*.md")))
@@ -35,13 +30,6 @@ LINKING = (*PAGES, ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md")
 NAMES = [page.relative_to(ROOT).as_posix() for page in PAGES]
 FILE = re.compile(r"Save as `(?P<name>[\w.-]+)`[^\n]*\n\n```\w*\n(?P<text>.*?)```", re.DOTALL)
 BLOCK = re.compile(r"```(?P<kind>console|python)\n(?P<text>.*?)```", re.DOTALL)
-
-TABLES = {
-    **posterior_tables.TABLES,
-    **KEY_TABLES,
-}
-TABLE = re.compile(r"(?P<mark><!-- generated: (?P<name>[\w ]+) -->\n).*?(?P<end><!-- end of generated -->)", re.DOTALL)
-"""Tables that are generated from data files, between comments that GitHub does not show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,14 +87,9 @@ def run_python(text: str) -> str:
     return shown
 
 
-def with_tables(page: str) -> str:
-    """Return a page with its tables generated again from the data files."""
-    return TABLE.sub(lambda table: f"{table['mark']}{TABLES[table['name']]()}\n{table['end']}", page)
-
-
 def regenerated(page: str) -> str:
-    """Return a page with every output and table regenerated, in an empty folder with the files that it says to save."""
-    here, page = Path.cwd(), with_tables(page)
+    """Return a page with every output regenerated, in an empty folder with the files that it says to save."""
+    here = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         try:
@@ -147,19 +130,6 @@ def broken_links(text: str, page: Path) -> list[str]:
 def test_a_page_shows_what_happens(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
     assert masked(regenerated(text)) == masked(text)
-
-
-@pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_the_tables_of_a_page_are_those_of_the_data_files(page: Path) -> None:
-    """To the last digit: the files are read, nothing is computed."""
-    text = page.read_text(encoding="utf-8")
-    assert text.count("<!-- generated: ") == len(TABLE.findall(text))
-    assert with_tables(text) == text
-
-
-def test_every_table_is_shown_on_a_page() -> None:
-    shown = {table["name"] for page in PAGES for table in TABLE.finditer(page.read_text(encoding="utf-8"))}
-    assert shown == set(TABLES)
 
 
 def test_the_readme_begins_with_the_two_commands() -> None:

@@ -14,7 +14,10 @@ from types import ModuleType
 from typing import cast
 
 from command_options import command_options
+from data_tables import DATA_TABLES
 from gallery import Gallery
+from key_tables import KEY_TABLES
+from posterior_tables import TABLES as POSTERIOR_TABLES
 from python_names import python_index, python_pages
 from staging import ROOT, Staging
 
@@ -32,6 +35,7 @@ def build(folder: Path, *, execute: bool) -> int:
     gallery_digest = hashlib.sha256(code.encode() + drawn_by).hexdigest()
     site = Staging(folder / "source", {})
     gallery = Gallery(folder / "predicted" / gallery_digest[:16] if execute else None, site.write)
+    site.slots.update(POSTERIOR_TABLES | KEY_TABLES | DATA_TABLES)
     site.slots.update(
         {"options of commands": command_options, "python names": python_index, "gallery": gallery.markdown}
     )

@@ -8,8 +8,6 @@ from importlib import resources
 from ..model.errors import TITLES, CueErrors
 from ..near_words import nearest_words
 
-_HEADINGS = {"E0": "The file as a whole", "E1": "Words, numbers and units", "E2": "Meaning"}
-
 
 @dataclass(frozen=True, slots=True)
 class Entry:
@@ -72,33 +70,6 @@ def explain(code: str) -> str:
     if entry.right:
         parts.append(f"Right:\n\n{_indented(entry.right)}")
     return "\n\n".join(parts)
-
-
-def page() -> str:
-    """Return the catalogue as Markdown: what docs/reference/errors.md holds."""
-    lines = [
-        "# Errors",
-        "",
-        "Everything that can be wrong with a cue file has a code. All errors of a file are reported together, each",
-        "with its place, the line, what would fit and, where one could be found, a corrected line that was tried out.",
-        "",
-        "Made by `python tests/icons/files/test_catalogue.py` from `icons/data/mistakes.toml`; every example is run.",
-    ]
-    part = ""
-    for entry in catalogue().values():
-        heading = _HEADINGS[entry.code[:2]]
-        if heading != part:
-            lines += ["", f"## {heading}"]
-            part = heading
-        lines += ["", f"### {entry.code} {entry.title}", "", entry.meaning]
-        if entry.cure:
-            lines += ["", entry.cure]
-        if entry.wrong:
-            lines += ["", "```cue", entry.wrong.strip("\n"), "```"]
-            lines += ["", "```text", entry.message(), "```"]
-        if entry.right:
-            lines += ["", "Right:", "", "```cue", entry.right.strip("\n"), "```"]
-    return "\n".join(lines) + "\n"
 
 
 def _nearest(wanted: str) -> list[str]:

@@ -26,11 +26,17 @@ def builder(monkeypatch: pytest.MonkeyPatch) -> dict[str, ModuleType]:
     """The modules of docs/builder, which is a program and not a package."""
     monkeypatch.syspath_prepend(str(BUILDER))
     names = ("staging", "sections", "command_options", "python_names", "gallery")
-    return {name: __import__(name) for name in names}
+    return {name: __import__(name) for name in (*names, "data_tables", "key_tables", "posterior_tables")}
+
+
+def slots(builder: dict[str, ModuleType]) -> set[str]:
+    """Every place that the program fills."""
+    tables = (builder["data_tables"].DATA_TABLES, builder["key_tables"].KEY_TABLES, builder["posterior_tables"].TABLES)
+    return {*SLOTS, *(name for each in tables for name in each)}
 
 
 def staged(builder: dict[str, ModuleType], folder: Path) -> Path:
-    site = builder["staging"].Staging(folder, dict.fromkeys(SLOTS, lambda: "MADE"))
+    site = builder["staging"].Staging(folder, dict.fromkeys(slots(builder), lambda: "MADE"))
     site.stage({})
     return folder
 
@@ -65,6 +71,21 @@ def test_a_slot_is_filled_and_its_stand_in_gone(builder: dict[str, ModuleType], 
     page = (staged(builder, tmp_path) / "reference" / "options.md").read_text(encoding="utf-8")
     assert "MADE" in page
     assert "site is built" not in page
+
+
+def test_every_slot_is_on_a_page(builder: dict[str, ModuleType]) -> None:
+    pages = [path.read_text(encoding="utf-8") for path in builder["staging"].pages()]
+    assert {slot["name"] for page in pages for slot in builder["staging"].SLOT.finditer(page)} == slots(builder)
+
+
+def test_the_lists_are_those_of_the_data(builder: dict[str, ModuleType]) -> None:
+    tables = builder["data_tables"]
+    assert tables.errors().count("\n### E") == len(tables.catalogue())
+    assert "| skin surface | hard | ≤ 42 °C | `skin_highest_C` | 43 °C |" in tables.limits_table().splitlines()
+    assert (
+        "| rate of skin temperature | hard | ±10 K/s | `skin_rate_K_per_s` | only tightened |" in tables.limits_table()
+    )
+    assert tables.uncertainties_table().count("| thermicon, a choice of this project") == 7
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Every example of the catalogue of errors does what it promises. As a script: writes docs/reference/errors.md."""
+"""Every example of the catalogue of errors does what it promises."""
 
 import re
 from pathlib import Path
@@ -6,10 +6,9 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons import CueErrors, parse, read_cue
-from thermicon.icons.files.catalogue import Entry, catalogue, explain, page
+from thermicon.icons.files.catalogue import Entry, catalogue, explain
 from thermicon.icons.model.errors import TITLES
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "reference" / "errors.md"
 ENTRIES = list(catalogue().values())
 SHOWN = [entry for entry in ENTRIES if entry.wrong]
 
@@ -61,11 +60,3 @@ def test_an_unknown_code_is_told_with_its_neighbours(code: str, nearest: str) ->
         explain(code)
     assert nearest in str(caught.value)
     assert len(re.findall(r"E\d\d\d ", str(caught.value))) == 2
-
-
-def test_the_page_is_what_the_generator_makes() -> None:
-    assert PAGE.read_text(encoding="utf-8") == page(), "run: python tests/icons/files/test_catalogue.py"
-
-
-if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
