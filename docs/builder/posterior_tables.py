@@ -21,8 +21,8 @@ from thermicon.perception.evidence.posterior import UNMOVED_SHIFT, Summary, summ
 from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
 from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
+from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.observer.variants import VARIABLES, Variable
 
 
 @dataclass(frozen=True, slots=True)

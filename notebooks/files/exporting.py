@@ -65,7 +65,7 @@ def _compared(
     from thermicon.circuit.inputs import InputError
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.perception.identification.delivered import PEOPLE, detected_as_delivered, judge_delivered
-    from thermicon.perception.identification.run_end import TAIL_S, run_end_s
+    from thermicon.perception.identification.population import TAIL_S, run_end_s
 
     everyone = [one.delivery for one in ready]
     rig, device = everyone[0].rig, everyone[0].device

@@ -50,7 +50,7 @@ def compare_report(made: Comparison) -> list[Block]:
 def matrix_report(sets: Mapping[str, IconSet], rigs: Mapping[str, Rig]) -> list[Block]:
     """Report proportion correct, worst pair and bits of every set on every rig, with the same virtual people."""
     from thermicon.circuit import simulate
-    from thermicon.perception.ranking.assemble import objection
+    from thermicon.perception.ranking.scores import objection
     from thermicon.perception.selection.appraise import appraise
 
     rows, remarks = [], []

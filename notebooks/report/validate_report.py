@@ -10,7 +10,7 @@ from thermicon.perception.evidence.conditioning import Conditioning, experiment_
 from thermicon.perception.evidence.results import EDGE, UNMOVED_SD, PredictedRow
 from thermicon.perception.evidence.table_text import number, signed, span
 from thermicon.perception.evidence.verdicts import value_text
-from thermicon.perception.observer.variants import VARIABLES
+from thermicon.perception.observer.channels import VARIABLES
 
 from .blocks import Block, Bullets, Heading, Text, grid
 

@@ -72,7 +72,7 @@ def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> t
     """Largest d′ by which an icon differs from itself alone, after which icon, and which one it is."""
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.perception.identification.carry_over import carry_over
-    from thermicon.perception.identification.run_end import TAIL_S
+    from thermicon.perception.identification.population import TAIL_S
     from thermicon.perception.observer.channels import NORMS, USUAL_NORM
 
     end_s = max(duration_s(icon, rig) for icon in icons) + TAIL_S

@@ -18,9 +18,9 @@ from thermicon.circuit.cores import cores
 from thermicon.circuit.records import RecordError
 from thermicon.icons.atomic import complete_or_absent
 
+from ..observer.channels import VARIABLES, Variable
 from ..observer.draws_file import shipped_file, to_text, variant_named
 from ..observer.priors import WITHIN_95
-from ..observer.variants import VARIABLES, Variable
 from .calibrate import write_observer
 from .chains import require_extra
 from .learning import CHAINS

@@ -14,11 +14,10 @@ from thermicon.circuit.records import Record, Table, dump_records
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import steady_state
 
-from ..identification.rate_task import memory_noise, memory_record
-from ..observer.channels import CHANNELS, Channel
+from ..identification.task import memory_noise, memory_record
+from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable, receptor_column, source_of
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import DATA, Observer, load_thresholds
-from ..observer.variants import VARIABLES, Variable, receptor_column, source_of
 from .results import UNMOVED_SD, Constant, load_constants
 from .statistics import load_evidence
 

@@ -17,10 +17,9 @@ import numpy as np
 from thermicon.circuit import Rig
 
 from ..experiments.on_bench import choice_reaction_time, forced_choice, method_of_levels, method_of_limits
-from ..observer.channels import CHANNELS, Channel
+from ..observer.channels import CHANNELS, Channel, Variable
 from ..observer.observer import Observer
 from ..observer.people import draw_people
-from ..observer.variants import Variable
 from ..sensation.bench import Bench, ramp
 from .predicted import DRAWS, Asked, Predicted, predict, quantile_felt
 

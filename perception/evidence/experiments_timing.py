@@ -15,9 +15,8 @@ import numpy as np
 from thermicon.circuit import Rig
 
 from ..experiments.on_bench import yes_no
-from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.channels import CHANNELS, Channel, Variable, sign_of
 from ..observer.observer import Observer, load_thresholds
-from ..observer.variants import Variable
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import perceive

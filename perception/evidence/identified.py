@@ -25,13 +25,11 @@ from ..identification.confusion import SAMPLES, normalised
 from ..identification.laboratory_draws import EVERY, PEOPLE, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
-from ..identification.population import ReceptorTemperatures, identify, respond
-from ..identification.run_end import RATE_HZ, run_end_s
+from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..kernels.parallel import in_order
-from ..observer.channels import USUAL_NORM
+from ..observer.channels import USUAL_NORM, VARIABLES, Variable, receptor_column
 from ..observer.observer import DATA, Observer
 from ..observer.people import People, draw_people
-from ..observer.variants import VARIABLES, Variable, receptor_column
 from ..ranking.batches import EXPERIMENTS
 from ..selection.appraise import population_dprime
 from ..selection.max_min_subset import max_min_subset

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 
 from thermicon.circuit import Rig
 
-from ..observer.channels import CHANNELS, Channel
+from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable
 from ..observer.observer import Observer
-from ..observer.receptor import SPINAL_M_PER_S, SPINE_M
-from ..observer.variants import VARIABLES, Variable
+from ..observer.parts import SPINAL_M_PER_S, SPINE_M
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.percept import perceive
 

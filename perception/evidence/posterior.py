@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..experiments.laboratory import Laboratory
 from ..experiments.published import Predictions, predict
-from ..observer.channels import CHANNELS
+from ..observer.channels import CHANNELS, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms import Without, find_mechanism
 from ..observer.priors import LABORATORIES, Priors, load_priors, priors_of
-from ..observer.variants import Variable
 from .results import UNMOVED_SD
 from .rows import Row, load_rows
 

@@ -13,13 +13,12 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
-from ..identification.drawn_laboratories import DrawnLaboratories
+from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
-from ..observer.channels import USUAL_NORM
+from ..observer.channels import USUAL_NORM, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
-from ..observer.variants import Variable
 
 DRAWS = 24
 """Observers drawn for an interval: enough to see its size, not its second digit."""

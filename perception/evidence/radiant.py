@@ -14,8 +14,8 @@ import numpy as np
 from thermicon.circuit import Rig
 
 from ..arrays import Array
+from ..observer.channels import Variable
 from ..observer.observer import Observer, load_thresholds
-from ..observer.variants import Variable
 from ..sensation.sensation import receptor_drive, sensation
 from .predicted import DRAWS, Asked, Predicted, predict
 

@@ -19,8 +19,8 @@ from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
 
+from ..observer.channels import Variable, check_variable
 from ..observer.priors import WITHIN_95, load_priors, priors_of
-from ..observer.variants import Variable, check_variable
 from .rows import load_rows
 from .statistics import DATA
 

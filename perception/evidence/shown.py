@@ -8,8 +8,8 @@ from functools import partial
 
 from thermicon.circuit import Rig
 
+from ..observer.channels import VARIABLES, Variable
 from ..observer.people import OLD_YEARS
-from ..observer.variants import VARIABLES, Variable
 from ..progress import Progress, step_counter
 from .experiments import limits, methods, rate_curve, reaction_times
 from .experiments_timing import first_and_return, peak_lead

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from thermicon.circuit.records import Table
 
 from ..identification.laboratory import DRAWS
+from ..observer.channels import VARIABLES, Variable
 from ..observer.observer import load_thresholds
-from ..observer.variants import VARIABLES, Variable
 from .conditioning import Conditioning, load_conditioning
 from .predicted import Predicted, interval_of
 from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for

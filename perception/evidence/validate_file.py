@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..observer.variants import VARIABLES
+from ..observer.channels import VARIABLES
 from .conditioning import conditioning_file
 from .predicted import Predicted
 from .tradeoffs import TradeOff

@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from ..arrays import Array
-from ..sensation.first_passage import quarters
+from ..sensation.detection import quarters
 
 PEOPLE = 48
 SEED = 7

@@ -15,13 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.channels import CHANNELS, Channel, Variable, sign_of
 from ..observer.mechanisms import DEPTH_MM, Without
 from ..observer.observer import load_thresholds
+from ..observer.parts import LEG_M_PER_S, Conduction, Transducer
 from ..observer.people import YOUNG_YEARS
-from ..observer.receptor import LEG_M_PER_S, Conduction
-from ..observer.transducer import Transducer
-from ..observer.variants import Variable
 from ..sensation.sensation import END_CM2, FIELD_CM2, NO_LIMIT_C, area_factor
 from .crowd import PEOPLE, SEED, SHARES, TRIALS, Crowd, draw_crowd
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
@@ -144,7 +142,7 @@ class Laboratory:
         self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], end_s: float
     ) -> Array:
         """Receptor drive (rows,) of one channel, every DT_S, under a thermode that goes from corner to corner."""
-        from ..kernels.adapted_drive import adapted_drive
+        from ..kernels.kernels import adapted_drive
 
         values = self.values
         skin = _skin(site_rig, values["contact resistance of a thermode"], values["effusivity of living skin"])

@@ -16,11 +16,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, Channel
+from ..observer.channels import CHANNELS, Channel, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import on_forearm
 from ..observer.people import YOUNG_YEARS
-from ..observer.variants import Variable
 from .crowd import PEOPLE, SEED
 from .laboratory import Laboratory
 from .tasks import UNSTATED, Played, Ramp, yes_no_logs

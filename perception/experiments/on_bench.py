@@ -21,8 +21,7 @@ from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.bench import Bench, Stimulus, ramp
-from ..sensation.detection import detect
-from ..sensation.first_passage import ResponseTimes, response_times
+from ..sensation.detection import ResponseTimes, detect, response_times
 from ..sensation.sensation import receptor_drive, sensation
 
 LEVELS_FIRST_K, LEVELS_LAST_K, LEVELS_HOLD_S = 2.0, 0.1, 1.0

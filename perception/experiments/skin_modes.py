@@ -18,7 +18,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.rig.skin import STRATUM_CORNEUM, Skin, column_of
 
 from ..arrays import Array
-from ..observer.variants import Variable
+from ..observer.channels import Variable
 
 Corner = tuple[float, float]
 """A corner of a stimulus: time in s and change of the display from the baseline in K."""
@@ -72,11 +72,11 @@ class SkinModes:
         >>> skin_modes("forearm", 2.5e-4).ramp_response(0.15e-3, 0.5, 3).round(2)
         array([0.  , 0.11, 0.33])
         """
-        from ..kernels import adapted_drive
+        from ..kernels import kernels
 
         steady, weight = self.at(depth_m, variable)
         response = np.empty(rows)
-        adapted_drive.ramp_response(steady, weight, self.rate_per_s, dt_s, response)
+        kernels.ramp_response(steady, weight, self.rate_per_s, dt_s, response)
         return response
 
     def course(
@@ -99,7 +99,7 @@ class SkinModes:
 
 def course_of(ramp_response: Array, baseline: float, corners: Sequence[Corner], dt_s: float, rows: int) -> Array:
     """A course (rows,) from a baseline by corners of the display, for skin with a `ramp_response` of `rows` or more."""
-    from ..kernels import adapted_drive
+    from ..kernels import kernels
 
     starts, slopes, slope, start = [], [], 0.0, (0.0, 0.0)
     for corner in (*corners, None):
@@ -110,7 +110,7 @@ def course_of(ramp_response: Array, baseline: float, corners: Sequence[Corner], 
         if corner is not None:
             slope, start = rate, corner
     course = np.full(rows, baseline)
-    adapted_drive.superpose(ramp_response, dt_s, np.array(starts), np.array(slopes), course)
+    kernels.superpose(ramp_response, dt_s, np.array(starts), np.array(slopes), course)
     return course
 
 

@@ -22,8 +22,7 @@ from ..observer.people import draw_people
 from ..sensation.features import receptor_C
 from ..sensation.percept import Percept, perceive
 from .episodes import dprimes_from_memory
-from .population import ReceptorTemperatures, population_detection
-from .run_end import RATE_HZ, run_end_s
+from .population import RATE_HZ, ReceptorTemperatures, population_detection, run_end_s
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace

@@ -7,23 +7,150 @@ drawn from its intervals, which no published posterior knows of. Depths of recep
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.circuit.records import Table
+
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import Norm
-from ..observer.observer import Observer
+from ..observer.channels import Norm, Variable
+from ..observer.draws import laboratory_with
+from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
+from ..observer.parts import MEMORY_NAMES, NOISE
 from ..observer.people import People
 from ..sensation.detection import pooled
-from .drawn_laboratories import DrawnLaboratories
 from .measures import information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
 from .task import USUAL, Task
+
+NAMED_ALONE = "cost of a missing episode"
+"""The constant of memory that the norm `naming` alone makes use of."""
+LOG_FROM = 1.5
+"""An interval whose ends are in a larger ratio than this is drawn in its logarithm."""
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertain:
+    """A number, by its name, that may lie anywhere between `low` and `high`, in its unit."""
+
+    name: str
+    low: float
+    high: float
+    unit: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.low < self.high:
+            raise ValueError(f"{self.name}: {self.low:g} to {self.high:g} is not an interval")
+
+    def at(self, share: float) -> float:
+        """The value at a share (0–1) of the interval.
+
+        >>> Uncertain("time", 1.0, 4.0).at(0.5), Uncertain("time", 1.0, 1.4).at(0.5)
+        (2.0, 1.2)
+        """
+        if self._in_logs:
+            return self.low * math.pow(self.high / self.low, share)
+        return self.low + share * (self.high - self.low)
+
+    def share(self, value: float) -> float:
+        """The share of the interval at which a value lies, as `at` takes it."""
+        if self._in_logs:
+            return math.log(value / self.low) / math.log(self.high / self.low)
+        return (value - self.low) / (self.high - self.low)
+
+    @property
+    def _in_logs(self) -> bool:
+        return self.low > 0.0 and self.high / self.low > LOG_FROM
+
+
+def latin(parameters: int, draws: int, seed: int) -> Array:
+    """Shares of shape (draws, parameters) in 0–1, one in each of `draws` equal strata of every parameter.
+
+    >>> bool((np.sort((latin(2, 4, seed=0) * 4).astype(int), axis=0) == np.arange(4)[:, None]).all())
+    True
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
+    strata = (
+        np.stack([rng.permutation(draws) for _ in range(parameters)], axis=-1) if parameters else np.empty((draws, 0))
+    )
+    shares: Array = (strata + rng.random(strata.shape)) / draws
+    return shares
+
+
+def memory_parameters(norm: Norm, records: Table | None = None) -> tuple[Uncertain, ...]:
+    """The uncertain constants of memory that a norm makes use of, by the records of an observer (None: the shipped).
+
+    >>> [parameter.name for parameter in memory_parameters("episodes")]
+    ['share of the scatter of ratings', 'bar of an episode', 'memory noise (episodes)']
+    """
+    found = []
+    for record in variant_records() if records is None else records:
+        name = NOISE if record.quantity == "memory noise" else record.quantity
+        low, high = record.interval
+        if name in MEMORY_NAMES and (name != NAMED_ALONE or norm == "naming") and low < high:
+            found.append(Uncertain(name, low, high, record.unit))
+    return tuple(found)
+
+
+OFFSETS = ("laboratory, cold", "laboratory, warm")
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnLaboratories:
+    """One laboratory for each of some evenly spaced draws of a variant.
+
+    `values` (n, constants) belong to `names`: the constants of the draw, memory, and how much more sensitive (ln) its
+    people are.
+    """
+
+    variable: Variable
+    names: tuple[str, ...]
+    values: Array
+    seed: int
+    age_years: float | None
+
+    @classmethod
+    def of(cls, model: ObserverModel, norm: Norm, draws: int, seed: int) -> DrawnLaboratories:
+        """As many laboratories of a model as `draws`; a ValueError for an observer without draws."""
+        held = model.posterior
+        if held is None:
+            raise ValueError(
+                f"{model.name} has no posterior draws, from which an interval for a new laboratory is made"
+            )
+        chosen = np.linspace(0, len(held) - 1, draws).round().astype(np.int64)
+        free = [p for p in memory_parameters(norm, records=model.records) if p.name not in held.memory_names]
+        shares = latin(len(free), draws, seed).tolist()
+        memory = [[p.at(share) for p, share in zip(free, row, strict=True)] for row in shares]
+        offsets, free_memory = held.new_laboratory(seed)[chosen], np.reshape(memory, (draws, len(free)))
+        values = np.hstack([held.draws[chosen], held.memory[chosen], free_memory, offsets])
+        names = (*held.names, *held.memory_names, *(p.name for p in free), *OFFSETS)
+        return cls(held.variable, names, values, seed, model.age_years)
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    def at(self, place: int, people: int) -> tuple[Observer, People]:
+        """The observer of one laboratory, and its people."""
+        return self.with_values(self.values[place], people)
+
+    def with_values(self, values: Array, people: int) -> tuple[Observer, People]:
+        """The observer and the people of a laboratory with these values of the constants (constants,)."""
+        named = dict(zip(self.names, values.tolist(), strict=True))
+        offsets = named[OFFSETS[0]], named[OFFSETS[1]]
+        base = Observer.load(variable=self.variable)
+        return laboratory_with(base, named, offsets, people, self.seed, self.age_years)
+
+    def invited(self, people: int) -> NDArray[np.int64]:
+        """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""
+        chance = np.random.default_rng(np.random.SeedSequence([self.seed, 9]))
+        return chance.integers(people, size=(len(self), people))
+
 
 PEOPLE, FEWEST, PRESENTED = 24, 12, 768
 """Number of people: 24, of larger sets fewer, but at least 12, so that about 768 icons are judged."""

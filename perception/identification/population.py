@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,16 +13,27 @@ from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.detection import Detection, detect
 from ..sensation.percept import perceive_many, uniform_clock
-from .confusion import SAMPLES, Confusion, confuse
+from .confusion import NAMED_SAMPLES, SAMPLES, Confusion, confuse, name_directly
 from .episodes import Episodes, episode_distances
-from .naming import SAMPLES as NAMED_SAMPLES
-from .naming import name_directly
 from .task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.circuit.solver.batch import Batch
     from thermicon.icons import Icon
+
+TAIL_S, RATE_HZ = 10.0, 100.0
+"""Time after the longest icon, s, and rows of a run a second, as in `rank`."""
+
+
+def run_end_s(durations_s: Iterable[float], rate_Hz: float = RATE_HZ) -> float:
+    """End of a run of icons that last so long: `TAIL_S` after the longest, on a whole row, s.
+
+    >>> run_end_s([4.0, 2.5])
+    14.0
+    """
+    return math.ceil((max(durations_s) + TAIL_S) * rate_Hz - 1e-6) / rate_Hz
+
 
 PROBES = ("cold_receptor_C", "warm_receptor_C")
 """What people are simulated for: a batch of these alone can be superposed."""

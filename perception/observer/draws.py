@@ -21,12 +21,11 @@ from thermicon.circuit.records import Table
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array, own_arrays
-from .channels import CHANNELS, Channel
+from .channels import CHANNELS, Channel, Variable, check_variable, source_of
 from .draws_file import DrawsHeader, read_draws, shipped_file
-from .memory import NOISE, OF_MEMORY, Ratings
 from .observer import INFERRED, OF_BOTH, OF_CHANNEL, Observer, Receptor, variant_records
+from .parts import NOISE, OF_MEMORY, Ratings
 from .people import People, draw_people
-from .variants import Variable, check_variable, source_of
 
 BETWEEN_LABORATORIES = "sensitivity between laboratories"
 NEGLIGIBLE = 1e-3

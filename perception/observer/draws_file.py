@@ -21,9 +21,9 @@ from thermicon.circuit.records import RecordError
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
-from .memory import LIMITS, MEMORY_NAMES, objection_to
+from .channels import Variable, check_variable
 from .observer import DATA
-from .variants import Variable, check_variable
+from .parts import LIMITS, MEMORY_NAMES, objection_to
 
 MOST_MB, LARGEST = 200.0, 1e9
 """Size of a file, and of a number in it: far more than any constant in its unit."""

@@ -9,7 +9,7 @@ from typing import Literal
 from thermicon.icons.near_words import did_you_mean
 
 from .channels import Channel
-from .receptor import LEG_M_PER_S
+from .parts import LEG_M_PER_S
 
 Without = frozenset[str]
 Carrier = Literal["observer", "people", "rig", "inference"]

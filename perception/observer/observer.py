@@ -18,13 +18,21 @@ import numpy as np
 from thermicon.circuit.records import RecordError, Table, load_records
 
 from ..arrays import Array
-from .channels import CHANNELS, NORMS, Channel, Norm, check_norm
+from .channels import (
+    CHANNELS,
+    NORMS,
+    VARIABLES,
+    Channel,
+    Norm,
+    Variable,
+    check_norm,
+    check_variable,
+    drive_unit,
+    source_of,
+)
 from .mechanisms import check_without, find_mechanism
-from .memory import EpisodeMemory, Ratings
 from .observer_file import check_complete, read_observer_file
-from .receptor import Conduction, Receptor
-from .transducer import Transducer
-from .variants import VARIABLES, Variable, check_variable, drive_unit, source_of
+from .parts import Conduction, EpisodeMemory, Ratings, Receptor, Transducer
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"

@@ -51,8 +51,8 @@ def check_units(table: Table) -> None:
 
 def _nominal_draw(path: Path, variable: str) -> Table:
     """Records of the nominal draw of a table of posterior draws."""
+    from .channels import VARIABLES
     from .draws import PosteriorDraws
-    from .variants import VARIABLES
 
     drawn = PosteriorDraws.load(path)
     if drawn.variable != variable:

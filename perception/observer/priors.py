@@ -18,8 +18,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from ..arrays import Array
-from .channels import CHANNELS
-from .variants import Variable
+from .channels import CHANNELS, Variable
 
 Scale = Literal["linear", "log", "logit"]
 WITHIN_95 = 1.959964

@@ -24,7 +24,7 @@ from ..arrays import Array
 from ..observer.channels import CHANNELS
 from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from ..observer.draws_file import as_written, to_text
-from ..observer.memory import NOISE
+from ..observer.parts import NOISE
 from .conditioning import Conditioned
 from .playing import Stage
 from .states import OFFSETS, SEEDS, Laboratories, LaboratoryPrior

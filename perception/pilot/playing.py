@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import information_bits
-from ..identification.population import ReceptorTemperatures, identify, respond
-from ..identification.run_end import RATE_HZ, run_end_s
+from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..kernels.parallel import in_order
 from ..observer.people import draw_people
 from .states import Laboratories, LaboratoryPrior

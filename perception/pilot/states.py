@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 from thermicon.circuit.records import Table
 
 from ..arrays import Array
+from ..identification.laboratory_draws import Uncertain, latin, memory_parameters
 from ..observer.channels import CHANNELS, Norm
 from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws, laboratory_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..observer.priors import Prior, priors_of
-from ..sensation.parameters import ObserverParameter, latin, memory_parameters
 
 LEAST_VARIANCE = 1e-12
 """Directions in which draws vary less, such as a constant that is the same in all, are left as they are."""
@@ -153,7 +153,7 @@ class LaboratoryPrior:
         return laboratory_with(self.base, named, (named[OFFSETS[0]], named[OFFSETS[1]]), people, seed)
 
 
-def _scores(parameter: ObserverParameter, draws: PosteriorDraws) -> Array:
+def _scores(parameter: Uncertain, draws: PosteriorDraws) -> Array:
     """Normal scores (n,) of the memory that draws have, within its interval."""
     column = draws.memory[:, draws.memory_names.index(parameter.name)]
     # Tables may have been rounded beyond the ends.

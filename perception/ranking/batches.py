@@ -2,12 +2,16 @@
 
 A batch has all icons, since they are compared within a person, and as many people as fit into a bounded memory. That
 depends only on the icons and their length, not on the number of workers.
+
+Finished batches are kept on disk, one .npz file each, so that an interrupted run continues where it stopped. A file is
+complete or absent. Zip checksums and the key of the job guard its content: a file that is damaged, or belongs to
+another job, counts as absent.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from pathlib import Path
@@ -15,16 +19,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.circuit.cores import cores
 from thermicon.circuit.program import DRIVES
 from thermicon.circuit.program import code_digest as digest_of
+from thermicon.icons.atomic import MARK, OutputError, complete_or_absent
+from thermicon.icons.userfolder import remove_unused
 
 from ..arrays import Array, own_arrays
-from ..identification.confusion import SAMPLES, normalised, sampling_error
+from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
 from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
-from ..identification.naming import SAMPLES as NAMED_SAMPLES
-from ..identification.population import PROBES, ReceptorTemperatures, identify, respond
-from ..identification.run_end import RATE_HZ
+from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm
@@ -32,11 +37,64 @@ from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..sensation.detection import Detection, report_step
 from ..sensation.detection import pooled as pooled_detection
-from .batch_store import BatchStore
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
+
+STALE_S = 3600.0
+"""A draft is written in milliseconds; one as old as this was left by a run that was killed, and is removed."""
+
+
+class BatchStoreError(ValueError):
+    """Finished batches cannot be kept where they should be; the text states why."""
+
+
+@dataclass(frozen=True, slots=True)
+class BatchStore:
+    """The folder that holds the finished batches of one job, named by the key of the job."""
+
+    folder: Path
+    key: str
+
+    @classmethod
+    def of(cls, key: str, keep: Path) -> BatchStore:
+        """The store of a job inside a folder; both folders are made. Raises `BatchStoreError` where that fails."""
+        folder = keep / key[:32]
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise BatchStoreError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
+        remove_unused(folder.glob(f".*.{MARK}.npz"), STALE_S)
+        return cls(folder, key)
+
+    def path(self, number: int) -> Path:
+        """File of a batch."""
+        return self.folder / f"{number:06d}.npz"
+
+    def put(self, number: int, arrays: Mapping[str, Array]) -> None:
+        """Write a batch."""
+        try:
+            with complete_or_absent(self.path(number)) as draft:
+                np.savez(draft, allow_pickle=False, key=np.array(self._label(number)), **arrays)
+        except (OSError, OutputError) as error:
+            raise BatchStoreError(f"cannot keep finished parts in {self.folder}: {error}") from error
+
+    def get(self, number: int) -> dict[str, Array] | None:
+        """The arrays of a finished batch; None where there is no file, or none that can be trusted."""
+        if not self.path(number).exists():
+            return None
+        try:
+            with np.load(self.path(number), allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            return arrays if str(arrays.pop("key")) == self._label(number) else None
+        except Exception:
+            # Whatever is wrong with the file, computing the batch again is the remedy.
+            return None
+
+    def _label(self, number: int) -> str:
+        return f"{self.key} {number}"
+
 
 DT_S = 1.0 / RATE_HZ
 SAMPLES_AT_ONCE = 1_200_000
@@ -51,8 +109,8 @@ class BatchResult:
 
     `detected` (p, m), `cold_share` (p, m) of the reports and `confusion` (p, m, m) are probabilities, `reported`
     (1, m, n) is the number of people who have reported by each time, `d_prime` (p, q) from memory, `correct` (p, m)
-    0–1, `bits`, `plugin` (p,) information and what experiments report of it, `other_correct` (p, norms, m) by
-    the other norms. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
+    0–1, `bits`, `plugin` (p,) information and what experiments report of it, `other_correct` (p, m) by the
+    other norm. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
     """
 
     detected: Array
@@ -108,22 +166,15 @@ class Job:
         return number * self.at_once, min(self.people, (number + 1) * self.at_once)
 
     @property
-    def other_norms(self) -> tuple[Norm, ...]:
-        """The norms that are compared with the chosen one."""
-        return tuple(n for n in NORMS if n != self.norm)
+    def other_norm(self) -> Norm:
+        """The norm that is compared with the chosen one."""
+        return next(norm for norm in NORMS if norm != self.norm)
 
     @property
     def key(self) -> str:
         """Hash of everything that the numbers of a batch depend on, including the code and data of this version."""
-        parts = [
-            code_digest(),
-            self.rig.document,
-            *self.rig.changes,
-            repr(self.end_s),
-            str(self.people),
-            str(self.seed),
-        ]
-        parts += [str(self.trials), str(self.tracking), self.norm, str(self.at_once), repr(self.task)]
+        parts = [code_digest(), self.rig.document, *self.rig.changes, repr(self.end_s), str(self.people)]
+        parts += [str(self.seed), str(self.trials), str(self.tracking), self.norm, str(self.at_once), repr(self.task)]
         parts += [] if self.observer is None else [self.observer.key]
         for icon in self.icons:
             corners = icon.corners(None if icon.context.control != "current" else 0.0)
@@ -133,30 +184,15 @@ class Job:
 
 def run(job: Job, number: int) -> BatchResult:
     """Compute one batch."""
-    from thermicon.circuit import simulate_many
-
     start, stop = job.span(number)
     model = ObserverModel.of(job.observer)
-    crowd = _crowd(job.people, job.seed, model).part(start, stop)
-    batch = simulate_many(
-        job.icons,
-        crowd.rigs(job.rig),
-        nominal=job.rig,
-        end_s=job.end_s,
-        rate_Hz=RATE_HZ,
-        tracking=job.tracking,
-        probes=PROBES,
-    )
-    played = ReceptorTemperatures.of_batch(batch, job.icons, job.rig)
-    observer = model.nominal
+    crowd, observer = _crowd(job.people, job.seed, model).part(start, stop), model.nominal
+    played = ReceptorTemperatures.simulated(job.icons, crowd.rigs(job.rig), job.rig, job.end_s, RATE_HZ, job.tracking)
     felt = respond(played, crowd, observer, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
-    others = []
-    for norm in job.other_norms:
-        # Fewer trials than of the norm that counts, the fewer the more templates naming goes through.
-        samples = OTHER_SAMPLES if norm != "naming" else max(4, OTHER_NAMED // len(job.icons) ** 2)
-        other = identify(felt, norm, crowd, observer, job.seed, samples, start, job.task)[1].probability
-        others.append(np.diagonal(other, axis1=1, axis2=2))
+    # Fewer trials than of the norm that counts, the fewer the more templates naming goes through.
+    fewer = OTHER_SAMPLES if job.other_norm != "naming" else max(4, OTHER_NAMED // len(job.icons) ** 2)
+    _, other = identify(felt, job.other_norm, crowd, observer, job.seed, fewer, start, job.task)
     named = confusion.probability
     first, second = np.triu_indices(len(job.icons), 1)
     first_people = played.thinned(max(0, min(start + len(crowd), PEOPLE) - start), EVERY)
@@ -169,7 +205,7 @@ def run(job: Job, number: int) -> BatchResult:
         correct=np.diagonal(named, axis1=1, axis2=2).copy(),
         bits=information_bits(named),
         plugin=experiments_bits(named, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1),
-        other_correct=np.stack(others, axis=1),
+        other_correct=np.diagonal(other.probability, axis1=1, axis2=2).copy(),
         cold_C=first_people.cold_C,
         warm_C=first_people.warm_C,
     )
@@ -195,8 +231,8 @@ class PooledResult:
     """Responses of all people to m icons.
 
     `detection` (m,) is that of a person drawn at random; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m);
-    `each_correct` (people, m); `bits`, `plugin` (people,); `by_norm` (m,) proportion correct of each icon by
-    the other norms. `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and
+    `each_correct` (people, m); `bits`, `plugin` (people,); `other_correct` (m,) proportion correct of each icon by the
+    other norm. `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and
     of one person.
     """
 
@@ -206,7 +242,7 @@ class PooledResult:
     each_correct: Array
     bits: Array
     plugin: Array
-    by_norm: dict[Norm, Array]
+    other_correct: Array
     standard_error: float
     person_standard_error: float
     thin: ReceptorTemperatures
@@ -222,14 +258,12 @@ class PooledResult:
     @property
     def correct(self) -> Array:
         """Proportion correct of every person, (people,)."""
-        found: Array = self.each_correct.mean(axis=1)
-        return found
+        return np.asarray(self.each_correct.mean(axis=1))
 
     @property
     def middle(self) -> Array:
         """Median d′ of every pair over people, (m, m)."""
-        found: Array = self._square(np.median(self.pairs, axis=0)[None])[0]
-        return found
+        return np.asarray(self._square(np.median(self.pairs, axis=0)[None])[0])
 
     @property
     def d_prime(self) -> Array:
@@ -257,7 +291,8 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
     for number, found in _each_batch(job, execution):
         pooled[number], reported[number] = found.confusion.sum(axis=0), found.reported[0]
         blur = max(blur, _sampling_error(job, found.confusion))
-        parts[number] = _light(found)
+        # Confusions and response times are most of a batch, and are needed only as their sum.
+        parts[number] = replace(found, confusion=np.empty((0, 0, 0)), reported=np.empty((0, 0, 0)))
         step()
     ordered = [parts[number] for number in range(job.batches)]
 
@@ -266,20 +301,16 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
         return found
 
     total = _added([pooled[number] for number in range(job.batches)])
-    mean, other = normalised(total / people), joined("other_correct").mean(axis=0)
+    mean = normalised(total / people)
+    reports = _added([reported[number] for number in range(job.batches)])
     return PooledResult(
-        detection=pooled_detection(
-            joined("detected"),
-            joined("cold_share"),
-            _added([reported[k] for k in range(job.batches)]),
-            report_step(DT_S),
-        ),
+        detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),
         pairs=joined("d_prime"),
         pooled=mean,
         each_correct=joined("correct"),
         bits=joined("bits"),
         plugin=joined("plugin"),
-        by_norm=dict(zip(job.other_norms, other, strict=True)),
+        other_correct=joined("other_correct").mean(axis=0),
         standard_error=_sampling_error(job, mean, people),
         person_standard_error=blur,
         thin=ReceptorTemperatures(
@@ -304,17 +335,14 @@ def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResu
             yield number, BatchResult(**arrays)
     if not missing:
         return
-    results: Iterable[tuple[int, BatchResult]]
     if isinstance(execution.workers, str):
         from .cluster import on_cluster
 
         results = on_cluster(job, missing, execution.workers)
     else:
-        from thermicon.circuit.cores import cores
-
         # At most two batches per thread are in memory.
         each = in_order(lambda number: run(job, number), missing, execution.workers or cores())
-        results = zip(missing, each, strict=True)
+        results = iter(zip(missing, each, strict=True))
     for number, result in results:
         if store is not None:
             store.put(number, {field.name: getattr(result, field.name) for field in fields(result)})
@@ -327,11 +355,6 @@ def _sampling_error(job: Job, confusion: Array, people: int = 1) -> float:
     if len(job.icons) <= (1 if direct else 2):
         return 0.0
     return sampling_error(confusion, people * (NAMED_SAMPLES if direct else SAMPLES))
-
-
-def _light(found: BatchResult) -> BatchResult:
-    """A batch without the confusions and response times, which are most of it and are needed only as their sum."""
-    return replace(found, confusion=np.empty((0, 0, 0)), reported=np.empty((0, 0, 0)))
 
 
 def _added(parts: Sequence[Array]) -> Array:

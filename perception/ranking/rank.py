@@ -13,18 +13,17 @@ from thermicon.circuit.program import own_version
 from ..identification.carry_over import prepare_task
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
-from ..identification.run_end import RATE_HZ, run_end_s
+from ..identification.population import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
 from ..progress import Progress, step_counter
 from ..sensation.percept import perceive
-from .assemble import assemble, objection, playable_pairs, worst_of
 from .batches import Execution, Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
-from .scores import disagreements, worst_by_rules
+from .scores import assemble, disagreements, objection, playable_pairs, worst_by_rules, worst_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

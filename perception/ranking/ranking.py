@@ -221,29 +221,22 @@ class Ranking(Drawn):
 
     @property
     def norm_sensitivity(self) -> dict[str, float]:
-        """Proportion correct of the set by each of the other norms."""
-        return {norm: sum(each) / len(each) for norm, each in self._by_norm.items()}
+        """Proportion correct of the set by the other norm, under its name."""
+        return {self.job.other_norm: float(self.felt.other_correct.mean())}
 
     @property
     def norm_changes(self) -> dict[str, tuple[tuple[str, str], ...]]:
-        """By each other norm, the pairs of icons whose order changes: the first is better here, the second there.
+        """By the other norm, the pairs of icons whose order changes: the first is better here, the second there.
 
         Differences must exceed one percentage point in both, since smaller ones are within the sampling error.
         """
-        own = [icon.proportion_correct for icon in self.icons]
-        return {
-            norm: tuple(
-                (self.labels[i], self.labels[j])
-                for i, j in permutations(range(len(own)), 2)
-                if own[i] > own[j] + PERCENTAGE_POINT and each[j] > each[i] + PERCENTAGE_POINT
-            )
-            for norm, each in self._by_norm.items()
-        }
-
-    @property
-    def _by_norm(self) -> dict[str, list[float]]:
-        """Proportion correct of each icon by the other norms."""
-        return {norm: each.tolist() for norm, each in self.felt.by_norm.items()}
+        own, other = [icon.proportion_correct for icon in self.icons], self.felt.other_correct
+        changed = tuple(
+            (self.labels[i], self.labels[j])
+            for i, j in permutations(range(len(own)), 2)
+            if own[i] > own[j] + PERCENTAGE_POINT and other[j] > other[i] + PERCENTAGE_POINT
+        )
+        return {self.job.other_norm: changed}
 
     @property
     def rules_score(self) -> float | None:

@@ -4,11 +4,18 @@ The set is predicted with draws of the posterior as a new laboratory would see i
 included. Constants that take no part in the set on its rig are left out. Constants of one draw belong together, so that
 shares of constants that trade off overlap and need not add up to 1; the share of a measurement is what its constants
 explain together.
+
+No posterior knows of contact and outermost layer. Both are simulated at three values each; in between, temperatures are
+those of the parabolas through them, so that hundreds of draws cost nine simulations.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,23 +24,26 @@ import numpy as np
 from ..arrays import Array
 from ..drawn import Drawn
 from ..identification.doubt import explained, explained_together, scores_of
-from ..identification.laboratory_draws import LaboratoryDraws, laboratory_draws
-from ..identification.run_end import run_end_s
+from ..identification.laboratory_draws import LaboratoryDraws, Uncertain, laboratory_draws, latin
+from ..identification.population import ReceptorTemperatures, run_end_s
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import check_norm
+from ..observer.observer import DATA, check_norm
 from ..observer.observer_model import ObserverModel
+from ..observer.people import People, people_records
 from ..progress import Progress, step_counter
-from ..sensation.parameters import latin
-from .measurements import MEASUREMENTS, base_name
 from .ranking import with_changes
-from .rig_doubt import RATE_HZ, UncertainRig
 
 if TYPE_CHECKING:
     import pandas as pd
 
     from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
+    from thermicon.icons import Icon, IconSet
 
+
+RATE_HZ = 12.5
+"""As draws are judged for the intervals of a new laboratory."""
+NODES = (0.0, 0.5, 1.0)
+CONTACT, LAYER = "contact resistance", "thickness of the outermost layer"
 DRAWS = 256
 FEWEST_DRAWS = 64
 """Of fewer draws a share of some per cent is not distinguishable from chance."""
@@ -41,22 +51,77 @@ NOTEWORTHY = 0.02
 """Measurements that would take away less of the variance are not named as the first to make."""
 
 
+@lru_cache(maxsize=1)
+def load_measurements() -> Mapping[str, tuple[str, ...]]:
+    """What a laboratory can measure, and the constants, by name, that each measurement would determine."""
+    rows = tomllib.loads((DATA / "measurements.toml").read_text("utf-8"))["measurement"]
+    return {row["text"]: tuple(row["constants"]) for row in rows}
+
+
+def base_name(constant: str) -> str:
+    """A constant without the norm that its value belongs to.
+
+    >>> base_name("memory noise (episodes)")
+    'memory noise'
+    """
+    return constant.split(" (")[0]
+
+
+@dataclass(frozen=True, slots=True)
+class UncertainRig:
+    """Contact and layer as intervals, and the simulations between which others are interpolated.
+
+    `grid` holds temperatures in °C, shape (contact · layer, channel, people, icons, n_time), and `like` what does not
+    depend on the two. Shares are of each interval, 0–1; the rig as it is has 0.5 of both.
+    """
+
+    parameters: tuple[Uncertain, Uncertain]
+    grid: Array
+    like: ReceptorTemperatures
+
+    @classmethod
+    def simulate(cls, icons: Sequence[Icon], rig: Rig, people: People, end_s: float) -> UncertainRig:
+        """Simulate every icon for each person at the nodes, with the currents that are designed on the rig as it is."""
+        resistance, layer_mm = rig.contact.resistance_m2K_per_W, rig.skin.layers[0].thickness_m * 1e3
+        by = 1.0 + rig.uncertainty.contact_resistance_relative
+        other = 1.0 + people_records()["outer_layer"].central  # one person's spread
+        contact = Uncertain(CONTACT, resistance / by, resistance * by)
+        layer = Uncertain(LAYER, layer_mm / other, layer_mm * other)
+        played = []
+        for share, place in product(NODES, NODES):
+            keys = {"contact.resistance_m2K_per_W": contact.at(share), "skin.layer.0.thickness_mm": layer.at(place)}
+            rigs = people.rigs(rig.with_(**keys))
+            played.append(ReceptorTemperatures.simulated(icons, rigs, rig, end_s, RATE_HZ, None))
+        grid = np.stack([np.stack([each.cold_C, each.warm_C]) for each in played])
+        return cls((contact, layer), grid, played[0])
+
+    def played(self, contact: float, layer: float) -> ReceptorTemperatures:
+        """Temperatures of the receptors for a contact and an outermost layer, as shares of their intervals."""
+        weights = np.outer(_parabola(contact), _parabola(layer)).reshape(-1)
+        cold, warm = (weights @ self.grid.reshape(weights.size, -1)).reshape(self.grid.shape[1:])
+        return replace(self.like, cold_C=cold, warm_C=warm)
+
+
+def _parabola(share: float) -> Array:
+    """Weights of the three nodes in the parabola through them."""
+    return np.array([2.0 * (share - 0.5) * (share - 1.0), 4.0 * share * (1.0 - share), 2.0 * share * (share - 0.5)])
+
+
+ROW = {
+    "proportion_correct": "proportion_correct_share",
+    "information_bits": "information_bits_share",
+    "at_low": "proportion_correct_at_low",
+    "at_high": "proportion_correct_at_high",
+}
+"""Keys of a row that say more than the field of an effect."""
+
+
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """Influence of one constant on the prediction.
+    """Influence of one constant, whose draws have their 95 % interval from `low` to `high` in its `unit`.
 
-    Attributes
-    ----------
-    constant
-        Its name.
-    unit
-        Its unit, where it is known.
-    low, high
-        Ends of the 95 % interval of the draws.
-    proportion_correct, information_bits
-        Share (0–1) of the variance of each over draws that would go if the constant were known.
-    at_low, at_high
-        Proportion correct to be expected at both ends of the interval.
+    `proportion_correct` and `information_bits` are the share (0–1) of the variance of each over draws that would go if
+    the constant were known, `at_low` and `at_high` the proportion correct to be expected at both ends.
     """
 
     constant: str
@@ -83,24 +148,8 @@ class Reduction:
 class Sensitivity(Drawn):
     """Effects of constants, and reductions by measurements, on a prediction; the largest first.
 
-    Attributes
-    ----------
-    rig, rig_changes
-        Name of the rig, and its changed keys.
-    people, seed, norm, draws, observer
-        How the draws were judged: people of a draw, seed, norm, number of draws, file of the observer.
-    proportion_correct, information_bits
-        Medians over the draws: 0–1, and bits.
-    proportion_correct_interval
-        95 % of the draws, for a new laboratory; contact and skin layer of the rig are uncertain.
-    effects
-        Effect of each constant.
-    reductions
-        What each measurement would take away.
-
-    See Also
-    --------
-    sensitivity : Makes it.
+    The prediction is the median over draws (0–1, and bits) and the 95 % of them, for a new laboratory; contact and skin
+    layer of the rig are uncertain.
     """
 
     rig: str
@@ -123,19 +172,7 @@ class Sensitivity(Drawn):
 
     def rows(self) -> list[dict[str, Any]]:
         """One plain row for each constant."""
-        return [
-            {
-                "constant": each.constant,
-                "unit": each.unit,
-                "low": each.low,
-                "high": each.high,
-                "proportion_correct_share": each.proportion_correct,
-                "information_bits_share": each.information_bits,
-                "proportion_correct_at_low": each.at_low,
-                "proportion_correct_at_high": each.at_high,
-            }
-            for each in self.effects
-        ]
+        return [{ROW.get(key, key): value for key, value in asdict(each).items()} for each in self.effects]
 
     def to_frame(self) -> pd.DataFrame:
         """The rows as a table."""
@@ -164,41 +201,11 @@ def sensitivity(
 ) -> Sensitivity:
     """Find the constants that carry the doubt about a set, and the measurement that would reduce it most.
 
-    Parameters
-    ----------
-    icons
-        The set, at least two icons.
-    rig
-        The rig that plays it; its contact is uncertain as its own table of uncertainty says.
-    people
-        Virtual people of every draw.
-    seed
-        Seed of people, noise and draws: the same arguments give the same numbers.
-    draws
-        Draws of the posterior, at least 64 (None: 256, or as many as the observer has).
-    norm
-        What is remembered, as in `rank`.
-    observer
-        An observer or its file, as in `rank`; it needs draws.
-    progress
-        Called with (draws done, draws in all).
+    The set needs at least two icons; the contact of the rig is uncertain as its own table of uncertainty says. `people`
+    are those of every draw, `draws` those of the posterior, at least 64 (None: 256, or as many as the observer has).
+    `seed`, `norm` and `observer` are as in `rank`; an observer without draws is refused. `progress` is called with
+    (draws done, draws in all).
 
-    Returns
-    -------
-    Sensitivity
-        Constants and measurements, the most influential first.
-
-    Raises
-    ------
-    ValueError
-        For fewer than two icons, too few or too many draws, an observer without draws, and an unknown norm.
-
-    See Also
-    --------
-    rank : Names the constants with the largest shares from the draws of its own interval.
-
-    Examples
-    --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> sensitivity(read_cue("six-icons"), Rig.load("thenar"), draws=3)
@@ -277,11 +284,11 @@ def _effects(names: tuple[str, ...], values: Array, each: LaboratoryDraws, model
 
 def _reductions(names: tuple[str, ...], values: Array, each: LaboratoryDraws) -> tuple[Reduction, ...]:
     found = []
-    for measurement in MEASUREMENTS:
-        places = [k for k, name in enumerate(names) if base_name(name) in measurement.constants]
+    for measurement, constants in load_measurements().items():
+        places = [k for k, name in enumerate(names) if base_name(name) in constants]
         if places:
             shares = (
                 explained_together(values[:, places], what) for what in (each.proportion_correct, each.information_bits)
             )
-            found.append(Reduction(measurement.text, tuple(names[k] for k in places), *shares))
+            found.append(Reduction(measurement, tuple(names[k] for k in places), *shares))
     return tuple(sorted(found, key=lambda r: (-r.proportion_correct, r.measurement)))

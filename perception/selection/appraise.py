@@ -11,13 +11,14 @@ import numpy as np
 from ..arrays import Array
 from ..identification.measures import information_bits, proportion_correct
 from ..identification.population import (
+    RATE_HZ,
     PopulationResponse,
     ReceptorTemperatures,
     identify,
     memory_dprime,
     respond,
+    run_end_s,
 )
-from ..identification.run_end import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import Norm, Observer

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..identification.run_end import run_end_s
+from ..identification.population import run_end_s
 from ..observer.observer import Norm, Observer
-from ..ranking.assemble import objection
+from ..ranking.scores import objection
 from .icon_numbers import Number, line_of, numbers_of, repeated, with_number
 from .pool import RATE_HZ, Pool
 

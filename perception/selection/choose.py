@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
-from ..identification.run_end import RATE_HZ
+from ..identification.population import RATE_HZ
 from ..progress import Progress, step_counter
 from .appraise import Appraisal, appraise
 from .max_min_subset import Limits, max_min_subset

@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.carry_over import prepare_task
-from ..identification.run_end import run_end_s
+from ..identification.population import run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.people import People
 from .appraise import population_dprime, population_response

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.drawn_laboratories import DrawnLaboratories
+from ..identification.laboratory_draws import DrawnLaboratories
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import Norm, Observer

@@ -15,8 +15,7 @@ import numpy as np
 from ..arrays import Array
 from ..identification.laboratory import Nominal, new_laboratory
 from ..identification.laboratory_draws import EVERY, PEOPLE
-from ..identification.population import ReceptorTemperatures
-from ..identification.run_end import RATE_HZ, run_end_s
+from ..identification.population import RATE_HZ, ReceptorTemperatures, run_end_s
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .appraise import Appraisal, appraise

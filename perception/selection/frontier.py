@@ -18,8 +18,7 @@ from ..drawn import Drawn
 from ..identification.confusion import confuse
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import identify
-from ..identification.run_end import RATE_HZ
+from ..identification.population import RATE_HZ, identify
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..identification.episodes import dprimes_from_memory
-from ..identification.run_end import run_end_s
+from ..identification.population import run_end_s
 from ..observer.observer import Norm, Observer
-from ..ranking.assemble import energy_J, objection
+from ..ranking.scores import energy_J, objection
 from ..sensation.detection import detect
 from ..sensation.percept import perceive_many, uniform_clock
 from .goal import SAFETY, Goal

@@ -15,9 +15,8 @@ import numpy as np
 from thermicon.circuit.rig.load import refuse_load
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.channels import CHANNELS, Channel, Variable, receptor_input, sign_of
 from ..observer.observer import Observer
-from ..observer.variants import Variable, receptor_input
 from .percept import uniform_clock
 from .sensation import receptor_drive, sensation
 

@@ -20,9 +20,8 @@ from thermicon.circuit.rig.rigfile import RigError
 from ..arrays import Array, as_rows
 from ..criteria import FELT_FROM
 from ..drawn import Drawn
-from ..observer.channels import CHANNELS, Channel
+from ..observer.channels import CHANNELS, Channel, receptor_input
 from ..observer.observer import Observer
-from ..observer.variants import receptor_input
 from .coverage import outside_data
 from .detection import channel_name, detect
 from .sensation import receptor_drive, sense

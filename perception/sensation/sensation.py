@@ -3,7 +3,7 @@
 Drive goes through limits of quality, integration and adaptation. There is no cold above the cold channel's limit and no
 warmth below the warm channel's: a fall from 36 to 34 °C is less warm, not cold. Adaptation is a level that follows the
 input clipped to the neutral zone: inside it adaptation is complete, outside it a hold keeps a residue. The equations
-stand in `kernels.adapted_drive`. The input is temperature (°C) or, for an observer of heat flow, W/m² into the skin.
+stand in `kernels.kernels`. The input is temperature (°C) or, for an observer of heat flow, W/m² into the skin.
 Sensation goes through area, site and transducer.
 
 Spatial summation has two ends:
@@ -49,7 +49,7 @@ def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer:
     >>> bool(receptor_drive(cooling, 0.01, "warm", Observer.load()).max() > 0.0)
     False
     """
-    from ..kernels.adapted_drive import adapted_drive
+    from ..kernels.kernels import adapted_drive
 
     rows, shape = as_rows(received)
     drive = np.empty_like(rows)

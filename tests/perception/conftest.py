@@ -6,8 +6,8 @@ import pytest
 from numpy.typing import NDArray
 
 from thermicon.perception import Observer
-from thermicon.perception.observer.memory import EpisodeMemory, Ratings
 from thermicon.perception.observer.observer import Receptor
+from thermicon.perception.observer.parts import EpisodeMemory, Ratings
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from thermicon.perception.experiments.laboratory import SURFACE_DEPTH_M
 from thermicon.perception.experiments.skin_modes import Corner, SkinModes, skin_modes
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
 from thermicon.perception.observer.observer import Observer
-from thermicon.perception.observer.transducer import Transducer
+from thermicon.perception.observer.parts import Transducer
 from thermicon.perception.sensation.detection import detect
 from thermicon.perception.sensation.sensation import receptor_drive, sensation, sensitivity
 

@@ -7,9 +7,9 @@ from thermicon.circuit.records import Record, RecordError, Table, load_records
 from thermicon.perception import Observer
 from thermicon.perception.evidence.calibrate import calibrate, to_toml
 from thermicon.perception.evidence.results import constant, load_constants
+from thermicon.perception.observer.channels import VARIABLES, source_of
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import CHANNELS, DATA, load_thresholds
-from thermicon.perception.observer.variants import VARIABLES, source_of
 
 SHIPPED = DATA / "observer.toml"
 AGAIN = "the observer is out of date: run python -m thermicon.perception.evidence observer"

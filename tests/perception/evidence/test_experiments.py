@@ -10,7 +10,7 @@ from thermicon.perception.evidence.experiments import limits, methods, rate_curv
 from thermicon.perception.evidence.experiments_timing import first_and_return, peak_lead
 from thermicon.perception.evidence.predicted import Asked, Predicted, predict
 from thermicon.perception.evidence.radiant import whole_body_warmth
-from thermicon.perception.observer.variants import VARIABLES, Variable
+from thermicon.perception.observer.channels import VARIABLES, Variable
 
 
 def by(found: tuple[Predicted, ...], quantity: str, channel: str) -> Predicted:

@@ -13,9 +13,9 @@ from thermicon.perception import Observer
 from thermicon.perception.experiments.crowd import SHARES
 from thermicon.perception.experiments.laboratory import samples_of
 from thermicon.perception.kernels import passage as kernels
-from thermicon.perception.kernels.adapted_drive import adapted_drive
+from thermicon.perception.kernels.kernels import adapted_drive
 from thermicon.perception.kernels.passage import psychometric
-from thermicon.perception.observer.transducer import Transducer
+from thermicon.perception.observer.parts import Transducer
 
 DT = 0.025
 TRANSDUCER = Transducer(11.0, 1.2)

@@ -11,8 +11,7 @@ from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.experiments.laboratory import Laboratory, samples_of
 from thermicon.perception.experiments.published import predict
 from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
-from thermicon.perception.observer.receptor import Conduction
-from thermicon.perception.observer.transducer import Transducer
+from thermicon.perception.observer.parts import Conduction, Transducer
 from thermicon.perception.sensation.sensation import area_factor, summed_area_cm2
 
 

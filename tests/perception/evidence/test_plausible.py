@@ -5,8 +5,8 @@ from thermicon.circuit import Rig
 from thermicon.perception import Observer
 from thermicon.perception.evidence.predicted import plausible_observers
 from thermicon.perception.experiments.on_bench import forced_choice
+from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.observer.variants import VARIABLES, Variable
 from thermicon.perception.sensation.bench import Bench
 
 

@@ -17,7 +17,7 @@ from thermicon.perception.evidence.chains import Chain, Reference, begin, diagno
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.sampling import in_the_middle, sample, shipped_vector
 from thermicon.perception.evidence.surrogate import LimitFeatures, Surrogate, fit_surrogate
-from thermicon.perception.observer.variants import VARIABLES
+from thermicon.perception.observer.channels import VARIABLES
 
 SIZE = 3
 TRUTH = np.array([[1.0, 0.5, 0.0], [0.0, 2.0, -0.5], [0.3, 0.0, 1.5], [1.0, 1.0, 1.0]])

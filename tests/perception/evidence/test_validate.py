@@ -17,8 +17,8 @@ from thermicon.perception.evidence.targets import load_targets, published_for
 from thermicon.perception.evidence.validate import ValidationReport, answers, assemble, validate
 from thermicon.perception.evidence.validate_file import report_file
 from thermicon.perception.evidence.waves import GROUPS, LIBRARY, SHAPES, wave_name
+from thermicon.perception.observer.channels import VARIABLES
 from thermicon.perception.observer.observer import load_thresholds
-from thermicon.perception.observer.variants import VARIABLES
 
 
 @pytest.fixture

@@ -20,8 +20,7 @@ from thermicon.perception.experiments.on_bench import choice_reaction_time, forc
 from thermicon.perception.experiments.published import PEAKS_C, STRIP_CM2, TWO_STRIPS_CM2, Predictions
 from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
-from thermicon.perception.sensation.detection import detect
-from thermicon.perception.sensation.first_passage import ResponseTimes, response_times
+from thermicon.perception.sensation.detection import ResponseTimes, detect, response_times
 from thermicon.perception.sensation.sensation import receptor_drive, sensitivity
 
 NOBODY_DIFFERS = (

@@ -19,9 +19,8 @@ from thermicon.perception.experiments.on_bench import (
     size_reaching,
     yes_no,
 )
-from thermicon.perception.observer.channels import CHANNELS, Channel
+from thermicon.perception.observer.channels import CHANNELS, VARIABLES, Channel
 from thermicon.perception.observer.people import People
-from thermicon.perception.observer.variants import VARIABLES
 from thermicon.perception.sensation.bench import Bench
 
 

@@ -8,10 +8,9 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 
 from thermicon.perception import Observer
-from thermicon.perception.identification.confusion import confuse
+from thermicon.perception.identification.confusion import confuse, name_directly
 from thermicon.perception.identification.episodes import Episodes, EpisodesError, distance_shares, episode_distances
 from thermicon.perception.identification.measures import proportion_correct
-from thermicon.perception.identification.naming import name_directly
 from thermicon.perception.kernels.episodes import MOST, RISE, USUAL
 
 Trace = NDArray[np.float64]

@@ -8,8 +8,8 @@ import pytest
 
 from thermicon.circuit.records import RecordError, Table, dump_records, load_records
 from thermicon.perception import Observer
+from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.observer_file import NEEDED, NEEDED_OF, SHIPPED, check_complete
-from thermicon.perception.observer.variants import VARIABLES, Variable
 
 
 def without(quantity: str, instead: str | None = None) -> Table:

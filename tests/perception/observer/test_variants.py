@@ -8,15 +8,15 @@ from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.perception import Observer, perceive
 from thermicon.perception.experiments.on_bench import forced_choice
-from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
-from thermicon.perception.observer.observer import Receptor
-from thermicon.perception.observer.variants import (
+from thermicon.perception.observer.channels import (
     VARIABLES,
     Variable,
     check_variable,
     receptor_column,
     receptor_input,
 )
+from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
+from thermicon.perception.observer.observer import Receptor
 from thermicon.perception.sensation.bench import Bench, ramp
 from thermicon.perception.sensation.sensation import sensitivity
 

@@ -16,8 +16,7 @@ from thermicon.icons import load_library, parse
 from thermicon.icons.atomic import MARK
 from thermicon.perception import rank
 from thermicon.perception.ranking import batches as under_test
-from thermicon.perception.ranking.batch_store import BatchStore, BatchStoreError
-from thermicon.perception.ranking.batches import BatchResult, Execution, Job, run
+from thermicon.perception.ranking.batches import BatchResult, BatchStore, BatchStoreError, Execution, Job, run
 
 RIG = Rig.load("thenar")
 ICONS = load_library("six-icons")

@@ -11,8 +11,7 @@ from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import parse
 from thermicon.perception import Observer, Ranking, draw_people, perceive, rank
 from thermicon.perception.identification.delivered import detected_as_delivered
-from thermicon.perception.identification.population import PROBES, ReceptorTemperatures, population_detection
-from thermicon.perception.identification.run_end import run_end_s
+from thermicon.perception.identification.population import PROBES, ReceptorTemperatures, population_detection, run_end_s
 from thermicon.perception.observer.people import People
 from thermicon.perception.ranking import batches
 

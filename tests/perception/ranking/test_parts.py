@@ -10,7 +10,7 @@ from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, perceive
 from thermicon.perception.identification.episodes import dprime_from_memory
-from thermicon.perception.ranking.distance_components import COMPONENTS, DistanceComponent, distance_components
+from thermicon.perception.ranking.reasons import COMPONENTS, DistanceComponent, distance_components
 
 Cue = Callable[..., Any]
 

@@ -7,8 +7,8 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, rank
+from thermicon.perception.identification.confusion import NAMED_SAMPLES as NAMED
 from thermicon.perception.identification.confusion import sampling_error
-from thermicon.perception.identification.naming import SAMPLES as NAMED
 
 TOP = (
     "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash task icons pairs "

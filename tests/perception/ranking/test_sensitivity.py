@@ -4,12 +4,18 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import draw_people
+from thermicon.perception.identification.laboratory_draws import memory_parameters
 from thermicon.perception.observer.channels import NORMS
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.ranking.measurements import MEASUREMENTS, base_name
-from thermicon.perception.ranking.rig_doubt import NODES, UncertainRig, _parabola
-from thermicon.perception.ranking.sensitivity import Sensitivity, sensitivity
-from thermicon.perception.sensation.parameters import memory_parameters
+from thermicon.perception.ranking.sensitivity import (
+    NODES,
+    Sensitivity,
+    UncertainRig,
+    _parabola,
+    base_name,
+    load_measurements,
+    sensitivity,
+)
 
 TWO = """cue 1
 set s { control skin; baseline 32 °C }
@@ -64,7 +70,7 @@ def test_every_constant_has_its_measurement() -> None:
     names = [name for name in draws.names if not draws.header.is_offset(name)]
     names += [parameter.name for norm in NORMS for parameter in memory_parameters(norm)]
     names += ["laboratory, cold", "laboratory, warm", "contact resistance", "thickness of the outermost layer"]
-    assert {base_name(name) for name in names} == {constant for each in MEASUREMENTS for constant in each.constants}
+    assert {base_name(name) for name in names} == set().union(*load_measurements().values())
 
 
 def test_as_a_table_and_a_picture(found: Sensitivity) -> None:
@@ -102,7 +108,7 @@ def test_temperatures_between_the_nodes_are_those_of_a_run(rig: Rig) -> None:
 
     people, icons = draw_people(3, 0), tuple(parse(TWO))
     uncertain = UncertainRig.simulate(icons, rig, people, 8.0)
-    moved = rig.with_(**{"contact.resistance_m2K_per_W": uncertain.contact.at(0.7)})
+    moved = rig.with_(**{"contact.resistance_m2K_per_W": uncertain.parameters[0].at(0.7)})
     batch = simulate_many(icons, people.rigs(moved), nominal=rig, end_s=8.0, rate_Hz=12.5)
     played = uncertain.played(0.7, 0.5)
     assert played.cold_C == pytest.approx(batch.cold_C, abs=0.02)

@@ -10,7 +10,7 @@ from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import Icon, parse, read_cue
 from thermicon.perception import choose, draw_people, rank
 from thermicon.perception.observer.people import People
-from thermicon.perception.ranking.assemble import energy_J
+from thermicon.perception.ranking.scores import energy_J
 from thermicon.perception.selection.appraise import appraise, population_dprime
 from thermicon.perception.selection.request import ChoiceError, Selection
 

@@ -13,8 +13,9 @@ from thermicon.perception.sensation.detection import (
     detect,
     false_alarms,
     pooled,
+    quarters,
+    response_times,
 )
-from thermicon.perception.sensation.first_passage import quarters, response_times
 
 
 def test_criterion_keeps_its_false_alarms() -> None:

@@ -10,8 +10,7 @@ from tests.perception.survival import log_survival
 from thermicon.perception import Observer
 from thermicon.perception.arrays import Array
 from thermicon.perception.kernels.reports import delayed
-from thermicon.perception.sensation.detection import detect, false_alarms
-from thermicon.perception.sensation.first_passage import ResponseTimes, response_times
+from thermicon.perception.sensation.detection import ResponseTimes, detect, false_alarms, response_times
 
 
 def test_nothing_is_answered_as_often_as_false_alarms_say(observer: Observer) -> None:
