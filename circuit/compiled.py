@@ -30,9 +30,8 @@ STALE_S = 90 * 24 * 3600.0
 """Machine code that was not used for this long is removed."""
 SOURCES = (
     *("circuit/compiled.py", "circuit/vector_math.py", "circuit/rig/module.py", "circuit/safety/*_kernel.py"),
-    *("circuit/safety/tally.py", "circuit/solver/constant_current.py", "circuit/solver/kernel*.py"),
-    *("circuit/solver/network.py", "circuit/solver/plate.py", "perception/kernels/*.py"),
-    "perception/selection/*_kernels.py",
+    *("circuit/safety/tally.py", "circuit/solver/modes.py", "circuit/solver/kernel*.py", "circuit/solver/network.py"),
+    *("perception/kernels/*.py", "perception/selection/*_kernels.py"),
 )
 """All files that hold compiled functions, or constants that these use."""
 

@@ -24,7 +24,7 @@ from ..safety.ensemble import LaneDrives
 from ..safety.single_faults import AFTER_ROWS_S
 from ..safety.tally import Tally
 from ..solver.batch_inputs import Bank, State, run_follow
-from ..solver.plate import COMPLIANCE_V, HIGHEST_A, LOWEST_A
+from ..solver.network import COMPLIANCE_V, HIGHEST_A, LOWEST_A
 from .delivery_deviation import loss_limit
 from .following_module import FollowingModule
 from .samples import Samples

@@ -24,11 +24,11 @@ from ..safety.demanded import polarity_check
 from ..safety.demands import CutOff, Demands, Loop, SingleFault
 from ..safety.display import DisplayCourse, DisplayPlant
 from ..safety.gate import Gate, gate_shown
-from ..safety.single import recovery_s
+from ..safety.plant import recovery_s
 from ..safety.single_faults import BEYOND_K
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_follow import DELAY_S, KD, KI, KP, LAG_S
-from ..solver.plate import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
+from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
 from .any_loop import SENSOR_K, AnyLoop, Limits_A
 from .delivered_drive import DeliveredDrive
 from .following_module import FollowingModule

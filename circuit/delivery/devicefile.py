@@ -12,11 +12,12 @@ from thermicon.icons.number_text import signed
 from ..inputs import (
     LONGEST_NAME,
     InputError,
+    Place,
+    key_faults,
     one_line,
     paragraph,
     read_toml,
 )
-from ..key_faults import Place, key_faults
 from ..records import Record, RecordError
 
 

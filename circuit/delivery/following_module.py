@@ -11,8 +11,8 @@ from ..rig.corner import with_gain
 from ..rig.rig import Rig
 from ..safety.checks import Check
 from ..safety.corners import corners_of
+from ..safety.current import checks_of_lanes
 from ..safety.ensemble import Ensemble, LaneDrives
-from ..safety.single import checks_of_lanes
 from ..safety.single_faults import Faulty
 from ..safety.tally import WATCHED
 from ..solver.steady import check_sink

@@ -15,7 +15,7 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.inverse import baseline_C, target_at
-from ..solver.prescribed import modes_of
+from ..solver.modes import modes_of
 from ..solver.simulate import rows_until
 from ..solver.trace import Trace
 from .delivered_drive import DeliveredDrive

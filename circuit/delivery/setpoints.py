@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..solver.displayed import part_of
-from ..solver.prescribed import shown
+from ..solver.modes import shown
 from .device import Device
 from .devicefile import DeviceError
 

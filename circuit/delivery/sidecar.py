@@ -11,7 +11,7 @@ from typing import Any
 
 from ..program import own_version, this_program
 from ..records import Record
-from ..safety.summary import summarise
+from ..safety.verdict import summarise
 from .delivered_drive import DeliveredDrive
 from .delivery_deviation import DeliveryDeviation, loss_table
 from .device import Device

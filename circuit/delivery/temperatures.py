@@ -21,8 +21,7 @@ from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
-from ..solver.network import network_of
-from ..solver.plate import PAST_MOST_COOLING
+from ..solver.network import PAST_MOST_COOLING, network_of
 from ..solver.simulate import duration_s, simulate_current
 from ..solver.steady import holding_current_A, state_under_current, steady_state
 from .delivered_drive import DeliveredDrive

@@ -17,8 +17,8 @@ from ..rig.rigfile import RigError
 from ..solver.displayed import part_of, trace_of_display
 from ..solver.drive import Drive
 from ..solver.landing import start_under
+from ..solver.modes import shown
 from ..solver.network import COLD, HOT, SKIN
-from ..solver.prescribed import shown
 from ..solver.simulate import rows_until, simulate_current
 from ..solver.trace import Trace
 from .runs import MAD_TO_SD, Run

@@ -13,11 +13,12 @@ from thermicon.icons.near_words import did_you_mean, nearest_words
 from ..inputs import (
     LONGEST_NAME,
     InputError,
+    Place,
+    key_faults,
     one_line,
     paragraph,
     read_toml,
 )
-from ..key_faults import Place, key_faults
 from .faults import heat_sink_faults, module_faults, rig_faults
 from .keyunits import unit_of
 from .load import LoadTable

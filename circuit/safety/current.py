@@ -19,18 +19,16 @@ from ..arrays import Array
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .checks import Before, Scenario
+from .checks import Before, Check, Scenario
 from .demands import Demands
 from .endings import ENDING_ROWS_S, ENDINGS, LATE_S, judge_the_end, without_power, zero_current_C
 from .ensemble import Ensemble, LaneDrives, row_of
-from .plant import Future, Plant, Stretch
-from .playmap import MOST_STEPS, PlayMap, least_bound
-from .repetition import bound, steady_cycle
-from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally
+from .plant import Future, Plant, Single, Stretch
+from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle
+from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally, worst_of_lanes
 
 if TYPE_CHECKING:
     from .repeated import Repeating
-    from .single import Single
 
 LONGER_S = (1.0, 4.0, 15.0)
 
@@ -208,3 +206,9 @@ class CurrentPlant(Plant[CurrentPlay, State]):
 def _at(like: State, free_C: Array) -> State:
     """States with other nodes but for the last, which is deep."""
     return State(np.concatenate([free_C, like.nodes_C[:, -1:]], axis=1), like.sink)
+
+
+def checks_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> tuple[Check, ...]:
+    """Every rule in its worst scenario where each corner plays a drive of its own, from rest at its first current."""
+    play = CurrentPlay(drives, drives.current_A[:, 0])
+    return worst_of_lanes(Single.of(CurrentPlant.of(ensemble), play, limits).tallies)

@@ -23,7 +23,7 @@ from .single_faults import Faulty
 from .tally import WATCHED, Tally
 
 if TYPE_CHECKING:
-    from .single import Single
+    from .plant import Single
 
 MOST_CORNERS = 6
 """Corners in which single faults are simulated: the rig as given, and the worst ones."""

@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..solver.prescribed import FELT, SkinModes, modes_of
+from ..solver.modes import FELT, SkinModes, modes_of
 from .checks import worst_of
 from .corners import contact_corners
 from .demands import CutOff, Demands, SingleFault
@@ -28,8 +28,8 @@ from .single_faults import BEYOND_K, MARGIN
 from .tally import WATCHED, Tally
 
 if TYPE_CHECKING:
+    from .plant import Single
     from .repeated import Repeating
-    from .single import Single
 
 DISPLAY_ENDINGS = ("last set-point held", "control lost")
 

@@ -17,9 +17,9 @@ from ..rig.load import refuse_load
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on
-from ..solver.constant_current import ConstantCurrent
 from ..solver.drive import Drive, DriveError
 from ..solver.landing import refuse_landing
+from ..solver.modes import ConstantCurrent
 from ..solver.network import Network, network_of
 from ..solver.pwm import steady_of
 from ..solver.steady import check_sink, state_under_current

@@ -65,7 +65,7 @@ def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
     >>> round(float(cem43_min([0, 60], [42, 42])[-1]), 9)
     0.25
     """
-    from .exposure_kernel import fill_doses
+    from .tally_kernel import fill_doses
 
     return _integral(fill_doses, time_s, temperature_C)
 
@@ -100,7 +100,7 @@ def henriques(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
     >>> round(float(henriques([0, 600], [44, 44])[-1]), 3)
     0.007
     """
-    from .exposure_kernel import fill_burns
+    from .tally_kernel import fill_burns
 
     return _integral(fill_burns, time_s, temperature_C)
 

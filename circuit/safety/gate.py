@@ -21,9 +21,8 @@ from .demands import Demands
 from .display import DisplayCourse, DisplayPlant
 from .endings import ENDING_S
 from .ensemble import Ensemble
-from .plant import Plant, Played, States
+from .plant import Plant, Played, Single, States
 from .repeated import LONGEST_PAUSE_S, Repeated, Repeating, check_pause, plays_in, shortest_pause_s
-from .single import Single
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,8 +15,7 @@ from ..arrays import Array
 from ..inputs import InputError
 from ..rig.rules import Limits
 from .checks import Before, Check, Judged, Scenario, colour_of
-from .plant import Plant, Play, Played, States, follow, left_s
-from .single import RECOVERY_ROWS_S
+from .plant import RECOVERY_ROWS_S, Plant, Play, Played, States, follow, left_s
 from .tally import Tally
 
 LONGEST_PAUSE_S = 600.0

@@ -20,8 +20,8 @@ from ..rig.parts import Thermode
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .inverse import baseline_C, steps_at, target_at
+from .modes import FELT, SkinModes, modes_of, modes_on, shown
 from .network import skin_network_of
-from .prescribed import FELT, SkinModes, modes_of, modes_on, shown
 from .probes import readings_of, sensed
 from .trace import Outcome, Trace, judge
 

@@ -36,7 +36,7 @@ from .kernel_legs import (
     step_legs,
     store_legs,
 )
-from .plate import (
+from .network import (
     ALPHA,
     COLD_J_PER_K,
     CONDUCTANCE,

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
-from . import plate
+from . import network
 from .kernel import (
     COLD_SHARE,
     LONGEST_STEP_S,
@@ -36,7 +36,7 @@ from .kernel_legs import (
     factor_legs,
     legs_heat,
 )
-from .plate import (
+from .network import (
     ALPHA,
     COLD_J_PER_K,
     COMPLIANCE_V,
@@ -51,8 +51,8 @@ from .plate import (
     TEMPERATURE,
 )
 
-greatest_cooling = compiled(plate.greatest_cooling_A)
-current_for_heat = compiled(plate.current_for_heat_A)
+greatest_cooling = compiled(network.greatest_cooling_A)
+current_for_heat = compiled(network.current_for_heat_A)
 
 CLOSE_A, ANY_A = 1e-10, 1e9
 """Tolerance of the search for a current, and what it gives where no current is enough: `limited` cuts that."""
@@ -91,7 +91,7 @@ def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p, leg,
 
     After that step the first lump is z0 + elim0 · (cold plate), and what is controlled is `share` of the cold plate and
     the rest of that lump, so that its target becomes one of the cold plate, T_aim. Its balance is then an equation for
-    the current alone (`plate.current_for_heat_A`):
+    the current alone (`network.current_for_heat_A`):
 
         αI·T_aim − I²R/2 − (T_h − T_aim)/Θ = g_0·(z0 + (elim0 − 1)·T_aim) − C_c·(T_aim − T_c)/period.
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..compiled import kernel
-from .plate import CONDUCTANCE, LEG_J_PER_K, RESISTANCE
+from .network import CONDUCTANCE, LEG_J_PER_K, RESISTANCE
 
 compiled = kernel(nogil=True, fastmath={"contract"}, error_model="numpy")
 

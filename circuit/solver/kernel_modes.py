@@ -18,18 +18,19 @@ import math
 import numpy as np
 
 from ..rig.module import ZERO_C_IN_K
-from .constant_current import FARTHEST
 from .kernel import compiled
 from .kernel_follow import FREE, limited
-from .network import COLD, SKIN
-from .plate import (
+from .modes import FARTHEST
+from .network import (
     ALPHA,
+    COLD,
     COLD_J_PER_K,
     CONDUCTANCE,
     HOT_J_PER_K,
     RESISTANCE,
     SINK_C,
     SINK_W_PER_K,
+    SKIN,
 )
 
 FADED = 48.0

@@ -14,8 +14,7 @@ from ..arrays import Array, Index
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import Bank, Intervals, State, bank_of, run_on
-from .network import COLD, SKIN, network_of
-from .plate import SINK_START_C
+from .network import COLD, SINK_START_C, SKIN, network_of
 from .steady import bare_plates, extras_between, state_under_current
 
 

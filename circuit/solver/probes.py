@@ -20,8 +20,8 @@ from ..rig.parts import Probe
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..rig.skin import Column, column_of
+from .modes import SkinModes
 from .network import COLD, places_of, stacked, temperature_weights
-from .prescribed import SkinModes
 
 SLOWEST_ROWS_S = 0.01
 """A probe with memory (a lag, or skin of its own) is stepped at least this finely, whatever the rows."""

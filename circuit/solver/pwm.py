@@ -14,8 +14,7 @@ from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K, Peltier
 from ..rig.rig import Rig
 from .drive import Drive
-from .network import network_of
-from .plate import RESISTANCE
+from .network import RESISTANCE, network_of
 from .steady import state_under_current
 
 SIMULATED_CARRIER_HZ = 500.0

@@ -15,8 +15,8 @@ from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .displayed import refuse_current
 from .inverse import baseline_C
+from .modes import modes_of
 from .network import COLD, HOT, network_of
-from .prescribed import modes_of
 from .steady import holding_current_A, state_under_current, steady_state
 
 WARMEST_COLD_PLATE_K = 320.0

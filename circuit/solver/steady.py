@@ -10,18 +10,22 @@ from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from .network import COLD, HOT, SKIN, Network, network_of
-from .plate import (
+from .network import (
     ALPHA,
+    COLD,
     CONDUCTANCE,
+    HOT,
     RESISTANCE,
     SINK_AIR_W_PER_K,
     SINK_C,
     SINK_START_C,
     SINK_W_PER_K,
+    SKIN,
+    Network,
     current_for_heat_A,
     greatest_cooling_A,
     hot_plate_C,
+    network_of,
 )
 
 PLATE_BALANCE = (ALPHA, RESISTANCE, CONDUCTANCE, SINK_C, SINK_W_PER_K)

@@ -39,7 +39,7 @@ def session_file(
 ) -> None:
     """Simulate a session with the icons of a file, in the order of a file or shuffled; print and write the report."""
     from thermicon.circuit import SessionPlan, play_session
-    from thermicon.circuit.safety.sessionplan import check_repeats, order_text, read_order
+    from thermicon.circuit.safety.session import check_repeats, order_text, read_order
 
     from .simulate import write_traces
 

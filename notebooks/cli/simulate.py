@@ -244,7 +244,7 @@ def _beside(log: Log | None, trace: Trace, output: Path | None) -> None:
 def unsafe(trace: Trace) -> list[str]:
     """Return one sentence per exceeded safety limit, or the reason why the run cannot be judged."""
     from thermicon.circuit.rig.load import LOAD_SITES, without_skin
-    from thermicon.circuit.safety.limits import judge_safety
+    from thermicon.circuit.safety.verdict import judge_safety
 
     if trace.site in LOAD_SITES:
         return [without_skin(trace.site, "safety for people")]

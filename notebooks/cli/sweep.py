@@ -79,7 +79,7 @@ def sweep(
     -------
     pandas.DataFrame
         One row per icon and value (or combination). Columns: icon, the key or keys, the fields of
-        `thermicon.circuit.safety.summary.Summary`, what the receptors see, what is measured, and `reason`; with
+        `thermicon.circuit.safety.verdict.Summary`, what the receptors see, what is measured, and `reason`; with
         `measured` a last row of each value is that of the whole set. Where the rig is impossible or cannot play
         the icon, the row has only the reason.
 
@@ -101,7 +101,7 @@ def sweep(
     """
     import pandas as pd
 
-    from thermicon.circuit.safety.summary import Summary
+    from thermicon.circuit.safety.verdict import Summary
     from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, SITE, check_conditions
 
     varied = [(key, values), *([second] if second is not None else [])]
@@ -142,7 +142,7 @@ def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float
     import numpy
 
     from thermicon.circuit import InputError, simulate
-    from thermicon.circuit.safety.summary import summarise
+    from thermicon.circuit.safety.verdict import summarise
     from thermicon.perception.ranking.swept import rig_under
 
     try:

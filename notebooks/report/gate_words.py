@@ -51,7 +51,7 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
 
 def repeated_text(gates: Sequence[Named]) -> str:
     """Colour, plays, pause and recovery of icons that were judged as a set, with one pause."""
-    from thermicon.circuit.safety.single import RECOVERED_K
+    from thermicon.circuit.safety.plant import RECOVERED_K
 
     colours: dict[str, list[str]] = {}
     for name, gate in gates:

@@ -121,8 +121,7 @@ def judge_sessions(
     which a break brings skin and module back to. Raises Refused where one is red. Empty for a rig without a module.
     """
     from thermicon.circuit import SessionPlan, play_session
-    from thermicon.circuit.safety.sessiondrive import drive_of
-    from thermicon.circuit.safety.sessionplay import worst_case_of
+    from thermicon.circuit.safety.sessionplay import drive_of, worst_case_of
 
     if rig.thermode is not None:
         return {}, {}, {}
@@ -175,7 +174,7 @@ def _nominal(
 
     from thermicon.circuit import SessionPlan, simulate_current
     from thermicon.circuit.safety.exposure import cem43_min
-    from thermicon.circuit.safety.sessiondrive import drive_of
+    from thermicon.circuit.safety.sessionplay import drive_of
 
     known = {icon.name: icon for icon in icons}
     played = drive_of(SessionPlan(order, gap_s), known, rig, tracking)

@@ -11,7 +11,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from thermicon.circuit.safety.sessionplan import LONGEST_S, MOST_PLAYS
+from thermicon.circuit.safety.session import LONGEST_S, MOST_PLAYS
 
 from .keys import Study
 from .orders import orders_of

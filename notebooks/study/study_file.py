@@ -11,8 +11,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from thermicon.circuit.inputs import InputError, read_text, read_toml
-from thermicon.circuit.key_faults import Place, key_faults
+from thermicon.circuit.inputs import InputError, Place, key_faults, read_text, read_toml
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from .keys import TABLES, Study, Table

@@ -153,8 +153,8 @@ def settling(icon: Icon, rig: Rig, from_K: float, held: bool) -> tuple[NDArray[n
     """
     from thermicon.circuit import Drive, design, simulate_current
     from thermicon.circuit.solver.inverse import baseline_C
+    from thermicon.circuit.solver.modes import FELT, modes_of
     from thermicon.circuit.solver.network import SKIN
-    from thermicon.circuit.solver.prescribed import FELT, modes_of
     from thermicon.circuit.solver.simulate import duration_s
 
     modes = modes_of(rig)

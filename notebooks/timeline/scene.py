@@ -15,7 +15,7 @@ from .handles import MOST_HANDLES, Handle, handles_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
-    from thermicon.circuit.safety.limits import SafetyVerdict
+    from thermicon.circuit.safety.verdict import SafetyVerdict
     from thermicon.icons import Icon
     from thermicon.perception import Observer, Percept
 
@@ -136,7 +136,7 @@ def scene(
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     """Play one icon and judge it; raises what simulation raises: RigError, CueErrors, ValueError."""
     from thermicon.circuit import simulate
-    from thermicon.circuit.safety.limits import judge_safety
+    from thermicon.circuit.safety.verdict import judge_safety
     from thermicon.circuit.solver.inverse import baseline_C
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.circuit.solver.steady import steady_state

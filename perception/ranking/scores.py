@@ -279,7 +279,7 @@ def assemble(
 
 def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
     """Safe, every reason why it is not safe or cannot be played, and what is amber: soft limits that it passes."""
-    from thermicon.circuit.safety.limits import judge_safety
+    from thermicon.circuit.safety.verdict import judge_safety
 
     safety = judge_safety(trace)
     objection = [reason for reason in (safety.reason if not safety.safe else None, trace.reason) if reason]
@@ -289,7 +289,7 @@ def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
 
 def objection(trace: Trace) -> str | None:
     """Why an icon cannot be played: it is not safe, or the rig does not reach it; None where it can be played."""
-    from thermicon.circuit.safety.limits import judge_safety
+    from thermicon.circuit.safety.verdict import judge_safety
 
     verdict = judge_safety(trace)
     if not verdict.safe:

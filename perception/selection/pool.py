@@ -184,7 +184,7 @@ class Pool:
 
 def soft_finding(trace: Trace) -> str | None:
     """The first soft limit of safety that an icon passes, in words; None for none."""
-    from thermicon.circuit.safety.limits import judge_safety
+    from thermicon.circuit.safety.verdict import judge_safety
 
     return next((str(each) for each in judge_safety(trace).findings if each.severity != "hard"), None)
 

@@ -24,11 +24,11 @@ from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
-from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay, checks_of_lanes
 from thermicon.circuit.safety.ensemble import Ensemble, LaneDrives
 from thermicon.circuit.safety.gate import Gate, gate_set
-from thermicon.circuit.safety.limits import judge_safety
-from thermicon.circuit.safety.single import Single, checks_of_lanes
+from thermicon.circuit.safety.plant import Single
+from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.safety.words import more_and_cure
 from thermicon.icons import load_library, parse
 

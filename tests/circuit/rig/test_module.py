@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
-from thermicon.circuit.solver.plate import current_for_heat_A, greatest_cooling_A, hot_plate_C
+from thermicon.circuit.solver.network import current_for_heat_A, greatest_cooling_A, hot_plate_C
 
 MODULE = Peltier(0.0521, 6.35, 1 / 0.1524, 2.6, 2.6)
 TC, TH = 300 - ZERO_C_IN_K, 313.15 - ZERO_C_IN_K

@@ -7,7 +7,7 @@ import pytest
 from thermicon.circuit import Drive, Limits, Rig, gate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError, SafetyTable
 from thermicon.circuit.rig.rules import limit_table, safety_keys
-from thermicon.circuit.safety.limits import judge_safety
+from thermicon.circuit.safety.verdict import judge_safety
 
 THENAR = Rig.load("thenar")
 REASON = "heat-pain study 12/2025, approved by the ethics board"

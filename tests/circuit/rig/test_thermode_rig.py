@@ -8,7 +8,7 @@ import pytest
 
 from thermicon.circuit import Drive, Rig, design, netlist, simulate, simulate_current, simulate_many
 from thermicon.circuit.rig.rigfile import RigError, read_table
-from thermicon.circuit.safety.summary import summarise
+from thermicon.circuit.safety.verdict import summarise
 from thermicon.circuit.solver.static import check_static
 from thermicon.circuit.solver.trace import write_trace
 from thermicon.icons import Icon, load_library, parse

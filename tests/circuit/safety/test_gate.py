@@ -14,9 +14,9 @@ from thermicon.circuit.safety.checks import Check, findings_of
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.endings import ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.limits import checks_of, judge_safety
-from thermicon.circuit.safety.single import Single
+from thermicon.circuit.safety.plant import Single
 from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.safety.verdict import checks_of, judge_safety
 from thermicon.circuit.safety.words import WHAT_IT_IS_NOT, more_and_cure
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import load_library

@@ -14,9 +14,9 @@ from thermicon.circuit.safety.checks import Before
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.gate import Gate, gate_set
+from thermicon.circuit.safety.plant import recovery_s
+from thermicon.circuit.safety.playmap import steady_cycle
 from thermicon.circuit.safety.repeated import PauseError, Repeating, shortest_pause_s
-from thermicon.circuit.safety.repetition import steady_cycle
-from thermicon.circuit.safety.single import recovery_s
 from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally
 from thermicon.circuit.solver.batch_inputs import State
 from thermicon.icons import parse

@@ -12,10 +12,9 @@ import pytest
 from thermicon.circuit import Limits, Rig, SessionPlan, play_session, simulate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.exposure import cem43_min, henriques
-from thermicon.circuit.safety.limits import judge_safety
-from thermicon.circuit.safety.sessiondrive import drive_of
-from thermicon.circuit.safety.sessionplan import LONGEST_S, MOST_PLAYS, SessionError, order_text, read_order
-from thermicon.circuit.safety.summary import summarise
+from thermicon.circuit.safety.session import LONGEST_S, MOST_PLAYS, SessionError, order_text, read_order
+from thermicon.circuit.safety.sessionplay import drive_of
+from thermicon.circuit.safety.verdict import judge_safety, summarise
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, IconSet, parse, read_cue
 
@@ -223,7 +222,7 @@ def test_impossible_plans_are_refused_before_any_work(six: IconSet, rig: Rig, mo
         SessionPlan.shuffled(["a"], 0)
     with pytest.raises(SessionError, match="1,000,000 repeats of 2 icons: 2,000,000 plays are too many"):
         SessionPlan.shuffled(["a", "b"], 1_000_000)
-    monkeypatch.setattr("thermicon.circuit.safety.sessiondrive.design", None)  # nothing may be designed
+    monkeypatch.setattr("thermicon.circuit.safety.sessionplay.design", None)  # nothing may be designed
     with pytest.raises(SessionError, match=rf"last \d+ s; the limit is {LONGEST_S:g} s: play fewer, shorten the gap"):
         play_session(six, SessionPlan(("cooling-step",) * 100, gap_s=120.0), rig)
     fast = rig.with_(**{"driver.update_Hz": 10_000.0})

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, simulate, simulate_current
-from thermicon.circuit.safety.summary import energy_J, summarise
+from thermicon.circuit.safety.verdict import energy_J, summarise
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar")

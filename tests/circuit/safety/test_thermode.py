@@ -5,7 +5,7 @@ import pytest
 
 from thermicon.circuit import Device
 from thermicon.circuit.delivery.setpoints import Setpoints, display_of, lag_of
-from thermicon.circuit.solver.prescribed import shown
+from thermicon.circuit.solver.modes import shown
 
 TCS = Device.load("qst-tcs2")
 

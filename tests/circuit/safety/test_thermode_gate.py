@@ -9,8 +9,7 @@ from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.worstcase import ways_of, worst_case, worst_cases
 from thermicon.circuit.safety.display import DisplayCourse, DisplayPlant
 from thermicon.circuit.safety.gate import Gate, gate_shown
-from thermicon.circuit.safety.plant import left_s
-from thermicon.circuit.safety.single import recovery_s
+from thermicon.circuit.safety.plant import left_s, recovery_s
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.icons import parse
 

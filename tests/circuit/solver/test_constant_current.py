@@ -7,7 +7,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.solver.batch_inputs import Intervals, State, left_over, run_on
-from thermicon.circuit.solver.constant_current import READ, ConstantCurrent
+from thermicon.circuit.solver.modes import READ, ConstantCurrent
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
 

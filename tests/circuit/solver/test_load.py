@@ -14,7 +14,7 @@ from thermicon.circuit.fitting.keys import FitError, fittable
 from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.rig.load import AIR_J_PER_M2K
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.limits import judge_safety
+from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

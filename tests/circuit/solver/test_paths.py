@@ -15,7 +15,7 @@ from thermicon.circuit.delivery.subcircuit import subcircuits
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.sessionplan import SessionPlan
+from thermicon.circuit.safety.session import SessionPlan
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.circuit.solver.steady import state_under_current, steady_state

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit.solver.prescribed import FELT, modes_of
+from thermicon.circuit.solver.modes import FELT, modes_of
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

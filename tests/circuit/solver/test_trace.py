@@ -11,7 +11,7 @@ from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.rig.rules import limit_table
-from thermicon.circuit.safety.limits import judge_safety
+from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.solver.draw import plot_current
 from thermicon.circuit.solver.trace import judge, write_trace
 from thermicon.icons import load_library, parse

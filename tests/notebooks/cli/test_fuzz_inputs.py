@@ -28,7 +28,7 @@ import pytest
 from thermicon.circuit import Device, Rig, read_drive, simulate_current
 from thermicon.circuit.delivery.samples import rate_of
 from thermicon.circuit.fitting.log_files import read_log
-from thermicon.circuit.safety.sessionplan import read_order
+from thermicon.circuit.safety.session import read_order
 from thermicon.icons import load_library, parse
 from thermicon.icons.recordings.readings import read_readings
 from thermicon.notebooks.cli.compare import _shifted

@@ -13,7 +13,7 @@ import pytest
 
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.summary import summarise
+from thermicon.circuit.safety.verdict import summarise
 from thermicon.icons import read_cue
 from thermicon.notebooks import sweep
 from thermicon.notebooks.cli.sweep import Measured

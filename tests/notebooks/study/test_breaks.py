@@ -10,8 +10,7 @@ import pytest
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
 from thermicon.circuit.arrays import Array
-from thermicon.circuit.safety.sessiondrive import SessionDrive, drive_of
-from thermicon.circuit.safety.sessionplay import worst_case_of
+from thermicon.circuit.safety.sessionplay import SessionDrive, drive_of, worst_case_of
 from thermicon.icons import load_library
 from thermicon.notebooks.study.judging import Judged, Refused, judge_sessions
 from thermicon.notebooks.study.schedule import Course, Trial

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, SessionPlan, simulate_current
-from thermicon.circuit.safety.sessiondrive import drive_of
+from thermicon.circuit.safety.sessionplay import drive_of
 from thermicon.icons import Icon, parse, read_cue
 from thermicon.perception import Task, rank
 from thermicon.perception.identification import carry_over as carryover

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit.safety.limits import judge_safety
+from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, load_library, parse
 from thermicon.perception import cheapest_edit, draw_people, rank

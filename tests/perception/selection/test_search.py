@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit.safety.limits import judge_safety
+from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.icons import Icon, IconSet, load_library, parse
 from thermicon.perception import frontier, rank, search
 from thermicon.perception.selection.appraise import Appraisal, appraise
