@@ -17,6 +17,7 @@ from command_options import command_options
 from data_tables import DATA_TABLES
 from gallery import Gallery
 from key_tables import KEY_TABLES
+from paper_figures import circuit_diagram, paper_figures
 from posterior_tables import TABLES as POSTERIOR_TABLES
 from python_names import python_index, python_pages
 from staging import ROOT, Staging
@@ -37,7 +38,13 @@ def build(folder: Path, *, execute: bool) -> int:
     gallery = Gallery(folder / "predicted" / gallery_digest[:16] if execute else None, site.write)
     site.slots.update(POSTERIOR_TABLES | KEY_TABLES | DATA_TABLES)
     site.slots.update(
-        {"options of commands": command_options, "python names": python_index, "gallery": gallery.markdown}
+        {
+            "options of commands": command_options,
+            "python names": python_index,
+            "gallery": gallery.markdown,
+            "paper figures": lambda: paper_figures(site.write),
+            "circuit diagram": lambda: circuit_diagram(site.write),
+        }
     )
     site.stage(dict(python_pages()))
     settings = {

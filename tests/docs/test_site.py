@@ -16,7 +16,7 @@ from thermicon.notebooks.cli.main import app
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILDER = ROOT / "docs" / "builder"
-SLOTS = ("options of commands", "python names", "gallery")
+SLOTS = ("options of commands", "python names", "gallery", "paper figures", "circuit diagram")
 FROM_ELSEWHERE = re.compile(r"""(?:<script[^>]+src|<link[^>]+href|<img[^>]+src)="(?:https?:)?//[^"]*""")
 """A script, a style or a picture that a page would fetch from another host."""
 
