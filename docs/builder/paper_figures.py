@@ -69,8 +69,8 @@ def circuit_diagram(write: Callable[[str, bytes], None]) -> str:
     return (
         "![The circuit: heat sink, module with Peltier sources, contact, skin layers, blood](paper/circuit.svg)\n\n"
         "*Voltages stand for temperatures, currents for heat flow. The drive current I takes αI·T, with T the\n"
-        "temperature of the node, out of the display and gives it to the hot plate; half of its Joule heat I²R goes to\n"
-        "either.*"
+        "temperature of the node, out of the display and gives it to the hot plate; half of its Joule heat I²R goes\n"
+        "to either.*"
     )
 
 
