@@ -30,40 +30,49 @@ slow_tests, lowest = script("slow_tests"), script("lowest")
 
 
 @pytest.mark.parametrize(
-    ("changed", "folders"),
+    ("changed", "called"),
     [
-        ("icons/language/assembly.py", {"tests/icons/language"}),
-        ("circuit/delivery/formats/tdms.py", {"tests/circuit/delivery/formats"}),
-        ("circuit/rigs/thenar.toml", {"tests/circuit"}),
-        ("circuit/inputs.py", {"tests/circuit"}),
+        ("icons/language/assembly.py", {"tests/icons/language", "tests/test_package.py"}),
         ("tests/perception/evidence/test_targets.py", {"tests/perception/evidence"}),
-        ("notebooks/workbench/canvas_parts/draw.js", {"tests/browser", "tests/notebooks/workbench"}),
-        ("notebooks/01_first_icon.ipynb", {"tests/notebooks"}),
-        ("tests/browser/test_canvas_page.py", {"tests/browser"}),
+        (
+            "notebooks/workbench/canvas.py",
+            {"tests/browser", "tests/notebooks/workbench", "tests/test_package.py"},
+        ),
+        ("circuit/safety/words.py", {"tests/circuit/safety", "tests/test_readme.py", "tests/test_package.py"}),
         ("README.md", {"tests/test_readme.py"}),
-        ("LICENSE", set()),
+        ("docs/how-to/simulate.md", {"tests/docs", "tests/test_readme.py"}),
+        ("pyproject.toml", {"tests/test_package.py"}),
+        ("MANIFEST.in", {"tests/test_package.py"}),
         ("tests/conftest.py", set()),
     ],
 )
-def test_a_changed_file_calls_for_the_tests_of_its_room(changed: str, folders: set[str]) -> None:
-    assert set(slow_tests.folders_of(changed)) == folders
+def test_a_changed_file_calls_for_the_tests_that_prove_it(changed: str, called: set[str]) -> None:
+    assert set(slow_tests.tests_of(changed)) == called
     selected = slow_tests.selection([changed])
-    assert all(any(folder == room or folder.startswith(f"{room}/") for room in selected) for folder in folders)
-    assert all((ROOT / room).exists() for room in selected)
+    assert set(selected) >= set(slow_tests.ALWAYS)
+    assert all(any(test == each or test.startswith(f"{each}/") for each in selected) for test in called)
+    assert all((ROOT / each).exists() for each in selected)
 
 
-def test_some_slow_tests_run_after_any_change() -> None:
-    assert slow_tests.selection([]) == sorted(slow_tests.ALWAYS)
+def test_what_is_measured_exists() -> None:
+    assert [test for test in slow_tests.MINUTES if not (ROOT / test).exists()] == []
 
 
-def test_a_folder_inside_another_is_not_run_twice() -> None:
-    selected = slow_tests.selection(["circuit/inputs.py", "circuit/delivery/export.py"])
-    assert [room for room in selected if room.startswith("tests/circuit")] == ["tests/circuit"]
+def test_data_of_a_package_call_for_all_its_rooms_each_once() -> None:
+    called = list(slow_tests.tests_of("circuit/rigs/thenar.toml"))
+    rooms = {"tests/circuit/rig", "tests/circuit/solver", "tests/circuit/safety", "tests/circuit/delivery"}
+    assert rooms < set(called)
+    selected = slow_tests.selection(["circuit/rigs/thenar.toml", "circuit/delivery/formats/csv.py"])
+    assert [each for each in selected if each.startswith("tests/circuit/delivery")] == ["tests/circuit/delivery"]
 
 
-def test_a_change_of_everything_gets_the_fixed_selection() -> None:
-    rooms = [f"{folder.relative_to(ROOT)}/x.py" for folder in sorted((ROOT / "tests").glob("*/*/"))]
-    assert slow_tests.selection(rooms) == sorted(slow_tests.ALWAYS)
+def test_a_change_of_everything_gets_what_fits_and_that_is_most() -> None:
+    everything = [*(f"{package}/x.py" for package in slow_tests.PACKAGES), "README.md", "docs/x.md", "pyproject.toml"]
+    called = {test for name in everything for test in slow_tests.tests_of(name)}
+    selected = slow_tests.selection(everything)
+    assert sum(slow_tests.MINUTES.get(each, slow_tests.A_TEST) for each in selected) <= slow_tests.MOST_MINUTES
+    assert len(selected) > 0.7 * len(called)
+    assert {"tests/test_package.py", "tests/test_readme.py"} <= set(selected)
 
 
 def test_the_script_prints_folders() -> None:
