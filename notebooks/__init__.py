@@ -28,17 +28,13 @@ with suppress(ImportError):  # where it is missing, ``thermicon doctor`` has to 
 
 def load_ipython_extension(shell: "InteractiveShell") -> None:
     """Bring the ``%%cue`` cell magic and small pictures of figures: what ``%load_ext thermicon.notebooks`` calls."""
-    from .figures import inline
     from .workbench import magic
 
     magic.register(shell)
-    inline.register(shell)
 
 
 def unload_ipython_extension(shell: "InteractiveShell") -> None:
     """Take both away again: what ``%unload_ext thermicon.notebooks`` calls."""
-    from .figures import inline
     from .workbench import magic
 
     magic.unregister(shell)
-    inline.unregister(shell)

@@ -30,7 +30,7 @@ class Flow {
   /** Sends a message now or as soon as the one in flight is answered; returns its seq. */
   post(message) {
     const numbered = { ...message, seq: nextSeq() };
-    const kind = [message.type, message.end ? "end" : "", message.key ?? ""].join(" ").trim();
+    const kind = message.end ? `${message.type} end` : message.type;
     if (message.end) this.waiting.delete(message.type);
     this.waiting.delete(kind); // so that the newest stands last
     this.waiting.set(kind, numbered);
@@ -64,13 +64,6 @@ class Flow {
     } catch {
       this.giveUp(); // a closed connection throws; what it says helps nobody who looks at the page
     }
-  }
-
-  /** Stops waiting for the message in flight, and sends the next one. */
-  lost() {
-    clearTimeout(this.timer);
-    this.inFlight = null;
-    this.next();
   }
 
   giveUp() {

@@ -18,8 +18,7 @@ class Workbench {
     this.place = make("div", { class: "tm-place" }, make("p", { class: "tm-waiting" }, "Waiting for the first drawing …"));
     this.root = make("div", { class: "tm-root" }, this.banner, this.place, this.live);
     this.say = whenQuiet((text) => setText(this.live, text), 600);
-    this.line = new Line((meta, buffers) => this.receive(meta, buffers), () => this.flow.lost());
-    this.flow = new Flow((message) => this.send(message), (late) => this.showLate(late));
+    this.flow = new Flow((message) => model.send(message), (late) => this.showLate(late));
     this.key = model.get?.("key") || model.model_id || model;
     this.onMessage = (meta, buffers) => this.receive(meta, buffers);
     this.root.workbench = this; // for tests, and for whoever looks into the page
@@ -48,21 +47,7 @@ class Workbench {
     this.say(copied ? "Text copied" : "The text is selected: copy it with Ctrl+C");
   }
 
-  /** Steps of a drag or slider go by the direct line where there is one; where they end is news for all views. */
-  send(message) {
-    const step = message.type === "turn" || (message.type === "drag" && !message.end);
-    if (step && this.line.isOpen) return this.line.send(message);
-    if (message.type === "turn") return this.flow.lost(); // the slider itself tells the kernel
-    return this.model.send(message);
-  }
-
-  takeLine(meta) {
-    this.line.open(meta);
-    this.line.follow(meta.sliders, this.model.widget_manager, (key, value) => this.flow.post({ type: "turn", key, value }));
-  }
-
   receive(meta, buffers) {
-    if (meta?.type === "line" && Line.possible) this.takeLine(meta); // the kernel tells all pages, asked or not
     if (meta?.type === "alive") this.flow.arrived(0); // nothing is drawn yet
     if (meta?.type !== "frame") return;
     const sent = this.flow.arrived(meta.seq ?? 0);
@@ -96,7 +81,6 @@ class Workbench {
     this.root.dataset.view = kind;
     this.view = new VIEWS[kind].make(this.root, this.flow, this.say, typeof this.key === "string" ? this.key : uniqueId("model"));
     this.view.onLocalText = (text) => this.tellSiblings((view) => view.takeText?.(text));
-    if (kind === "design" && Line.possible) this.flow.tell({ type: "line" });
   }
 
   /** Views of one model show one text: what is typed in one stands in the others at once. */
@@ -119,7 +103,6 @@ class Workbench {
     cancelAnimationFrame(this.raf);
     this.model.off?.("msg:custom", this.onMessage);
     this.flow.stop();
-    this.line.stop();
     this.say.cancel();
     this.view?.stop();
     siblings.get(this.key)?.delete(this);

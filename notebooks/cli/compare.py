@@ -10,9 +10,8 @@ import typer
 
 from thermicon.icons.number_text import number
 
-from ..figures.differences import align, quantity
 from ..files.outputs import check_separate
-from ..files.trace_files import Curves, LogError, curves_of, read_curves
+from ..files.trace_files import Curves, LogError, align, curves_of, quantity, read_curves
 from ..messages import DEFAULT_RIG, load_rig, note, usage
 from ..report.blocks import Text
 from ..report.compare_report import Comparison, compare_report, comparison_line, matrix_report

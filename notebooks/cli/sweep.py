@@ -274,13 +274,12 @@ def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Seque
         from ..figures.sweep_figure import sweep_figure
 
         return sweep_figure(frame, varied[0].key, log=varied[0].log, across=look.across(3))
-    from ..figures.sweep_map import MOST_ROWS, sweep_map
+    from ..figures.sweep_figure import MOST_ROWS, sweep_map
 
     if (count := frame["icon"].nunique()) > MOST_ROWS:
         note(f"the figure shows the first {MOST_ROWS} of {count} icons; --icon NAME selects another one")
     if columns:
-        from ..figures.sweep_figure import LABELS
-        from ..figures.sweep_map import SHADES
+        from ..figures.sweep_figure import LABELS, SHADES
 
         maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, *_ in columns]
         return sweep_map(frame, varied[0].key, varied[1].key, maps)

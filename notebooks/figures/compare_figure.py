@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .differences import Aligned, quantity, unit_of_difference
+from ..files.trace_files import Aligned, quantity, unit_of_difference
 from .style import BROAD, COOL, GREY, INK, PLACES, TARGET, WARM, on_one_clock, plain
 
 if TYPE_CHECKING:

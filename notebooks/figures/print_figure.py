@@ -1,4 +1,4 @@
-"""Size in print, and writing, of every figure that a command draws.
+"""How every figure is written: into a file, for a screen or for print; small, in a notebook; in the colours of a page.
 
 Figures are drawn for a screen. For paper they are set in the width asked for, without a title, with smaller letters,
 thinner lines and a letter on each panel; keys that stood beside the panels stand below where there is no room. The
@@ -7,12 +7,14 @@ bytes of a file depend on what is drawn alone: no dates, and fonts are embedded.
 
 from __future__ import annotations
 
+import io
 import re
 import textwrap
 from collections.abc import Mapping
+from itertools import zip_longest
 from pathlib import Path
 from string import ascii_lowercase
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from thermicon.icons.atomic import complete_or_absent
 
@@ -40,6 +42,18 @@ LONGEST_KEY = 30
 EMBEDDED: Mapping[str, Any] = {
     "pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "path", "svg.hashsalt": "thermicon",
 }  # fmt: skip
+COLOURS, WIDEST_PX = 64, 1000
+"""Of a picture in a notebook: lines, words and heat maps need no more colours, and a cell is hardly wider."""
+INKS = re.compile(r"#(?:000000|1a1a1a|222222|262626|444444|8a8a8a)\b")
+THEMED = {
+    "#2166ac": "--th-cool",
+    "#e08214": "--th-warm",
+    "#cfe3cf": "--th-target",
+    "#6a6a6a": "--th-soft",
+    "#ffffff": "--th-paper",
+}
+"""Colours of figures, and their names in the style sheet of the page."""
+SIZE = re.compile(r'<svg ([^>]*?)height="([0-9.]+)pt"([^>]*?)width="([0-9.]+)pt"')
 UNDATED: Mapping[str, dict[str, None]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}, "png": {}}
 
 
@@ -56,6 +70,46 @@ def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
         figure.savefig(draft, format=kind, dpi=dpi, metadata=UNDATED[kind])
 
 
+def small_png(figure: Figure) -> bytes:
+    """Draw a figure as PNG with a palette of its own, cut to what is drawn.
+
+    >>> from matplotlib.figure import Figure
+    >>> small_png(Figure(figsize=(1, 1)))[1:4]
+    b'PNG'
+    """
+    from PIL import Image
+
+    drawn, small = io.BytesIO(), io.BytesIO()
+    dpi = min(figure.dpi, WIDEST_PX / figure.get_figwidth())
+    figure.savefig(drawn, format="png", dpi=dpi, bbox_inches="tight", facecolor="white")
+    Image.open(drawn).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(small, "PNG", optimize=True)
+    return small.getvalue()
+
+
+def themed_svg(figure: Figure) -> str:
+    """Return a figure as SVG without background, its inks those of the text around it; letters stay letters.
+
+    >>> from matplotlib.figure import Figure
+    >>> figure = Figure(figsize=(1, 1))
+    >>> _ = figure.text(0.5, 0.5, "dip", color="#1a1a1a")
+    >>> "currentColor" in themed_svg(figure), themed_svg(figure)[:4]
+    (True, '<svg')
+    """
+    import matplotlib
+
+    held = io.StringIO()
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "thermicon"}):
+        figure.savefig(held, format="svg", transparent=True, metadata={"Date": None})
+    text = held.getvalue()
+    text = INKS.sub("currentColor", text[text.index("<svg") :])
+    for colour, name in THEMED.items():
+        text = text.replace(colour, f"var({name}, {colour})")
+    text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
+    # Without a colour of its own, text in a picture is black on any theme.
+    text = re.sub(r'<g id="text_(\d+)">', r'<g id="text_\1" fill="currentColor">', text)
+    return SIZE.sub(r"<svg \1\3", text, count=1)
+
+
 def restyle(figure: Figure, width_mm: float) -> None:
     """Change a figure in place as it is printed so wide: its size, letters, lines and keys; its title goes.
 
@@ -66,7 +120,6 @@ def restyle(figure: Figure, width_mm: float) -> None:
     >>> round(float(figure.get_figwidth()) * 25.4, 1), figure.axes[1].get_title(loc="left")
     (85.0, 'b')
     """
-    _drop_title(figure)
     _letter_panels(figure)
     ratio = min(1.0, width_mm / (float(figure.get_figwidth()) * MM_PER_INCH))
     even = any(ax.get_aspect() != "auto" for ax in figure.axes)
@@ -76,8 +129,7 @@ def restyle(figure: Figure, width_mm: float) -> None:
         _keys_below(figure)
     height = float(figure.get_figheight()) * tall
     figure.set_size_inches(width_mm / MM_PER_INCH, height)
-    _resize_letters(figure)
-    _resize_lines(figure)
+    _resize(figure)
     _break_labels(figure)
     for legend in list(figure.legends):
         _fit(figure, legend)
@@ -85,59 +137,50 @@ def restyle(figure: Figure, width_mm: float) -> None:
         figure.set_figheight(height + _key_inches(figure) - tall * key_inches)
 
 
-def panels_of(figure: Figure) -> list[Axes]:
-    """The panels of a figure in reading order, without its colour bars."""
-    shown = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
+def _letter_panels(figure: Figure) -> None:
+    """The title of the figure goes, and that of a single panel; of several each gets a letter, what is in brackets goes.
+
+    Titles of several panels stay, since they say what each shows.
+    """
+    held: Any = figure
+    if figure.get_suptitle():
+        held._suptitle.set_in_layout(False)
+        held._suptitle.set_visible(False)
+        held._suptitle.set_text("")
 
     def place(ax: Axes) -> tuple[int, int]:
         spec = ax.get_subplotspec()
         return (0, 0) if spec is None else (spec.rowspan.start, spec.colspan.start)
 
-    return sorted(shown, key=place)
+    shown = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
+    panels: list[Any] = sorted(shown, key=place)
+    for letter, panel in zip_longest(ascii_lowercase[: len(panels)], panels, fillvalue=""):
+        titles = {loc: IN_BRACKETS.sub("", panel.get_title(loc=loc)) for loc in ("left", "center", "right")}
+        for loc, title in titles.items():
+            panel.set_title("" if len(panels) == 1 else title, loc=loc)
+        loc = next((loc for loc in ("left", "center") if titles[loc]), None)
+        if len(panels) > 1 and loc is None:
+            panel.set_title(letter, loc="left", fontweight="bold")
+        elif len(panels) > 1:
+            panel.set_title(rf"$\mathbf{{{letter}}}$  {titles[loc]}", loc=loc)
 
 
-def _drop_title(figure: Figure) -> None:
-    """Titles of panels stay where there are several, since they say what each shows; what is in brackets goes."""
-    held: Any = figure
-    title = figure.get_suptitle() and held._suptitle
-    if title:
-        title.set_in_layout(False)
-        title.set_visible(False)
-        title.set_text("")
-    panels: list[Any] = panels_of(figure)
-    for panel in panels:
-        for place in ("left", "center", "right"):
-            title = panel.get_title(loc=place)
-            panel.set_title("" if len(panels) == 1 else IN_BRACKETS.sub("", title), loc=place)
+def _renderer(figure: Figure) -> Any:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-
-def _letter_panels(figure: Figure) -> None:
-    panels = panels_of(figure)
-    if len(panels) < 2:
-        return
-    for letter, panel in zip(ascii_lowercase, panels, strict=False):
-        ax: Any = panel
-        loc = next((loc for loc in ("left", "center") if ax.get_title(loc=loc)), None)
-        if loc is None:
-            ax.set_title(letter, loc="left", fontweight="bold")
-        else:
-            ax.set_title(rf"$\mathbf{{{letter}}}$  {ax.get_title(loc=loc)}", loc=loc)
+    return FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
 
 
 def _key_inches(figure: Figure) -> float:
     """Height of the keys of the whole figure, in inches."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    renderer: Any = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
+    renderer = _renderer(figure)
     return sum(float(legend.get_window_extent(renderer).height) for legend in figure.legends) / float(figure.dpi)
 
 
 def _break_labels(figure: Figure) -> None:
     """Labels of the abscissa that are wider than the figure go on in another line."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
     held: Any = figure
-    renderer: Any = FigureCanvasAgg(figure).get_renderer()  # type: ignore[no-untyped-call]
+    renderer = _renderer(figure)
     bars = [ax.xaxis.label for ax in figure.axes if ax.get_label() == COLORBAR and ax.get_xlabel()]
     below = [held._supxlabel] if held._supxlabel is not None else []
     for text in [*below, *(ax.xaxis.label for ax in figure.axes)]:
@@ -151,22 +194,26 @@ def _break_labels(figure: Figure) -> None:
         text.set_text("\n".join(lines))
 
 
-def _resize_letters(figure: Figure) -> None:
+def _resize(figure: Figure) -> None:
+    """Letters and lines in the sizes of print."""
+    from matplotlib.lines import Line2D
     from matplotlib.text import Annotation, Text
 
-    sizes: dict[tuple[int, str], float] = {}
-    for place, ax in enumerate(figure.axes):
-        for name in ("x", "y"):
-            labels = getattr(ax, f"get_{name}ticklabels")()
-            sizes[place, name] = _printed_pt(labels[0].get_fontsize() if labels else 10.0)
     words: list[Any] = list(figure.findobj(Text))
     for text in words:
         text.set_fontsize(_printed_pt(float(text.get_fontsize())))
         if isinstance(text, Annotation) and text.anncoords == "offset points":
             text.xyann = tuple(TYPE_PT / 10.0 * part for part in text.xyann)  # type: ignore[assignment]
-    for place, ax in enumerate(figure.axes):
-        for name in ("x", "y"):
-            ax.tick_params(axis=name, labelsize=sizes[place, name])  # type: ignore[arg-type]
+    lines: list[Any] = list(figure.findobj(Line2D))
+    for line in lines:
+        line.set_linewidth(THINNER * float(line.get_linewidth()))
+        line.set_markersize(THINNER * float(line.get_markersize()))
+    for ax in figure.axes:
+        for spine in ax.spines.values():
+            spine.set_linewidth(THINNER * float(spine.get_linewidth()))
+        for name, labels in (("x", ax.get_xticklabels()), ("y", ax.get_yticklabels())):  # for ticks yet to be made
+            size: Any = labels[0].get_fontsize() if labels else TYPE_PT
+            ax.tick_params(axis=name, labelsize=size)  # type: ignore[arg-type]
 
 
 def _printed_pt(size: float) -> float:
@@ -178,27 +225,12 @@ def _printed_pt(size: float) -> float:
     return min(max(size * TYPE_PT / 10.0, SMALLEST_PT), LARGEST_PT)
 
 
-def _resize_lines(figure: Figure) -> None:
-    from matplotlib.lines import Line2D
-
-    lines: list[Any] = list(figure.findobj(Line2D))
-    for line in lines:
-        line.set_linewidth(THINNER * float(line.get_linewidth()))
-        line.set_markersize(THINNER * float(line.get_markersize()))
-    for ax in figure.axes:
-        for spine in ax.spines.values():
-            spine.set_linewidth(THINNER * float(spine.get_linewidth()))
-
-
 def _keys_below(figure: Figure) -> None:
     """Gather the keys that stand beside the panels into one below them; what several name alike stands once."""
     entries: dict[tuple[str, str, str], tuple[Any, str]] = {}
     for ax in figure.axes:
         legend = ax.get_legend()
-        if legend is None:
-            continue
-        beside = legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 > 1.0
-        if not beside:
+        if legend is None or legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 <= 1.0:
             continue
         for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
             thing: Any = handle
@@ -221,16 +253,12 @@ def _keys_below(figure: Figure) -> None:
 
 def _fit(figure: Figure, legend: Legend) -> None:
     """Give a key of the whole figure as many columns as the width has room for; columns are laid out anew."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    held: Any = legend
+    held, renderer = cast("Any", legend), _renderer(figure)
     handles, labels = legend.legend_handles, [text.get_text() for text in legend.get_texts()]
     size, side = legend.get_texts()[0].get_fontsize(), held._outside_loc or "upper"
-    canvas: Any = FigureCanvasAgg(figure)
-    renderer, whole = canvas.get_renderer(), canvas.figure
     for columns in range(held._ncols, 0, -1):
         legend.remove()
-        legend = whole.legend(
+        legend = figure.legend(
             handles, labels, loc=f"outside {side} center", ncols=columns, frameon=False, fontsize=size,
             handlelength=2.2, columnspacing=1.2,
         )  # fmt: skip

@@ -7,27 +7,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Device
     from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.icons import Icon
     from thermicon.perception.identification.delivered import DeliveredChange, PerceivedChange
 
-FORMAT = "csv"
-
 MOST_COMPARED = 60
 """In a larger set, d′ is computed only among the exported icons; beyond this number, not at all."""
-
-
-def formats_for(device: Device) -> tuple[str, ...]:
-    """Names of the formats that a device takes.
-
-    >>> from thermicon.circuit import Device
-    >>> formats_for(Device.load("qst-tcs2"))
-    ('tcs2-serial', 'tcs2-protocol-ini', 'psychopy')
-    """
-    from thermicon.circuit.delivery.formats import format_names, load_format
-
-    return tuple(name for name in format_names() if device.driven_by in load_format(name).takes)
 
 
 def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
@@ -51,11 +36,7 @@ def felt_beside(
     >>> export(icon, "thenar", "dac-16", felt=felt_beside()).felt
     (PerceivedChange(cooling-step: detected 0.992 → 0.992 by 200 virtual people),)
     """
-
-    def felt_of(ready: Sequence[Prepared]) -> tuple[PerceivedChange, ...]:
-        return _compared(ready, rest, warn, tail_s)
-
-    return felt_of
+    return lambda ready: _compared(ready, rest, warn, tail_s)
 
 
 def _compared(

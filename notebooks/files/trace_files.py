@@ -1,17 +1,21 @@
-"""Curves over time: out of a trace, or read from the file of a trace or of a measured log."""
+"""Curves over time, out of a trace or the file of a trace or log; two of them on common times, and how far apart."""
 
 from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.icons.near_words import did_you_mean
+from thermicon.icons.number_text import number, span
+
 if TYPE_CHECKING:
+    import pandas as pd
     from numpy.typing import NDArray
 
     from thermicon.circuit import Trace
@@ -25,6 +29,9 @@ LARGEST = 1e9
 """Largest size of a number, far more than any sensor gives: sums of squares stay finite."""
 CURE = "correct it, or leave the cell empty"
 EXTRA = re.compile(r"probe_.+_C")
+HELD = ("current_A", "voltage_V")
+"""What jumps in a trace: the value of a row counts until the next, so between rows it is not interpolated."""
+CLOSE_S = 1e-9
 
 
 class LogError(Exception):
@@ -42,6 +49,20 @@ class Curves:
     ignored: tuple[str, ...] = field(default=())
 
 
+@dataclass(frozen=True, slots=True)
+class Aligned:
+    """Two things at common times: for every column that both have, their values (A, B), NaN where one has none.
+
+    `said` tells in a sentence at which times they are compared.
+    """
+
+    name_a: str
+    name_b: str
+    time_s: Array
+    columns: dict[str, tuple[Array, Array]]
+    said: str
+
+
 def curves_of(trace: Trace, name: str) -> Curves:
     """Return a trace as curves under a name that people know it by."""
     frame = trace.to_frame().drop(columns="icon")
@@ -54,62 +75,45 @@ def read_curves(path: str, icon: str | None = None) -> Curves:
 
     Raises LogError that says what is wrong and where.
     """
-    from thermicon.circuit.solver.trace import COLUMNS
-
-    where = Path(path)
-    source = _of_parquet(where) if where.suffix.lower() == ".parquet" else _of_text(where)
-    known = [name for name in source.names if name in COLUMNS[2:] or EXTRA.fullmatch(name)]
-    _check_columns(source.names, known, path)
-    time = source.column("time_s")
-    rows = _rows_of(source.icons, path, icon) if source.icons else numpy.arange(len(time))
-    time = time[rows]
-    if len(time) < 2:
-        raise LogError(f"{path}: {len(time)} rows; at least two are needed")
-    if not numpy.isfinite(time).all():
-        raise LogError(f"{source.place(rows[numpy.argmin(numpy.isfinite(time))])}: time_s is empty")
-    if (back := numpy.flatnonzero(numpy.diff(time) <= 0)).size:
-        row = int(back[0]) + 1
-        raise LogError(
-            f"{source.place(rows[row])}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; "
-            f"times must increase"
-        )
-    columns = {name: source.column(name)[rows] for name in known}
-    whole = all(name in source.names for name in COLUMNS[1:])
-    ignored = tuple(name for name in source.names if name not in (*COLUMNS, *known))
-    return Curves(where.name, time, columns, whole, ignored)
-
-
-@dataclass(frozen=True, slots=True)
-class _Source:
-    """Columns of a file by name: ``column`` reads one (rows,), ``place`` says where a row stands."""
-
-    names: tuple[str, ...]
-    icons: list[str] | None
-    column: Callable[[str], Array]
-    place: Callable[[int], str]
-
-
-def _of_text(path: Path) -> _Source:
     from thermicon.circuit.inputs import read_text, table_fault
+    from thermicon.circuit.solver.trace import COLUMNS
     from thermicon.icons.files.table import read_table
 
-    text = read_text(path, "trace or log", MOST_MB)
+    where = Path(path)
+    packed = where.suffix.lower() == ".parquet"
+    text = _parquet_text(where) if packed else read_text(where, "trace or log", MOST_MB)
     table = read_table(text, table_fault(path, LogError), "time_s,display_C,skin_C", MOST_ROWS)
-    icons = list(table.texts("icon")) if "icon" in table.header else None
 
     def column(name: str) -> Array:
         return table.numbers(name, CURE, gaps=Counter(), most=LARGEST)
 
-    return _Source(table.header, icons, column, lambda row: f"{path}:{table.lines[row]}")
+    known = [name for name in table.header if name in COLUMNS[2:] or EXTRA.fullmatch(name)]
+    _check_columns(table.header, known, path)
+    time = column("time_s")
+    icons = list(table.texts("icon")) if "icon" in table.header else None
+    rows = _rows_of(icons, path, icon) if icons else numpy.arange(len(time))
+    time = time[rows]
+    if len(time) < 2:
+        raise LogError(f"{path}: {len(time)} rows; at least two are needed")
+    if not numpy.isfinite(time).all():
+        raise LogError(f"{path}:{table.lines[rows[numpy.argmin(numpy.isfinite(time))]]}: time_s is empty")
+    if (back := numpy.flatnonzero(numpy.diff(time) <= 0)).size:
+        row = int(back[0]) + 1
+        raise LogError(
+            f"{path}:{table.lines[rows[row]]}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; "
+            f"times must increase"
+        )
+    whole = all(name in table.header for name in COLUMNS[1:])
+    ignored = tuple(name for name in table.header if name not in (*COLUMNS, *known))
+    return Curves(where.name, time, {name: column(name)[rows] for name in known}, whole, ignored)
 
 
-def _of_parquet(path: Path) -> _Source:
-    """The columns of a Parquet file, whose size when unpacked is looked at first."""
-    from thermicon.circuit.inputs import quoted, read_bytes, require_pyarrow
+def _parquet_text(path: Path) -> str:
+    """The table in a Parquet file, whose size when unpacked is looked at first, as text like that of other files."""
+    from thermicon.circuit.inputs import read_bytes, require_pyarrow
 
     require_pyarrow(path, LogError)
     data = read_bytes(path, "trace or log", MOST_MB)
-    import pandas as pd
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -121,26 +125,12 @@ def _of_parquet(path: Path) -> _Source:
                 f"{path}: {file.metadata.num_rows:,} rows, {sum(groups) / 1e6:,.0f} MB unpacked; the limit is "
                 f"{MOST_ROWS:,} rows and {MOST_UNPACKED_MB:g} MB: keep every tenth row"
             )
-        frame = file.read().to_pandas()
+        return str(file.read().to_pandas().to_csv(index=False))
     except (ValueError, OSError, NotImplementedError, KeyError) as problem:
         raise LogError(f"{path}: not a Parquet file that can be read ({problem})") from None
 
-    def column(name: str) -> Array:
-        cells = frame[name]
-        values: Array = pd.to_numeric(cells, errors="coerce").to_numpy(dtype=float)
-        for row in numpy.flatnonzero(~(numpy.abs(values) <= LARGEST)):
-            if not pd.isna(cells.iloc[row]):
-                said = f"{name} is {quoted(cells.iloc[row])}, not a finite number of at most {LARGEST:g}"
-                raise LogError(f"{path}, row {row + 1}: {said}; {CURE}")
-        return values
-
-    icons = [str(name) for name in frame["icon"]] if "icon" in frame else None
-    return _Source(tuple(map(str, frame.columns)), icons, column, lambda row: f"{path}, row {row + 1}")
-
 
 def _rows_of(icons: list[str], path: str, icon: str | None) -> NDArray[numpy.intp]:
-    from thermicon.icons.near_words import did_you_mean
-
     from ..messages import usage
 
     names = list(dict.fromkeys(icons))
@@ -153,7 +143,6 @@ def _rows_of(icons: list[str], path: str, icon: str | None) -> NDArray[numpy.int
 
 def _check_columns(names: Sequence[str], known: Sequence[str], path: str) -> None:
     from thermicon.circuit.solver.trace import COLUMNS
-    from thermicon.icons.near_words import did_you_mean
 
     found = ", ".join(names[:8])
     if "time_s" not in names:
@@ -164,3 +153,102 @@ def _check_columns(names: Sequence[str], known: Sequence[str], path: str) -> Non
             f"{path}: none of its columns is one of a trace, such as display_C or skin_C; found {found}"
             f"{f'; {other}: {did_you_mean(other, COLUMNS[2:])}' if other else ''}"
         )
+
+
+def align(a: Curves, b: Curves) -> Aligned:
+    """Lay two sets of curves on common times: those of a log where the other is a whole trace, else those of B.
+
+    Raises LogError where they share no time or no column.
+    """
+    lead, other = (a, b) if b.whole and not a.whole else (b, a)
+    low, high = max(a.time_s[0], b.time_s[0]), min(a.time_s[-1], b.time_s[-1])
+    rows = (lead.time_s >= low - CLOSE_S) & (lead.time_s <= high + CLOSE_S)
+    if rows.sum() < 2:
+        spans = " and ".join(f"{each.name} {span(each.time_s[0], each.time_s[-1], 's', 2)}" for each in (a, b))
+        raise LogError(f"no two rows at a common time: {spans}; shift time_s of one of them")
+    time = lead.time_s[rows]
+    columns: dict[str, tuple[Array, Array]] = {}
+    for name in (name for name in lead.columns if name in other.columns):
+        own, foreign = lead.columns[name][rows], _at(other, name, time)
+        pair = (own, foreign) if lead is a else (foreign, own)
+        if (numpy.isfinite(pair[0]) & numpy.isfinite(pair[1])).any():
+            columns[name] = pair
+    if not columns:
+        has = "; ".join(f"{each.name} has {', '.join(each.columns)}" for each in (a, b))
+        raise LogError(f"no column with values in both: {has}")
+    said = f"compared at {len(time)} times, {span(time[0], time[-1], 's', 2)}"
+    if len(a.time_s) != len(b.time_s) or not numpy.allclose(a.time_s, b.time_s, rtol=0.0, atol=CLOSE_S):
+        said = f"compared at the {len(time)} times of {lead.name} in the common span, "
+        said += f"{span(time[0], time[-1], 's', 2)}; {other.name} interpolated between its rows"
+    return Aligned(a.name, b.name, time, columns, said)
+
+
+def _at(curves: Curves, name: str, time: Array) -> Array:
+    """Values of a column at other times: linear between the rows that have one, held for what jumps in a trace."""
+    there = numpy.isfinite(curves.columns[name])
+    times, values = curves.time_s[there], curves.columns[name][there]
+    if not there.any():
+        return numpy.full(len(time), numpy.nan)
+    if curves.whole and name in HELD:
+        place = numpy.searchsorted(times, time + CLOSE_S, side="right") - 1
+        return numpy.where(place >= 0, values[numpy.maximum(place, 0)], numpy.nan)
+    inside = (time >= times[0] - CLOSE_S) & (time <= times[-1] + CLOSE_S)
+    return numpy.where(inside, numpy.interp(time, times, values), numpy.nan)
+
+
+def differences(both: Aligned) -> pd.DataFrame:
+    """How far B is from A in every common column: a row each, differences in `unit`, temperatures in K.
+
+    `largest` is signed, at `largest_s`; `rms` and `mean` are over the common times, each counted once.
+    """
+    import pandas as pd
+
+    rows = []
+    for name, (a, b) in both.columns.items():
+        difference = b - a
+        there = numpy.isfinite(difference)
+        worst = int(numpy.nanargmax(numpy.abs(difference)))
+        rows.append(
+            {
+                "column": name,
+                "unit": unit_of_difference(name),
+                "largest": float(difference[worst]),
+                "largest_s": float(both.time_s[worst]),
+                "rms": float(numpy.sqrt(numpy.mean(difference[there] ** 2))),
+                "mean": float(numpy.mean(difference[there])),
+                "rows": int(there.sum()),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def unit_of_difference(column: str) -> str:
+    """Unit of a difference in a column of a trace.
+
+    >>> [unit_of_difference(name) for name in ("skin_C", "current_A", "heat_flow_skin_W_per_m2")]
+    ['K', 'A', 'W/m²']
+    """
+    if column.endswith("_W_per_m2"):
+        return "W/m²"
+    return {"C": "K", "A": "A", "V": "V"}[column.rpartition("_")[2]]
+
+
+def quantity(column: str) -> str:
+    """Name of a column as people say it.
+
+    >>> quantity("cold_receptor_C"), quantity("heat_flow_skin_W_per_m2"), quantity("probe_t2_C")
+    ('cold receptor', 'heat flow, skin', 'probe t2')
+    """
+    bare = column.removesuffix("_W_per_m2")
+    if bare.startswith("heat_flow_"):
+        return f"heat flow, {bare.removeprefix('heat_flow_').replace('_', ' ')}"
+    return bare.rpartition("_")[0].replace("_", " ") if bare == column else bare.replace("_", " ")
+
+
+def with_unit(value: float, unit: str) -> str:
+    """Write a difference with the decimals that make sense for its unit.
+
+    >>> with_unit(-0.0426, "K"), with_unit(1289.4, "W/m²")
+    ('−0.043 K', '1289 W/m²')
+    """
+    return f"{number(value, 0 if unit == 'W/m²' else 3)} {unit}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, percent
 
-from ..figures.differences import Aligned, differences, quantity, with_unit
+from ..files.trace_files import Aligned, differences, quantity, with_unit
 from .blocks import Block, Text, grid
 
 if TYPE_CHECKING:

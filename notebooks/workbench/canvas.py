@@ -11,7 +11,6 @@ import gzip
 import json
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from functools import lru_cache
 from importlib.resources import files
 from typing import Any
@@ -21,15 +20,12 @@ import anywidget
 import numpy
 import traitlets
 
-from .direct_line import DirectLine
-
 Message = dict[str, Any]
 
 PARTS = (
     "base",
     "theme",
     "flow",
-    "line",
     "frame",
     "scale",
     "curve",
@@ -112,12 +108,9 @@ class Canvas(anywidget.AnyWidget):
     key = traitlets.Unicode(help="tells the views of this widget from those of another").tag(sync=True)
 
     def __init__(self, view: str = "design") -> None:
-        self._line = DirectLine(self._answer)  # first, since a widget that fails to begin is closed
         super().__init__(view=view, key=uuid4().hex)
         self._newest: tuple[Message, list[bytes]] | None = None
         self._handlers: list[Callable[[Message], None]] = []
-        self._by_line = False
-        self._sliders: dict[str, str] = {}
         self.on_msg(self._receive)
 
     def frame(self, meta: Mapping[str, Any], arrays: Sequence[Any] = ()) -> None:
@@ -128,11 +121,10 @@ class Canvas(anywidget.AnyWidget):
         whole = {"type": "frame", "view": self.view, **meta}
         buffers = [numpy.ascontiguousarray(array, dtype="<f4").tobytes() for array in arrays]
         self._newest = (whole, buffers)
-        if not self._by_line:
-            self.send(whole, buffers=buffers)
+        self.send(whole, buffers=buffers)
 
     def on_message(self, handler: Callable[[Message], None]) -> None:
-        """Call `handler` with each message from the page but requests for the direct line.
+        """Call `handler` with each message from the page.
 
         The newest frame answers a greeting too, except to a design view, whose text may be newer.
         """
@@ -141,9 +133,6 @@ class Canvas(anywidget.AnyWidget):
     def _receive(self, widget: Canvas, content: Message, buffers: Sequence[Any]) -> None:
         if content.get("type") == "hello" and (self._newest is None or self.view != "design"):
             self._greet()
-            return
-        if content.get("type") == "line":
-            self._open_line()
             return
         for handler in tuple(self._handlers):
             handler(content)
@@ -155,32 +144,3 @@ class Canvas(anywidget.AnyWidget):
             return
         meta, arrays = self._newest
         self.send(meta, buffers=arrays)
-
-    def follow(self, sliders: Mapping[str, str]) -> None:
-        """Take steps of sliders from the page's direct line too: their keys, and the ids of their models."""
-        self._sliders = dict(sliders)
-        if self._line.port:
-            self._open_line()
-
-    def _open_line(self) -> None:
-        """Tell the page where the direct line is; a kernel that may open no port goes on without."""
-        with suppress(OSError, RuntimeError):
-            port, token = self._line.open()
-            self.send({"type": "line", "port": port, "token": token, "sliders": self._sliders})
-
-    def _answer(self, content: Message) -> tuple[Message, list[bytes]]:
-        """Answer a step of a drag or slider that came by the direct line; raises ValueError for anything else."""
-        if content.get("type") not in ("drag", "turn") or content.get("end") or self._newest is None:
-            raise ValueError("not a step of a drag or slider")
-        self._by_line = True
-        try:
-            for handler in tuple(self._handlers):
-                handler(content)
-        finally:
-            self._by_line = False
-        return self._newest
-
-    def close(self) -> None:
-        """Close the widget and its line."""
-        self._line.close()
-        super().close()

@@ -171,7 +171,7 @@ class DesignModel:
             for tell in self._tell:
                 tell()
         took_ms = 1e3 * (time.perf_counter() - began)
-        return made.numbered(seq, took_ms, shown, self.document.history.can_undo, self.document.history.can_redo)
+        return made.numbered(seq, took_ms, shown, bool(self.document.history.past), bool(self.document.history.future))
 
     def _act(self, message: Message) -> str | None:
         """Do what a message asks; returns the text where the editor is to take it."""
@@ -189,10 +189,6 @@ class DesignModel:
                 return None
             case "drag":
                 return self._dragged(message)
-            case "turn":
-                self._moving = True
-                self._turned({str(message.get("key")): self._knob_value(message)})
-                return None
             case "undo" | "redo":
                 return self._step(kind)
             case "apply":
@@ -252,14 +248,6 @@ class DesignModel:
         self.document.history = self.document.history.changed(text)
         self._draw(icon)
         return text
-
-    def _knob_value(self, message: Message) -> float:
-        """The value that a page sets a knob to; raises ValueError for what no slider of the rig can say."""
-        value = _float(message.get("value"))
-        for knob in knobs_of(self.nominal):
-            if knob.key == message.get("key") and not knob.options and knob.low <= value <= knob.high:
-                return value
-        raise ValueError(f"no slider goes to {message.get('key')} = {message.get('value')}")
 
     def _turned(self, values: Mapping[str, float | str]) -> None:
         """Set knobs; nothing is simulated again where the page was ahead of its own slider."""

@@ -86,8 +86,6 @@ class DesignView:
     def _make_knobs(self) -> None:
         self.sliders, self._labels = {}, {}
         self.knobs.children = (*(self._knob(knob) for knob in knobs_of(self.design.nominal)), self.reset)
-        ranges = [knob.key for knob in knobs_of(self.design.nominal) if not knob.options]
-        self.canvas.follow({key: self.sliders[key].model_id for key in ranges})
 
     def _receive(self, message: Mapping[str, Any]) -> None:
         if (act := self.on_page.get(str(message.get("type")))) is not None:

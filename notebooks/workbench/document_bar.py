@@ -91,7 +91,7 @@ class DocumentBar:
             self.log.renew()
         kind = "th-caution" if document.dirty else ""
         self._set(self.title, fragment("marked", document.title, f"thermicon-file {kind}".strip()))
-        self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.can_undo, not history.can_redo
+        self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.past, not history.future
         self.buttons["Save"].disabled = not document.dirty and document.path is not None
         self.say(document.warning(), "th-caution")
 

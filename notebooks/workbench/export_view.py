@@ -12,8 +12,8 @@ import ipywidgets as widgets
 from thermicon.icons.atomic import OutputError
 
 from ..editing.cue_check import read_text
-from ..files.exporting import FORMAT, felt_beside, formats_for
-from ..files.start_folder import below_start
+from ..files.exporting import felt_beside
+from ..files.outputs import below_start
 from ..report.blocks import fragment
 from .background import Job
 from .downloads import link, zipped
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
     from .design_model import DesignModel
 
+FORMAT = "csv"
 ExportRequest = tuple[str, "Rig", "str | None", str, str, str]
 """Text, rig, name of the icon (None: all), device, format, pause as typed."""
 
@@ -213,9 +214,10 @@ class ExportView(LiveView[ExportRequest]):
     @staticmethod
     def _forms(device: str) -> list[tuple[str, str]]:
         from thermicon.circuit import Device
-        from thermicon.circuit.delivery.formats import load_format
+        from thermicon.circuit.delivery.formats import format_names, load_format
 
-        return [(f"{name}: {load_format(name).title}", name) for name in formats_for(Device.load(device))]
+        driven_by, forms = Device.load(device).driven_by, map(load_format, format_names())
+        return [(f"{form.name}: {form.title}", form.name) for form in forms if driven_by in form.takes]
 
 
 def pause_of(typed: str) -> float | None:
@@ -239,6 +241,6 @@ def pause_of(typed: str) -> float | None:
 def export_svg(made: Export, place: int) -> str:
     """The figure of one icon, in the colours of the page's theme."""
     from ..figures.compare_figure import export_figure
-    from ..figures.inline import themed_svg
+    from ..figures.print_figure import themed_svg
 
     return themed_svg(export_figure(made, place, (8.6, 5.0)))

@@ -1,6 +1,6 @@
 """The ``%%cue`` cell magic: cue text in a notebook cell becomes a set with its picture, or a list of its mistakes.
 
-``%load_ext thermicon.notebooks`` switches it on.
+``%load_ext thermicon.notebooks`` switches it on, and small pictures of matplotlib figures with it.
 """
 
 from __future__ import annotations
@@ -10,12 +10,14 @@ import inspect
 import keyword
 import re
 import shlex
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from ..figures.print_figure import small_png
 
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
-    from thermicon.icons import Family, Icon, IconSet
+    from thermicon.icons import IconSet
 
 DEFAULT_NAME = "cues"
 USAGE = "usage: %%cue [NAME] [--rig RIG]"
@@ -24,7 +26,7 @@ _VERSION = re.compile(r"(?:[ \t\u00a0\u202f]*(?:#[^\n]*)?[;\n])*[ \t\u00a0\u202f
 
 
 class CueMagicError(ValueError):
-    """A line after ``%%cue`` or ``%cue`` that cannot be followed; IPython shows its words, without a traceback."""
+    """A line after ``%%cue`` that cannot be followed; IPython shows its words, without a traceback."""
 
     def _render_traceback_(self) -> list[str]:
         return str(self).split("\n")
@@ -42,7 +44,7 @@ class _Line(argparse.ArgumentParser):
         raise CueMagicError(f"%%cue: {message}\n{USAGE}")
 
 
-def cue(shell: InteractiveShell, line: str, cell: str | None = None) -> IconSet | Icon | Family:
+def cue(shell: InteractiveShell, line: str, cell: str) -> IconSet:
     """Read the cue text of a cell, bind the set to a name, and show its picture.
 
         %%cue [NAME] [--rig RIG]
@@ -55,18 +57,12 @@ def cue(shell: InteractiveShell, line: str, cell: str | None = None) -> IconSet 
     ``%%cue``. When something is wrong with the cell, all of it is reported, the cell fails so that "Run all" stops, and
     NAME keeps what it held before.
 
-        %cue NAME
-
-    shows a set, an icon or a family of the notebook again, or reads and shows a shipped set or a file.
-
     JupyterLab colours the cell as if it were Python: it takes no other language from a magic unless one of its own
     extensions brings it. Text in Markdown blocks marked ``cue`` is coloured by tools that use Pygments, such as
     mkdocs and Sphinx.
     """
     from thermicon.icons import parse
 
-    if cell is None:
-        return _again(shell, line)
     name, rig_name = _read_line(line)
     rig = None
     if rig_name is not None:
@@ -92,19 +88,26 @@ def cue(shell: InteractiveShell, line: str, cell: str | None = None) -> IconSet 
 
 
 def register(shell: InteractiveShell) -> None:
-    """Make ``%%cue`` and ``%cue`` known to an IPython shell."""
+    """Make ``%%cue`` known to an IPython shell, and show figures small; matplotlib is not imported for it."""
 
-    def magic(line: str, cell: str | None = None) -> IconSet | Icon | Family:
+    def magic(line: str, cell: str) -> IconSet:
         return cue(shell, line, cell)
 
     magic.__doc__ = inspect.getdoc(cue)
-    shell.magics_manager.register_function(magic, "line_cell", "cue")
+    shell.magics_manager.register_function(magic, "cell", "cue")
+    _pictures(shell).for_type_by_name("matplotlib.figure", "Figure", small_png)
 
 
 def unregister(shell: InteractiveShell) -> None:
-    """Take ``%%cue`` and ``%cue`` away again."""
-    for kind in ("line", "cell"):
-        shell.magics_manager.magics[kind].pop("cue", None)
+    """Take ``%%cue`` away again, and leave figures to IPython."""
+    shell.magics_manager.magics["cell"].pop("cue", None)
+    _pictures(shell).pop("matplotlib.figure.Figure", None)
+
+
+def _pictures(shell: InteractiveShell) -> Any:
+    formatter = shell.display_formatter
+    assert formatter is not None
+    return formatter.formatters["image/png"]
 
 
 def _read_line(line: str) -> tuple[str, str | None]:
@@ -121,13 +124,3 @@ def _read_line(line: str) -> tuple[str, str | None]:
         help = f"; try {plain}" if plain.isidentifier() and not keyword.iskeyword(plain) else ""
         raise CueMagicError(f"%%cue: {said.name!r} is not a valid variable name{help}\n{USAGE}")
     return said.name, said.rig
-
-
-def _again(shell: InteractiveShell, line: str) -> IconSet | Icon | Family:
-    from thermicon.icons import Family, Icon, IconSet, read_cue
-
-    name = line.strip().strip("\"'")
-    if not name:
-        raise CueMagicError("%cue: name what to show: a variable, a shipped set or a file\nusage: %cue NAME")
-    held = shell.user_ns.get(name)
-    return held if isinstance(held, (IconSet, Icon, Family)) else read_cue(name)

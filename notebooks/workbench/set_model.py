@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,6 @@ import numpy as np
 
 from ..cli.cues import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
-from ..figures.map_drawing import distinct
 from ..report.set_report import SetReport
 from ..timeline.frames import CanvasFrame, traces_of
 from ..timeline.terms import terms_of
@@ -192,6 +191,21 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
         "notes": [],
     }
     return CanvasFrame(meta, tuple(buffers))
+
+
+def distinct(names: Sequence[str]) -> list[str]:
+    """Names short enough to stand beside a picture; as much of each stays as distinguishes it.
+
+    >>> distinct(["ramp_extent=-2_rate=3_count=1", "ramp_extent=2_rate=3_count=1", "dip"])[2]
+    'dip'
+    """
+    from thermicon.perception.plots.draw_heat import short
+
+    for most in (20, 24, 28, 36):
+        made = [short(name, most) for name in names]
+        if len(set(made)) == len(names):
+            return made
+    return list(names)
 
 
 PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("warm", "felt as warm (d′)", 1.0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from thermicon.icons import CueErrors, Icon, IconSet, parse
 from thermicon.icons.atomic import OutputError
 
-from ..files.start_folder import started_observer, started_rig, started_with
+from ..files.outputs import FILE, OBSERVER, RIG
 from ..timeline.measured import read_measured
 from .design_model import DesignModel
 from .sources import document_of
@@ -88,8 +89,8 @@ class Workbench:
     ) -> None:
         from thermicon.circuit import Rig
 
-        source = text if text is not None else started_with()
-        chosen = rig if rig is not None else started_rig()
+        source = text if text is not None else os.environ.get(FILE) or None
+        chosen = rig if rig is not None else os.environ.get(RIG) or "thenar"
         loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
         try:
             document = document_of(source, keeps=has_kernel())
@@ -261,7 +262,7 @@ class Workbench:
         """The page, with a line and a small picture for where widgets are not shown; the figure where none can be."""
         light: dict[str, Any] = {"text/plain": repr(self)}
         if not has_kernel():
-            from ..figures.inline import small_png
+            from ..figures.print_figure import small_png
 
             return {**light, "image/png": small_png(self.figure())}
         try:
@@ -285,8 +286,8 @@ def _goal_text(goal: Goal | str | None) -> str:
 
 def _observer_of(file: str | Path | None) -> ObserverModel | None:
     """The observer of a file, or of that with which the page was started; None: the shipped one."""
-    chosen = started_observer() if file is None else file
-    if chosen is None:
+    chosen = os.environ.get(OBSERVER) if file is None else file
+    if not chosen:
         return None
     from thermicon.perception.observer.observer_model import ObserverModel
 

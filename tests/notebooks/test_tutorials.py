@@ -81,7 +81,7 @@ def test_what_the_tutorials_write_can_be_read(tmp_path: Path) -> None:
 def test_figures_are_small_pictures() -> None:
     from matplotlib.figure import Figure
 
-    from thermicon.notebooks.figures.inline import WIDEST_PX, small_png
+    from thermicon.notebooks.figures.print_figure import WIDEST_PX, small_png
 
     wide = Figure(figsize=(20, 2))
     wide.add_subplot().plot([0, 1])

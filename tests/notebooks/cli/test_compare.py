@@ -12,8 +12,7 @@ import pandas as pd
 import pytest
 
 from thermicon.notebooks.figures.compare_figure import compare_figure
-from thermicon.notebooks.figures.differences import align, differences
-from thermicon.notebooks.files.trace_files import Curves, LogError
+from thermicon.notebooks.files.trace_files import Curves, LogError, align, differences
 
 Cli = Callable[..., Any]
 GOOD = "time_s,skin_C\n0,30\n1,31\n2,32\n"

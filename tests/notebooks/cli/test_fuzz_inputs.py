@@ -32,8 +32,7 @@ from thermicon.circuit.safety.session import read_order
 from thermicon.icons import load_library, parse
 from thermicon.icons.recordings.readings import read_readings
 from thermicon.notebooks.cli.compare import _shifted
-from thermicon.notebooks.figures.differences import align
-from thermicon.notebooks.files.trace_files import read_curves
+from thermicon.notebooks.files.trace_files import align, read_curves
 from thermicon.notebooks.messages import is_ours
 from thermicon.notebooks.report.compare_report import Comparison, compare_report
 from thermicon.notebooks.study.study_file import parse_study, study_text

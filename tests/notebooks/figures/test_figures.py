@@ -19,9 +19,7 @@ from thermicon.notebooks.figures.overview import end_when_settled
 from thermicon.notebooks.figures.print_figure import COLORBAR, restyle
 from thermicon.notebooks.figures.set_figures import set_figure, write_figures
 from thermicon.notebooks.figures.style import COOL, WARM
-from thermicon.notebooks.figures.sweep_axes import COOLS, WARMS
-from thermicon.notebooks.figures.sweep_figure import measure_figure
-from thermicon.notebooks.figures.sweep_map import sweep_map
+from thermicon.notebooks.figures.sweep_figure import COOLS, WARMS, measure_figure, sweep_map
 from thermicon.perception import Percept, perceive, rank
 
 

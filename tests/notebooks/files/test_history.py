@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from thermicon.notebooks.files.history import MOST_STEPS, Edited, History
+from thermicon.notebooks.files.document import MOST_STEPS, Edited, History
 
 
 def test_typing_without_pause_is_one_step() -> None:
@@ -25,22 +25,22 @@ def test_a_drag_and_typing_at_once_are_two_steps() -> None:
 
 def test_a_new_edit_clears_redo() -> None:
     history = History(Edited("a")).changed("b").undo()
-    assert history.can_redo
+    assert history.future
     assert history.redo().now.text == "b"
-    assert not history.changed("c").can_redo
+    assert not history.changed("c").future
 
 
 def test_the_same_text_is_no_step_and_keeps_redo() -> None:
     history = History(Edited("a")).changed("b").undo()
-    assert history.typed("a", 0.0).can_redo
-    assert not history.typed("a", 0.0).can_undo
+    assert history.typed("a", 0.0).future
+    assert not history.typed("a", 0.0).past
 
 
 def test_nothing_to_undo_or_redo_leaves_the_history_as_it_is() -> None:
     history = History(Edited("a"))
     assert history.undo() == history
     assert history.redo() == history
-    assert not history.can_undo
+    assert not history.past
 
 
 def test_undo_brings_the_icon_back_that_was_shown() -> None:

@@ -15,7 +15,7 @@ from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.circuit import Rig
 from thermicon.icons.atomic import OutputError
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.files.start_folder import FILE, RIG, VARIABLE
+from thermicon.notebooks.files.outputs import FILE, RIG, FOLDER
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
 
@@ -96,7 +96,7 @@ class TestFiles:
         self, path: Path, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
     ) -> None:
         outside = path.parent.parent / "outside.cue"
-        for name, value in ((VARIABLE, str(path.parent)), (FILE, str(path)), (RIG, "fingertip")):
+        for name, value in ((FOLDER, str(path.parent)), (FILE, str(path)), (RIG, "fingertip")):
             monkeypatch.setenv(name, value)
         bench, bar = opened(None)
         assert (bench.text, bench.rig.name, title(bar)) == (TEXT, "fingertip", "alerts.cue")
@@ -106,7 +106,7 @@ class TestFiles:
         assert not outside.exists()
         open_file(bar, "../../etc/passwd")
         assert "is outside the folder of this page" in said(bar)
-        monkeypatch.setenv(VARIABLE, str(tmp_path_factory.mktemp("elsewhere")))
+        monkeypatch.setenv(FOLDER, str(tmp_path_factory.mktemp("elsewhere")))
         bench, bar = opened(path)  # a link out of the folder
         assert bench.text == TEXT
         bar.buttons["Open"].click()

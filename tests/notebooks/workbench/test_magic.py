@@ -14,7 +14,7 @@ from nbclient.exceptions import CellExecutionError
 
 from tests.builders import missing
 from tests.notebooks.workbench.openbench import SAID
-from thermicon.icons import Icon, IconSet, parse
+from thermicon.icons import IconSet, parse
 
 GOOD = "icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }\n"
 BAD = "\nicon dip { cool by 6 at 3 °C/s }\nicon dap { hold for 4 }\n"
@@ -62,16 +62,10 @@ def test_a_rig_tells_what_it_cannot_do_and_may_be_a_file_with_blanks_in_its_name
     assert capsys.readouterr().out.startswith("cell: icon hot: 5 A is outside the driver's")
 
 
-def test_the_line_magic_shows_again_and_both_can_be_taken_away(shell: InteractiveShell) -> None:
-    shell.run_cell("%%cue\n" + GOOD)
-    assert shell.run_cell("%cue cues").result is shell.user_ns["cues"]
-    shell.run_cell("dip = cues['dip']")
-    assert isinstance(shell.run_cell("%cue dip").result, Icon)
-    assert len(shell.run_cell("%cue six-icons").result) == 6
+def test_it_says_what_it_does_and_can_be_taken_away(shell: InteractiveShell) -> None:
     assert "%%cue [NAME] [--rig RIG]" in shell.magics_manager.magics["cell"]["cue"].__doc__
     shell.extension_manager.unload_extension("thermicon.notebooks")
     assert "cue" not in shell.magics_manager.magics["cell"]
-    assert "cue" not in shell.magics_manager.magics["line"]
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.document import Document
-from thermicon.notebooks.files.start_folder import VARIABLE
+from thermicon.notebooks.files.outputs import FOLDER
 from thermicon.notebooks.timeline.measured import read_measured, read_uploaded
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 from thermicon.notebooks.workbench.log_panel import LogPanel
@@ -118,7 +118,7 @@ def test_what_is_no_single_log_or_outside_the_page_is_refused(log: Path, monkeyp
         read_uploaded({"a.csv": b"", "b.csv": b""})
     panel.load.click()
     assert said(bar) == "give the path of a log, or upload one"
-    monkeypatch.setenv(VARIABLE, str(log.parent / "page"))
+    monkeypatch.setenv(FOLDER, str(log.parent / "page"))
     (log.parent / "page").mkdir()
     load(panel, log)
     assert "outside the folder of this page" in said(bar)
