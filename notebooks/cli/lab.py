@@ -22,7 +22,7 @@ from thermicon.icons.atomic import check_folder, complete_or_absent, stopped_cle
 from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from ..files.document import Document
-from ..files.outputs import FILE, FOLDER, OBSERVER, RIG
+from ..files.outputs import FILE, OBSERVER, PAGE_FOLDER, RIG
 from ..messages import fail, interrupted, load_observer, load_rig, note, usage
 from .options import out, rigs_like
 
@@ -132,7 +132,7 @@ def page_environment(place: Path, file: Path | None, rig: str | None, observer: 
 
     Raises OutputError for a file, RigError for a rig, RecordError for an observer that cannot be read.
     """
-    told = {FOLDER: str((place if file is None else place.parent).resolve())}
+    told = {PAGE_FOLDER: str((place if file is None else place.parent).resolve())}
     if file is not None:
         Document.open(file)
         told[FILE] = str(file.resolve())
@@ -148,7 +148,7 @@ def page_environment(place: Path, file: Path | None, rig: str | None, observer: 
 
 def serve_file(file: Path, shown: Mapping[str, str], no_browser: bool, port: int | None) -> None:
     """Serve the workbench on one file; the notebook that it is made of stays out of the file's folder."""
-    note(f"{file}: the page opens, saves and exports below {shown[FOLDER]}")
+    note(f"{file}: the page opens, saves and exports below {shown[PAGE_FOLDER]}")
     with tempfile.TemporaryDirectory(prefix="thermicon-page-", ignore_cleanup_errors=True) as own:
         (Path(own) / PAGE).write_bytes(_stamped(shipped_notebooks()[PAGE]))
         serve(command_of(Path(own), True, no_browser, port), "voila", shown)

@@ -10,8 +10,6 @@ from .cue_check import read_text
 
 _PIECE = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\r\n]*|[{};]|[^\W\d_](?:[^\W_]|-)*|\n')
 _NAME = re.compile(r"[^\W\d_](?:[^\W_]|-)*")
-NEW = "icon {name} {{\n  cool by 3 °C at 3 °C/s\n  hold for 2 s\n  return at 3 °C/s\n}}\n"
-NEW_CURRENT = "icon {name} {{\n  to 0.3 A at 1 A/s\n  hold for 2 s\n  return at 1 A/s\n}}\n"
 
 
 class CannotEdit(ValueError):
@@ -56,40 +54,6 @@ def blocks_of(text: str) -> list[Block]:
     if start >= 0 and name_at >= 0:
         found.append(Block(name, _with_comments(text, start), start, name_at, len(text), len(text)))
     return found
-
-
-def with_new(text: str) -> tuple[str, str]:
-    """A text with one more icon at its end, and the name of that icon."""
-    name = _free(text, "new-icon")
-    reading = read_text(text)
-    control = reading.icons.context.control if reading.icons is not None else "skin"
-    made = (NEW_CURRENT if control == "current" else NEW).format(name=name)
-    head = text if text.strip() else "cue 1\n"
-    return f"{head.rstrip()}\n\n{made}", name
-
-
-def with_copy(text: str, icon: str) -> tuple[str, str]:
-    """A text with a copy of an icon behind it, and the name of the copy."""
-    block = block_of(text, icon)
-    name = _free(text, f"{block.name}-copy")
-    shift = block.name_at - block.start
-    body = text[block.start : block.end].rstrip()
-    copy = f"{body[:shift]}{name}{body[shift + len(block.name) :]}"
-    return f"{text[: block.end].rstrip()}\n\n{copy}\n{_gap(text[block.end :])}", name
-
-
-def with_name(text: str, icon: str, name: str) -> str:
-    """A text in which an icon has another name, in each ``play`` of it too."""
-    block = block_of(text, icon)
-    wanted = name.strip()
-    if not _NAME.fullmatch(wanted):
-        raise CannotEdit(f"{name!r} is not a name: letters, digits and hyphens, beginning with a letter")
-    if wanted != block.name and any(each.name == wanted for each in blocks_of(text)):
-        raise CannotEdit(f"there is an icon called {wanted} already")
-    places = [block.name_at, *_plays(text, block.name)]
-    for at in sorted(places, reverse=True):
-        text = f"{text[:at]}{wanted}{text[at + len(block.name) :]}"
-    return text
 
 
 def without(text: str, *icons: str) -> str:
@@ -139,12 +103,6 @@ def block_of(text: str, icon: str) -> Block:
             if block.name == family.name:
                 return block
     raise CannotEdit(f"no icon called {icon} is written in the text")
-
-
-def _free(text: str, wanted: str) -> str:
-    taken = {block.name for block in blocks_of(text)}
-    tries = (wanted, *(f"{wanted}-{k}" for k in range(2, len(taken) + 3)))
-    return next(name for name in tries if name not in taken)
 
 
 def _plays(text: str, name: str) -> list[int]:

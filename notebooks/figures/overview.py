@@ -1,8 +1,9 @@
-"""The overview of one icon: temperatures, heat flow, current and sensation, from drive to percept on one clock."""
+"""The overview of one icon from drive to percept on one clock, and the still picture of the workbench's design view."""
 
 from __future__ import annotations
 
 import dataclasses
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,10 +23,16 @@ if TYPE_CHECKING:
     from thermicon.circuit.fitting.log import Log
     from thermicon.perception import Percept
 
+    from ..timeline.scene import Drawing, Scene
+
 FELT_TAIL_S = 10.0
 """How long an overview follows sensation after the last corner at most, unless a tail is given."""
 STILL = 0.1
 """What stays within 10 % of its panel's range of its end has come to rest."""
+WIDEST, MOST_LINES = 110, 6
+"""Letters of a line, and lines, of what the figure of a scene says."""
+CHANNELS = {"cold": COOL, "warm": WARM}
+DASHES = {"felt peak": "--", "physical peak": "-"}
 
 
 def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
@@ -174,3 +181,50 @@ def evenly_timed(trace: Trace) -> Trace:
             if isinstance(getattr(trace, field.name), numpy.ndarray)
         },
     )
+
+
+def scene_figure(scene: Scene) -> Figure:
+    """Draw a scene: the overview of its icon, with threshold bands, unreached spans and events; safety and notes above.
+
+    A scene without a drawing gives a figure that says why.
+
+    >>> from thermicon.circuit import Rig
+    >>> from thermicon.notebooks.timeline.scene import scene
+    >>> scene_figure(scene("cue 1; icon dip { cool by 6 at 3 °C/s }", Rig.load("thenar"))).get_suptitle().splitlines()
+    ['GREY  safety not judged: the text has errors', 'line 1: missing unit: this number has no unit']
+    """
+    from matplotlib.figure import Figure
+
+    badge = scene.badge
+    told = [f"{badge.colour.upper()}  {badge.text}"]
+    told += [*(f"line {trouble.line}: {trouble.headline}" for trouble in scene.troubles), *scene.notes]
+    lines = [row for text in dict.fromkeys(told) for row in textwrap.wrap(text, WIDEST)]
+    if len(lines) > MOST_LINES:
+        lines = [*lines[: MOST_LINES - 1], f"and {len(lines) - MOST_LINES + 1} more lines"]
+    if scene.drawing is None:
+        figure = Figure(figsize=(8.0, 2.0), layout="constrained")
+        figure.suptitle("\n".join(lines), fontsize=10, x=0.01, ha="left")
+        return figure
+    figure = overview(scene.drawing.trace, scene.drawing.percept, scene.drawing.rig.changes)
+    _draw_events(scene.drawing, figure)
+    head = figure.get_suptitle() + (", as it was before the errors" if scene.stale and scene.troubles else "")
+    figure.suptitle("\n".join([head, *lines]), fontsize=10)
+    return figure
+
+
+def _draw_events(drawing: Drawing, figure: Figure) -> None:
+    """Bands below thresholds, spans that miss the target, and peaks of the skin and of what is felt."""
+    temperatures, sensation = figure.axes[0], figure.axes[-1]
+    for band in drawing.bands:
+        label = f"{band.channel} threshold\n{band.change_K:.2g} K (fast change)"
+        temperatures.axhspan(band.low_C, band.high_C, color=CHANNELS[band.channel], alpha=0.3, lw=0, label=label)
+    for ax in (temperatures, figure.axes[2]):
+        for n, missed in enumerate(drawing.missed):
+            label = missed.label.replace(": ", ":\n") if n == 0 else ""
+            ax.axvspan(missed.from_s, missed.to_s, fc=LIMIT, ec=LIMIT, alpha=0.15, hatch="//", lw=0, label=label)
+    for moment in (each for each in drawing.moments if each.kind != "onset"):  # which the overview marks
+        ax = temperatures if moment.kind == "physical peak" else sensation
+        label = moment.label.replace(") ", ")\n")
+        ax.axvline(moment.time_s, color=CHANNELS[moment.channel], lw=1.0, ls=DASHES[moment.kind], label=label)
+    for ax in figure.axes:
+        key_beside(ax)

@@ -11,7 +11,6 @@ import io
 import re
 import textwrap
 from collections.abc import Mapping
-from itertools import zip_longest
 from pathlib import Path
 from string import ascii_lowercase
 from typing import TYPE_CHECKING, Any, cast
@@ -138,9 +137,9 @@ def restyle(figure: Figure, width_mm: float) -> None:
 
 
 def _letter_panels(figure: Figure) -> None:
-    """The title of the figure goes, and that of a single panel; of several each gets a letter, what is in brackets goes.
+    """Take away the title of the figure, and that of a single panel; several panels get letters.
 
-    Titles of several panels stay, since they say what each shows.
+    Titles of several panels stay, since they say what each shows, without what is in brackets.
     """
     held: Any = figure
     if figure.get_suptitle():
@@ -154,15 +153,15 @@ def _letter_panels(figure: Figure) -> None:
 
     shown = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
     panels: list[Any] = sorted(shown, key=place)
-    for letter, panel in zip_longest(ascii_lowercase[: len(panels)], panels, fillvalue=""):
+    for panel, letter in zip(panels, ascii_lowercase, strict=False):
         titles = {loc: IN_BRACKETS.sub("", panel.get_title(loc=loc)) for loc in ("left", "center", "right")}
         for loc, title in titles.items():
             panel.set_title("" if len(panels) == 1 else title, loc=loc)
-        loc = next((loc for loc in ("left", "center") if titles[loc]), None)
-        if len(panels) > 1 and loc is None:
-            panel.set_title(letter, loc="left", fontweight="bold")
+        named = next((loc for loc in ("left", "center") if titles[loc]), "")
+        if len(panels) > 1 and named:
+            panel.set_title(rf"$\mathbf{{{letter}}}$  {titles[named]}", loc=named)
         elif len(panels) > 1:
-            panel.set_title(rf"$\mathbf{{{letter}}}$  {titles[loc]}", loc=loc)
+            panel.set_title(letter, loc="left", fontweight="bold")
 
 
 def _renderer(figure: Figure) -> Any:
@@ -253,12 +252,12 @@ def _keys_below(figure: Figure) -> None:
 
 def _fit(figure: Figure, legend: Legend) -> None:
     """Give a key of the whole figure as many columns as the width has room for; columns are laid out anew."""
-    held, renderer = cast("Any", legend), _renderer(figure)
+    held, whole, renderer = cast("Any", legend), cast("Any", figure), _renderer(figure)
     handles, labels = legend.legend_handles, [text.get_text() for text in legend.get_texts()]
     size, side = legend.get_texts()[0].get_fontsize(), held._outside_loc or "upper"
     for columns in range(held._ncols, 0, -1):
         legend.remove()
-        legend = figure.legend(
+        legend = whole.legend(
             handles, labels, loc=f"outside {side} center", ncols=columns, frameon=False, fontsize=size,
             handlelength=2.2, columnspacing=1.2,
         )  # fmt: skip

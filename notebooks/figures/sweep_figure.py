@@ -167,7 +167,8 @@ def sweep_map(
     for column, (quantity, label, colours) in enumerate(quantities):
         shown = frame.loc[frame["icon"].isin(names), quantity].abs() if "miss" in quantity else frame[quantity]
         high = float(np.nanmax(np.abs(shown))) or 1.0
-        low, shades = 0.0, colours
+        low: float = 0.0
+        shades: Any = colours
         if colours == BLUE_ORANGE:
             low, shades = -high, LinearSegmentedColormap.from_list(BLUE_ORANGE, [COOL, "#ffffff", WARM])
         for row, name in enumerate(names):
@@ -330,10 +331,10 @@ def _legend(
 
 
 def _map(
-    ax: Axes, rows: pd.DataFrame, names: tuple[str, str, str], colours: Any, limits: tuple[float, float]
+    ax: Axes, rows: pd.DataFrame, columns: tuple[str, str, str], colours: Any, limits: tuple[float, float]
 ) -> AxesImage:
     """Draw one quantity of one icon in the order in which both keys take their values, marked where it was missed."""
-    key, second, quantity = names
+    key, second, quantity = columns
 
     def grid(column: str) -> pd.DataFrame:
         made = rows.pivot(index=second, columns=key, values=column)
@@ -348,5 +349,6 @@ def _map(
         ax.scatter(across, up, s=20, facecolors="white", edgecolors="black", linewidths=0.7)
     for axis, ends in ((ax.xaxis, values.columns), (ax.yaxis, values.index)):
         places = np.unique(np.linspace(0, len(ends) - 1, min(len(ends), MOST_TICKS)).round().astype(int))
-        axis.set_ticks(list(places), [ends[k] if isinstance(ends[k], str) else f"{ends[k]:g}" for k in places], fontsize=8)
+        names = [ends[k] if isinstance(ends[k], str) else f"{ends[k]:g}" for k in places]
+        axis.set_ticks(list(places), names, fontsize=8)
     return image

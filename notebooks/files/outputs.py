@@ -13,7 +13,7 @@ TRACE_SUFFIXES = (".csv", ".parquet")
 NETLIST_SUFFIXES = (".cir", ".net", ".sp")
 SUBCIRCUIT_SUFFIXES = (".lib", ".sub", *NETLIST_SUFFIXES)
 FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
-FOLDER = "THERMICON_PAGE_FOLDER"
+PAGE_FOLDER = "THERMICON_PAGE_FOLDER"
 """Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""
 FILE, RIG, OBSERVER = "THERMICON_PAGE_FILE", "THERMICON_PAGE_RIG", "THERMICON_PAGE_OBSERVER"
 """Set for the kernels of ``thermicon lab --page FILE --rig RIG --observer FILE``: what a workbench of no arguments is
@@ -59,16 +59,16 @@ def below_start(folder: Path) -> Path:
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as start:
-    ...     os.environ[FOLDER] = start
+    ...     os.environ[PAGE_FOLDER] = start
     ...     try:
     ...         below_start(Path(start) / ".." / "elsewhere")
     ...     except OutputError as refused:
     ...         str(refused).partition(";")[0].endswith("is outside the folder of this page")
     ...     finally:
-    ...         del os.environ[FOLDER]
+    ...         del os.environ[PAGE_FOLDER]
     True
     """
-    start = os.environ.get(FOLDER)
+    start = os.environ.get(PAGE_FOLDER)
     if start is None:
         return folder
     try:

@@ -11,12 +11,10 @@ import ipywidgets as widgets
 from thermicon.icons.atomic import OutputError
 from thermicon.icons.files.shipped import library_names
 
-from ..editing.icon_edits import with_copy, with_name, with_new, without
 from ..files.document import Document
-from ..report.blocks import fragment
-from .help_sheet import help_html
-from .log_panel import LogPanel
-from .sources import document_of
+from ..report.blocks import Bullets, Heading, fragment, shown
+from .live_view import button
+from .panels import LogPanel, document_of, help_html
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -27,7 +25,6 @@ if TYPE_CHECKING:
 MOST_FILES, MOST_RIGS = 200, 50
 SHIPPED = "shipped: "
 """What stands before the name of a shipped set in the list of what can be opened."""
-ICON_VERBS = ("New icon", "Duplicate", "Rename", "Delete")
 
 
 class DocumentBar:
@@ -45,7 +42,6 @@ class DocumentBar:
                 ("Save", "to the file it came from (Ctrl+S)", self.save),
                 ("Save as", "under another name", lambda: self._toggle("save")),
                 ("Download", "text, rig and pictures", lambda: self._toggle("download")),
-                ("Icon", "new, duplicate, rename, delete", lambda: self._toggle("icon")),
                 ("Log", "a measured log over the curves", lambda: self._toggle("log")),
                 ("Undo", "Ctrl+Z in text or time line", lambda: self._step("undo")),
                 ("Redo", "Ctrl+Shift+Z in text or time line", lambda: self._step("redo")),
@@ -56,7 +52,7 @@ class DocumentBar:
         self.rig.style.description_width = "auto"
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
-        self._panels = {"open": self._open_panel(), "save": self._save_panel(), "icon": self._icon_panel()}
+        self._panels = {"open": self._open_panel(), "save": self._save_panel()}
         self.log = LogPanel(view, lambda name: self.document.place(name), self._safely, self.say)
         self._panels["log"] = self.log.box
         self.links = widgets.HTML()
@@ -66,7 +62,7 @@ class DocumentBar:
         self.shown: str | None = None
         self.offered_text: Version | None = None
         self.offer = self._offer_panel()
-        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Icon", "Log")]
+        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Log")]
         rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
         self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
@@ -85,8 +81,6 @@ class DocumentBar:
         document, history = self.document, self.document.history
         if self.shown == "download":
             self._open(None)  # its links hold the text, the rig and the picture as they were
-        elif self.shown == "icon":
-            self._about()
         elif self.shown == "log":
             self.log.renew()
         kind = "th-caution" if document.dirty else ""
@@ -178,16 +172,6 @@ class DocumentBar:
         go = self._button("Save it", "write the file", self._save_as)
         return widgets.Box([self.name, self.overwrite, go]).add_class("thermicon-row")
 
-    def _icon_panel(self) -> widgets.Widget:
-        self.icon_name = widgets.Text(placeholder="new name", description="name", layout={"width": "210px"})
-        self.icon_name.style.description_width = "auto"
-        verbs = {name: self._button(name, "", lambda name=name: self._icon(name)) for name in ICON_VERBS}  # type: ignore[misc]
-        self.verbs = verbs
-        self.about = widgets.HTML()
-        return widgets.Box(
-            [self.about, verbs["New icon"], verbs["Duplicate"], verbs["Delete"], self.icon_name, verbs["Rename"]]
-        ).add_class("thermicon-row")
-
     def _offer_panel(self) -> widgets.Box:
         self.offered = widgets.HTML()
         yes = self._button("Restore it", "as a step that can be undone", self._restore)
@@ -218,10 +202,7 @@ class DocumentBar:
 
         icons = load_library(name.removeprefix(SHIPPED))
         lines = [f"{each.name}: {each.metadata.means}" if each.metadata.means else each.name for each in icons.entries]
-        more = [f"and {len(lines) - 8} more"] if len(lines) > 8 else []
-        head = fragment("block", icons.title or icons.name, "th-head")
-        source = "; ".join(text for text in (icons.metadata.by, icons.metadata.doi) if text)
-        self._set(self.preview, f"{head}{fragment('points', lines[:8] + more)}{fragment('block', source, 'th-soft')}")
+        self._set(self.preview, shown(Heading(icons.title or icons.name), Bullets(tuple(lines))))
 
     def _open_selected(self) -> None:
         source = self.path.value.strip() or self.files.value
@@ -245,22 +226,6 @@ class DocumentBar:
         self.overwrite.value = False
         self._after(f"saved {path}")
 
-    def _icon(self, verb: str) -> None:
-        text, shown, show = self.design.text, self.design.scene.icon, self.design.show_text
-        if verb == "New icon":
-            show(*with_new(text))
-        elif shown is None:
-            raise ValueError("there is no icon to change yet")
-        elif verb == "Duplicate":
-            show(*with_copy(text, shown))
-        elif verb == "Delete":
-            show(without(text, shown))
-        else:
-            show(with_name(text, shown, self.icon_name.value), self.icon_name.value.strip())
-        self.view.refresh()
-        self.renew()
-        self._about()
-
     def _step(self, kind: str) -> None:
         self.view.step(kind)
         self.renew()
@@ -283,8 +248,6 @@ class DocumentBar:
             self._preview(self.files.value)
         elif name == "save" and not self.name.value:
             self.name.value = f"{self.document.name.removesuffix('.cue')}.cue"
-        elif name == "icon":
-            self._about()
         elif name == "log":
             self.log.renew()
         elif name == "download":
@@ -293,19 +256,15 @@ class DocumentBar:
 
     def _offer_downloads(self) -> None:
         """Links to the text, the rig and the picture of the icon that is shown."""
-        from .downloads import figure_files, link, rig_text
-        from .scene_plot import scene_figure
+        from ..figures.overview import scene_figure
+        from .versions_view import figure_files, link
 
         design = self.design
         stem = Path(self.document.name).stem
-        files = {f"{stem}.cue": design.text.encode(), f"{design.rig.name}.toml": rig_text(design.rig).encode()}
+        files = {f"{stem}.cue": design.text.encode(), f"{design.rig.name}.toml": design.rig.toml.encode()}
         if design.scene.drawing is not None:
             files |= figure_files(f"{design.scene.icon}-on-{design.rig.name}", scene_figure(design.scene))
         self._set(self.links, " · ".join(link(name, data) for name, data in files.items()))
-
-    def _about(self) -> None:
-        icon = self.design.scene.icon
-        self._set(self.about, fragment("marked", icon or "no icon", "th-head"))
 
     def _files(self, pattern: str) -> list[str]:
         """Names of files of the folder, without hidden ones; none of a folder that a page may not look into."""
@@ -315,9 +274,7 @@ class DocumentBar:
             return []
 
     def _button(self, name: str, hint: str, act: Callable[[], None]) -> widgets.Button:
-        made = widgets.Button(description=name, tooltip=hint, layout={"width": "auto"})
-        made.on_click(lambda _: self._safely(act))
-        return made
+        return button(name, hint, lambda: self._safely(act))
 
     def _safely(self, act: Callable[[], None]) -> None:
         try:

@@ -15,11 +15,10 @@ from ..editing.cue_check import read_text
 from ..files.exporting import felt_beside
 from ..files.outputs import below_start
 from ..report.blocks import fragment
-from .background import Job
-from .downloads import link, zipped
-from .export_tables import delivered_html, gate_html, written_html
-from .live_view import LiveView
+from .live_view import Job, LiveView
 from .set_model import MOST_RANKED
+from .versions_view import link, zipped
+from .view_blocks import delivered_html, gate_html, written_html
 
 if TYPE_CHECKING:
     from thermicon.circuit import Export, Rig

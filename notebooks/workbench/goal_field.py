@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
-from ..report.blocks import Text, grid, shown
-from ..report.choices import goal_value
+from ..report.blocks import Text, shown
+from .view_blocks import verdict_html
 
 if TYPE_CHECKING:
     from thermicon.perception.selection.goal import Goal
-    from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
+    from thermicon.perception.selection.goal_result import GoalResult
 
 PATTERNS = (
     "correct >= 90 % for 95 % of people, safety green",
@@ -21,7 +21,6 @@ PATTERNS = (
     "count 6, energy <= 50 J",
 )
 """Goals that are offered to begin with, and show what a goal is made of."""
-SAFETY = "safety"
 FOR_DRAWS = "judged after refining: a share of people takes draws of the model too"
 WITHOUT_DRAWS = (
     "not judged: a share of people takes draws of the model too, and this observer has none; give an observer with "
@@ -66,10 +65,10 @@ class GoalField:
 
         ``refined`` says that no ranking follows that could judge it.
         """
-        if reached is not None and reached.goal == self.goal:
-            self.verdict.value = verdict_html(reached)
-        elif self.goal is None:
+        if self.goal is None:
             self.verdict.value = ""
+        elif reached is not None and reached.goal == self.goal:
+            self.verdict.value = verdict_html(reached)
         else:
             waits = WITHOUT_DRAWS if refined else FOR_DRAWS if self.goal.single_people else "not judged yet"
             self.verdict.value = shown(Text(f"{self.goal.text}: {waits}", "soft"))
@@ -85,29 +84,3 @@ class GoalField:
             self.said.value = shown(Text(str(wrong), "note th-bad"))
         self.show(None)
         self._changed()
-
-
-def verdict_html(reached: GoalResult) -> str:
-    """Return whether a goal is met, and of every part the prediction, how far it is from the limit, and what binds."""
-    word, kind = ("goal met", "good") if reached.met else ("goal not met", "bad")
-    return shown(Text(word, kind), grid(("", "", "", ""), [goal_row(part) for part in reached.parts]))
-
-
-def goal_row(part: GoalPartResult) -> tuple[str, str, str, str]:
-    """Mark, text, prediction, and distance with the obstacle of one part of a goal.
-
-    >>> from thermicon.perception.selection.goal_result import GoalPartResult
-    >>> from thermicon.perception.selection.goal import Goal
-    >>> goal_row(GoalPartResult(Goal.parse("time <= 10 s").parts[0], 12.5, False, "dip takes most"))
-    ('✗', 'time <= 10 s', '12.5 s', '2.5 s over; dip takes most')
-    """
-    plain = part.to_dict()
-    value, gap = goal_value(plain)
-    words = "to spare" if part.met else "over" if "<=" in part.part.text else "short"
-    if part.part.quantity == SAFETY:
-        distance = "in this simulation; export judges worst cases"
-    elif part.value == part.part.limit:
-        distance = "exactly"
-    else:
-        distance = f"{gap} {words}" if gap else ""
-    return "✓" if part.met else "✗", part.part.text, value, "; ".join(filter(None, (distance, part.binding)))

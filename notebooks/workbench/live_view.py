@@ -1,18 +1,126 @@
-"""A tab whose content follows the design: computed in the background while the tab is shown."""
+"""A tab whose content follows the design: computed in the background while it is shown, one job at a time.
+
+The newest job wins, and results are shown on the kernel's event loop.
+"""
 
 from __future__ import annotations
 
+import asyncio
+import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from contextlib import suppress
+from threading import Lock, Thread
+from typing import Any, Generic, TypeVar
 
 import ipywidgets as widgets
 
 from ..report.blocks import fragment
-from .background import BackgroundWorker, Job
 from .design_model import DesignModel
 
 Request = TypeVar("Request")
+Act = Callable[[], None]
+
+
+class Superseded(Exception):
+    """A newer job was requested, so this one ends without a message."""
+
+
+class Job:
+    """Handle of a running job: whether it is still the newest, and how it changes the page."""
+
+    def __init__(self, owner: BackgroundWorker, number: int, loop: asyncio.AbstractEventLoop | None) -> None:
+        self._owner, self._number, self._loop = owner, number, loop
+
+    @property
+    def newest(self) -> bool:
+        """Whether no newer job was requested."""
+        return self._owner.number == self._number
+
+    def go_on(self, *progress: int) -> None:
+        """Raise Superseded if there is a newer job; can be used as a progress callback."""
+        if not self.newest:
+            raise Superseded
+
+    def on_page(self, act: Act) -> None:
+        """Change the page, if this job is still the newest; raises Superseded otherwise."""
+        self.go_on()
+        if self._loop is None:
+            self._owner.safely(act)
+        else:
+            # Widgets belong to the kernel's thread: a handler there must never see half of a change.
+            self._loop.call_soon_threadsafe(lambda: self._owner.safely(act) if self.newest else None)
+
+
+Work = Callable[[Job], None]
+
+
+class BackgroundWorker:
+    """Runs jobs in a thread; a new job makes all earlier ones stale.
+
+    ``fail`` is called with a message when a job, or its change of the page, raises an error.
+
+    >>> done = []
+    >>> worker = BackgroundWorker()
+    >>> worker.ask(lambda job: job.on_page(lambda: done.append("job")))
+    >>> worker.wait(), done
+    (True, ['job'])
+    """
+
+    def __init__(self, fail: Callable[[str], None] = lambda message: None) -> None:
+        self.number = 0
+        self._fail = fail
+        self._one = Lock()
+        self._threads: list[Thread] = []
+
+    def ask(self, work: Work, after_s: float = 0.0) -> None:
+        """Start a job after a delay in s, during which a newer one may replace it."""
+        self.number += 1
+        try:
+            loop: asyncio.AbstractEventLoop | None = asyncio.get_running_loop()
+        except RuntimeError:
+            loop = None  # plain Python: there is no event loop of a page
+        job = Job(self, self.number, loop)
+        thread = Thread(target=self._run, args=(job, work, after_s), name="thermicon work", daemon=True)
+        self._threads = [each for each in self._threads if each.is_alive()] + [thread]
+        thread.start()
+
+    def forget(self) -> None:
+        """Make the running job stale without starting a new one."""
+        self.number += 1
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job is running or waiting."""
+        return any(thread.is_alive() for thread in self._threads)
+
+    def wait(self, timeout_s: float = 60.0) -> bool:
+        """Wait until all jobs have ended; False after the timeout in s. Not for handlers of the page."""
+        until = time.monotonic() + timeout_s
+        for thread in tuple(self._threads):
+            thread.join(max(0.0, until - time.monotonic()))
+        return not self.busy
+
+    def _run(self, job: Job, work: Work, after_s: float) -> None:
+        until = time.monotonic() + after_s
+        while job.newest and (left := until - time.monotonic()) > 0:
+            time.sleep(min(left, 0.05))
+        with self._one, suppress(Superseded):
+            try:
+                job.go_on()
+                work(job)
+            except Superseded:
+                return
+            except Exception as wrong:
+                message = str(wrong) or type(wrong).__name__
+                job.on_page(lambda: self._fail(message))
+
+    def safely(self, act: Act) -> None:
+        """Change the page and show errors there, since nobody reads the kernel's log."""
+        try:
+            act()
+        except Exception as wrong:
+            self._fail(str(wrong) or type(wrong).__name__)
 
 
 class LiveView(ABC, Generic[Request]):
@@ -41,29 +149,25 @@ class LiveView(ABC, Generic[Request]):
         The job waits for ``after_s`` seconds (default: ``settles_s``), in which the text may change further.
         """
         request = self._request()
-        if not self.shown:
-            self._stop()  # the design view needs the processor
+        if self.shown and request == self._running:
             return
-        if request == self._running:
+        self.worker.forget()  # of a tab that is not shown too: the design view needs the processor
+        self._running = None
+        if not self.shown:
             return
         if request == self._failed_request:
-            self._stop()
             self._mark_outdated(request)
             self._show_failure()
-            return
-        if request == self._finished:
-            self._stop()
+        elif request == self._finished:
             self._mark(False)
             self._show_finished()
-            return
-        self._mark_outdated(request)
-        if (reason := self._obstacle(request)) is not None:
-            self._stop()
+        elif (reason := self._obstacle(request)) is not None:
+            self._mark_outdated(request)
             self._say(reason, "th-caution")
-            return
-        self._running = request
-        job = self._job(request)
-        self.worker.ask(job, self.settles_s if after_s is None else after_s)
+        else:
+            self._mark_outdated(request)
+            self._running = request
+            self.worker.ask(self._job(request), self.settles_s if after_s is None else after_s)
 
     @abstractmethod
     def _request(self) -> Request:
@@ -74,7 +178,7 @@ class LiveView(ABC, Generic[Request]):
         """Why a request cannot be computed; None where it can."""
 
     @abstractmethod
-    def _job(self, request: Request) -> Callable[[Job], None]:
+    def _job(self, request: Request) -> Work:
         """Announce the request on the page and return the work of the background thread."""
 
     @abstractmethod
@@ -87,10 +191,6 @@ class LiveView(ABC, Generic[Request]):
 
     def _mark_outdated(self, request: Request) -> None:
         self._mark(self._finished is not None)
-
-    def _stop(self) -> None:
-        self.worker.forget()
-        self._running = None
 
     def _failed(self, message: str) -> None:
         """A job failed; the same request is not tried again, since it would fail in the same way."""
@@ -107,8 +207,15 @@ class LiveView(ABC, Generic[Request]):
     def _say(self, text: str, kind: str = "th-status") -> None:
         self.said["status"].value = fragment("marked", text, f"{kind} {self.status_style}".strip())
 
-    def _safely(self, act: Callable[[], None]) -> None:
+    def _safely(self, act: Act) -> None:
         try:
             act()
         except Exception as wrong:  # a message is better than a page that goes silent
             self._say(f"the action failed: {wrong or type(wrong).__name__}", "th-caution")
+
+
+def button(name: str, hint: str, act: Act, **more: Any) -> widgets.Button:
+    """A button as wide as its name, with a tooltip, that calls ``act``."""
+    made = widgets.Button(description=name, tooltip=hint, layout={"width": "auto"}, **more)
+    made.on_click(lambda _: act())
+    return made

@@ -12,8 +12,7 @@ import numpy as np
 from ..cli.cues import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
 from ..report.set_report import SetReport
-from ..timeline.frames import CanvasFrame, traces_of
-from ..timeline.terms import terms_of
+from ..timeline.frames import CanvasFrame, terms_of, traces_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -10,32 +10,14 @@ import ipywidgets as widgets
 from ..editing.cue_check import read_text
 from ..editing.icon_edits import only
 from ..editing.number_literals import with_edit
-from ..figures.map_drawing import map_svg
-from ..report.blocks import fragment
+from ..figures.print_figure import themed_svg
+from ..report.blocks import Bullets, fragment, shown
 from ..report.choices import NAMES
-from .background import BackgroundWorker, Job
 from .design_view import SideCanvas
 from .goal_field import GoalField
-from .live_view import LiveView
-from .set_model import (
-    QUICK,
-    WELL,
-    RankedSet,
-    heat_frame,
-    overlay_frame,
-    rank_set,
-    why_not,
-)
-from .set_tables import (
-    caveat_html,
-    chosen_html,
-    edit_html,
-    notes_html,
-    pair_html,
-    ranking_table,
-    scores_html,
-    why_html,
-)
+from .live_view import BackgroundWorker, Job, LiveView
+from .set_model import QUICK, WELL, RankedSet, heat_frame, overlay_frame, rank_set, why_not
+from .view_blocks import chosen_html, edit_html, pair_html, set_html
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -56,6 +38,7 @@ icon glow { warm by 2 K at 2 K/s; return at 2 K/s }
 icon beat { repeat 2 { pulse cool by 2 K for 1 s; rest for 1 s } }
 """
 """A set that calls what a first ranking of any set calls: three icons, since two are easier to place."""
+MAP_INCHES = (4.6, 3.8)
 WIDE, BESIDE = "1 1 500px", 6
 """Table and heat maps are side by side for at most this number of icons."""
 
@@ -155,7 +138,8 @@ class SetView(LiveView[SetRequest]):
             hint = "select a cell of two different icons to see what separates them"
             self.said["edit_text"].value = fragment("marked", hint, "th-soft")
             return
-        self.said["pair"].value, self.said["why"].value = pair_html(made.pair(a, b)), why_html(made.pair(a, b))
+        pair = made.pair(a, b)
+        self.said["pair"].value, self.said["why"].value = pair_html(pair), shown(Bullets(pair.why))
         self.said["edit_text"].value = edit_html(None)
         self.editor.ask(lambda job: self._look_for_edit(job, made, a, b), 0.1)
 
@@ -200,12 +184,13 @@ class SetView(LiveView[SetRequest]):
                 job.on_page(lambda: self._say(status))
 
         well = rank_set(text, rig, *WELL, choosing, reference, progress, goal, self.design.model)
-        job.on_page(lambda: self._show(well, request, True))
+        picture = "" if well.map is None else map_html(well.map)
+        job.on_page(lambda: self._show(well, request, True, picture))
 
     def _failed(self, message: str) -> None:
         super()._failed(f"not ranked: {message}")
 
-    def _show(self, made: RankedSet, request: SetRequest, well: bool) -> None:
+    def _show(self, made: RankedSet, request: SetRequest, well: bool, picture: str = "") -> None:
         """Put a ranking on the page; runs on the kernel's event loop."""
         self.made, self._failed_request = made, None
         self._finished = request if well else None
@@ -226,10 +211,8 @@ class SetView(LiveView[SetRequest]):
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
         result = made.report.to_dict(mapped=False)  # the map exists already, aligned with the one before
-        said["scores"].value = scores_html(result)
-        said["table"].value = ranking_table(ranking, result)
-        said["notes"].value = notes_html(result)
-        said["caveat"].value = caveat_html(result)
+        for name, html in set_html(ranking, result).items():
+            said[name].value = html
         said["choice"].value = chosen_html(made.report)
         self.goal.show(made.report.goal, well)
         self.take.layout.display = "none" if made.report.choice is None else ""
@@ -238,8 +221,8 @@ class SetView(LiveView[SetRequest]):
         self._offer(len(made.icons))
         if alone:
             return
-        if made.map is not None:
-            said["map"].value = map_html(made.map)
+        if picture:  # the one before stays until the ranking is refined
+            said["map"].value = picture
         if well or self.picked is None:
             self._safely(lambda: self.pick(*pair))
 
@@ -298,10 +281,16 @@ class SetView(LiveView[SetRequest]):
 
 
 def map_html(found: PerceptualMap) -> str:
-    """The perceptual map with its caption."""
+    """The perceptual map with its caption; takes a fifth of a second, so that it is drawn in the background."""
+    from matplotlib.figure import Figure
+
+    from thermicon.perception.plots.draw_map import plot_map
+
     spread = f"; each ellipse holds half of {found.people} people" if found.covariance is not None else ""
     note = fragment("block", f"distances are d′, stress {found.stress:.2f}{spread}", "th-soft")
-    return f"{fragment('block', 'perceptual map', 'th-head')}{note}{map_svg(found)}"
+    figure = Figure(figsize=MAP_INCHES, layout="constrained")
+    plot_map(found, figure.add_subplot()).set_title("", loc="left")
+    return f"{fragment('block', 'perceptual map', 'th-head')}{note}{themed_svg(figure)}"
 
 
 def _row(*parts: Any) -> widgets.Box:

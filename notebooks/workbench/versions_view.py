@@ -1,25 +1,39 @@
-"""The versions view: texts that were kept, each with its difference from what is in the editor."""
+"""The versions view: texts that were kept, each with its difference from the editor's; and links that carry files."""
 
 from __future__ import annotations
 
 import difflib
+import io
 import time
-from collections.abc import Callable
+import zipfile
+from base64 import b64encode
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
 
 from ..report.blocks import fragment
-from .downloads import link
+from .live_view import button
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from ..files.versions import Version
     from .design_model import DesignModel
 
 NOTHING = "Keep the set as it is now as a version, and go on editing: here it can be compared with, and brought back."
 ABOUT = "− only in the version, + only in the editor"
 MOST_LINES = 200
+TYPES = {
+    ".cue": "text/plain",
+    ".toml": "text/plain",
+    ".png": "image/png",
+    ".svg": "image/svg+xml",
+    ".pdf": "application/pdf",
+    ".zip": "application/zip",
+}
+DPI = 200
 
 
 class VersionsView:
@@ -32,9 +46,9 @@ class VersionsView:
         self.design, self._show_text = design, show_text
         self.shown = False
         self.said = {name: widgets.HTML() for name in ("status", "about", "changes", "download")}
-        self.keep = self._button("Keep this version", "what is in the editor", self.keep_now)
-        self.back = self._button("Restore", "into the editor, as a step that can be undone", self.restore)
-        self.discard = self._button("Discard", "drop the version that is selected", self.drop)
+        self.keep = button("Keep this version", "what is in the editor", self.keep_now)
+        self.back = button("Restore", "into the editor, as a step that can be undone", self.restore)
+        self.discard = button("Discard", "drop the version that is selected", self.drop)
         self.list = widgets.Select(options=[], rows=12, description="kept", layout={"width": "330px"})
         self.list.style.description_width = "36px"
         self.list.observe(lambda _: self._show(), "value")
@@ -98,11 +112,6 @@ class VersionsView:
     def _say(self, text: str) -> None:
         self.said["status"].value = fragment("marked", text, "th-status")
 
-    def _button(self, name: str, hint: str, act: Callable[[], None]) -> widgets.Button:
-        made = widgets.Button(description=name, tooltip=hint, layout={"width": "auto"})
-        made.on_click(lambda _: act())
-        return made
-
 
 def changed_lines(before: str, now: str) -> list[tuple[str, str]]:
     """Lines that only one of two texts has, each with ``−`` or ``+``, and the lines around them, with a blank.
@@ -121,3 +130,32 @@ def _title(version: Version) -> str:
     """When a version was written, and whether by hand."""
     when = time.strftime("%d %b %H:%M:%S", time.localtime(version.at_s))
     return f"{when}{', unsaved text' if version.editor else ''}{f', {version.icon}' if version.icon else ''}"
+
+
+def link(name: str, data: bytes) -> str:
+    """A link that saves a file under a name.
+
+    >>> link("a.cue", b"cue 1")
+    '<a class="th-download" download="a.cue" href="data:text/plain;base64,Y3VlIDE=">a.cue</a>'
+    """
+    address = f"data:{TYPES.get(Path(name).suffix, 'application/octet-stream')};base64,{b64encode(data).decode()}"
+    return fragment("download", name, address)
+
+
+def figure_files(stem: str, figure: Figure) -> dict[str, bytes]:
+    """A figure as PNG, SVG and PDF, by file name."""
+    files = {}
+    for kind in ("png", "svg", "pdf"):
+        drawn = io.BytesIO()
+        figure.savefig(drawn, format=kind, dpi=DPI, bbox_inches="tight", facecolor="white")
+        files[f"{stem}.{kind}"] = drawn.getvalue()
+    return files
+
+
+def zipped(files: Mapping[str, bytes]) -> bytes:
+    """Files as one archive."""
+    held = io.BytesIO()
+    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return held.getvalue()

@@ -13,7 +13,7 @@ from thermicon.icons.atomic import OutputError
 from ..files.outputs import FILE, OBSERVER, RIG
 from ..timeline.measured import read_measured
 from .design_model import DesignModel
-from .sources import document_of
+from .panels import document_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -197,7 +197,7 @@ class Workbench:
         if view not in VIEWS:
             raise ValueError(f"there is no view {view!r}; there are {', '.join(VIEWS)}")
         if view == "design":
-            from .scene_plot import scene_figure
+            from ..figures.overview import scene_figure
 
             return scene_figure(self.scene)
         if view == "set":

@@ -12,11 +12,9 @@ from tests.browser.jupyter import Server, command, dark, errors_in, open_noteboo
 from tests.browser.onbench import (
     TWO,
     click_a_confusion,
-    drag_first_handle,
     expect_text,
     open_tab,
     root,
-    settled_text,
     text_of,
     type_below_the_first_screen,
     type_drag_and_err,

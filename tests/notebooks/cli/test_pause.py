@@ -16,7 +16,7 @@ from thermicon.circuit import Export, Gate, export
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.report.gate_words import gate_words
-from thermicon.notebooks.workbench.export_tables import delivered_html, gate_html
+from thermicon.notebooks.workbench.view_blocks import delivered_html, gate_html
 
 Cli = Callable[..., Any]
 GLOW = """cue 1

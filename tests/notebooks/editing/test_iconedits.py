@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from thermicon.notebooks.editing.cue_check import read_text
-from thermicon.notebooks.editing.icon_edits import CannotEdit, only, with_copy, with_name, with_new, without
+from thermicon.notebooks.editing.icon_edits import CannotEdit, only, without
 
 TEXT = """cue 1
 
@@ -24,38 +24,6 @@ def names(text: str) -> tuple[str, ...]:
     reading = read_text(text)
     assert reading.troubles == ()
     return reading.names
-
-
-def test_a_new_icon_stands_at_the_end_with_a_free_name() -> None:
-    once, name = with_new(TEXT)
-    assert names(once) == ("a", "b", "c", "d", "new-icon")
-    assert once.startswith(TEXT)
-    assert name == "new-icon"
-    assert with_new(once)[1] == "new-icon-2"
-    assert names(with_new("")[0]) == ("new-icon",)
-    current = "cue 1\nset s { control current }\nicon a { to 0.1 A at 1 A/s; hold for 1 s; to 0 A at 1 A/s }\n"
-    assert names(with_new(current)[0]) == ("a", "new-icon")
-
-
-def test_a_copy_follows_its_icon() -> None:
-    text, name = with_copy(TEXT, "a")
-    assert names(text) == ("a", "a-copy", "b", "c", "d")
-    assert name == "a-copy"
-    assert text.count('means "x } icon b"') == 2
-    assert names(with_copy(TEXT, "c")[0]) == ("a", "b", "c", "c-copy", "d")
-
-
-def test_another_name_goes_to_where_it_is_played() -> None:
-    text = with_name(TEXT, "a", " alert ")
-    assert names(text) == ("alert", "b", "c", "d")
-    assert "play alert;" in text
-    assert 'means "x } icon b"' in text
-    with pytest.raises(CannotEdit, match="there is an icon called b already"):
-        with_name(TEXT, "a", "b")
-    with pytest.raises(CannotEdit, match="'2x' is not a name: letters, digits and hyphens"):
-        with_name(TEXT, "a", "2x")
-    with pytest.raises(CannotEdit, match="no icon called z"):
-        with_name(TEXT, "z", "y")
 
 
 def test_an_icon_goes_with_its_comment_unless_it_is_played() -> None:

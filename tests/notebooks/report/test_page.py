@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons.atomic import OutputError
-from thermicon.notebooks.files.outputs import FOLDER, below_start
+from thermicon.notebooks.files.outputs import PAGE_FOLDER, below_start
 
 POSIX = sys.platform != "win32"
 TRAPS = ("voila", "jupyterlab", "json", "numba", "IPython", "ipykernel", "jupyter_server_config", "voila_config")
@@ -138,10 +138,10 @@ def test_the_page_writes_only_below_its_folder(tmp_path: Path, monkeypatch: pyte
     start = tmp_path / "start"
     start.mkdir()
     (start / "link").symlink_to(tmp_path)
-    monkeypatch.setenv(FOLDER, str(start))
+    monkeypatch.setenv(PAGE_FOLDER, str(start))
     with pytest.raises(OutputError, match=r"is outside the folder of this page; it writes only below .*start, into a"):
         below_start(Path(typed))
     assert below_start(Path("drives")) == (start / "drives").resolve()
     assert below_start(Path()) == start.resolve()
-    monkeypatch.delenv(FOLDER)
+    monkeypatch.delenv(PAGE_FOLDER)
     assert below_start(Path(typed)) == Path(typed)

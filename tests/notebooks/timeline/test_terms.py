@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.timeline.frames import frame_of
+from thermicon.notebooks.timeline.frames import LIMITS, TERMS, frame_of
 from thermicon.notebooks.timeline.scene import scene
-from thermicon.notebooks.timeline.terms import LIMITS, TERMS
-from thermicon.notebooks.workbench.help_sheet import help_html
+from thermicon.notebooks.workbench.panels import help_html
 
 GLOSSARY = Path(__file__).parents[3] / "docs" / "reference" / "glossary.md"
 

@@ -15,7 +15,7 @@ from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.circuit import Rig
 from thermicon.icons.atomic import OutputError
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.files.outputs import FILE, RIG, FOLDER
+from thermicon.notebooks.files.outputs import FILE, PAGE_FOLDER, RIG
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
 
@@ -96,7 +96,7 @@ class TestFiles:
         self, path: Path, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
     ) -> None:
         outside = path.parent.parent / "outside.cue"
-        for name, value in ((FOLDER, str(path.parent)), (FILE, str(path)), (RIG, "fingertip")):
+        for name, value in ((PAGE_FOLDER, str(path.parent)), (FILE, str(path)), (RIG, "fingertip")):
             monkeypatch.setenv(name, value)
         bench, bar = opened(None)
         assert (bench.text, bench.rig.name, title(bar)) == (TEXT, "fingertip", "alerts.cue")
@@ -106,7 +106,7 @@ class TestFiles:
         assert not outside.exists()
         open_file(bar, "../../etc/passwd")
         assert "is outside the folder of this page" in said(bar)
-        monkeypatch.setenv(FOLDER, str(tmp_path_factory.mktemp("elsewhere")))
+        monkeypatch.setenv(PAGE_FOLDER, str(tmp_path_factory.mktemp("elsewhere")))
         bench, bar = opened(path)  # a link out of the folder
         assert bench.text == TEXT
         bar.buttons["Open"].click()
@@ -120,32 +120,8 @@ class TestFiles:
         assert found["a-on-thenar.png"][1:4] == b"PNG"
 
 
-def test_icons_are_added_copied_renamed_and_deleted_each_as_one_step(path: Path) -> None:
+def test_downloads_follow_the_text(path: Path) -> None:
     bench, bar = opened(path)
-    bar.verbs["New icon"].click()
-    assert bench.scene.icon == "new-icon"
-    bar.icon_name.value = "glow"
-    bar.verbs["Rename"].click()
-    bar.verbs["Duplicate"].click()
-    assert bench.scene.names == ("a", "b", "glow", "glow-copy")
-    assert bench.scene.icon == "glow-copy"
-    bar.verbs["Delete"].click()
-    assert bench.scene.names == ("a", "b", "glow")
-    for _ in range(4):
-        bar.buttons["Undo"].click()
-    assert bench.text == TEXT
-    assert bar.buttons["Undo"].disabled
-    bar.icon_name.value = "b"
-    bar.verbs["Rename"].click()
-    assert said(bar) == "there is an icon called b already"
-
-
-def test_open_panels_follow_the_text_and_the_icon_that_is_shown(path: Path) -> None:
-    bench, bar = opened(path)
-    bar.buttons["Icon"].click()
-    assert bench.design_view is not None
-    bench.design_view._receive({"type": "icon", "name": "b", "seq": 1})
-    assert ">b<" in bar.about.value
     assert downloads(bar)["alerts.cue"].decode() == TEXT
     assert bar.panel.children
     bench.text = TYPED

@@ -6,7 +6,8 @@ import json
 import tomllib
 from pathlib import Path
 
-from thermicon.notebooks.workbench.labextension import ENTRY, entry_text
+from thermicon.notebooks.workbench.canvas import LAB_ENTRY as ENTRY
+from thermicon.notebooks.workbench.canvas import lab_entry_text as entry_text
 
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "notebooks" / "labextension"

@@ -12,9 +12,8 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.workbench.background import Job
 from thermicon.notebooks.workbench.design_model import DesignModel
-from thermicon.notebooks.workbench.live_view import LiveView
+from thermicon.notebooks.workbench.live_view import Job, LiveView
 from thermicon.perception.observer.observer import DATA
 
 TEXT = (
@@ -115,7 +114,7 @@ def test_a_goal_that_an_observer_cannot_judge_says_what_it_needs(tmp_path: Path)
     assert "pilot --keep" in view.goal.verdict.value
     view.goal.text.value = "time <= 60 s"
     assert view.worker.wait()
-    assert "goal met" in view.goal.verdict.value
+    assert "Goal: met" in view.goal.verdict.value
 
 
 def test_chosen_icons_that_cannot_be_kept_can_still_be_kept_after_a_mend() -> None:

@@ -17,10 +17,10 @@ from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.document import Document
-from thermicon.notebooks.files.outputs import FOLDER
+from thermicon.notebooks.files.outputs import PAGE_FOLDER
 from thermicon.notebooks.timeline.measured import read_measured, read_uploaded
 from thermicon.notebooks.workbench.document_bar import DocumentBar
-from thermicon.notebooks.workbench.log_panel import LogPanel
+from thermicon.notebooks.workbench.panels import LogPanel
 
 TEXT = "cue 1\nicon dip { cool by 4 K at 2 K/s; hold for 2 s; return at 2 K/s }\nicon none { hold for 9 s }\n"
 LATE_S, HIGHER_K = 1.5, 0.2
@@ -118,7 +118,7 @@ def test_what_is_no_single_log_or_outside_the_page_is_refused(log: Path, monkeyp
         read_uploaded({"a.csv": b"", "b.csv": b""})
     panel.load.click()
     assert said(bar) == "give the path of a log, or upload one"
-    monkeypatch.setenv(FOLDER, str(log.parent / "page"))
+    monkeypatch.setenv(PAGE_FOLDER, str(log.parent / "page"))
     (log.parent / "page").mkdir()
     load(panel, log)
     assert "outside the folder of this page" in said(bar)

@@ -7,8 +7,8 @@ import io
 from matplotlib.figure import Figure
 
 from thermicon.circuit import Rig
+from thermicon.notebooks.figures.overview import MOST_LINES, scene_figure
 from thermicon.notebooks.timeline.scene import scene
-from thermicon.notebooks.workbench.scene_plot import MOST_LINES, scene_figure, title_lines
 
 DIP = "cue 1\nicon dip { cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }\n"
 DEEP = "cue 1\nicon deep { cool by 9 °C at 10 °C/s; hold for 4 s; return at 1 °C/s }\n"
@@ -50,5 +50,5 @@ def test_the_title_says_what_is_stale_wrong_changed_and_no_more() -> None:
     assert empty.axes == []
     assert "line 1: empty file" in empty.get_suptitle()
     assert "with skin.rest_C=33" in scene_figure(scene(DIP, RIG.with_(**{"skin.rest_C": 33}))).get_suptitle()
-    lines = title_lines(scene(DIP, RIG, notes=[f"note {n}" for n in range(30)]))
-    assert (len(lines), lines[-1]) == (MOST_LINES, "and 26 more lines")
+    lines = scene_figure(scene("", RIG, notes=[f"note {n}" for n in range(30)])).get_suptitle().splitlines()
+    assert (len(lines), lines[-1]) == (MOST_LINES, "and 27 more lines")

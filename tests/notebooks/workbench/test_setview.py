@@ -15,11 +15,11 @@ from thermicon.icons import parse
 from thermicon.notebooks.editing.icon_edits import CannotEdit, only
 from thermicon.notebooks.editing.number_literals import with_edit
 from thermicon.notebooks.report.rank_details import number_points
-from thermicon.notebooks.workbench.background import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.design_model import DesignModel
+from thermicon.notebooks.workbench.live_view import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.set_model import QUICK, overlay_frame, rank_set
-from thermicon.notebooks.workbench.set_tables import caveat_html, chosen_html, scores_html
 from thermicon.notebooks.workbench.set_view import SetView
+from thermicon.notebooks.workbench.view_blocks import chosen_html, set_html
 from thermicon.notebooks.workbench.workbench import Workbench
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
@@ -162,13 +162,13 @@ def test_a_goal_is_judged_with_what_is_predicted_how_far_that_is_and_what_binds(
     assert "judged after refining" in bench.view.goal.verdict.value
     bench.wait()
     html = bench.view.goal.verdict.value
-    assert "goal not met" in html
-    assert "points short" in html
+    assert "Goal: NOT met" in html
+    assert ", missed by " in html
+    assert " points" in html
     assert "near and nearer are confused most" in html
-    assert "s to spare" in html
     bench.view.goal.text.value = "count 3"
     bench.wait()
-    assert "goal met" in bench.view.goal.verdict.value
+    assert "Goal: met" in bench.view.goal.verdict.value
     assert bench.view.worker.busy is False
 
 
@@ -294,14 +294,16 @@ def test_scores_name_the_laboratory_in_the_words_of_rank(laboratory: ObserverMod
     result = ranking_file(made.ranking, mapped=False)
     words = "your laboratory, lab.csv"
     assert any(f"people in {words} (95 %): " in line for line in number_points(result))
-    scores = scores_html(result)
+    said = set_html(made.ranking, result)
+    scores = said["scores"]
     assert scores.count(f"in {words} (95 %): ") == 2
     assert "new laboratory" not in scores
-    assert "Predicted with the observer of lab.csv." in caveat_html(result)
+    assert "Predicted with the observer of lab.csv." in said["caveat"]
     new = rank_set(TWO, Rig.load("thenar"), 4, 2)
     result = ranking_file(new.ranking, mapped=False)
-    assert scores_html(result).count("in a new laboratory (95 %): ") == 2
-    assert "observer of" not in caveat_html(result)
+    said = set_html(new.ranking, result)
+    assert said["scores"].count("in a new laboratory (95 %): ") == 2
+    assert "observer of" not in said["caveat"]
 
 
 def test_a_choice_names_the_laboratory(laboratory: ObserverModel) -> None:

@@ -1,24 +1,93 @@
-"""The export view's tables as HTML: what the device delivers, the gate's verdict, and why writing is refused."""
+"""What the set view and the export view say, as HTML: blocks of the reports, in the style of the workbench."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from thermicon.icons.number_text import number, percent
 
 from ..cli.export import CAUTION, steps_of
-from ..report.blocks import Bullets, Cell, Facts, Text, fragment, grid, shown
+from ..report.blocks import Bullets, Cards, Cell, Facts, Heading, Text, fragment, grid, shown
+from ..report.choices import choice_lines, goal_lines, laboratory
 from ..report.gate_words import gate_words, short_scenario
+from ..report.rank_details import edit_text
+from ..report.rank_notes import caveat, outside_lines, trouble_lines
+from ..report.rank_report import cards, icon_table
+from ..timeline.frames import SIMULATED, terms_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Export
     from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.circuit.safety.checks import Check
+    from thermicon.perception import Ranking
     from thermicon.perception.identification.delivered import PerceivedChange
+    from thermicon.perception.ranking.scores import PairScore
+    from thermicon.perception.selection.edit_result import Edit, NoEdit
+    from thermicon.perception.selection.goal_result import GoalResult
 
+    from ..report.set_report import SetReport
+
+ALONE = "The set has only one icon, so there are no distances to show."
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
+ASKED = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "middle 95 % of people", SIMULATED)
+"""Words that are explained below a set."""
+
+
+def set_html(ranking: Ranking, result: dict[str, Any]) -> dict[str, str]:
+    """What is said of a ranking, which ``result`` has as plain data, by the names of its parts.
+
+    Parts are: scores with the interval of the laboratory that is predicted; one row per icon, the best first; notes of
+    what is unsafe, out of reach or out of the range of the data; and what the numbers rest on.
+    """
+    icons, observer = result["icons"], result["observer"]
+    rows = {icon["name"]: icon for icon in icons}
+    where = laboratory(observer, result["set"]["own_laboratory"])
+    past = sum(not icon["safe"] for icon in icons)
+    limits = f"{past} past a hard limit" if past else "no icon past a hard limit"
+    by = "" if observer == "shipped" else f" Predicted with the observer of {observer}."
+    meaning = "Confusion: share of trials in which the icon of a row is answered with that of a column."
+    simulated = f"Limits of this simulation: {limits}; export judges worst cases."
+    return {
+        "scores": shown(Text(ALONE, "note") if len(icons) == 1 else Cards(cards(result, where))),
+        "table": shown(icon_table([rows[row["icon"]] for row in ranking.rows()], result)),
+        "notes": shown(*(Text(line, "note") for line in (*trouble_lines(icons, {}), *outside_lines(icons)))),
+        "caveat": shown(Text(f"{meaning} {caveat(result)}{by} {simulated}", "soft"))
+        + fragment("terms", terms_of(*ASKED)),
+    }
+
+
+def pair_html(pair: PairScore) -> str:
+    """Which two icons form a pair, and how often they are confused."""
+    sentence = f"confused in {percent(pair.confused_probability)} of trials, d′ {number(pair.d_prime)}"
+    return shown(Heading(f"{pair.a} and {pair.b}"), Text(sentence))
+
+
+def edit_html(edit: Edit | NoEdit | None) -> str:
+    """The cheapest edit of a pair, or why there is none."""
+    from thermicon.perception.selection.edit_result import NoEdit
+
+    if edit is None:
+        return shown(Text("looking for the cheapest edit …", "status"))
+    if isinstance(edit, NoEdit):
+        return shown(Text(f"no edit: {edit.reason}", "soft"))
+    return shown(Text(edit_text({"edit": edit.to_dict()})))
+
+
+def chosen_html(made: SetReport) -> str:
+    """Which icons were chosen, and how certain that choice is."""
+    if made.choice is None:
+        return ""
+    where = laboratory(made.ranking.observer, made.ranking.own_laboratory)
+    first, *rest = choice_lines(made.choice.to_dict(), where)
+    return shown(Heading(first), Bullets(tuple(rest)))
+
+
+def verdict_html(reached: GoalResult) -> str:
+    """Whether a goal is met, what is predicted of every part, how far it is from the limit, and what binds."""
+    first, *rest = goal_lines(reached.to_dict())
+    return shown(Text(first, "good" if reached.met else "bad"), Bullets(tuple(rest)))
 
 
 def delivered_html(ready: Export, remarks: Sequence[str] = ()) -> str:
@@ -85,10 +154,10 @@ def gate_html(icon: Prepared) -> str:
 def _check(check: Check, source_number: int) -> dict[str, object]:
     """What the template prints for one rule."""
     unit, (worst, limit) = "" if check.unit == "1" else f" {check.unit}", check.figures
-    kind = "" if check.passed else "bad" if check.severity == "hard" else "amber"
+    kind, mark = ("", "ok") if check.passed else ("bad", "RED") if check.severity == "hard" else ("amber", "amber")
     return {
         "kind": kind,
-        "mark": {"": "ok", "bad": "RED", "amber": "amber"}[kind],
+        "mark": mark,
         "quantity": check.quantity,
         "worst": f"{worst}{unit}",
         "limit": f"{'≤' if check.upper else '≥'} {limit}{unit} {check.severity}",
@@ -103,15 +172,9 @@ def _check(check: Check, source_number: int) -> dict[str, object]:
 def written_html(ready: Export, folder: Path, before: Path | None) -> str:
     """Which files were written, where the folder as it was before stands, and how to play the drives."""
     drives = "1 drive with its sidecar" if len(ready.prepared) == 1 else f"{len(ready.prepared)} drives with sidecars"
+    older = "" if before is None else f"the folder as it was before is {before}"
     return shown(
         Text(f"wrote {drives} into {folder.resolve()}", "good"),
         Bullets(tuple(ready.files)),
-        *(
-            Text(line, "soft")
-            for line in (
-                "" if before is None else f"the folder as it was before is {before}",
-                f"to play: {ready.form.how}",
-                CAUTION,
-            )
-        ),
+        *(Text(line, "soft") for line in (older, f"to play: {ready.form.how}", CAUTION)),
     )
