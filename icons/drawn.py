@@ -20,6 +20,6 @@ class Drawn:
         return plot(self, ax)
 
     def _repr_html_(self) -> str:
-        from .pictures.picture import picture
+        from .pictures.draw import as_svg
 
-        return picture(self)
+        return as_svg(self.plot())

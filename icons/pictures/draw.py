@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import io
+import math
 from collections.abc import Sequence
+from html import escape
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..drawn import Drawn
 from ..model.family import Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet
-from .curve_style import COLOURS, chosen, directions, evenly, icon_count
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,6 +20,10 @@ if TYPE_CHECKING:
     from ..model.corners import Corners
     from ..model.units import Control
 
+Direction = Literal["cool", "warm", "stay"]
+# Dark blue and light orange stay apart in grey and for all common kinds of colour vision.
+COOL, WARM, STAY = "#2166ac", "#f1a340", "#4d4d4d"
+COLOURS: dict[Direction, str] = {"stay": STAY, "cool": COOL, "warm": WARM}
 MOST_DRAWN, MOST_NAMED = 24, 8
 # Eight colours for icons by name, safe for common kinds of colour vision; dashes distinguish them in grey.
 _HUES = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f")
@@ -57,6 +63,68 @@ def plot(drawn: Drawn, ax: Axes | None = None) -> Axes:
         more = f" ({len(members)} of {len(drawn):,} drawn)" if len(members) < len(drawn) else ""
         return _overlay(members, [icon.name for icon in members], _short(title) + more, ax)
     raise TypeError(f"a {type(drawn).__name__} has no picture; an Icon, a Family or an IconSet has")
+
+
+def as_svg(axes: Axes) -> str:
+    """The figure of some axes as SVG for a notebook or a page; texts stay texts, and equal figures give equal bytes."""
+    import matplotlib
+
+    held = io.StringIO()
+    figure: Any = axes.figure
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "thermicon"}):
+        figure.savefig(held, format="svg", metadata={"Date": None})
+    label = escape(f"{axes.get_title()}: {axes.get_ylabel()}")
+    return f'<svg role="img" aria-label="{label}"{held.getvalue().partition("<svg")[2]}'
+
+
+def icon_count(count: int) -> str:
+    """Return a number of icons for people.
+
+    >>> icon_count(1), icon_count(1000)
+    ('1 icon', '1,000 icons')
+    """
+    return f"{count:,} icon{'' if count == 1 else 's'}"
+
+
+def directions(corners: Corners) -> list[Direction]:
+    """Return, for every straight piece, whether it cools, warms or stays; under control current, more current cools.
+
+    >>> from thermicon.icons.model.corners import Corners
+    >>> directions(Corners((0.0, 2.0, 6.0), (32.0, 26.0, 26.0), "temperature_C"))
+    ['cool', 'stay']
+    """
+    down: Direction = "cool" if corners.quantity == "temperature_C" else "warm"
+    up: Direction = "warm" if down == "cool" else "cool"
+    return ["stay" if b == a else down if b < a else up for a, b in pairwise(corners.value)]
+
+
+def evenly(count: int, most: int) -> list[int]:
+    """Return at most ``most`` places out of ``count``, evenly apart, the first and the last among them.
+
+    >>> evenly(10, 4), evenly(3, 4)
+    ([0, 3, 6, 9], [0, 1, 2])
+    """
+    if count <= most:
+        return list(range(count))
+    return sorted({round(n * (count - 1) / (most - 1)) for n in range(most)})
+
+
+def chosen(sizes: Sequence[int], most: int) -> list[int]:
+    """Return at most ``most`` places among all combinations of as many values: the corners first, then evenly apart.
+
+    Corners, where each value is the first or the last, are what a family's extremes mostly are.
+
+    >>> chosen((3, 3), 6), chosen((2, 2), 6)
+    ([0, 2, 3, 5, 6, 8], [0, 1, 2, 3])
+    """
+    count = math.prod(sizes)
+    corners = {0, count - 1}
+    if count > most >= 2 ** len(sizes):
+        corners = {0}
+        for size in sizes:
+            corners = {place * size + end for place in corners for end in (0, size - 1)}
+    places = evenly(count, most if count <= most else max(2, most - len(corners) + 2))
+    return sorted({*corners, *places}) if count > 1 else [0]
 
 
 def _overlay(icons: Sequence[Icon], labels: Sequence[str], title: str, ax: Axes | None) -> Axes:

@@ -1,24 +1,21 @@
-"""The shipped sets side by side: a table in a terminal, thumbnails in a notebook, a mapping for programs."""
+"""The shipped sets side by side: a table in a terminal and in a notebook, a mapping for programs."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from html import escape
 from typing import TYPE_CHECKING
 
 from ..files.shipped import library_names, load_library
 from ..model.iconset import IconSet
 from ..model.words import nearest
-from .curve_style import icon_count
+from .draw import icon_count
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_MOST_THUMBNAILS = 6
 _WIDTH = 100
-_HEAD = ("set", "pictures", "icons", "for", "from")
 
 
 class UnknownSet(KeyError):
@@ -44,7 +41,7 @@ class Shipped:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Library(Mapping[str, IconSet]):
-    """Shipped sets by name, with pictures in a notebook; ``entries`` says of each what it is."""
+    """Shipped sets by name; ``entries`` says of each what it is, and so does its table in a notebook."""
 
     sets: tuple[tuple[str, IconSet], ...]
 
@@ -88,23 +85,11 @@ class Library(Mapping[str, IconSet]):
         return "\n".join(rows)
 
     def _repr_html_(self) -> str:
-        from .picture import thumbnail
-
-        rows = []
-        for one, (_, icons) in zip(self.entries, self.sets, strict=True):
-            pictures = "".join(map(thumbnail, icons.entries[:_MOST_THUMBNAILS]))
-            left = len(icons.entries) - _MOST_THUMBNAILS
-            more = f" and {left} more" if left > 0 else ""
-            words = (f"<b>{escape(one.name)}</b><br>{escape(one.title)}", pictures + more, f"{one.count:,}")
-            cells = (*words, escape(one.intent), escape(one.source))
-            rows.append("".join(f'<td style="text-align:left;vertical-align:top">{cell}</td>' for cell in cells))
-        head = "".join(f'<th style="text-align:left">{name}</th>' for name in _HEAD)
-        body = "".join(f"<tr>{row}</tr>" for row in rows)
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+        return str(self.to_frame().to_html(index=False))
 
 
 def library() -> Library:
-    """Return all shipped sets; in a notebook they appear as a table with pictures.
+    """Return all shipped sets; in a notebook they appear as a table.
 
     Returns
     -------

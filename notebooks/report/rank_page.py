@@ -215,7 +215,7 @@ def _drawn(axes: Axes, said: str, caption: str, vector: bool) -> Picture:
 
 def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
     """Yield every icon: what it scores, its cue text, its course and an overview of its run."""
-    from thermicon.icons.pictures.picture import picture as drawn
+    from thermicon.icons.pictures.draw import as_svg
 
     members = list(icons)
     yield Heading("Icons")
@@ -230,7 +230,7 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
         peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())
         said = [*(facts if result["by"] == "model" else []), "largest change " + ", ".join(peaks)]
         yield Text("; ".join(said) + ".", "lead")
-        small = drawn(icon).encode("utf-8")
+        small = as_svg(icon.plot()).encode("utf-8")
         course = Picture("", f"prescribed course of {icon.name}", "svg+xml", 320, small)
         yield Row((Code(cue_text(icon)), course))
         if place < MOST_OVERVIEWS:

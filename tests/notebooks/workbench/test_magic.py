@@ -93,7 +93,7 @@ def test_a_notebook_shows_pictures_and_stops_at_mistakes() -> None:
 
 def test_nothing_imports_ipython_or_widgets_before_they_are_used() -> None:
     code = (
-        "import sys, thermicon.icons.pictures.picture, thermicon.notebooks\n"
+        "import sys, thermicon.icons.pictures.draw, thermicon.notebooks\n"
         "print([m for m in ('IPython', 'ipywidgets', 'anywidget') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
