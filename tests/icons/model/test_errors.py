@@ -1,10 +1,43 @@
 """Every mistake in the table is told with its code, place and words; every suggestion is itself sound."""
 
+import tomllib
+from pathlib import Path
+from typing import Any, NamedTuple
+
 import pytest
 
-from tests.icons.mistakes import ALL, DOWN, Mistake
 from thermicon.icons import CueErrors, parse
 from thermicon.icons.model.errors import TITLES, CueError
+
+
+DOWN = "cool by 6 °C at 3 °C/s"
+
+
+class Mistake(NamedTuple):
+    """A text, the code and place of its error, words of the message, and the corrected line ("" for none)."""
+
+    source: str
+    code: str
+    line: int
+    column: int
+    words: str
+    suggestion: str | None = None
+
+
+def _mistake(row: dict[str, Any]) -> Mistake:
+    after = f"\n{row['after']}" if "after" in row else ""
+    if "parameters" in row:
+        statement = row.get("statement", "change by a at 1 K/s")
+        text = f"cue 1\nicon x({row['parameters']} {{\n  {statement}\n  hold for 1 s\n}}{after}"
+    elif "statement" in row:
+        text = f"cue 1\nicon x {{ {row.get('before', '')}\n  {row['statement']}\n}}{after}"
+    else:
+        text = row["source"]
+    return Mistake(text, row["code"], *row["place"], row["words"], row.get("suggestion"))
+
+
+_TABLES = tomllib.loads(Path(__file__).parents[1].joinpath("mistakes.toml").read_text(encoding="utf-8"))
+ALL = [_mistake(row) for rows in _TABLES.values() for row in rows]
 
 
 def errors_of(text: str | bytes) -> tuple[CueError, ...]:

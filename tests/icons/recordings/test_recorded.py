@@ -1,6 +1,7 @@
 """Recordings in CSV files as icons: how they read, in which shapes tables come, and every message about them."""
 
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -116,100 +117,21 @@ def test_a_minute_at_a_kilohertz(tmp_path: Path) -> None:
     assert len(icon.statements) == 40
 
 
-ROWS = "0,32\n1,31\n"
+MESSAGES = tomllib.loads(Path(__file__).parents[1].joinpath("messages.toml").read_text(encoding="utf-8"))
+LONG_CELL = {
+    "text": 'time_s,skin_C\n0,"' + "3" * 140_000,
+    "place": "rec.csv:2",
+    "message": "this row cannot be read .field larger",
+}
 
 
-@pytest.mark.parametrize(
-    ("text", "place", "message"),
-    [
-        (
-            "",
-            "rec.csv",
-            "E005 empty file\n  nothing but white space\n  the first line is such as: time_s,temperature_C",
-        ),
-        (" \n\n", "rec.csv", "E005"),
-        ("# only\n# remarks\n", "rec.csv", "E013 not a recording\n  no line names the columns"),
-        (
-            b"PK\x03\x04\x00",
-            "rec.csv",
-            "E006 binary file\n  this is .*\n  a recording is a table, saved as CSV in UTF-8",
-        ),
-        (
-            b"time_s\0",
-            "rec.csv",
-            "E006 binary file\n  a zero byte at byte offset 6\n  a recording is a table,",
-        ),
-        (DIP.encode("utf-16"), "rec.csv", "E006"),
-        (
-            b"time_s,display_C\n0,32 \xb0C\n",
-            "rec.csv",
-            "E007 not UTF-8\n  byte 0xB0 at byte offset 22, on line 2, is not UTF-8\n  save",
-        ),
-        ("time_s,display_C\n", "rec.csv", "E013 not a recording\n  no rows below the names of the columns\n  at least"),
-        ("time_s,display_C\n0,32\n", "rec.csv", "  1 row below the names of the columns\n"),
-        (
-            f"time_ms,display_C\n{ROWS}",
-            "rec.csv:1",
-            "E013 not a recording\n  the column time_s is missing; the columns are time_ms, display_C\n"
-            "  is it 'time_ms'\\? Its name must say that it is in seconds: time_s",
-        ),
-        (f"t,display_C\n{ROWS}", "rec.csv:1", "is it 't'\\?"),
-        (f"clock,display_C\n{ROWS}", "rec.csv:1", "the time in s has the name time_s"),
-        (ROWS, "rec.csv:1", "this line holds numbers, not the names of columns\n  put time_s,temperature_C above it"),
-        (
-            f"time_s,temp_C\n{ROWS}",
-            "rec.csv:1",
-            "no column is called temperature_C, target_C, setpoint_C, display_C or skin_C; the columns are time_s, "
-            "temp_C\n  rename 'temp_C' to temperature_C if it is in °C, or say which is meant: --column temp_C",
-        ),
-        ("time_s,x1,x2,x3,x4,x5,x6,x7,x8\n", "rec.csv:1", "x7, …\n  say which is meant: --column x1"),
-        ("time_s\n0\n", "rec.csv:1", "the columns are time_s\n  say which is meant: --column name"),
-        (
-            "time_s,target_C,display_C,skin_C\n",
-            "rec.csv:1",
-            "target_C, display_C and skin_C are all temperatures\n  say which: --column target_C",
-        ),
-        ("time_s,skin_C,time_s\n", "rec.csv:1", "the column time_s appears twice\n  rename or remove one of them"),
-        ("time_s,skin_C\n0,00,32,5\n", "rec.csv:2", "4 cells, where the first line names 2\n  write decimal points"),
-        (
-            "time_s,skin_C\n0,32\n1\n",
-            "rec.csv:3",
-            "E014 not a reading\n  skin_C is empty\n  fill it in, or remove the row",
-        ),
-        ("time_s,skin_C\n0,32\n,31\n", "rec.csv:3", "time_s is empty"),
-        ("time_s,skin_C\n0,32\n1,NaN\n", "rec.csv:3", "skin_C is 'NaN', not a finite number\n  fill it in"),
-        ("time_s,skin_C\n0,32\n1,1_0\n", "rec.csv:3", "skin_C is '1_0', not a finite number"),
-        ("time_s;skin_C\n0;32\n1;1.031,5\n", "rec.csv:3", "skin_C is '1.031,5', not"),
-        ("time_s,skin_C\ns,°C\n0,32\n", "rec.csv:2", "time_s is 's', not a finite number\n  units belong in the names"),
-        ('time_s,skin_C\n0,"' + "3" * 140_000, "rec.csv:2", "this row cannot be read \\(field larger than field limit"),
-        ("time_s,skin_C\n0,32\n2,31\n\n1,30\n", "rec.csv:5", "E015 times out of order\n  time_s is 1 s, after 2 s in"),
-        ("time_s,skin_C\n0,32\n1,31\n1,30\n1,29\n", "rec.csv:5", "time_s is 1 s for the third time\n  two readings at"),
-        ("time_s,skin_C\n5,32\n5,31\n", "rec.csv", "all readings are at 5 s\n  a recording lasts some time"),
-        (
-            "time_s,skin_C\n0,32\n8000,31\n",
-            "rec.csv",
-            "E221 too long\n  time_s runs over 8,000 s\n  an icon lasts at most 3600 s; divide by 1000",
-        ),
-        (
-            "time_s,skin_C\n0,305.2\n1,304\n",
-            "rec.csv:2",
-            "E219 level out of range\n  skin_C is 305.2; an icon keeps to −10 to 60 °C\n  these look like kelvin",
-        ),
-        ("time_s,skin_C\n0,89.6\n1,88\n", "rec.csv:2", "these look like °F: convert the column to °C"),
-        ("time_s,skin_C\n0,32\n1,85\n2,31\n", "rec.csv:3", "skin_C is 85; an .*\n  correct or remove the reading"),
-        (
-            "time_s,skin_C\n0,-127\n1,-127\n",
-            "rec.csv:2",
-            "skin_C is −127; .*\n  check the unit: the column must be in °C",
-        ),
-    ],
-)
-def test_every_message_about_a_file_is_read(tmp_path: Path, text: str | bytes, place: str, message: str) -> None:
-    path = written(tmp_path, text)
-    with pytest.raises(ValueError, match=message) as found:
+@pytest.mark.parametrize("said", [*MESSAGES["recording"], LONG_CELL], ids=lambda said: said["message"][:30])
+def test_every_message_about_a_file_is_read(tmp_path: Path, said: dict[str, str]) -> None:
+    path = written(tmp_path, said["text"].encode(said.get("encoding", "utf-8")))
+    with pytest.raises(ValueError, match=said["message"]) as found:
         from_csv(path)
     lines = str(found.value).split("\n")
-    assert lines[0].startswith(f"{tmp_path}/{place}  E")
+    assert lines[0].startswith(f"{tmp_path}/{said['place']}  E")
     assert len(lines) == 3 and all(lines)
 
 
