@@ -168,62 +168,6 @@ def test_a_name_from_the_command_line_and_a_wrong_one() -> None:
         THENAR.with_(**{"module.name": "CP6034"})
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        (
-            {"module.name": "CP60340", "module.resistance_ohm": 2.0},
-            r"module: resistance_ohm and name are two ways of giving it; keep one and remove the other",
-        ),
-        (
-            {"module.resistance_ohm": 2.0, "module.name": "CP60340"},
-            r"module: resistance_ohm and name are two ways of giving it",
-        ),
-        (
-            {"module.name": "CP60340", "module.datasheet": [TEC]},
-            r"module: datasheet and name are two ways of giving it; keep one and remove the other",
-        ),
-        (
-            {"module.resistance_ohm": None},
-            r"^rig thenar: module\.resistance_ohm is missing; add it, in Ω$",
-        ),
-        ({"module.extraction": "three"}, r"module\.extraction: only for a data sheet or a name; remove the key"),
-        (
-            {"module.datasheet": [TEC], "module.extraction": "five"},
-            r"module\.extraction = 'five': must be 'three' or 'four'",
-        ),
-        ({"module.datasheet": []}, r"module\.datasheet: 0 tables; give one, or two for two hot-side temperatures"),
-        ({"module.datasheet": [TEC] * 3}, r"module\.datasheet: 3 tables; give one, or two"),
-        (
-            {"module.datasheet": [TEC, TEC]},
-            r"module\.datasheet: both stand for 8\.5 °C .* must differ by at least 1 K, so leave one out",
-        ),
-        ({"module.datasheet": [_without("v_max_V")]}, r"module\.datasheet\.0\.v_max_V is missing; add it, in V"),
-        (
-            {"module.datasheet": [{**TEC, "i_max_A": 0}]},
-            r"module\.datasheet\.0\.i_max_A = 0 A: must be greater than 0 A",
-        ),
-        ({"module.datasheet": [{**TEC, "dt_max_K": 200}]}, r"dt_max_K = 200 K: must be at most 150 K"),
-        (
-            {"module.datasheet": [{**TEC, "dtmax_K": 66}]},
-            r"module\.datasheet\.0\.dtmax_K: unknown key; did you mean module\.datasheet\.0\.dt_max_K",
-        ),
-        (
-            {"module.datasheet": [TEC, {**TEC_WARM, "q_max_W": 5}]},
-            r"module\.datasheet\.1\.q_max_W = 5 W: must lie between .* W",
-        ),
-        (
-            {"module.datasheet": [_without("q_max_W")], "module.extraction": "four"},
-            r"module\.datasheet\.0\.q_max_W is missing; four figures need it",
-        ),
-        ({"module.datasheet.0.i_max_A": 3}, r"this rig's module has no data sheet; set module\.datasheet, a list"),
-    ],
-)
-def test_a_module_that_cannot_be_is_refused_in_words(changes: dict[str, object], words: str) -> None:
-    with pytest.raises(RigError, match=words):
-        THENAR.with_(**changes)
-
-
 def test_a_sheet_that_is_not_there_is_answered_with_those_that_are() -> None:
     rig = THENAR.with_(**{"module.datasheet": [TEC]})
     with pytest.raises(RigError, match=r"no such data sheet; there are 0 \(hot side at 25 °C\)"):

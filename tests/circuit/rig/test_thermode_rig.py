@@ -151,20 +151,6 @@ def test_probes_are_read_as_on_a_module() -> None:
     assert simulate(STEP, rig).probe("deep") == pytest.approx(simulate(STEP, RIG).cold_receptor_C, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"driver.update_Hz": 10}, r"driver.update_Hz: rig tcs2 is a thermode: it has no driver"),
-        ({"thermode.lowest_C": 60.0}, r"thermode.lowest_C = 60 °C: must be below thermode.highest_C \(60 °C\)"),
-        ({"thermode.lag_s": -1.0}, r"thermode.lag_s = -1.0 s: must be at least 0 s"),
-        ({"thermode.slow": 1.0}, r"thermode.slow: unknown key"),
-    ],
-)
-def test_faults_of_a_thermode_are_told(changes: dict[str, object], words: str) -> None:
-    with pytest.raises(RigError, match=words):
-        RIG.with_(**changes)
-
-
 def test_a_rig_is_a_thermode_or_has_a_module() -> None:
     with pytest.raises(RigError, match=r"this rig has a module and no thermode; use a rig with \[thermode\]"):
         Rig.load("thenar").with_(**{"thermode.lag_s": 0.1})

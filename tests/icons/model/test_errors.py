@@ -9,7 +9,6 @@ import pytest
 from thermicon.icons import CueErrors, parse
 from thermicon.icons.model.errors import TITLES, CueError
 
-
 DOWN = "cool by 6 °C at 3 °C/s"
 
 
