@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from thermicon.icons import Icon
-from thermicon.icons.model.shapes import Pulse, Step, Wave
-from thermicon.icons.model.statements import Broken, Play, Ramp, Repeat, Return, Statement, Total
+from thermicon.icons.model.statements import Broken, Play, Pulse, Ramp, Repeat, Return, Statement, Step, Total, Wave
 
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError

@@ -10,8 +10,21 @@ from ..model.format import Holes, Wording
 from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter, Path
-from ..model.shapes import Pulse, Step, Wave
-from ..model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
+from ..model.statements import (
+    Broken,
+    Current,
+    Hold,
+    Play,
+    Pulse,
+    Ramp,
+    Repeat,
+    Rest,
+    Return,
+    Statement,
+    Step,
+    Total,
+    Wave,
+)
 from ..model.units import Control, Kind, decimal_text, quantity
 from .references import cited, plain_doi, sources
 

@@ -8,19 +8,24 @@ from ..model.context import Metadata
 from ..model.expand import HOLE
 from ..model.icon import Icon
 from ..model.parameter import Parameter, Path, Slot, value_fault
-from ..model.shapes import Heading, Pulse, Shape, Start, Step, Wave
 from ..model.statements import (
     Bound,
     Broken,
     Current,
+    Heading,
     Hold,
     Play,
+    Pulse,
     Ramp,
     Repeat,
     Rest,
     Return,
+    Shape,
+    Start,
     Statement,
+    Step,
     Total,
+    Wave,
 )
 from ..model.units import MOST_REPEATS, UNITS, Kind
 from ..model.words import nearest

@@ -6,8 +6,22 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 
 from .motion import advance, amplitude, piece_count, reach, whole_periods
-from .shapes import Pulse, Shape, Step, Wave
-from .statements import Broken, Current, Leaf, Play, Ramp, Repeat, Rest, Return, Statement, Total
+from .statements import (
+    Broken,
+    Current,
+    Leaf,
+    Play,
+    Pulse,
+    Ramp,
+    Repeat,
+    Rest,
+    Return,
+    Shape,
+    Statement,
+    Step,
+    Total,
+    Wave,
+)
 from .units import HIGHEST_A, HIGHEST_C, LONGEST_S, LOWEST_C, SHORTEST_S, Control, decimal_text, exact
 
 # Of one icon, written out: 28 a second for the hour that it may last.

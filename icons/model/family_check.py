@@ -8,8 +8,7 @@ from .check import Played, Problem, survey
 from .context import Context
 from .errors import CueErrors
 from .icon import problem_error, rest_level
-from .shapes import Wave
-from .statements import Broken, Repeat, Statement
+from .statements import Broken, Repeat, Statement, Wave
 
 if TYPE_CHECKING:
     from .expand import Expander

@@ -4,8 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .parameter import Path
-from .shapes import Pulse, Step, Wave
-from .statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Statement, Total
+from .statements import Broken, Current, Hold, Play, Pulse, Ramp, Repeat, Rest, Statement, Step, Total, Wave
 from .units import Control, Kind, quantity
 
 if TYPE_CHECKING:

@@ -6,8 +6,7 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from itertools import accumulate, pairwise
 
-from .shapes import Pulse, Shape, Step, Wave
-from .statements import Current, Leaf, Ramp, Return, Total
+from .statements import Current, Leaf, Pulse, Ramp, Return, Shape, Step, Total, Wave
 from .units import exact
 
 TOLERANCE = 1e-3

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import get_args
 
 from ..near_words import nearest_words
-from .shapes import Shape
+from .statements import Shape
 from .units import UNITS, Control, Kind, decimal_text, exact_number
 
 _KEYS = ("means", "by", "doi", "licence", "tags")

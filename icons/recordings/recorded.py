@@ -10,8 +10,7 @@ from typing import Literal
 from ..model.context import Context, name_fault
 from ..model.errors import whole_file
 from ..model.icon import Icon
-from ..model.shapes import Step
-from ..model.statements import Hold, Ramp, Rest, Return, Statement
+from ..model.statements import Hold, Ramp, Rest, Return, Statement, Step
 from ..model.units import fault
 from .readings import CONTROL_OF, read_readings
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.icons import CueErrors, Icon
 from thermicon.icons.model.motion import periods_of
-from thermicon.icons.model.shapes import Wave
+from thermicon.icons.model.statements import Wave
 from thermicon.icons.number_text import number
 
 from ..editing.cue_check import read_text

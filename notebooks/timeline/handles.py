@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.icons.model.icon import rest_level
 from thermicon.icons.model.motion import advance, amplitude, pieces
-from thermicon.icons.model.shapes import Pulse, Step, Wave
-from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Total
+from thermicon.icons.model.statements import Current, Hold, Play, Pulse, Ramp, Repeat, Rest, Return, Step, Total, Wave
 
 if TYPE_CHECKING:
     from thermicon.icons import Family, Icon

@@ -15,8 +15,20 @@ from thermicon.icons.files.exchange import to_json
 from thermicon.icons.files.shipped import library_names
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.parameter import Parameter, Slot
-from thermicon.icons.model.shapes import Pulse, Step, Wave
-from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
+from thermicon.icons.model.statements import (
+    Current,
+    Hold,
+    Play,
+    Pulse,
+    Ramp,
+    Repeat,
+    Rest,
+    Return,
+    Statement,
+    Step,
+    Total,
+    Wave,
+)
 from thermicon.icons.model.units import Kind, fault
 
 SCHEMA = json.loads(resources.files("thermicon.icons").joinpath("data/cue.schema.json").read_text(encoding="utf-8"))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, parse
 from thermicon.icons.model.check import MOST_CORNERS, corner_count
-from thermicon.icons.model.shapes import Wave
+from thermicon.icons.model.statements import Wave
 
 # Per kind of value: unit, numbers that make sense at one place or another, and some that never do.
 VALUES = {

@@ -10,8 +10,20 @@ import pytest
 
 from thermicon.icons import CueErrors, Icon, IconSet, load_library, parse
 from thermicon.icons.model.context import Context, Metadata
-from thermicon.icons.model.shapes import Pulse, Step, Wave
-from thermicon.icons.model.statements import Broken, Current, Hold, Play, Ramp, Repeat, Rest, Return, Total
+from thermicon.icons.model.statements import (
+    Broken,
+    Current,
+    Hold,
+    Play,
+    Pulse,
+    Ramp,
+    Repeat,
+    Rest,
+    Return,
+    Step,
+    Total,
+    Wave,
+)
 
 HOLD = (Hold(1),)
 WAIT = Icon("wait", (Rest(1),))

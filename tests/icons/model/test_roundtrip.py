@@ -12,8 +12,21 @@ from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, Icon, IconSet, parse
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.parameter import Parameter, Slot
-from thermicon.icons.model.shapes import Pulse, Shape, Step, Wave
-from thermicon.icons.model.statements import Current, Hold, Play, Ramp, Repeat, Rest, Return, Statement, Total
+from thermicon.icons.model.statements import (
+    Current,
+    Hold,
+    Play,
+    Pulse,
+    Ramp,
+    Repeat,
+    Rest,
+    Return,
+    Shape,
+    Statement,
+    Step,
+    Total,
+    Wave,
+)
 from thermicon.icons.model.units import exact, quantity, to_si
 
 TIMES = st.one_of(st.floats(1e-6, 50), st.integers(1, 999).map(lambda n: n / 1000), st.integers(1, 50).map(float))

@@ -9,8 +9,7 @@ import pytest
 from thermicon.icons import Icon, parse, pulse, step, wave
 from thermicon.icons.model.context import Context
 from thermicon.icons.model.corners import STEP_S, Corners
-from thermicon.icons.model.shapes import Shape, Wave
-from thermicon.icons.model.statements import Statement
+from thermicon.icons.model.statements import Shape, Statement, Wave
 
 
 def corners_of(body: str, settings: str = "") -> Corners:

@@ -9,8 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from thermicon.icons import Icon, parse
-from thermicon.icons.model.shapes import Step
-from thermicon.icons.model.statements import Hold, Ramp, Rest, Return
+from thermicon.icons.model.statements import Hold, Ramp, Rest, Return, Step
 from thermicon.icons.recordings.recorded import from_csv
 
 Array = NDArray[np.float64]
