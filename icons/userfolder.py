@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import platform
 import stat
@@ -12,9 +11,6 @@ from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from .atomic import complete_or_absent
-
-HASH_BYTES = 32  # of SHA-256
 WRITABLE_BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 
 
@@ -79,46 +75,9 @@ def _fault(folder: Path, is_last: bool) -> str | None:
     return None
 
 
-def read_private(path: Path) -> bytes | None:
-    """Return the content of a file that only this user can have written; None where there is none, or others could."""
-    try:
-        if not stat.S_ISREG(path.lstat().st_mode):
-            return None
-        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0))
-        with os.fdopen(handle, "rb") as file:
-            status = os.fstat(file.fileno())
-            if sys.platform != "win32" and (status.st_uid != os.geteuid() or status.st_mode & WRITABLE_BY_OTHERS):
-                return None
-            return file.read()
-    except OSError:
-        return None
-
-
-def sealed(content: bytes) -> bytes:
-    """Return content after its own hash, so that damage is noticed.
-
-    >>> opened(sealed(b"content")), opened(sealed(b"content")[:-1]), opened(None)
-    (b'content', None, None)
-    """
-    return hashlib.sha256(content).digest() + content
-
-
-def opened(data: bytes | None) -> bytes | None:
-    """Return the content of what `sealed` made; None where there is nothing, or where it is damaged."""
-    if data is None or hashlib.sha256(data[HASH_BYTES:]).digest() != data[:HASH_BYTES]:
-        return None
-    return data[HASH_BYTES:]
-
-
 def remove_unused(files: Iterable[Path], longest_s: float) -> None:
     """Remove files that nobody read or wrote for so many s; where that fails, they stay for another time."""
     with suppress(OSError):
         for file in files:
             if time.time() - max(file.stat().st_atime, file.stat().st_mtime) > longest_s:
                 file.unlink(missing_ok=True)
-
-
-def write_private(path: Path, data: bytes) -> None:
-    """Write a file that only this user can read and write; it appears complete or not at all."""
-    with complete_or_absent(path, mode=0o600) as draft:
-        draft.write_bytes(data)

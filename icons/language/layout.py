@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 from ..model.format import header_lines
 from ..model.units import LONGEST_NUMBER
-from .grammar_tables import grammar
 from .parse import parse
-from .source import Source, decode
+from .source import Source, decode, grammar
 
 _UNITS = ("ABSOLUTE", "DIFFERENCE", "RATE", "TIME", "CURRENT", "CURRENT_RATE", "UNIT")
 _NO_BLANK_BEFORE = ("COMMA", "RSQB", "_DOTS", "LPAR", "RPAR")

@@ -11,8 +11,7 @@ from ..model.errors import MOST_ERRORS, MOST_READ
 from ..model.words import VOCABULARY
 from .diagnose import diagnose
 from .failed_statement import FailedStatement
-from .grammar_tables import grammar
-from .source import Edit, Finding, Piece, Source
+from .source import Edit, Finding, Piece, Source, grammar
 
 if TYPE_CHECKING:
     from lark import Token, Tree

@@ -1,10 +1,18 @@
-"""The text of a cue file: bytes checked at the door, offsets as lines and columns, text cut into pieces."""
+"""The text of a cue file: its grammar, bytes checked at the door, offsets as lines and columns, text cut into pieces."""
 
 import re
 from bisect import bisect_right
+from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
+from typing import TYPE_CHECKING
 
 from ..model.errors import CueError, whole_file
+from ..userfolder import NotPrivate, cache_folder, private_folder
+
+if TYPE_CHECKING:
+    from lark import Lark
 
 # Some three thousand icons; every text of this size is read or refused within a few seconds.
 MOST_BYTES = 250_000
@@ -188,3 +196,20 @@ def utf8_of(data: bytes, file: str, rule: str = "a cue file is plain UTF-8 text"
         line = data.count(b"\n", 0, error.start) + 1
         what = f"byte 0x{data[error.start]:02X} at byte offset {error.start}, on line {line}, is not UTF-8"
         raise whole_file("E007", file, what, "save the file as UTF-8 in your editor") from None
+
+
+@cache
+def grammar() -> "Lark":
+    """The parser made of ``grammar.lark``; lark keeps its tables in the user's private cache folder, if there is one.
+
+    Making them takes longer than reading a file.
+    """
+    from lark import Lark
+
+    text = resources.files("thermicon.icons").joinpath("grammar.lark").read_text(encoding="utf-8")
+    kept: str | bool = False
+    with suppress(NotPrivate):
+        kept = str(private_folder(cache_folder() / "grammar") / "cue")
+    return Lark(
+        text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False, cache=kept
+    )

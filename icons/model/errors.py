@@ -1,85 +1,30 @@
-"""What can be wrong with a cue file: the table of codes, one error with its place, the exception that carries them."""
+"""What can be wrong with a cue file: one error with its place, and the exception that carries them.
 
+What each code means stands in ``data/mistakes.toml``: the file as a whole (E0..), words, numbers and units (E1..),
+meaning (E2..).
+"""
+
+import tomllib
 import unicodedata
 from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any
 
 from ..number_text import count_of
 from .context import clean
 
-TITLES: dict[str, str] = {
-    # the file as a whole
-    "E001": "no such file",
-    "E002": "a folder, not a file",
-    "E003": "unreadable file",
-    "E004": "file too large",
-    "E005": "empty file",
-    "E006": "binary file",
-    "E007": "not UTF-8",
-    "E008": "no icons",
-    "E009": "missing version line",
-    "E010": "unknown version",
-    "E013": "not a recording",
-    "E014": "not a reading",
-    "E015": "times out of order",
-    "E016": "begins away from baseline",
-    # words, numbers and units
-    "E101": "not understood",
-    "E102": "missing unit",
-    "E103": "unknown unit",
-    "E104": "wrong kind of unit",
-    "E105": "unexpected character",
-    "E106": "number expected",
-    "E107": "missing rate or time",
-    "E108": "more than one statement",
-    "E109": "block never closed",
-    "E110": "nothing to close",
-    "E111": "text never closed",
-    "E112": "unknown escape",
-    "E113": "not a name",
-    "E114": "missing block",
-    "E115": "nested too deeply",
-    "E116": "missing word",
-    "E117": "missing text",
-    "E118": "parameter not understood",
-    "E120": "not in this version",
-    # meaning
-    "E201": "target on the wrong side",
-    "E202": "amount not positive",
-    "E203": "impossible duration",
-    "E204": "rate not positive",
-    "E205": "rest away from baseline",
-    "E206": "already at baseline",
-    "E207": "not a count",
-    "E208": "temperature under control current",
-    "E209": "to without warm or cool",
-    "E210": "unit does not fit the control",
-    "E211": "duplicate icon",
-    "E212": "duplicate set",
-    "E213": "given twice",
-    "E214": "out of order",
-    "E215": "unknown control",
-    "E216": "unknown setting",
-    "E217": "icon without statements",
-    "E218": "impossible number",
-    "E219": "level out of range",
-    "E220": "too many corners",
-    "E221": "too long",
-    "E222": "total not kept",
-    "E223": "icon without duration",
-    "E224": "play away from baseline",
-    "E225": "not whole periods",
-    "E226": "unknown parameter",
-    "E227": "parameter never used",
-    "E228": "impossible range",
-    "E229": "total inside a repeat",
-    "E230": "unknown icon to play",
-    "E231": "too many members",
-    "E232": "icons that play each other",
-}
 # Characters of a line that an error shows.
 WIDEST = 110
 # Errors shown, and errors behind which reading stops: nobody corrects a thousand at once.
 MOST_ERRORS, MOST_READ = 100, 1000
+
+
+@cache
+def codes() -> dict[str, dict[str, Any]]:
+    """The catalogue of errors by code: title, meaning, a wrong text and a right one, or a cure."""
+    text = resources.files("thermicon.icons").joinpath("data/mistakes.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +55,7 @@ class CueError:
     @property
     def title(self) -> str:
         """The short name that belongs to the code."""
-        return TITLES[self.code]
+        return str(codes()[self.code]["title"])
 
     def render(self) -> str:
         """Return the error as people read it: place and code, the line with carets, help, and the corrected line."""

@@ -36,7 +36,7 @@ def completions() -> dict[str, Any]:
     >>> sorted(found["trees"]["icon"]["DIRECTION"]["BY"]["NUMBER"]), found["words"]["DIFFERENCE"]
     (['DIFFERENCE'], ['°C', 'degC', 'K'])
     """
-    from thermicon.icons.language.grammar_tables import grammar
+    from thermicon.icons.language.source import grammar
     from thermicon.icons.model.words import CONTROLS, EXAMPLES
 
     trees = {}
@@ -72,7 +72,7 @@ def _names(trees: list[Tree]) -> set[str]:
 @lru_cache(maxsize=128)
 def _words(terminal: str) -> list[str]:
     """The spellings of a terminal, in the order of the units or of the grammar."""
-    from thermicon.icons.language.grammar_tables import grammar
+    from thermicon.icons.language.source import grammar
     from thermicon.icons.model.units import UNITS
 
     if terminal in UNIT_TERMINALS:

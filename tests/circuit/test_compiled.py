@@ -18,7 +18,7 @@ import numba
 import pytest
 
 from thermicon.circuit import compiled
-from thermicon.icons.userfolder import NotPrivate, private_folder, read_private, write_private
+from thermicon.icons.userfolder import NotPrivate, private_folder
 
 POSIX = sys.platform != "win32"
 
@@ -249,12 +249,3 @@ def test_a_private_folder_has_private_folders_above(tmp_path: Path) -> None:
         os.chown(open_ / "mine", 12345, 12345)
         with pytest.raises(NotPrivate, match="belongs to another user"):
             private_folder(open_ / "mine")
-
-
-@pytest.mark.slow
-def test_a_private_file_is_whole_or_absent(tmp_path: Path) -> None:
-    write_private(tmp_path / "a", b"x")
-    assert read_private(tmp_path / "a") == b"x"
-    assert read_private(tmp_path / "b") is None
-    assert read_private(tmp_path) is None
-    assert [path.name for path in tmp_path.iterdir()] == ["a"]

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.icons.language.grammar_tables import grammar
+from thermicon.icons.language.source import grammar
 from thermicon.notebooks.editing.completions import CONTEXTS, completions
 
 PLAIN = {"NUMBER": "2", "NAME": "a", "STRING": '"a"', "TITLE": '"a"'}
