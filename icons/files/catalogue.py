@@ -1,11 +1,10 @@
 """The catalogue of errors: what every code means, a file that causes it with the message, and a corrected file."""
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 
-from ..model.errors import TITLES, CueErrors
+from ..language.parse import parse
+from ..model.errors import CueErrors, codes
 from ..near_words import nearest_words
 
 
@@ -14,22 +13,14 @@ class Entry:
     """One code: what it means, a wrong text and a right one, or, where no text can show it, what to do."""
 
     code: str
+    title: str
     meaning: str
     wrong: str = ""
     right: str = ""
     cure: str = ""
 
-    @property
-    def title(self) -> str:
-        """The short name of the error."""
-        return TITLES[self.code]
-
     def message(self) -> str:
-        """Return what is printed for the wrong text, or "" where there is none."""
-        if not self.wrong:
-            return ""
-        from ..language.parse import parse
-
+        """Return what is printed for the wrong text."""
         try:
             parse(self.wrong, "alerts.cue")
         except CueErrors as found:
@@ -40,9 +31,7 @@ class Entry:
 @cache
 def catalogue() -> dict[str, Entry]:
     """Return the entries by code, in the order of the codes."""
-    text = resources.files("thermicon.icons").joinpath("data/mistakes.toml").read_text(encoding="utf-8")
-    entries = {code: Entry(code=code, **values) for code, values in tomllib.loads(text).items()}
-    return {code: entries[code] for code in sorted(entries)}
+    return {code: Entry(code, **values) for code, values in sorted(codes().items())}
 
 
 def explain(code: str) -> str:
@@ -58,10 +47,14 @@ def explain(code: str) -> str:
     """
     wanted = code.strip().upper()
     wanted = f"E{wanted}" if wanted.isdigit() else wanted
-    entry = catalogue().get(wanted)
-    if entry is None:
-        near = ", ".join(f"{other} {TITLES[other]}" for other in _nearest(wanted))
+    entries = catalogue()
+    if wanted not in entries:
+        titles = {entry.title.upper(): entry.code for entry in entries.values()}
+        by_title = [titles[title] for title in nearest_words(wanted, titles, 2)]
+        close = by_title or nearest_words(wanted, entries, 2, cutoff=0.0)
+        near = ", ".join(f"{other} {entries[other].title}" for other in close)
         raise ValueError(f"there is no error {code.strip()[:40]}; the nearest are {near}")
+    entry = entries[wanted]
     parts = [f"{entry.code} {entry.title}\n{entry.meaning}"]
     if entry.cure:
         parts.append(entry.cure)
@@ -70,12 +63,6 @@ def explain(code: str) -> str:
     if entry.right:
         parts.append(f"Right:\n\n{_indented(entry.right)}")
     return "\n\n".join(parts)
-
-
-def _nearest(wanted: str) -> list[str]:
-    titles = {title.upper(): code for code, title in TITLES.items()}
-    by_title = [titles[title] for title in nearest_words(wanted, titles, 2)]
-    return by_title or nearest_words(wanted, TITLES, 2, cutoff=0.0)
 
 
 def _indented(text: str) -> str:

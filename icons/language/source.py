@@ -1,4 +1,4 @@
-"""The text of a cue file: its grammar, bytes checked at the door, offsets as lines and columns, text cut into pieces."""
+"""The text of a cue file and its grammar: bytes checked at the door, lines and columns, text cut into pieces."""
 
 import re
 from bisect import bisect_right
@@ -210,6 +210,4 @@ def grammar() -> "Lark":
     kept: str | bool = False
     with suppress(NotPrivate):
         kept = str(private_folder(cache_folder() / "grammar") / "cue")
-    return Lark(
-        text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False, cache=kept
-    )
+    return Lark(text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False, cache=kept)

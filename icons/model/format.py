@@ -39,8 +39,8 @@ def statement_text(
     return writer.statement(statement, indent, path)
 
 
-class Wording:
-    """How amounts and paces of statements are written; a parameter stands in for a number where ``holes`` names one."""
+class _Writer:
+    """Writes statements; a parameter stands in for a number where ``holes`` names one."""
 
     def __init__(self, control: Control, holes: Holes) -> None:
         self.control = control
@@ -68,8 +68,6 @@ class Wording:
         hole = self.holes.get((path, name))
         return quantity(float(getattr(part, name)), kind) if hole is None else hole
 
-
-class _Writer(Wording):
     def statement(self, part: Statement | Broken, indent: str, path: Path) -> str:
         if isinstance(part, Repeat):
             lines = (self.statement(inner, indent + "  ", (*path, n)) for n, inner in enumerate(part.body))

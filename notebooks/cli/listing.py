@@ -58,8 +58,7 @@ def list_command(
 def cite_file(file: str, as_bibtex: bool, rig: RigOptions) -> None:
     """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
     from thermicon.circuit.rig.rig_summary import rig_for_methods
-    from thermicon.icons.files.methods import methods
-    from thermicon.icons.files.references import bibtex
+    from thermicon.icons.files.cite import bibtex, methods
 
     icons = read_set([file])
     if as_bibtex:

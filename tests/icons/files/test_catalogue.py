@@ -7,14 +7,14 @@ import pytest
 
 from thermicon.icons import CueErrors, parse, read_cue
 from thermicon.icons.files.catalogue import Entry, catalogue, explain
-from thermicon.icons.model.errors import TITLES
+from thermicon.icons.model.errors import codes
 
 ENTRIES = list(catalogue().values())
 SHOWN = [entry for entry in ENTRIES if entry.wrong]
 
 
 def test_every_code_is_listed() -> None:
-    assert list(catalogue()) == sorted(TITLES)
+    assert list(catalogue()) == sorted(codes())
     assert all(entry.meaning.endswith(".") and bool(entry.wrong) != bool(entry.cure) for entry in ENTRIES)
 
 

@@ -1,0 +1,224 @@
+"""What a paper says of a set: a paragraph for its methods, and BibTeX entries for its sources."""
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import cache
+from importlib import resources
+from importlib.metadata import version
+
+from ..model.family import Family
+from ..model.format import statement_text
+from ..model.icon import Icon
+from ..model.iconset import IconSet
+from ..model.units import quantity
+
+TITLE, AUTHORS, LICENCE = "thermicon: a workbench for thermal icons", "The thermicon authors", "MIT"
+_PRESCRIBED = {
+    "skin": "the temperature of the skin surface",
+    "display": "the temperature of the display",
+    "current": "the drive current",
+}
+_COUNTS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"]
+_MINUS = re.compile(r"(?<![\w.])-(?=[0-9])")
+_ENTRY = re.compile(r"@(?P<type>[a-z]+)\{(?P<key>[a-z0-9-]+),\n(?P<fields>(?:  .*\n)*)\}")
+_FIELD = re.compile(r"  ([a-z]+) = \{(.*)\},\n")
+_FIELDS = ("author", "title", "journal", "booktitle", "year", "volume", "number", "pages", "doi")
+_YEAR = re.compile(r"\b(?:19|20)[0-9]{2}\b")
+_RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:)\s*", re.IGNORECASE)
+_ESCAPES = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
+_ESCAPES |= {mark: "\\" + mark for mark in "&%$#_{}"}
+
+Reference = Mapping[str, str]
+"""A publication: its ``key``, ``type`` and BibTeX fields, where they were ``seen``, and what is ``unverified``."""
+Source = tuple[str | None, str | None]
+"""The ``by`` and the ``doi`` of a set or an icon."""
+
+
+def methods(icons: IconSet, rig_about: str | None = None) -> str:
+    """Return a paragraph for the methods section of a paper: the set, every icon, and the sources.
+
+    ``rig_about`` describes the rig, as ``Rig.about`` does; None: no rig is described.
+
+    >>> from thermicon.icons import parse
+    >>> text = methods(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }"))
+    >>> print(*text.split(". ")[:3], sep="\\n")
+    One thermal icon was used
+    It prescribes the temperature of the skin surface
+    It lasts 4 s
+    """
+    many, control = len(icons) > 1, icons.context.control
+    title = f" of the set “{icons.title}”" if icons.title else ""
+    count = counted(len(icons), "thermal icon")
+    site = f" at the site “{icons.context.site}”" if icons.context.site else ""
+    said = [
+        f"{count[:1].upper()}{count[1:]}{title} {'were' if many else 'was'} used.",
+        f"{'They prescribe' if many else 'It prescribes'} {_PRESCRIBED[control]}{site}{_baseline(icons)}.",
+        f"{'They last' if many else 'It lasts'} {_lengths(icons)}.",
+        f"{'Their courses' if many else 'Its course'}, from baseline: {'; '.join(map(_course, icons.entries))}.",
+    ]
+    if named := sources(icons):
+        texts = (", ".join(filter(None, (by, doi and f"doi:{plain_doi(doi)}"))) for by, doi in named)
+        said.append(f"Sources, as the set names them: {'; '.join(texts)}.")
+    unsure = [f"{surnames(each)[0]} {each['year']}" for each in cited(icons)[0] if "unverified" in each]
+    if unsure:
+        said.append(f"[Check before printing: details of {', '.join(unsure)} are unverified in the bibliography.]")
+    if rig_about:
+        said.append(f"The rig was modelled as follows: {_one_line(rig_about)}.")
+    said.append(f"The icons are written in the cue language of thermicon {version('thermicon')}, ")
+    return f"{' '.join(said)}content hash {icons.content_hash[:12]}."
+
+
+def counted(count: int, noun: str) -> str:
+    """Return a number and a noun, in words up to twelve.
+
+    >>> counted(1, "icon"), counted(6, "icon"), counted(240, "icon")
+    ('one icon', 'six icons', '240 icons')
+    """
+    number = _COUNTS[count] if count < len(_COUNTS) else f"{count:,}"
+    return f"{number} {noun}{'' if count == 1 else 's'}"
+
+
+def _course(entry: Icon | Family) -> str:
+    """An icon with its statements as they are written, or a family with its parameters."""
+    notes = [f"“{entry.metadata.means}”"] if entry.metadata.means else []
+    notes += [f"tagged {', '.join(entry.metadata.tags)}"] if entry.metadata.tags else []
+    head = f"{entry.name} ({'; '.join(notes)})" if notes else entry.name
+    holes = {}
+    if isinstance(entry, Family):
+        holes = {(slot.path, slot.field): slot.parameter for slot in entry.slots}
+        head += f", a family of {counted(len(entry), 'icon')} over {' and '.join(map(str, entry.parameters))}"
+    body = entry.template if isinstance(entry, Family) else entry.statements
+    lines = [statement_text(part, entry.context.control, "", holes, (n,)) for n, part in enumerate(body)]
+    words = ", ".join(" ".join(line.split()) for text in lines for line in text.split("\n"))
+    words = words.replace("{,", "{").replace(", }", " }")
+    return _MINUS.sub("−", f"{head}: {words}")
+
+
+def _baseline(icons: IconSet) -> str:
+    level = icons.context.baseline_C
+    if level is None:
+        return ""
+    rest = f"a baseline of {quantity(level, 'absolute')}"
+    return f", on a display that rests at {rest}" if icons.context.control == "current" else f", from {rest}"
+
+
+def _lengths(icons: IconSet) -> str:
+    found = icons.summary()
+    low, high = f"{round(found.shortest_s, 2):g}", f"{round(found.longest_s, 2):g}"
+    length = f"{low} s" if low == high else f"{low} to {high} s"
+    if icons.context.control != "current" and icons.context.baseline_C is None:
+        return length
+    unit = "A" if icons.context.control == "current" else "°C"
+    levels = _MINUS.sub("−", f"{round(found.lowest, 2):g} to {round(found.highest, 2):g} {unit}")
+    steep = f", at rates of up to {round(found.steepest_per_s, 2):g} {unit}/s" if found.steepest_per_s else ""
+    return f"{length} and lie within {levels}{steep}" if len(icons) > 1 else f"{length} within {levels}{steep}"
+
+
+def _one_line(about: str) -> str:
+    head, *rows = [row for row in about.splitlines() if row.strip()] or [""]
+    out = head.strip()
+    for row in rows:  # a row that is indented further goes on with the one before
+        out += (" " if row.startswith(" " * 8) else "; ") + " ".join(row.split())
+    return out.rstrip(".")
+
+
+@cache
+def references() -> tuple[Reference, ...]:
+    """Return the bibliography that ships, one field a line in the file.
+
+    >>> next(each["doi"] for each in references() if each["key"] == "shani-lineykin-2025")
+    '10.3390/bioengineering12020209'
+    """
+    text = resources.files("thermicon.icons").joinpath("data/references.bib").read_text(encoding="utf-8")
+    entries = _ENTRY.finditer(text)
+    return tuple({"key": each["key"], "type": each["type"], **dict(_FIELD.findall(each["fields"]))} for each in entries)
+
+
+def surnames(each: Reference) -> list[str]:
+    """Return the last names of the authors of a publication, in order."""
+    return [author.split()[-1] for author in each["author"].split(" and ")]
+
+
+def sources(icons: IconSet) -> tuple[Source, ...]:
+    """Return the different pairs of ``by`` and ``doi`` of a set and its icons, in order."""
+    found = (icons.metadata, *(entry.metadata for entry in icons.entries))
+    return tuple(dict.fromkeys((each.by, each.doi) for each in found if each.by or each.doi))
+
+
+def cited(icons: IconSet) -> tuple[list[Reference], list[Source]]:
+    """Return the publications of the bibliography that a set cites, and the sources that are not in it.
+
+    A DOI names a publication; so do the first author's last name and a year in ``by``, or, without a year, the first
+    two last names.
+
+    >>> from thermicon.icons import read_cue
+    >>> [each["key"] for each in cited(read_cue("six-icons"))[0]]
+    ['singhal-jones-2015', 'singhal-jones-2018']
+    """
+    found: dict[str, Reference] = {}
+    unknown: list[Source] = []
+    for by, doi in sources(icons):
+        if doi is not None:
+            same = [each for each in references() if each.get("doi", "").lower() == plain_doi(doi).lower()]
+        else:
+            same = [each for each in references() if _names(by or "", each)]
+        found.update({each["key"]: each for each in same})
+        if not same and (doi is not None or (by or "").strip().lower() != "thermicon"):
+            unknown.append((by, doi))
+    return [found[key] for key in sorted(found)], unknown
+
+
+def plain_doi(text: str) -> str:
+    """Return a DOI without the address of a resolver.
+
+    >>> plain_doi("https://doi.org/10.1145/2858036.2858205")
+    '10.1145/2858036.2858205'
+    """
+    return _RESOLVER.sub("", text.strip())
+
+
+def _names(text: str, each: Reference) -> bool:
+    years = set(_YEAR.findall(text))
+    needed: Sequence[str] = surnames(each)[: 1 if years else 2]
+    said = all(re.search(rf"\b{re.escape(name)}\b", text, re.IGNORECASE) for name in needed)
+    return said and (not years or each["year"] in years)
+
+
+def bibtex(icons: IconSet) -> str:
+    """Return BibTeX entries for the sources of a set and its icons, and for thermicon itself.
+
+    A note names what is unverified. A source that the bibliography lacks becomes an ``@misc`` entry from the metadata
+    of the set, and is marked.
+
+    >>> from thermicon.icons import read_cue
+    >>> [line for line in bibtex(read_cue("six-icons")).splitlines() if line.startswith("@")]
+    ['@inproceedings{singhal-jones-2015,', '@article{singhal-jones-2018,', '@misc{thermicon,']
+    """
+    known, unknown = cited(icons)
+    entries = []
+    for each in known:
+        note = {"note": f"details unverified: {each['unverified']}"} if "unverified" in each else {}
+        entries.append(_written(each["type"], each["key"], {name: each.get(name, "") for name in _FIELDS} | note))
+    for place, (by, doi) in enumerate(unknown, start=1):
+        year = _YEAR.search(by or "")
+        values = {"howpublished": escaped(by or ""), "doi": escaped(plain_doi(doi or "")).replace(r"\_", "_")}
+        values |= {"year": year[0] if year else ""}
+        values |= {"note": "As the cue set names it; not in the bibliography of thermicon, details unverified"}
+        entries.append(_written("misc", f"source-{place}", values))
+    own = f"Computer program, version {version('thermicon')}, {LICENCE} licence"
+    entries.append(_written("misc", "thermicon", {"author": f"{{{AUTHORS}}}", "title": f"{{{TITLE}}}", "note": own}))
+    return "\n".join(entries)
+
+
+def escaped(text: str) -> str:
+    r"""Return a text in which the characters that mean something to TeX stand for themselves.
+
+    >>> print(escaped("50 % & more_or_less"))
+    50 \% \& more\_or\_less
+    """
+    return " ".join("".join(_ESCAPES.get(char, char) for char in text).split())
+
+
+def _written(kind: str, key: str, values: dict[str, str]) -> str:
+    rows = [f"  {name} = {{{value}}}," for name, value in values.items() if value]
+    return "\n".join([f"@{kind}{{{key},", *rows, "}"]) + "\n"
