@@ -11,10 +11,7 @@ from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.parameter import Parameter, Path
 from ..model.statements import Play, Repeat, Return, Statement
-from ..model.units import decimal_text
 
-# Characters of a line; what is longer takes several.
-_WIDE = 110
 _SAME_AS_LEFT_OUT = {"direction": "change", "cut": False}
 
 
@@ -34,22 +31,9 @@ def to_json(icons: IconSet) -> str:
     Examples
     --------
     >>> from thermicon.icons import parse
-    >>> print(to_json(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return over 2 s }")))
-    {
-      "format": "thermicon cue",
-      "version": 1,
-      "set": {"control": "skin"},
-      "icons": [
-        {
-          "name": "dip",
-          "statements": [
-            {"do": "cool", "by_K": 6, "rate_K_per_s": 3},
-            {"do": "return", "duration_s": 2}
-          ]
-        }
-      ]
-    }
-    <BLANKLINE>
+    >>> made = json.loads(to_json(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return over 2 s }")))
+    >>> made["icons"][0]["statements"]
+    [{'do': 'cool', 'by_K': 6.0, 'rate_K_per_s': 3.0}, {'do': 'return', 'duration_s': 2.0}]
     """
     context = icons.context
     head = {"name": icons.name or None, "title": icons.title or None, "site": context.site, "control": context.control}
@@ -59,7 +43,7 @@ def to_json(icons: IconSet) -> str:
         "set": _given({**head, "baseline_C": context.baseline_C, **_metadata(icons.metadata)}),
         "icons": [_icon(entry) for entry in icons.entries],
     }
-    return _laid_out(document, "") + "\n"
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
 def _icon(entry: Icon | Family) -> dict[str, Any]:
@@ -106,29 +90,3 @@ def _metadata(metadata: Metadata) -> dict[str, Any]:
 
 def _given(values: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if value is not None}
-
-
-def _laid_out(value: Any, indent: str) -> str:
-    """JSON with what is short on one line: a statement reads like one."""
-    line = _line(value)
-    inner = indent + "  "
-    nested = isinstance(value, dict) and ("statements" in value or "icons" in value)
-    nested |= isinstance(value, list) and any(isinstance(each, dict) and "do" in each for each in value)
-    if not nested and (len(line) + len(indent) <= _WIDE or not isinstance(value, (dict, list))):
-        return line
-    if isinstance(value, dict):
-        parts = [f"{_line(key)}: {_laid_out(each, inner)}" for key, each in value.items()]
-    else:
-        parts = [_laid_out(each, inner) for each in value]
-    marks = "{}" if isinstance(value, dict) else "[]"
-    return f"{marks[0]}\n{inner}" + f",\n{inner}".join(parts) + f"\n{indent}{marks[1]}"
-
-
-def _line(value: Any) -> str:
-    if isinstance(value, float):
-        return decimal_text(value)
-    if isinstance(value, dict):
-        return "{" + ", ".join(f"{_line(key)}: {_line(each)}" for key, each in value.items()) + "}"
-    if isinstance(value, list):
-        return "[" + ", ".join(map(_line, value)) + "]"
-    return json.dumps(value, ensure_ascii=False)

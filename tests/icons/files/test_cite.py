@@ -131,9 +131,7 @@ def test_methods_of_the_six_icons() -> None:
 def test_methods_of_a_family_and_of_a_current() -> None:
     over = "(size in [-3, 3] K, rate in 1..3 step 0.5 °C/s, n in [1])"
     said = methods(made(f"icon r{over} {{ repeat n {{ change by size at rate; return at rate }} }}"))
-    assert (
-        "a family of ten icons over size in [−3, 3] K and rate in 1..3 step 0.5 °C/s and n in [1]: repeat n" in said
-    )
+    assert "a family of ten icons over size in [−3, 3] K and rate in 1..3 step 0.5 °C/s and n in [1]: repeat n" in said
     assert "They prescribe the temperature of the skin surface. They last 2 to 6 s." in said and "Sources" not in said
     said = methods(made("set { control current; baseline 32 °C }; icon a { to -0.5 A at 1 A/s; return over 1 s }"))
     assert "It prescribes the drive current, on a display that rests at a baseline of 32 °C." in said

@@ -2,32 +2,21 @@
 
 import json
 from importlib import resources
-from typing import Any
 
 import pytest
-from hypothesis import assume
-from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
+from tests.icons.model.test_roundtrip import sets
 from tests.properties import for_any
-from thermicon.icons import CueErrors, Family, Icon, IconSet, load_library, parse
+from thermicon.icons import Icon, IconSet, load_library, parse
 from thermicon.icons.files.exchange import to_json
 from thermicon.icons.files.shipped import library_names
 from thermicon.icons.model.context import Context, Metadata
-from thermicon.icons.model.parameter import Parameter, Slot
 from thermicon.icons.model.statements import (
     Current,
-    Hold,
-    Play,
     Pulse,
-    Ramp,
-    Repeat,
-    Rest,
     Return,
-    Statement,
     Step,
-    Total,
-    Wave,
 )
 from thermicon.icons.model.units import Kind, fault
 
@@ -84,20 +73,23 @@ def test_every_kind_of_statement_is_valid(text: str) -> None:
     assert not list(VALID.iter_errors(json.loads(to_json(parse(text)))))
 
 
-def test_a_statement_reads_like_one() -> None:
-    lines = [line.strip().rstrip(",") for line in to_json(parse(EVERYTHING)).splitlines()]
-    for line in (
-        '{"do": "warm", "by_K": 1, "rate_K_per_s": 0.016666666666666666}',
-        '{"do": "cool", "to_C": 31, "duration_s": 60}',
-        '{"do": "step", "direction": "cool", "by_K": 3}',
-        '{"do": "square", "by_K": 1, "period_s": 1, "duration_s": 1.5, "start": "cool", "cut": true}',
-        '{"do": "play", "icon": "ramp_amount=-3_rate=1.5_pause=200_times=2"}',
-        '{"do": "total", "duration_s": 200, "bound": "at most"}',
-        '{"do": "change", "by_K": {"parameter": "amount"}, "rate_K_per_s": {"parameter": "rate"}}',
-        '{"name": "rate", "unit": "°C/s", "low": 1, "high": 3, "step": 0.5}',
+def test_a_statement_has_its_fields_with_their_units() -> None:
+    made = json.loads(to_json(parse(EVERYTHING)))
+    assert made["set"]["baseline_C"] == 32.5
+    listed = [part for icon in made["icons"] for part in icon["statements"]]
+    listed += [part for each in listed if each["do"] == "repeat" for part in each["statements"]]
+    listed += [part for each in listed if each["do"] == "repeat" for part in each["statements"]]
+    for statement in (
+        {"do": "warm", "by_K": 1, "rate_K_per_s": 1 / 60},
+        {"do": "cool", "to_C": 31, "duration_s": 60},
+        {"do": "step", "direction": "cool", "by_K": 3},
+        {"do": "square", "by_K": 1, "period_s": 1, "duration_s": 1.5, "start": "cool", "cut": True},
+        {"do": "play", "icon": "ramp_amount=-3_rate=1.5_pause=200_times=2"},
+        {"do": "total", "duration_s": 200, "bound": "at most"},
+        {"do": "change", "by_K": {"parameter": "amount"}, "rate_K_per_s": {"parameter": "rate"}},
     ):
-        assert line in lines
-    assert '"baseline_C": 32.5' in lines
+        assert statement in listed
+    assert {"name": "rate", "unit": "°C/s", "low": 1, "high": 3, "step": 0.5} in made["icons"][3]["parameters"]
 
 
 def test_the_schema_is_a_schema() -> None:
@@ -143,67 +135,6 @@ def test_the_schema_refuses_what_no_set_holds(statement: str) -> None:
     assert VALID.is_valid(document)
     document["icons"][0]["statements"] = [json.loads(statement)]
     assert not VALID.is_valid(document)
-
-
-TIMES = st.one_of(st.floats(1e-5, 50), st.integers(1, 999).map(lambda n: n / 1000))
-SIZES = st.floats(1e-3, 2)
-TEXTS = st.text(st.characters(exclude_categories=("Cc", "Cs"), include_characters='"\\\n\t'), min_size=1).filter(
-    str.strip
-)
-
-
-@st.composite
-def bodies(draw: Any, depth: int = 2) -> tuple[Statement, ...]:
-    """Statements of every kind, each group back at baseline."""
-    parts: list[Statement] = []
-    for _ in range(draw(st.integers(1, 4))):
-        size, time = draw(SIZES), draw(TIMES)
-        parts += draw(
-            st.sampled_from(
-                [
-                    (Hold(time),),
-                    (Rest(time),),
-                    (Ramp("cool", by_K=size, rate_K_per_s=draw(SIZES)), Return(draw(SIZES))),
-                    (Ramp("change", to_C=33 + size, duration_s=time), Return(duration_s=time)),
-                    (Step("change", by_K=-size), Hold(time), Step("warm", to_C=34), Return(duration_s=time)),
-                    (Pulse("warm", by_K=size, duration_s=time), Pulse("change", by_K=-size, duration_s=time)),
-                    (Wave("sine", by_K=size, period_s=time, duration_s=time, start="cool"),),
-                    (Wave("square", by_K=size, period_s=time, duration_s=time),),
-                    (Wave("sawtooth", by_K=size, period_s=1, duration_s=time, cut=True), Hold(1)),
-                    (Total(time, "at least"),),
-                ]
-            )
-        )
-    if depth and draw(st.booleans()):
-        inner = tuple(part for part in draw(bodies(depth - 1)) if not isinstance(part, Total))
-        parts += [Repeat(draw(st.integers(1, 3)), inner)] if inner else []
-    return tuple(parts)
-
-
-@st.composite
-def sets(draw: Any) -> IconSet:
-    context = Context(
-        draw(st.sampled_from(["skin", "display"])), draw(st.none() | st.just(32.5)), draw(st.none() | st.just("arm"))
-    )
-    metadata = st.builds(
-        Metadata, means=st.none() | TEXTS, by=st.none() | TEXTS, tags=st.sampled_from([(), ("a", "b c"), ("a", "a")])
-    )
-    try:
-        first = Icon("first", draw(bodies()), context, draw(metadata))
-        second = Icon("second", (*draw(bodies(0)), Hold(1), Return(1)), context) if draw(st.booleans()) else None
-        parts = [first, *([second] if second else [])]
-        if not any(isinstance(part, Total) for part in first.statements):
-            parts.append(Icon("third", (Play(first), Hold(1)), context, draw(metadata)))
-        parameter = Parameter("x", "s", draw(st.lists(TIMES, min_size=1, max_size=3, unique=True)))
-        body = (Repeat(2, (Hold(parameter.si(0, "time")),)),)
-        parts.append(Family("f", (parameter,), body, (Slot((0, 0), "duration_s", "time", "x"),), context))  # type: ignore[arg-type]
-        title = draw(st.just("") | TEXTS)
-        return IconSet(
-            draw(st.sampled_from(["", "é-1"])), title, context, draw(metadata), tuple(draw(st.permutations(parts)))
-        )
-    except CueErrors:
-        assume(False)
-        raise
 
 
 @for_any(sets(), examples=60)
