@@ -1,7 +1,6 @@
 """The formatter: a cue text in canonical layout, one statement per line; comments and numbers are kept."""
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 
 from ..model.format import header_lines
 from ..model.units import LONGEST_NUMBER
@@ -28,7 +27,7 @@ def format_text(text: str | bytes, file: str = "<text>") -> str:
     -------
     str
         A text of the same meaning, whose canonical layout is itself. Comments, units and digits are kept, except that
-        ``°C`` replaces ``degC``. Lines end with a line feed.
+        ``°C`` replaces ``degC``; comments within a header move above it. Lines end with a line feed.
 
     Raises
     ------
@@ -89,9 +88,8 @@ class _Layout:
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.words: list[Item] = []
-        self.header: _Header | None = None
-        # Comments between the name of the set and its brace.
-        self.set_notes: list[str] = []
+        # Comments within a header, which come to stand above it.
+        self.notes: list[str] = []
         self.depth = 0
         # Of the source: nothing but blanks on this line so far, and a blank line passed since the last line written.
         self.fresh, self.gap = True, False
@@ -100,10 +98,11 @@ class _Layout:
 
     def take(self, kind: str, word: str) -> None:
         """Take the next item."""
-        if self.header is not None and kind != "LBRACE":
-            self.header.take(kind, word, own_line=self.fresh)
-        elif self.words and self.words[0][0] == "SET" and kind in ("_NEWLINE", "COMMENT"):
-            self.set_notes += [word] * (kind == "COMMENT")
+        if self.words and self.words[0][0] in ("ICON", "SET") and kind != "LBRACE":
+            if kind == "COMMENT":
+                self.notes.append(word)
+            elif kind != "_NEWLINE":
+                self.words.append((kind, word))
         elif kind == "_NEWLINE":
             self.finish()
             self.gap |= self.fresh
@@ -112,7 +111,10 @@ class _Layout:
             return
         elif kind == "COMMENT":
             self.finish()
-            self.comment(word)
+            if self.fresh:
+                self.put(word)
+            else:  # it stays behind the line that stands before it in the source
+                self.lines[-1] += f"  {word}"
         elif kind == "LBRACE":
             self.open()
         elif kind == "RBRACE":
@@ -121,8 +123,6 @@ class _Layout:
             self.gap = self.opened = False
             self.put("}")
             self.ended = self.depth == 0
-        elif kind == "ICON":
-            self.header = _Header()
         else:
             self.words.append((kind, word))
         self.fresh = kind == "_NEWLINE"
@@ -134,20 +134,13 @@ class _Layout:
             self.words = []
             self.ended = self.depth == 0
 
-    def comment(self, text: str) -> None:
-        """Write a comment: behind the line that stands before it in the source, or on a line of its own."""
-        if self.fresh:
-            self.put(text)
-        else:
-            self.lines[-1] += f"  {text}"
-
     def open(self) -> None:
-        """Write the header of a block."""
-        first, *more = self.header.lines() if self.header is not None else [f"{_joined(self.words)} {{"]
-        notes, self.set_notes = self.set_notes, []
-        self.put(f"{first}  {notes[0]}" if notes else first)
-        self.lines += [*more, *(f"  {note}" for note in notes[1:])]
-        self.words, self.header = [], None
+        """Write the header of a block, below the comments within it."""
+        first, *more = _header(self.words)
+        for line in (*self.notes, first):
+            self.put(line)
+        self.lines += more
+        self.words, self.notes = [], []
         self.depth += 1
         self.opened, self.gap = True, False
 
@@ -159,70 +152,25 @@ class _Layout:
         self.opened = self.ended = self.gap = False
 
 
-@dataclass(slots=True)
-class _Row:
-    """A part of a header: its kind (head, parameter, close, key or comment), its text, the comment behind it."""
-
-    kind: str
-    text: str
-    comment: str = ""
-
-    def line(self) -> str:
-        """Return the row as a line."""
-        indent = "" if self.kind in ("head", "close") else "  "
-        return f"{indent}{self.text}  {self.comment}" if self.comment else indent + self.text
-
-
-class _Header:
-    """Takes the items of an icon's header, up to its brace, and lays them out."""
-
-    def __init__(self) -> None:
-        self.rows = [_Row("head", "icon")]
-        self.words: list[Item] = [("ICON", "icon")]
-        self.inside = self.listed = False
-
-    def take(self, kind: str, word: str, own_line: bool) -> None:
-        """Take the next item; ``own_line`` tells whether it is the first of its line."""
-        if kind == "_NEWLINE":
-            return
-        if kind == "COMMENT":
-            if own_line:
-                self.rows.append(_Row("comment", word))
-            else:
-                self.part().comment = word
-            return
-        new = "close" if kind == "RPAR" else "key" if kind == "KEY" else ""
-        if self.inside and not new and self.part().text.endswith(("(", ",")) and not self.listed:
-            new = "parameter"
-        if new:
-            self.rows.append(_Row(new, ""))
-            self.words = []
-        self.words.append((kind, word))
-        self.part().text = _joined(self.words)
-        self.inside = (self.inside or kind == "LPAR") and kind != "RPAR"
-        self.listed = (self.listed or kind == "LSQB") and kind != "RSQB"
-
-    def part(self) -> _Row:
-        """Return the part taken last that is not a comment."""
-        return next(row for row in reversed(self.rows) if row.kind != "comment")
-
-    def lines(self) -> list[str]:
-        """Return the lines of the header, brace included."""
-        parameters = [row.text.removesuffix(",") for row in self.rows if row.kind == "parameter"]
-        keys = [row.text for row in self.rows if row.kind == "key"]
-        head = self.rows[0].text.removesuffix("(")
-        if not any(row.comment or row.kind == "comment" for row in self.rows):
-            return header_lines(head, parameters, keys)
-        close = next((n for n, row in enumerate(self.rows) if row.kind == "close"), 0)
-        listed, rest = self.rows[: close + 1], self.rows[close + 1 :]
-        if close and not any(row.comment or row.kind == "comment" for row in listed[:-1]):
-            rows = header_lines(head, parameters, [])
-            rows[-1] = rows[-1].removesuffix(" {")
-            listed = [*(_Row("head", row) for row in rows[:-1]), _Row("close", rows[-1], listed[-1].comment)]
-        found = [row.line() for row in (*listed, *rest)]
-        if rest or listed[-1].comment:
-            return [*found, "{"]
-        return [*found[:-1], f"{found[-1]} {{"]
+def _header(words: list[Item]) -> list[str]:
+    """The lines of a header, brace included; that of an icon may take one for each parameter and key."""
+    if words[0][0] != "ICON":
+        return [f"{_joined(words)} {{"]
+    head: list[Item] = []
+    parameters: list[list[Item]] = []
+    keys: list[list[Item]] = []
+    part, listed = head, False
+    for kind, word in words:
+        listed = (listed or kind == "LSQB") and kind != "RSQB"
+        if kind == "LPAR" or (kind == "COMMA" and not listed):
+            part = []
+            parameters.append(part)
+        elif kind == "KEY":
+            part = [(kind, word)]
+            keys.append(part)
+        elif kind != "RPAR":
+            part.append((kind, word))
+    return header_lines(_joined(head), list(map(_joined, parameters)), list(map(_joined, keys)))
 
 
 def _joined(words: Iterable[Item]) -> str:
