@@ -149,13 +149,13 @@ def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(Path, "open", refuse)
     with pytest.raises(ValueError, match="E003 unreadable file\n  the system says: Permission denied"):
         from_csv(path)
-    monkeypatch.setattr("thermicon.icons.recordings.readings.MOST_MB", 1e-5)
+    monkeypatch.setattr("thermicon.icons.recordings.recorded.MOST_MB", 1e-5)
     with pytest.raises(ValueError, match="E004 file too large"):
         from_csv(path)
 
 
 def test_a_file_of_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("thermicon.icons.recordings.readings.MOST_ROWS", 4)
+    monkeypatch.setattr("thermicon.icons.recordings.recorded.MOST_ROWS", 4)
     with pytest.raises(ValueError, match="E004 file too large\n  more than 4 rows\n  keep every tenth row"):
         from_csv(written(tmp_path, DIP))
 

@@ -30,7 +30,7 @@ from thermicon.circuit.delivery.samples import rate_of
 from thermicon.circuit.fitting.log_files import read_log
 from thermicon.circuit.safety.session import read_order
 from thermicon.icons import load_library, parse
-from thermicon.icons.recordings.readings import read_readings
+from thermicon.icons.recordings.recorded import read_readings
 from thermicon.notebooks.cli.compare import _shifted
 from thermicon.notebooks.files.trace_files import align, read_curves
 from thermicon.notebooks.messages import is_ours

@@ -22,7 +22,7 @@ from thermicon.circuit.fitting.log_files import read_log
 from thermicon.circuit.safety.session import read_order
 from thermicon.circuit.solver.drive import DriveError, read_drive
 from thermicon.icons import CueErrors, load_library, parse, read_cue
-from thermicon.icons.recordings.readings import read_readings
+from thermicon.icons.recordings.recorded import read_readings
 from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.files.trace_files import read_curves
 from thermicon.notebooks.study.study_file import study_text
