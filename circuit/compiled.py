@@ -31,7 +31,7 @@ STALE_S = 90 * 24 * 3600.0
 SOURCES = (
     *("circuit/compiled.py", "circuit/vector_math.py", "circuit/rig/module.py", "circuit/safety/*_kernel.py"),
     *("circuit/safety/tally.py", "circuit/solver/modes.py", "circuit/solver/kernel*.py", "circuit/solver/network.py"),
-    *("perception/kernels/*.py", "perception/selection/*_kernels.py"),
+    *("perception/kernels/*.py", "perception/selection/subset_identification.py"),
 )
 """All files that hold compiled functions, or constants that these use."""
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
 FEWEST, MOST_IN_A_SET = 2, 30
-"""Larger sets are compared icon by icon alone; `thermicon.perception.selection.robust.compare_sets` takes them."""
+"""Larger sets are compared icon by icon alone; `thermicon.perception.selection.appraise.compare_sets` takes them."""
 TABLES = (".csv", ".parquet")
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
 HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or .parquet"
@@ -263,7 +263,7 @@ def _shifted(first: Curves, second: Curves) -> tuple[Curves, str]:
 
 def compare_identification(first: IconSet, second: IconSet, rig: Rig) -> str | None:
     """Return one sentence on which set is identified better; None if one has a single icon or very many."""
-    from thermicon.perception.selection.robust import compare_sets
+    from thermicon.perception.selection.appraise import compare_sets
 
     if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (first, second)):
         return None

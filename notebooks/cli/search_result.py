@@ -144,11 +144,6 @@ class FoundSet:
         """Icons of the found set that are not green, or that many people will miss; ranges that end too early."""
         if self.found.at_ends:
             yield f"At the end of its range: {'; '.join(self.found.at_ends)}. A wider range may hold a better set."
-        if self.found.listed:
-            yield (
-                f"Listed values only: {', '.join(self.found.listed)}. A range such as 0.5..2 step 0.5 s is searched "
-                "between its ends, whatever its step."
-            )
         for icon in self.after.ranking.icons:
             if not icon.playable:
                 yield f"{icon.name} cannot be played: {icon.reason or 'the rig does not reach it'}"

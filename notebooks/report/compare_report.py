@@ -14,7 +14,7 @@ from .blocks import Block, Text, grid
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception.selection.robust import SetComparison
+    from thermicon.perception.selection.appraise import SetComparison
 
 PEOPLE, SEED = 100, 0
 
@@ -78,7 +78,7 @@ def matrix_report(sets: Mapping[str, IconSet], rigs: Mapping[str, Rig]) -> list[
 def comparison_line(found: SetComparison) -> str:
     """Report how often A is identified better than B, and by how much.
 
-    >>> from thermicon.perception.selection.robust import SetComparison
+    >>> from thermicon.perception.selection.appraise import SetComparison
     >>> comparison_line(SetComparison(0.93, 0.02, 0.41, 100))
     'predicted: the icons of A are easier to distinguish than those of B in 93 % of 100 draws of person, contact, room \
 and rig; the d′ of its worst pair is larger by 0.4 (median)'

@@ -7,12 +7,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from thermicon.perception.ranking.rank_file import as_text, plain, ranking_file
-from thermicon.perception.selection.edit_result import Edit
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
     from thermicon.perception.selection.choose import Choice
-    from thermicon.perception.selection.edit_result import NoEdit
+    from thermicon.perception.selection.edit import Edit, NoEdit
     from thermicon.perception.selection.goal_result import GoalResult
 
 
@@ -37,16 +36,18 @@ class SetReport:
 
     def to_dict(self, mapped: bool = True) -> dict[str, Any]:
         """The content of `rank --json` as plain data; the map takes a while and is None where it is not wanted."""
+        from thermicon.perception.selection.edit import NoEdit
+
         made = ranking_file(self.ranking, mapped)
         made["warnings"] = list(self.warnings)
         made["goal"] = None if self.goal is None else plain(self.goal.to_dict())
         made["chosen"] = None if self.choice is None else plain(self.choice.to_dict())
         for pair in made["pairs"]:
             edit = self.edits.get((pair["a"], pair["b"]))
-            if isinstance(edit, Edit):
-                pair["edit"] = plain(edit.to_dict())
-            elif edit is not None:
+            if isinstance(edit, NoEdit):
                 pair["no_edit"] = edit.reason
+            elif edit is not None:
+                pair["edit"] = plain(edit.to_dict())
         return made
 
     def to_json(self) -> str:

@@ -22,7 +22,7 @@ from .view_blocks import chosen_html, edit_html, pair_html, set_html
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception.identification.map import PerceptualMap
-    from thermicon.perception.selection.edit_result import Edit, NoEdit
+    from thermicon.perception.selection.edit import Edit, NoEdit
     from thermicon.perception.selection.goal import Goal
     from thermicon.perception.selection.request import Selection
 
@@ -145,7 +145,7 @@ class SetView(LiveView[SetRequest]):
 
     def apply_edit(self) -> None:
         """Apply the suggested edit to the text, as one step that can be undone."""
-        from thermicon.perception.selection.edit_result import Edit
+        from thermicon.perception.selection.edit import Edit
 
         edit = self.edit
         if not isinstance(edit, Edit):
@@ -236,7 +236,7 @@ class SetView(LiveView[SetRequest]):
         self.said["edit_text"].value = fragment("marked", f"no edit: {said}", "th-caution")
 
     def _offer_edit(self, found: Edit | NoEdit) -> None:
-        from thermicon.perception.selection.edit_result import NoEdit
+        from thermicon.perception.selection.edit import NoEdit
 
         self.edit = found
         self.said["edit_text"].value = edit_html(found)

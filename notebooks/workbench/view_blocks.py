@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from thermicon.perception import Ranking
     from thermicon.perception.identification.delivered import PerceivedChange
     from thermicon.perception.ranking.scores import PairScore
-    from thermicon.perception.selection.edit_result import Edit, NoEdit
+    from thermicon.perception.selection.edit import Edit, NoEdit
     from thermicon.perception.selection.goal_result import GoalResult
 
     from ..report.set_report import SetReport
@@ -66,7 +66,7 @@ def pair_html(pair: PairScore) -> str:
 
 def edit_html(edit: Edit | NoEdit | None) -> str:
     """The cheapest edit of a pair, or why there is none."""
-    from thermicon.perception.selection.edit_result import NoEdit
+    from thermicon.perception.selection.edit import NoEdit
 
     if edit is None:
         return shown(Text("looking for the cheapest edit …", "status"))

@@ -1,11 +1,14 @@
-"""Edits of a pair that separate it for the nominal person: how they are made, screened and bisected."""
+"""Edits of a pair that separate it for the nominal person: how they are made, screened and bisected.
+
+An edit changes one of the numbers that stand in an icon's statements, or repeats all of them.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +17,17 @@ from ..arrays import Array
 from ..identification.population import run_end_s
 from ..observer.observer import Norm, Observer
 from ..ranking.scores import objection
-from .icon_numbers import Number, line_of, numbers_of, repeated, with_number
-from .pool import RATE_HZ, Pool
+from .pool import POOL_HZ, Pool
 
 if TYPE_CHECKING:
     from thermicon.icons import Icon
+    from thermicon.icons.model.statements import Statement
 
+FIELDS = (
+    *("by_K", "to_C", "by_A", "to_A"),
+    *("rate_K_per_s", "rate_A_per_s", "rate_per_s"),
+    *("period_s", "duration_s", "count"),
+)
 PER_SECOND = 0.1
 TOLERANCE = 0.1
 FAR = 2.0
@@ -32,6 +40,85 @@ DEARER = 1.5
 REPEATS = (2, 3)
 MOST_LONGER_S = 30.0
 """By more than this no edit makes an icon longer."""
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """One number of an icon: the way to its statement through repeats, its field, and its value in SI.
+
+    `above` is where its ratio counts from: the baseline for a temperature, 0 for all others.
+    """
+
+    path: tuple[int, ...]
+    field: str
+    value: float
+    above: float = 0.0
+
+    def times(self, factor: float) -> float:
+        """The value a factor larger, counted from `above`; a count stays whole."""
+        scaled = self.above + factor * (self.value - self.above)
+        return float(round(scaled)) if self.field == "count" else scaled
+
+    def ratio_to(self, value: float) -> float:
+        """|log| of the ratio of a new value to the old one."""
+        return abs(math.log((value - self.above) / (self.value - self.above)))
+
+
+def numbers_of(icon: Icon, baseline_C: float) -> tuple[Number, ...]:
+    """Every number that can be made larger or smaller, in the order of the text; totals only check and are left out."""
+    return tuple(_numbers(icon.statements, (), baseline_C))
+
+
+def statement_at(icon: Icon, path: Sequence[int]) -> Statement:
+    """The statement at a path through repeats."""
+    body: Sequence[Any] = icon.statements
+    for place in path[:-1]:
+        body = body[place].body
+    return cast("Statement", body[path[-1]])
+
+
+def with_number(icon: Icon, number: Number, value: float) -> Icon:
+    """The icon with one number changed; raises what an icon raises that cannot be run so."""
+    new = int(value) if number.field == "count" else value
+    return replace(icon, statements=_with_values(icon.statements, number.path, {number.field: new}))
+
+
+def repeated(icon: Icon, count: int) -> Icon:
+    """The icon with all that moves it in one `repeat`; checks of the total stay outside."""
+    from thermicon.icons.model.statements import Repeat, Total
+
+    body = tuple(part for part in icon.statements if not isinstance(part, Total))
+    checks = tuple(part for part in icon.statements if isinstance(part, Total))
+    return replace(icon, statements=(Repeat(count, body), *checks))
+
+
+def line_of(icon: Icon, path: Sequence[int]) -> str:
+    """The line of text at a path: of a repeat its first line."""
+    from thermicon.icons.model.format import statement_text
+
+    return statement_text(statement_at(icon, path), icon.context.control).split("\n")[0].strip()
+
+
+def _numbers(body: Sequence[Any], before: tuple[int, ...], baseline_C: float) -> Iterator[Number]:
+    from thermicon.icons.model.statements import Repeat, Total
+
+    for place, part in enumerate(body):
+        path = (*before, place)
+        for field in FIELDS:
+            value = getattr(part, field, None)
+            above = baseline_C if field == "to_C" else 0.0
+            if value is not None and value != above and not isinstance(part, Total):
+                yield Number(path, field, float(value), above)
+        if isinstance(part, Repeat):
+            yield from _numbers(part.body, path, baseline_C)
+
+
+def _with_values(body: Sequence[Any], path: Sequence[int], values: dict[str, float]) -> tuple[Any, ...]:
+    place, rest = path[0], path[1:]
+    part = body[place]
+    new = replace(part, body=_with_values(part.body, rest, values)) if rest else replace(part, **values)
+    return (*body[:place], new, *body[place + 1 :])
+
 
 Way = tuple[int, Number, bool]
 """Which icon, which of its numbers, and whether it becomes larger."""
@@ -171,7 +258,7 @@ def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, vain: Va
     if not tried:
         return []
     longest = max(float(of.kept.durations_s[one.place]) + one.added_s for one in tried)
-    end_s = max(of.kept.end_s, run_end_s([longest], RATE_HZ))
+    end_s = max(of.kept.end_s, run_end_s([longest], POOL_HZ))
     felt = Pool.of([one.icon for one in tried], of.kept.rig, of.observer, end_s=end_s)
     good = []
     for trace, one, row in zip(felt.traces, tried, felt.dprimes(of.kept, of.norm, of.observer), strict=True):

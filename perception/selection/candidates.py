@@ -72,25 +72,15 @@ def sample_candidates(families: Sequence[Family], count: int, rng: np.random.Gen
 
 
 def member(family: Family, shares: Sequence[float]) -> Icon:
-    """The icon of a family at shares of its parameters, spans taken as continuous between their ends.
-
-    >>> from thermicon.icons import read_cue
-    >>> member(read_cue("search-space").families[0], [0.5, 0.33, 0.0, 0.9]).name
-    'dip_depth=3.5_rate=1.66_pause=0.5_times=2'
-    """
+    """The icon of a family at shares of its parameters, spans taken as continuous between their ends."""
     pairs = zip(family.parameters, shares, strict=False)
     return family.variant({parameter.name: value_at(parameter, share) for parameter, share in pairs})
 
 
 def value_at(parameter: Parameter, share: float) -> float:
-    """Value of a parameter at a share of its range, in its unit: continuous in a span, one of those listed or counted.
-
-    >>> from thermicon.icons.model.parameter import Parameter
-    >>> value_at(Parameter("rate", "°C/s", span=(1, 3, 0.5)), 0.33), value_at(Parameter("n", "", span=(1, 3, 1)), 0.99)
-    (1.66, 3.0)
-    """
+    """Value of a parameter at a share of its range, in its unit: continuous in a span, else one of those listed."""
     if parameter.span is None or not parameter.unit:
-        return parameter.value(_place(share, len(parameter)))
+        return parameter.value(min(int(share * len(parameter)), len(parameter) - 1))
     low, high, _ = parameter.span
     digits = math.ceil(math.log10(FINE / (high - low))) if high > low else 0
     return min(max(round(low + share * (high - low), digits), low), high)
@@ -102,10 +92,6 @@ def share_of(parameter: Parameter, place: int) -> float:
         return (place + 0.5) / len(parameter)
     low, high, _ = parameter.span
     return (parameter.value(place) - low) / (high - low) if high > low else 0.5
-
-
-def _place(share: float, count: int) -> int:
-    return min(int(share * count), count - 1)
 
 
 def names_of(found: Sequence[Candidate]) -> list[str]:
@@ -131,9 +117,12 @@ def names_of(found: Sequence[Candidate]) -> list[str]:
     return names
 
 
-def plain_icons(found: Sequence[Candidate], seed: int) -> tuple[Icon, ...]:
-    """The icons under those names; tags of a member say the search and its values."""
-    from thermicon.icons import Icon
+def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
+    """The set that was searched with the found icons in place of its families; site, author and licence stay.
+
+    Tags of a member say the search and its values.
+    """
+    from thermicon.icons import Icon, IconSet
 
     made = []
     for each, name in zip(found, names_of(found), strict=True):
@@ -142,16 +131,9 @@ def plain_icons(found: Sequence[Candidate], seed: int) -> tuple[Icon, ...]:
             tags = (*icon.metadata.tags, "found by search", f"seed {seed}", f"from {icon.name.replace('_', ' ')}")
             icon = Icon(name, _unrepeated(icon.statements), icon.context, replace(icon.metadata, tags=tags))
         made.append(icon)
-    return tuple(made)
-
-
-def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
-    """The set that was searched with the found icons in place of its families; site, author and licence stay."""
-    from thermicon.icons import IconSet
-
     name = f"{icons.name}-found" if icons.name else ""
     title = f"{icons.title}, found by search" if icons.title else "Found by search"
-    return IconSet(name, title, icons.context, icons.metadata, plain_icons(found, seed))
+    return IconSet(name, title, icons.context, icons.metadata, tuple(made))
 
 
 def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:
@@ -164,25 +146,11 @@ def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:
     ends = []
     for each in found:
         for parameter, share in zip(each.family.parameters if each.family else (), each.shares, strict=True):
-            if parameter.span is None or not parameter.unit or parameter.span[0] == parameter.span[1]:
-                continue
             value = value_at(parameter, share)
-            if each.family is not None and value in parameter.span[:2]:
+            low, high = (0.0, 0.0) if parameter.span is None or not parameter.unit else parameter.span[:2]
+            if each.family is not None and low != high and value in (low, high):
                 ends.append(f"{each.family.name} {parameter.name} {number(value, 2)} {parameter.unit}")
     return tuple(dict.fromkeys(ends))
-
-
-def listed_only(found: Sequence[Candidate]) -> tuple[str, ...]:
-    """Parameters with a unit that take listed values, each once."""
-    return tuple(
-        dict.fromkeys(
-            f"{each.family.name} {parameter.name}"
-            for each in found
-            if each.family is not None
-            for parameter in each.family.parameters
-            if parameter.span is None and parameter.unit
-        )
-    )
 
 
 def _worded(value: float, unit: str) -> str:

@@ -18,12 +18,12 @@ from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
 from ..progress import Progress, step_counter
-from .appraise import Appraisal, appraise
-from .max_min_subset import Limits, max_min_subset
-from .pick import SubsetChoice, pick
+from .appraise import Appraisal, appraise, nearest_two
+from .max_min_subset import Limits, SubsetChoice, max_min_subset, nearest_pair
+from .pick import pick
 from .pool import Pool
-from .request import ChoiceError, Selection
-from .subset_identification import Objective, SubsetIdentification
+from .request import ChoiceError, Objective, Selection
+from .subset_identification import SubsetIdentification
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
@@ -34,45 +34,29 @@ ONE_BY_ONE = 50
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The chosen icons in the order of the file, and whether it is proven that no other choice is better.
+    """The chosen icons in the order of the file, and how they were found.
 
     Attributes
     ----------
     icons
         Names of the chosen.
-    objective
-        What was maximised.
-    value
-        Its value at the range of the pool: median d′ of the worst pair over all people, or proportion correct, bits or
-        bits a second of the first `people`.
-    optimal
-        Whether no other choice is better.
-    bound
-        A value that no choice exceeds.
+    objective, value, bound, optimal
+        What was maximised; its value at the range of the pool, with median d′ over all people, or of the first
+        `people`; a value that no choice exceeds; and whether no other choice is better.
     worst_pair
         Names of the pair with the smallest d′.
     total_s, total_J
         Time in s and energy in J of all chosen icons together.
-    pool
-        Number of icons that could be chosen.
-    people
-        Number of people behind `value`.
-    seen
-        Number of choices looked at.
-    excluded
-        Icons that could not be chosen, and why.
-    best_share
-        Share of the first 50 people for whom no other choice has a better worst pair; None but for `worst`.
-    loss
-        Median loss of these people, d′; None but for `worst`.
+    pool, people, seen, excluded
+        Numbers of icons that could be chosen, of people behind `value` and of choices looked at; icons that could not
+        be chosen, and why.
+    best_share, loss
+        Share of the first 50 people for whom no other choice has a better worst pair, and their median loss, d′; None
+        but for `worst`.
     at_own_range
         The chosen icons alone, as a set of their own.
     new_laboratory
         What a new laboratory will find with the chosen; None: not requested.
-
-    See Also
-    --------
-    choose : Returns a choice.
     """
 
     icons: tuple[str, ...]
@@ -94,7 +78,8 @@ class Choice:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""
-        elsewhere = self.new_laboratory
+        elsewhere, own = self.new_laboratory, self.at_own_range
+        a, b = (self.icons.index(name) for name in own.worst_pair)
         return {
             "icons": list(self.icons),
             "objective": self.objective,
@@ -111,20 +96,13 @@ class Choice:
             "best_for_people": self.best_share,
             "median_loss": self.loss,
             "at_own_range": {
-                **self.at_own_range.to_dict(),
-                "proportion_correct_interval_new_laboratory": None
-                if elsewhere is None
-                else elsewhere.proportion_correct,
-                "information_bits_interval_new_laboratory": None if elsewhere is None else elsewhere.information_bits,
-                "d_prime_interval_new_laboratory": None if elsewhere is None else elsewhere.pair(*self._nearest),
-                "icons": [] if elsewhere is None else elsewhere.rows(self.icons),
+                **own.to_dict(),
+                "proportion_correct_interval_new_laboratory": elsewhere and elsewhere.proportion_correct,
+                "information_bits_interval_new_laboratory": elsewhere and elsewhere.information_bits,
+                "d_prime_interval_new_laboratory": elsewhere and elsewhere.pair(a, b),
+                "icons": elsewhere.rows(self.icons) if elsewhere else [],
             },
         }
-
-    @property
-    def _nearest(self) -> tuple[int, int]:
-        a, b = (self.icons.index(name) for name in self.at_own_range.worst_pair)
-        return a, b
 
     def __repr__(self) -> str:
         how = "proven best" if self.optimal else f"none exceeds {self.bound:.3g}"
@@ -159,10 +137,6 @@ def choose(
     ValueError
         For a single draw, and for more draws than there are.
 
-    See Also
-    --------
-    rank : Ranks a pool.
-
     Examples
     --------
     >>> from thermicon.circuit import Rig
@@ -191,6 +165,7 @@ def choose(
         raise ChoiceError(pool.nothing_fits(asked))
     chosen = [places[k] for k in picked.chosen]
     names = [icons[k].name for k in chosen]
+    a, b = nearest_two(felt.middle[np.ix_(chosen, chosen)])
     share, loss = _for_people(d, picked, must, limits) if asked.objective == "worst" else (None, None)
     task = task_among(job.task, ranking.carry_over, chosen)
     own = appraise(
@@ -222,7 +197,7 @@ def choose(
         value=picked.value,
         optimal=picked.optimal,
         bound=picked.bound,
-        worst_pair=_worst_pair(np.median(d_prime, axis=0)[np.ix_(chosen, chosen)], names),
+        worst_pair=(names[a], names[b]),
         total_s=math.fsum(pool.durations_s[list(picked.chosen)]),
         total_J=math.fsum(pool.energies_J[list(picked.chosen)]),
         pool=len(places),
@@ -241,13 +216,7 @@ def _for_people(d: Array, picked: SubsetChoice, must: Sequence[int], limits: Lim
     own = list(picked.chosen)
     losses = []
     for one in d[:ONE_BY_ONE]:
-        mine = float(one[np.ix_(own, own)][np.triu_indices(len(own), 1)].min())
+        mine = nearest_pair(one, own)
         best = max_min_subset(one, len(own), must, limits, ties=False)
         losses.append(max(0.0, (mine if best is None else best.value) - mine))
     return float(np.mean(np.array(losses) <= 1e-9)), float(np.median(losses))
-
-
-def _worst_pair(middle: Array, names: Sequence[str]) -> tuple[str, str]:
-    first, second = np.triu_indices(len(names), 1)
-    k = int(middle[first, second].argmin())
-    return names[first[k]], names[second[k]]

@@ -9,9 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
@@ -21,8 +24,7 @@ from ..identification.task import USUAL, Task
 from ..observer.people import People
 from .appraise import population_dprime, population_response
 from .candidate_edits import CandidateEdit, Screening, Vain, offers, worse
-from .edit_result import Edit, NoEdit
-from .pool import RATE_HZ, Pool
+from .pool import POOL_HZ, Pool
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -39,6 +41,50 @@ MOST_CONFIRMED = 8
 MOST_RECOUNTED = 50
 """People whose episodes are counted again with the edit."""
 EDITS = ("worst", "all", "none")
+
+
+@dataclass(frozen=True, slots=True)
+class Edit:
+    """One line of one icon, `old` and `new`, and the icon after it, `edited`.
+
+    `cost` is |log| of the ratio of the new number to the old, plus a tenth for every second that it adds, of which
+    there are `added_s`; `d_prime` the median of the pair after the edit. `recounted` is the share of people who
+    remember another number of episodes after it; between 0 and 1 some gain much and others little.
+    """
+
+    icon: str
+    old: str
+    new: str
+    cost: float
+    added_s: float
+    d_prime: float
+    edited: Icon
+    recounted: float = 0.0
+
+    @property
+    def text(self) -> str:
+        """One line: old → new, and the resulting d′ of the pair."""
+        added = f", {self.added_s:+.1f} s" if abs(self.added_s) >= 0.05 else ""
+        return f"{self.icon}: {self.old} → {self.new}{added}: d′ {self.d_prime:.1f}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for `rank --json`."""
+        return {
+            "icon": self.icon,
+            "old": self.old,
+            "new": self.new,
+            "cost": self.cost,
+            "added_s": self.added_s,
+            "d_prime": self.d_prime,
+            "recounted_share": self.recounted,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class NoEdit:
+    """Why no single edit is offered, in one sentence."""
+
+    reason: str
 
 
 def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUISHABLE_DPRIME) -> Edit | NoEdit:
@@ -61,11 +107,6 @@ def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUI
     Edit or NoEdit
         The edit, or why there is none.
 
-    Raises
-    ------
-    KeyError, ValueError
-        For a name that is not there; for a `wanted` that is not above 0.
-
     Examples
     --------
     >>> from thermicon.circuit import Rig
@@ -82,7 +123,7 @@ def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUI
     names = ranking.labels
     for name in (a, b):
         if name not in names:
-            raise KeyError(f"no icon is called {name!r}; there are {', '.join(names[:20])}{' …' if names[20:] else ''}")
+            raise KeyError(f"no icon is called {name!r}; {did_you_mean(name, names)}")
     i, j = names.index(a), names.index(b)
     if (apart := ranking.d_prime[i, j]) >= wanted:
         return NoEdit(f"the pair is distinguishable already: d′ {apart:.1f}, criterion {wanted:.3g}")
@@ -121,7 +162,7 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         if not offered:
             break
         one = offered[0]
-        end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], RATE_HZ))
+        end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], POOL_HZ))
         parted, harmed = _with_people(ranking, screening, one, crowd, rigs, end_s)
         if parted >= wanted and not harmed and _reads_back(one.icon):
             recounted = _recounted(ranking, one, crowd, rigs, end_s)
@@ -183,7 +224,7 @@ def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, rigs: Sequen
         few,
         job.tracking,
         rigs=rigs[: len(few)],
-        rate_Hz=RATE_HZ,
+        rate_Hz=POOL_HZ,
         end_s=end_s,
         observer=ranking.model.nominal,
     )

@@ -1,7 +1,7 @@
-"""The evaluator of a pool: the nominal person, which is fast, or people; both give d′ and who is named what.
+"""How a search evaluates pools of icons, by the nominal person or by people, and the sets that it holds at its end.
 
 A goal for 95 % of people is about what 95 % of pairs of a draw of the posterior and a person reach. Two hundred of them
-are enough to climb by; the sets that are held at the end are judged with all draws.
+are enough to climb by; the sets that are held at the end are judged with as many draws as in `rank`, and all people.
 """
 
 from __future__ import annotations
@@ -13,15 +13,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from ..identification.laboratory_draws import DrawnLaboratories
-from ..identification.population import ReceptorTemperatures, memory_dprime, respond
+from ..identification.laboratory import Nominal, new_laboratory
+from ..identification.laboratory_draws import EVERY, DrawnLaboratories
+from ..identification.laboratory_draws import PEOPLE as DRAWN_PEOPLE
+from ..identification.population import RATE_HZ, ReceptorTemperatures, memory_dprime, respond, run_end_s
 from ..identification.task import USUAL
 from ..observer.observer import Norm, Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
+from .appraise import Appraisal, appraise
 from .goal import Goal, GoalPart
-from .pool import RATE_HZ, Pool
-from .subset_identification import Objective, SubsetIdentification
+from .pool import POOL_HZ, Pool
+from .request import Objective
+from .subset_identification import SubsetIdentification
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -30,8 +34,10 @@ if TYPE_CHECKING:
 PEOPLE = 24
 DRAWS, OF_EACH = 32, 6
 """Each of 32 laboratories invites 6 of 24 people, four of them in turn all: 192 pairs."""
-EVERY = 2
+THINNED = 2
 """Simulated at 25 Hz and judged at 12.5 Hz, the rate at which `rank` judges draws."""
+JUDGED = ("correct", "bits", "d_prime")
+"""Quantities that sets are chosen by for their people's mean; `detected` only for a share of people."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +74,12 @@ class Evaluator:
             observer, people = laboratories.at(place, PEOPLE)
             first = OF_EACH * place % PEOPLE
             groups.append((slice(first, first + OF_EACH), observer, people.part(first, first + OF_EACH)))
-        return replace(self, groups=tuple(groups), every=EVERY, share=part.people)
+        return replace(self, groups=tuple(groups), every=THINNED, share=part.people)
+
+    @property
+    def totals(self) -> tuple[float | None, float | None]:
+        """Most time, s, and energy, J, of all icons together."""
+        return (None, None) if self.goal is None else self.goal.totals
 
     def pool(self, icons: Sequence[Icon]) -> Pool:
         """Icons on the nominal rig."""
@@ -78,7 +89,7 @@ class Evaluator:
         """d′ (people, icons, icons) from memory."""
         if not self.groups:
             return pool.dprimes(pool, self.norm, self.observer)[None]
-        met = ReceptorTemperatures.simulated(pool.icons, self.rigs, self.rig, pool.end_s, RATE_HZ, self.tracking)
+        met = ReceptorTemperatures.simulated(pool.icons, self.rigs, self.rig, pool.end_s, POOL_HZ, self.tracking)
         found = []
         for persons, observer, people in self.groups:
             cold, warm = met.cold_C[persons, :, :: self.every], met.warm_C[persons, :, :: self.every]
@@ -93,3 +104,80 @@ class Evaluator:
         return SubsetIdentification.of(
             d_prime, np.concatenate(lapse), pool.durations_s, self.seed, len(d_prime), share=self.share
         )
+
+
+@dataclass(frozen=True, slots=True)
+class FinalJudge:
+    """How the last sets of a search are judged: by the parts of a goal about what people perceive, then an objective.
+
+    `by` is the evaluator of the search, `crowd` all people. A goal for a share of people needs draws of the posterior.
+    """
+
+    by: Evaluator
+    model: ObserverModel
+    crowd: People
+    draws: int
+
+    def __post_init__(self) -> None:
+        if self.by.goal is not None:
+            self.by.goal.check_draws(0 if self.draws < 2 or self.model.posterior is None else self.draws)
+
+    @property
+    def parts(self) -> tuple[GoalPart, ...]:
+        """Parts of the goal that sets are judged by, those for a share of people first."""
+        held = () if self.by.goal is None else self.by.goal.parts
+        some = [part for part in held if part.quantity in JUDGED or part.people is not None]
+        return tuple(sorted(some, key=lambda part: (part.people is None, -(part.people or 0.0))))
+
+    @property
+    def climbed(self) -> GoalPart | None:
+        """The part for a share of people that sets are climbed by: the first about names; None without one."""
+        return next((part for part in self.parts if part.people is not None and part.quantity in JUDGED), None)
+
+    @property
+    def words(self) -> str:
+        """What sets are judged by, in words: parts of the goal, or else the objective."""
+        return " and ".join(map(in_words, self.parts)) or self.by.objective
+
+    def appraisal(self, icons: Sequence[Icon]) -> Appraisal:
+        """What all people make of a set."""
+        by = self.by
+        return appraise(
+            icons, by.rig, people=self.crowd, seed=by.seed, tracking=by.tracking, norm=by.norm, observer=by.observer
+        )
+
+    def merit(self, icons: Sequence[Icon], scores: Appraisal) -> tuple[float, ...]:
+        """What the better set has more of: nearness to the goal, then values of its parts, then of the objective."""
+        persons = self._persons(icons, scores) if any(part.people is not None for part in self.parts) else {}
+        means = {"correct": scores.proportion_correct, "bits": scores.information_bits, "d_prime": scores.d_prime}
+        values = [
+            means[part.quantity]
+            if part.people is None
+            else float(np.quantile(persons[part.quantity], 1.0 - part.people))
+            for part in self.parts
+        ]
+        missing = [max(0.0, 1.0 - value / part.limit) for part, value in zip(self.parts, values, strict=True)]
+        return (-max(missing, default=0.0), *values, scores.value(self.by.objective))
+
+    def _persons(self, icons: Sequence[Icon], scores: Appraisal) -> dict[str, Array]:
+        """Values of single people of all draws, laid about what all people reach, as in `rank`."""
+        from thermicon.circuit.solver.simulate import duration_s
+
+        by = self.by
+        end = run_end_s(duration_s(icon, by.rig) for icon in icons)
+        few = self.crowd.part(0, min(DRAWN_PEOPLE, len(self.crowd)))
+        met = ReceptorTemperatures.simulated(icons, few.rigs(by.rig), by.rig, end, RATE_HZ, by.tracking)
+        played = met.thinned(len(few), EVERY)
+        n = len(icons)
+        # Single people are laid about correct and bits alone; the rest of the prediction is not used.
+        predicted = Nominal(
+            scores.proportion_correct, scores.information_bits, np.zeros(n), np.zeros((n, n)), np.zeros(n)
+        )
+        return new_laboratory(
+            played, self.crowd, predicted, by.norm, model=self.model, draws=self.draws, seed=by.seed
+        ).persons
+
+
+def in_words(part: GoalPart) -> str:
+    """What a part is about, such as correct for 95 % of people."""
+    return part.quantity + ("" if part.people is None else f" for {100.0 * part.people:g} % of people")

@@ -25,13 +25,14 @@ from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from ..progress import Progress, step_counter
 from ..ranking.batches import Execution, Job, PooledResult, collect_batches
-from .appraise import population_response
+from .appraise import nearest_two, population_response
 from .goal import Goal
 from .goal_result import GoalResult, SetOutcome, judge_goal
-from .pick import SubsetChoice, pick
+from .max_min_subset import SubsetChoice
+from .pick import pick
 from .pool import Pool, soft_finding
-from .request import ChoiceError, Selection, check_selection
-from .subset_identification import Objective, SubsetIdentification
+from .request import ChoiceError, Objective, Selection
+from .subset_identification import SubsetIdentification
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -47,28 +48,12 @@ REACHED_BY = 0.95
 
 @dataclass(frozen=True, slots=True)
 class FrontierPoint:
-    """The best choice of one size.
+    """The best choice of one size, by names of its `icons`.
 
-    Attributes
-    ----------
-    icons
-        Names of the chosen.
-    proportion_correct, low
-        Mean over people, and what 95 % of them reach at the nominal constants, 0–1.
-    low_with_model
-        What 95 % of people reach, people and uncertainty of the model together, as in a goal, 0–1; None without draws.
-    information_bits
-        Information, bits.
-    d_prime
-        Median d′ of the worst pair.
-    total_s, total_J
-        Time and energy of all of them; NaN on a thermode, which states no energy.
-    optimal
-        Whether no other choice of the size is better by the objective.
-    amber
-        Names of the chosen that pass a soft limit of safety.
-    goal
-        The goal judged for the choice; None without one.
+    `proportion_correct` and `information_bits` are means over people, `low` the proportion correct that 95 % of them
+    reach at the nominal constants, `low_with_model` with the uncertainty of the model too (None: without draws);
+    `d_prime` is the median of the worst pair, `total_J` NaN on a thermode, which states no energy. `optimal` says
+    whether no other choice of the size is better; `amber` icons pass a soft limit of safety.
     """
 
     icons: tuple[str, ...]
@@ -88,32 +73,13 @@ class FrontierPoint:
         """What 95 % of people reach: with the uncertainty of the model, where there are draws of it."""
         return self.low if self.low_with_model is None else self.low_with_model
 
-    def __repr__(self) -> str:
-        return (
-            f"FrontierPoint({len(self.icons)} icons: {100 * self.proportion_correct:.0f} % correct, {self.total_s:g} s)"
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class Frontier(Drawn):
-    """Best choices of rising size from one pool.
+    """Best choices of rising size, the `points`, from one pool, and how they were made and judged.
 
-    Attributes
-    ----------
-    rig, rig_changes
-        Name of the rig, and its changed keys.
-    people, seed, norm, objective
-        How choices were made and judged.
-    pool
-        Number of icons that could be chosen.
-    excluded
-        Icons that could not be chosen, and why.
-    points
-        The choices.
-    draws
-        Draws of the posterior behind `low_with_model`; 0 for none.
-    goal
-        The goal; None without one.
+    Of the `pool` icons that could be chosen, others were `excluded` for a reason each; `draws` of the posterior are
+    behind `low_with_model`.
 
     See Also
     --------
@@ -233,7 +199,6 @@ def frontier(
         wanted.check_draws(draws)
     time, energy = (None, None) if wanted is None else wanted.totals
     asked = Selection(2, objective, most_s=time, most_J=energy)
-    check_selection(asked, [icon.name for icon in members])
     whole = Pool.of(members, rig, model.nominal, rate_Hz=RATE_HZ)
     places, excluded = whole.usable(asked, model.nominal, wanted)
     pool = whole.some(places)
@@ -246,17 +211,24 @@ def frontier(
     points: list[FrontierPoint] = []
     for count in range(2, largest + 1):
         picked = pick(pooled.middle, namings, count, objective, (), limits, seed)
-        if picked is None:
+        if picked is None:  # nor will more keep the limits
             break
         points.append(_point(picked, pool, pooled, job, crowd, model, draws, wanted))
         step()
-    for _ in range(len(points) + 1, largest):  # sizes that no longer keep the limits
-        step()
     if not points:
         raise ChoiceError(pool.nothing_fits(asked))
-    changes = tuple(rig.changes)
     return Frontier(
-        rig.name, changes, people, seed, chosen, objective, len(pool), excluded, tuple(points), draws, wanted
+        rig=rig.name,
+        rig_changes=tuple(rig.changes),
+        people=people,
+        seed=seed,
+        norm=chosen,
+        objective=objective,
+        pool=len(pool),
+        excluded=excluded,
+        points=tuple(points),
+        draws=draws,
+        goal=wanted,
     )
 
 
@@ -279,10 +251,9 @@ def _point(
     else:
         named = confuse(own, lapse=crowd.lapse, seed=job.seed).probability
     each, middle = proportion_correct(named), np.median(own, axis=0)
-    first, second = np.triu_indices(len(places), 1)
-    at = int(middle[first, second].argmin())
+    at = nearest_two(middle)
     names = tuple(icon.name for icon in few.icons)
-    nearest = names[first[at]], names[second[at]]
+    nearest = names[at[0]], names[at[1]]
     correct, bits = float(each.mean()), float(information_bits(named).mean())
     detected, onset_s = pooled.detected[places], pooled.detection.onset_s[places]
     persons: dict[str, Array] = {}
@@ -296,7 +267,7 @@ def _point(
         names=names,
         correct=correct,
         bits=bits,
-        d_prime=float(middle[first, second].min()),
+        d_prime=float(middle[at]),
         detected=detected,
         onset_s=onset_s,
         durations_s=few.durations_s,

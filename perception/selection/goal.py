@@ -33,15 +33,7 @@ EXAMPLE = "correct >= 90 % for 95 % of people, time <= 10 s, safety green"
 
 
 class GoalError(ValueError):
-    """A goal cannot be read, or its parts contradict each other; the text says where, and what would be right.
-
-    Examples
-    --------
-    >>> Goal.parse("corect >= 90 %")
-    Traceback (most recent call last):
-    ...
-    thermicon.perception.selection.goal.GoalError: goal, part 1 'corect >= 90 %': there is no quantity 'corect'...
-    """
+    """A goal cannot be read, or its parts contradict each other; the text says where, and what would be right."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,17 +51,15 @@ class Quantity:
 
 SHARE = {"%": 0.01, "": 1.0}
 SECONDS = {"s": 1.0, "ms": 1e-3, "min": 60.0}
+BITS = {"bits": 1.0, "bit": 1.0, "": 1.0}
+JOULES = {"J": 1.0, "mJ": 1e-3, "kJ": 1e3}
 QUANTITIES: Mapping[str, Quantity] = {
     "correct": Quantity(">=", SHARE, 0.0, 1.0, True, "share of icons that are named correctly", "correct >= 90 %"),
-    "detected": Quantity(
-        ">=", SHARE, 0.0, 1.0, True, "detection of the icon that is detected least", "detected >= 95 %"
-    ),
-    "bits": Quantity(">=", {"bits": 1.0, "bit": 1.0, "": 1.0}, 0.0, 20.0, True, "information of the set", "bits >= 2"),
+    "detected": Quantity(">=", SHARE, 0.0, 1.0, True, "detection of the icon detected least", "detected >= 95 %"),
+    "bits": Quantity(">=", BITS, 0.0, 20.0, True, "information of the set", "bits >= 2"),
     "d_prime": Quantity(">=", {"": 1.0}, 0.0, 20.0, False, "median d′ of the worst pair", "d_prime >= 2.5"),
     "time": Quantity("<=", SECONDS, 0.0, math.inf, False, "duration of all icons together", "time <= 10 s"),
-    "energy": Quantity(
-        "<=", {"J": 1.0, "mJ": 1e-3, "kJ": 1e3}, 0.0, math.inf, False, "energy of all icons together", "energy <= 5 J"
-    ),
+    "energy": Quantity("<=", JOULES, 0.0, math.inf, False, "energy of all icons together", "energy <= 5 J"),
     "onset": Quantity("<=", SECONDS, 0.0, math.inf, False, "onset of the icon that is felt last", "onset <= 1.5 s"),
     "count": Quantity(">=", {"": 1.0}, 2.0, 10_000.0, False, "number of icons that can be played", "count 6"),
 }
@@ -95,12 +85,13 @@ class GoalPart:
     people: float | None = None
 
     @property
-    def text(self) -> str:
-        """The part in canonical form.
+    def at_most(self) -> bool:
+        """Whether the value may be at most the limit, rather than at least."""
+        return self.quantity == SAFETY or QUANTITIES[self.quantity].comparison == "<="
 
-        >>> Goal.parse("correct>=0.9 for 95% of people, onset <= 800 ms, count 6").text
-        'correct >= 90 % for 95 % of people, onset <= 0.8 s, count >= 6'
-        """
+    @property
+    def text(self) -> str:
+        """The part in canonical form."""
         if self.quantity == SAFETY:
             return f"{SAFETY} {VERDICTS[int(self.limit)]}"
         known = QUANTITIES[self.quantity]
@@ -119,15 +110,9 @@ class Goal:
     parts
         Its parts, about different quantities or shares of people, in the order in which they were given.
 
-    Raises
-    ------
-    GoalError
-        For two parts about the same quantity and share of people.
-
     See Also
     --------
-    judge_goal : Judges a set by a goal.
-    search : Looks for a set that meets one.
+    search : Looks for a set that meets a goal.
 
     Examples
     --------
@@ -147,20 +132,11 @@ class Goal:
 
     @classmethod
     def parse(cls, text: str) -> Goal:
-        """Read a goal.
+        """Read a goal: parts joined by commas; a `GoalError` says what cannot be read, and where.
 
-        Parameters
-        ----------
-        text
-            Parts joined by commas: a quantity (`correct`, `detected`, `bits`, `d_prime`, `time`, `energy`, `onset`,
-            `count`), its comparison, a number with its unit, and for the first three `for N % of people`; or
-            `safety green`, `safety amber`.
-
-        Raises
-        ------
-        GoalError
-            For what cannot be read, units that do not fit, and parts about the same quantity and share of people.
-
+        A part is a quantity (`correct`, `detected`, `bits`, `d_prime`, `time`, `energy`, `onset`, `count`), its
+        comparison, a number with its unit, and for the first three `for N % of people`; or `safety green`, `safety
+        amber`.
         """
         from lark.exceptions import UnexpectedInput
 
@@ -175,7 +151,7 @@ class Goal:
         limits = [part.limit for part in self.parts if part.quantity == quantity]
         if not limits:
             return None
-        return max(limits) if quantity in QUANTITIES and QUANTITIES[quantity].comparison == ">=" else min(limits)
+        return max(limits) if quantity != SAFETY and QUANTITIES[quantity].comparison == ">=" else min(limits)
 
     @property
     def totals(self) -> tuple[float | None, float | None]:
@@ -183,13 +159,7 @@ class Goal:
         return self.of("time"), self.of("energy")
 
     def check_count(self, count: int | None) -> None:
-        """Raise a GoalError where fewer icons are chosen than the goal asks for.
-
-        >>> Goal.parse("count 9").check_count(6)
-        Traceback (most recent call last):
-        ...
-        thermicon.perception.selection.goal.GoalError: goal: it asks for 9 icons or more, and 6 are to be chosen...
-        """
+        """Raise a GoalError where fewer icons are chosen than the goal asks for."""
         least = self.of("count")
         if count is not None and least is not None and count < least:
             raise GoalError(
@@ -220,9 +190,7 @@ def _same(one: GoalPart, other: GoalPart) -> str:
     """That two parts limit the same quantity, and which of them to keep."""
     if one.limit == other.limit:
         return f"{one.text!r} stands twice: leave one out"
-    lower = one.quantity == SAFETY or QUANTITIES[one.quantity].comparison == "<="
-    strictest = min if lower else max
-    kept = strictest((one, other), key=lambda part: part.limit)
+    kept = (min if one.at_most else max)((one, other), key=lambda part: part.limit)
     return f"{one.text!r} and {other.text!r} limit the same quantity: keep the stricter, {kept.text!r}"
 
 
@@ -271,14 +239,13 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
 
 
 def _pieces(tree: Any) -> tuple[str | None, float, str, float | None]:
+    """Comparison, number, unit and share of people of a part; a count may be said to be equal to a number."""
     if tree.data == "exactly":
         return None, _number(tree.children[1]), "", None
-    _, comparison, number, unit, people = tree.children
-    sign = {"≥": ">=", ">": ">=", "≤": "<=", "<": "<=", "=": ">="}.get(str(comparison), str(comparison))
-    if str(comparison) == "=" and str(tree.children[0]) != "count":
-        sign = "="
+    name, comparison, number, unit, people = tree.children
+    signs = {"≥": ">=", ">": ">=", "≤": "<=", "<": "<=", "=": ">=" if name == "count" else "="}
     share = None if people is None else _number(people.children[0]) / 100.0
-    return sign, _number(number), "" if unit is None else str(unit), share
+    return signs.get(str(comparison), str(comparison)), _number(number), str(unit or ""), share
 
 
 def _number(token: Any) -> float:
@@ -286,11 +253,8 @@ def _number(token: Any) -> float:
 
 
 def _where(text: str, problem: Any) -> str:
-    place = getattr(problem, "pos_in_stream", None)
-    token = getattr(problem, "token", None)
-    if token is not None and token.type == "$END":
-        place = None
-    if place is None or place < 0 or place >= len(text):
+    place, token = getattr(problem, "pos_in_stream", None), getattr(problem, "token", None)
+    if place is None or not 0 <= place < len(text) or (token is not None and token.type == "$END"):
         if text.rstrip().endswith(","):
             return f"goal {text!r}: it ends with a comma: leave it out, or add another part such as 'safety green'"
         return f"goal {text!r}: it ends too early: write it such as {EXAMPLE!r}"

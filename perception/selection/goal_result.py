@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from .goal import QUANTITIES, SAFETY, VERDICTS, Goal, GoalPart
+from .goal import SAFETY, VERDICTS, Goal, GoalPart
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
@@ -27,27 +27,12 @@ TOLERANCE = 1e-9
 class SetOutcome:
     """What goals are judged by: scores of a set, its icons, and its people.
 
-    Attributes
-    ----------
-    names
-        Names of all icons.
-    correct, bits, d_prime
-        Means over people, and d′ of the nearest pair.
-    detected, onset_s
-        Of every icon; onset is NaN where it is not felt.
-    durations_s, energies_J
-        Of every icon; energies are NaN on a thermode, which states none.
-    worst_pair
-        Names of the pair that is confused most; None for one icon.
-    nearest_pair
-        Names of the pair with the smallest d′; None for one icon.
-    amber, red
-        Names of the icons that pass a soft limit of safety, and of those that pass a hard one.
-    unreached
-        Names of the icons that the rig does not reach: no matter of safety, which judges what the rig plays of them.
-    persons
-        Values of `correct`, `detected` (of the icon that is detected least) and `bits` for single people (n,), of all
-        draws together; empty without draws.
+    `names` of all icons; `correct` and `bits` are means over people, `d_prime` that of the nearest pair; `detected`,
+    `onset_s` (NaN: not felt), `durations_s` and `energies_J` (NaN on a thermode, which states none) of every icon.
+    `worst_pair` is confused most, `nearest_pair` has the smallest d′ (None: one icon). `amber` and `red` pass a soft
+    and a hard limit of safety; `unreached` icons are no matter of safety, which judges what the rig plays of them.
+    `persons` has values of `correct`, `detected` (of the icon detected least) and `bits` for single people (n,), of all
+    draws together; it is empty without draws.
     """
 
     names: tuple[str, ...]
@@ -123,11 +108,10 @@ class GoalPartResult:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`; of safety, value and limit are words."""
-        safety = self.part.quantity == SAFETY
-        wanted: float | str = VERDICTS[int(self.part.limit)] if safety else self.part.limit
+        wanted: float | str = self.part.limit
         value: float | str | None = self.value
-        if safety and self.value is not None:
-            value = (*VERDICTS, "red")[int(self.value)]
+        if self.part.quantity == SAFETY and value is not None:
+            value, wanted = (*VERDICTS, "red")[int(value)], VERDICTS[int(wanted)]
         return {"text": self.part.text, "met": self.met, "value": value, "wanted": wanted}
 
 
@@ -135,14 +119,7 @@ class GoalPartResult:
 class GoalResult:
     """A goal with its parts judged.
 
-    Attributes
-    ----------
-    goal
-        The goal.
-    parts
-        Its parts in their order.
-    unreached
-        Names of the icons that the rig does not reach: they are judged as the rig would play them.
+    `unreached` icons are judged as the rig would play them.
     """
 
     goal: Goal
@@ -174,29 +151,10 @@ class GoalResult:
 
 
 def judge_goal(goal: Goal | str, found: Ranking | SetOutcome, choice: Choice | None = None) -> GoalResult:
-    """Judge every part of a goal.
+    """Judge every part of a goal for a whole ranking, or for a choice out of it as a set of its own.
 
-    Parameters
-    ----------
-    goal
-        What is wanted, as a `Goal` or its text.
-    found
-        A ranking, or what goals are judged by.
-    choice
-        A choice out of the ranking, which is then judged as a set of its own; None: the whole set.
+    A `GoalError` for a text that is no goal, and for a share of people where ranking or choice have no draws.
 
-    Returns
-    -------
-    GoalResult
-        The goal with its parts judged.
-
-    Raises
-    ------
-    ValueError
-        A `GoalError` for a text that is no goal, and for a share of people where ranking or choice have no draws.
-
-    Examples
-    --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> from thermicon.perception import rank
@@ -213,14 +171,11 @@ def judge_goal(goal: Goal | str, found: Ranking | SetOutcome, choice: Choice | N
 
 def _judged(part: GoalPart, outcome: SetOutcome) -> GoalPartResult:
     value = _value(part, outcome)
-    if value is None or math.isnan(value):
-        return GoalPartResult(part, None, met=False, binding=_binding(part, outcome))
-    lower = part.quantity == SAFETY or QUANTITIES[part.quantity].comparison == "<="
-    met = value <= part.limit + TOLERANCE if lower else value >= part.limit - TOLERANCE
-    return GoalPartResult(part, value, met, "" if met else _binding(part, outcome))
+    met = value <= part.limit + TOLERANCE if part.at_most else value >= part.limit - TOLERANCE
+    return GoalPartResult(part, None if math.isnan(value) else value, met, "" if met else _binding(part, outcome))
 
 
-def _value(part: GoalPart, outcome: SetOutcome) -> float | None:
+def _value(part: GoalPart, outcome: SetOutcome) -> float:
     if part.people is not None:
         return float(np.quantile(outcome.persons[part.quantity], 1.0 - part.people))
     return {

@@ -1,36 +1,23 @@
-"""The k of n things whose nearest pair is farthest apart, with proof.
+"""The k of n things whose nearest pair is farthest apart, with proof where an exhaustive search completes.
 
-Bisection over the distances that occur finds the largest t for which k things all at least t apart exist. A short
-exhaustive search decides this for most t; the rest is left to integer programming (HiGHS through SciPy): "choose k; of
-a pair nearer than t at most one; totals within their limits".
+Bisection over the distances that occur finds the largest t for which k things all at least t apart exist. Each t is
+decided by an exhaustive search of cliques; where that takes too long, the answer says that it is not proven.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
+from .request import UndecidedError
 
 MOST_STEPS = 20_000
-"""Steps of the exhaustive search before the integer program takes over: about 0.02 s."""
-MOST_NODES = 20_000
-"""Branches that a single program may take; then the answer states that it is not proven. A limit in time would not
-give the same answer on every machine."""
-LIMIT_REACHED = 1
-"""Status of `scipy.optimize.milp`."""
-
-
-class StepsExhaustedError(Exception):
-    """The search stopped before it was complete."""
-
-
-class UndecidedError(Exception):
-    """A program reached its limit before it was decided."""
+"""Steps of a single exhaustive search. A limit in time would not give the same answer on every machine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,17 +41,21 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class MaxMinSubset:
-    """Chosen things in ascending order, the distance of their nearest pair, and what no choice exceeds.
+class SubsetChoice:
+    """Chosen things in ascending order, their value, what no choice exceeds, and how many looks that took.
 
-    `proven` states that the bound is reached; `thresholds` is the number of distances that were decided.
+    Looks are distances that were decided, or choices that were scored.
     """
 
     chosen: tuple[int, ...]
     value: float
     bound: float
-    proven: bool
-    thresholds: int
+    seen: int
+
+    @property
+    def optimal(self) -> bool:
+        """Whether the bound is reached, so that no other choice is better."""
+        return self.bound <= self.value
 
 
 def max_min_subset(
@@ -73,48 +64,18 @@ def max_min_subset(
     must: Sequence[int] = (),
     limits: Limits | None = None,
     ties: bool = True,
-) -> MaxMinSubset | None:
-    """Choose the `count` things whose nearest pair is farthest apart.
+) -> SubsetChoice | None:
+    """Choose the `count` of n things, `must` among them, whose nearest pair is farthest apart; None: none fits limits.
 
-    Parameters
-    ----------
-    distances
-        Symmetric matrix (n, n); its diagonal does not count.
-    count
-        Number of things to choose, 2 to n.
-    must
-        Things that every choice contains.
-    limits
-        Totals to keep (None: no limit).
-    ties
-        Whether equal choices are decided by their next nearest pair, and so on.
+    The diagonal of `distances` (n, n) does not count. With `ties`, equal choices are decided by their next nearest
+    pair, and so on. Raises `UndecidedError` where it remains open whether any choice keeps the limits.
 
-    Returns
-    -------
-    MaxMinSubset or None
-        None where no choice keeps the limits.
-
-    Raises
-    ------
-    UndecidedError
-        Where it remains open whether any choice keeps the limits.
-    ValueError
-        For a count outside 2 to n, and for more `must` than `count`.
-
-    Examples
-    --------
     >>> best = max_min_subset([[0, 1, 4], [1, 0, 3], [4, 3, 0]], 2)
-    >>> best.chosen, best.value, best.proven
+    >>> best.chosen, best.value, best.optimal
     ((0, 2), 4.0, True)
-
     """
     d = np.array(distances, dtype=np.float64)
-    n = len(d)
-    if not 2 <= count <= n:
-        raise ValueError(f"{count} of {n} things cannot be chosen: at least 2 are needed, and no more than there are")
-    if len(must) > count:
-        raise ValueError(f"{len(must)} things must be among {count}")
-    return _Bisection(d, count, tuple(must), limits or Limits.none(n)).best(ties)
+    return _Bisection(d, count, tuple(must), limits or Limits.none(len(d))).best(ties)
 
 
 def nearest_pair(distances: Array, chosen: Sequence[int]) -> float:
@@ -128,7 +89,7 @@ class _Bisection:
         self.d, self.count, self.must, self.limits = d, count, must, limits
         self.thresholds = 0
 
-    def best(self, ties: bool) -> MaxMinSubset | None:
+    def best(self, ties: bool) -> SubsetChoice | None:
         values = self._values()
         start = self._greedy()
         if start is None and (start := self._subset_at(float(values[0]))) is None:
@@ -137,14 +98,14 @@ class _Bisection:
         value = nearest_pair(self.d, chosen)
         if bound <= value and ties:
             chosen = self._ties_broken(chosen)
-        return MaxMinSubset(tuple(sorted(chosen)), value, bound, bound <= value, self.thresholds)
+        return SubsetChoice(tuple(sorted(chosen)), value, bound, self.thresholds)
 
     def _values(self) -> Array:
         return np.unique(self.d[np.triu_indices(len(self.d), 1)])
 
     def _widened(self, chosen: tuple[int, ...], values: Array) -> tuple[tuple[int, ...], float]:
         """The widest choice, and the largest value that is not proven to be out of reach."""
-        low = int(np.searchsorted(values, self._nearest(chosen)))
+        low = int(np.searchsorted(values, nearest_pair(self.d, chosen)))
         high = closed = len(values)
         step = 1
         while high - low > 1:
@@ -159,29 +120,22 @@ class _Bisection:
             if wider is None:
                 high = closed = middle
             else:
-                chosen, low = wider, max(middle, int(np.searchsorted(values, self._nearest(wider))))
+                chosen, low = wider, max(middle, int(np.searchsorted(values, nearest_pair(self.d, wider))))
         return chosen, float(values[closed - 1])
 
     def _ties_broken(self, chosen: tuple[int, ...]) -> tuple[int, ...]:
         """Of the choices with the same nearest pair the one whose next is widest: the pair is fixed, then ignored."""
         rest = _Bisection(self.d.copy(), self.count, self.must, self.limits)
-        try:
-            while len(rest.must) < self.count:
-                members = sorted(chosen)
-                pairs = [(rest.d[a, b], a, b) for k, a in enumerate(members) for b in members[k + 1 :]]
-                _, a, b = min(pairs)
-                rest.d[a, b] = rest.d[b, a] = math.inf
-                rest.must = tuple(dict.fromkeys((*rest.must, a, b)))
-                if not math.isfinite(rest._nearest(chosen)):
-                    break
-                chosen, _ = rest._widened(chosen, rest._values())
-        except UndecidedError:
-            pass
+        while len(rest.must) < self.count:
+            members = sorted(chosen)
+            _, a, b = min((rest.d[a, b], a, b) for k, a in enumerate(members) for b in members[k + 1 :])
+            rest.d[a, b] = rest.d[b, a] = math.inf
+            rest.must = tuple(dict.fromkeys((*rest.must, a, b)))
+            if not math.isfinite(nearest_pair(rest.d, chosen)):
+                break
+            chosen, _ = rest._widened(chosen, rest._values())
         self.thresholds += rest.thresholds
         return chosen
-
-    def _nearest(self, chosen: Sequence[int]) -> float:
-        return nearest_pair(self.d, chosen)
 
     def _greedy(self) -> tuple[int, ...] | None:
         """The best of the choices that start anywhere and add what is farthest from all before it."""
@@ -195,7 +149,7 @@ class _Bisection:
                 nearest[chosen] = -math.inf
                 chosen.append(int(nearest.argmax()))
                 nearest = np.minimum(nearest, self.d[chosen[-1]])
-            if self.limits.kept(chosen) and (best is None or self._nearest(chosen) > self._nearest(best)):
+            if self.limits.kept(chosen) and (best is None or nearest_pair(self.d, chosen) > nearest_pair(self.d, best)):
                 best = tuple(chosen)
         return best
 
@@ -207,49 +161,10 @@ class _Bisection:
         if left is None:
             return None
         self.thresholds += 1
-        places = {int(thing): place for place, thing in enumerate(left)}
-        try:
-            clique = find_clique(
-                compatible[np.ix_(left, left)],
-                self.count,
-                [places[thing] for thing in self.must],
-                lambda clique: self.limits.kept([int(left[k]) for k in clique]),
-                MOST_STEPS,
-            )
-        except StepsExhaustedError:
-            return self._by_program(compatible, left)
-        return None if clique is None else tuple(int(left[k]) for k in clique)
-
-    def _by_program(self, compatible: NDArray[np.bool_], left: NDArray[np.intp]) -> tuple[int, ...] | None:
-        """The same among the things that are left, by integer programming."""
-        from scipy.optimize import Bounds, LinearConstraint, milp
-        from scipy.sparse import csr_array
-
-        first, second = np.nonzero(np.triu(~compatible[np.ix_(left, left)], 1))
-        rows = np.arange(first.size)
-        near = csr_array(
-            (np.ones(2 * first.size), (np.tile(rows, 2), np.concatenate([first, second]))),
-            shape=(first.size, left.size),
-        )
-        constraints = [LinearConstraint(np.ones((1, left.size)), self.count, self.count)]
-        if first.size:
-            constraints.append(LinearConstraint(near, ub=np.ones(first.size)))
-        constraints += [
-            LinearConstraint(costs[left][None], ub=most + 1e-9 * abs(most))
-            for costs, most in zip(self.limits.costs, self.limits.most, strict=True)
-        ]
-        result = milp(
-            np.zeros(left.size),
-            integrality=np.ones(left.size, dtype=np.int64),
-            bounds=Bounds(np.isin(left, self.must).astype(np.float64), 1.0),
-            constraints=constraints,
-            options={"node_limit": MOST_NODES},
-        )
-        if result.x is not None:
-            return tuple(int(k) for k in left[result.x > 0.5])
-        if result.status == LIMIT_REACHED:
-            raise UndecidedError
-        return None
+        limits = Limits(self.limits.costs[:, left], self.limits.most)
+        must = np.flatnonzero(np.isin(left, self.must)).tolist()
+        clique = find_clique(compatible[np.ix_(left, left)], self.count, must, limits)
+        return None if clique is None else tuple(left[list(clique)].tolist())
 
     def _pruned(self, compatible: NDArray[np.bool_]) -> NDArray[np.intp] | None:
         """Things that can be in a choice: compatible with all of `must` and with at least `count` − 1 of the others."""
@@ -263,41 +178,48 @@ class _Bisection:
 
 
 def find_clique(
-    compatible: NDArray[np.bool_],
-    size: int,
-    must: Sequence[int],
-    accepts: Callable[[Sequence[int]], bool],
-    most_steps: int,
+    compatible: NDArray[np.bool_], size: int, must: Sequence[int], limits: Limits
 ) -> tuple[int, ...] | None:
-    """`size` mutually compatible things that contain `must` and are accepted; None where there are none.
+    """`size` mutually compatible things that contain `must` and keep the limits; None where there are none.
 
-    The things of `must` are taken to be compatible with each other. Raises `StepsExhaustedError` after `most_steps`.
+    The things of `must` are taken to be compatible with each other. Raises `UndecidedError` after `MOST_STEPS`.
     """
     neighbours = [sum(1 << int(k) for k in np.flatnonzero(row)) & ~(1 << i) for i, row in enumerate(compatible)]
+    by_cost = [np.argsort(row, kind="stable").tolist() for row in limits.costs]
     steps = 0
 
-    def outside_groups(candidates: int, groups: int) -> int:
-        """What is left of candidates without so many groups in which no pair is compatible: each gives one at most."""
+    def within(clique: tuple[int, ...], candidates: int) -> bool:
+        """Whether the cheapest candidates would complete the clique within each limit."""
+        for row, most, order in zip(limits.costs, limits.most, by_cost, strict=True):
+            cheapest = [k for k in order if candidates >> k & 1][: size - len(clique)]
+            if math.fsum(row[[*clique, *cheapest]]) > most + 1e-9 * abs(most):
+                return False
+        return True
+
+    def branches(candidates: int, groups: int) -> Iterator[int]:
+        """Candidates outside so many groups in which no pair is compatible: whatever completes a clique has one."""
+        left = candidates
         for _ in range(groups):
-            group = candidates
+            group = left
             while group:
                 one = group.bit_length() - 1
-                candidates &= ~(1 << one)
+                left &= ~(1 << one)
                 group &= ~(neighbours[one] | 1 << one)
-        return candidates
+        while left:
+            one = left.bit_length() - 1
+            left &= ~(1 << one)
+            yield one
 
     def extended(clique: tuple[int, ...], candidates: int) -> tuple[int, ...] | None:
         nonlocal steps
         steps += 1
-        if steps > most_steps:
-            raise StepsExhaustedError
-        missing = size - len(clique)
-        if missing == 0:
-            return clique if accepts(clique) else None
-        tried = outside_groups(candidates, missing - 1)  # whatever completes the clique has one of these
-        while tried:
-            last = tried.bit_length() - 1
-            tried &= ~(1 << last)
+        if steps > MOST_STEPS:
+            raise UndecidedError("it could not be decided whether any choice keeps the totals: relax one of them")
+        if not within(clique, candidates):
+            return None
+        if len(clique) == size:
+            return clique
+        for last in branches(candidates, size - len(clique) - 1):
             candidates &= ~(1 << last)
             complete = extended((*clique, last), candidates & neighbours[last])
             if complete is not None:

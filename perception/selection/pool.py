@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon
 
-RATE_HZ = 25.0
+POOL_HZ = 25.0
 """Rows a second of a pool that is only tried out."""
 BLOCK = 4
 """Fewer icons are solved together with repetitions: by the code that people need anyway, not by another for one."""
@@ -51,7 +51,7 @@ class Pool:
         observer: Observer,
         *,
         end_s: float | None = None,
-        rate_Hz: float = RATE_HZ,
+        rate_Hz: float = POOL_HZ,
     ) -> Pool:
         """Play icons on the rig until `end_s`, by default until the longest of them has faded, and feel them."""
         from thermicon.circuit.solver.simulate import duration_s, simulate_all
@@ -102,9 +102,7 @@ class Pool:
         """The totals that a choice must keep, as costs of every icon."""
         costs = (self.durations_s, most_s), (self.energies_J if most_J is not None else self.durations_s, most_J)
         rows = [(each, most) for each, most in costs if most is not None]
-        if not rows:
-            return Limits.none(len(self))
-        return Limits(np.stack([each for each, _ in rows]), tuple(most for _, most in rows))
+        return Limits(np.array([each for each, _ in rows]).reshape(-1, len(self)), tuple(most for _, most in rows))
 
     def totals_text(self, count: int, most_s: float | None, most_J: float | None) -> str:
         """The totals that a choice must keep, each with the least that so many icons take."""
@@ -120,27 +118,22 @@ class Pool:
 
     def objections(self, goal: Goal | None, observer: Observer) -> tuple[str | None, ...]:
         """What speaks against each icon: it cannot be played, or it misses what a goal asks of single icons."""
-        plain = tuple(map(objection, self.traces))
-        if goal is None:
-            return plain
-        detected, onset = goal.of("detected"), goal.of("onset")
-        asked = detected is not None or onset is not None
-        path = observer.path_m(self.rig.site)
-        found = detect(self.cold, self.warm, self.dt_s, observer, path_m=path) if asked else None
-        made: list[str | None] = []
-        for place, reason in enumerate(plain):
-            why = reason
-            if why is None and goal.of(SAFETY) == 0.0:
-                soft = soft_finding(self.traces[place])
-                why = None if soft is None else f"is amber: {soft}"
-            if why is None and found is not None:
-                share, felt_s = float(found.probability[place]), float(found.onset_s[place])
-                if detected is not None and share < detected:
-                    why = f"is detected in {100.0 * share:.0f} % of trials only"
-                elif onset is not None and not felt_s <= onset:
-                    why = "is not felt" if math.isnan(felt_s) else f"is felt at {felt_s:.2f} s only"
-            made.append(why)
-        return tuple(made)
+        found: list[str | None] = [objection(trace) for trace in self.traces]
+        if goal is not None and goal.of(SAFETY) == 0.0:
+            soft = map(soft_finding, self.traces)
+            found = [why or (one and f"is amber: {one}") for why, one in zip(found, soft, strict=True)]
+        detected, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
+        if detected is None and onset is None:
+            return tuple(found)
+        felt = detect(self.cold, self.warm, self.dt_s, observer, path_m=observer.path_m(self.rig.site))
+        for place, (share, felt_s) in enumerate(zip(felt.probability.tolist(), felt.onset_s.tolist(), strict=True)):
+            if found[place] is not None:
+                continue
+            if detected is not None and share < detected:
+                found[place] = f"is detected in {100.0 * share:.0f} % of trials only"
+            elif onset is not None and not felt_s <= onset:
+                found[place] = "is not felt" if math.isnan(felt_s) else f"is felt at {felt_s:.2f} s only"
+        return tuple(found)
 
     def usable(
         self, asked: Selection, observer: Observer, goal: Goal | None = None

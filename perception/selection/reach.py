@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..observer.observer_model import ObserverModel
+from ..progress import Progress, step_counter
 from ..ranking.rank import rank
 from .goal import Goal
 from .goal_result import GoalPartResult, GoalResult, judge_goal
-from .request import ChoiceError
+from .request import ChoiceError, Objective
 from .search import search
-from .subset_identification import Objective
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -57,16 +55,10 @@ class Trial:
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """What was tried for a goal that is not met: changes, and the same comparison without a change.
+    """What was tried for a goal that is not met: changes, the most helpful first, and the same without a change.
 
-    Attributes
-    ----------
-    baseline
-        The best set of all that were found, on the rig as it is.
-    again
-        By how much that set is nearer to the goal than the given one: the gain of searching more, without a change.
-    trials
-        Every change that could be tried, the most helpful first.
+    `baseline` is that of the best set of all that were found, on the rig as it is; `again` is by how much that set is
+    nearer to the goal than the given one: the gain of searching more, without a change.
     """
 
     baseline: GoalResult
@@ -97,7 +89,7 @@ def what_would_help(
     tracking: str | None = None,
     norm: str = "episodes",
     observer: ObserverModel | Path | str | None = None,
-    step: Callable[[int, int], None] | None = None,
+    step: Progress | None = None,
 ) -> Advice:
     """Try changes of the rig, and goals relaxed in time and energy, on a given set and in equally short searches.
 
@@ -106,52 +98,40 @@ def what_would_help(
     neither a second search nor its luck counts as a gain. A change that the rig refuses is left out.
     """
     model = ObserverModel.of(observer)
-    draws = model.most_draws(DRAWS)
+    how: dict[str, Any] = {
+        "people": PEOPLE, "parameters": model.most_draws(DRAWS), "seed": seed, "tracking": tracking, "norm": norm,
+        "observer": model,
+    }  # fmt: skip
 
-    def searched(where: Rig, wanted: Goal) -> IconSet | None:
+    def searched(where: Rig, wanted: Goal) -> list[IconSet]:
+        asked: dict[str, Any] = {"count": count, "objective": objective, "must": must, "evaluations": EVALUATIONS}
         try:
-            return search(
-                icons, where, count=count, objective=objective, evaluations=EVALUATIONS, people=PEOPLE, seed=seed,
-                tracking=tracking, norm=norm, must=must, goal=wanted, parameters=draws,
-                observer=model,
-            ).found  # fmt: skip
+            return [search(icons, where, goal=wanted, **asked, **how).found]
         except ChoiceError:
-            return None
+            return []
 
-    def judged(sets: Sequence[IconSet | None], where: Rig, wanted: Goal) -> GoalResult | None:
+    def judged(sets: Sequence[IconSet], where: Rig, wanted: Goal) -> GoalResult | None:
         """The best that these sets come to, of those that can be played."""
-        results = []
-        for each in sets:
-            if each is None:
-                continue
-            ranking = rank(
-                each, where, people=PEOPLE, parameters=draws, seed=seed, tracking=tracking, norm=norm, observer=model,
-            )  # fmt: skip
-            if all(icon.playable for icon in ranking.icons):
-                results.append(judge_goal(wanted, ranking))
-        return min(results, key=shortfall, default=None)
+        rankings = [rank(each, where, **how) for each in sets]
+        playable = [each for each in rankings if all(icon.playable for icon in each.icons)]
+        return min((judge_goal(wanted, each) for each in playable), key=shortfall, default=None)
 
-    changed = [*_rigs(rig), *((text, words, rig, relaxed) for text, words, relaxed in _relaxed(goal))]
-    total = len(changed) + 2
-
-    def report(done: int) -> None:
-        if step is not None:
-            step(done, total)
-
+    changed = [*_rigs(rig, goal), *_relaxed(rig, goal)]
+    report = step_counter(step, len(changed) + 2)
     plain = searched(rig, goal)
-    report(1)
+    report()
     reached: list[tuple[str, str, GoalResult]] = []
-    others: list[IconSet | None] = [plain]
-    for done, (change, words, where, wanted) in enumerate(changed, 2):
-        asked = goal if wanted is None else wanted
-        others.append(searched(where, asked))
-        result = judged([given, plain, others[-1]], where, asked)
+    others = plain
+    for change, words, where, wanted in changed:
+        own = searched(where, wanted)
+        others = [*others, *own]
+        result = judged([given, *plain, *own], where, wanted)
         if result is not None:
             reached.append((change, words, result))
-        report(done)
+        report()
     alone = judged([given], rig, goal)
-    baseline = judged([given, *others], rig, goal) or alone
-    report(total)
+    baseline = judged([given, *others], rig, goal)
+    report()
     if baseline is None:
         raise ChoiceError("the given set cannot be played on this rig: there is nothing to compare changes with")
     before = shortfall(baseline)
@@ -173,49 +153,28 @@ def missing(each: GoalPartResult) -> float:
     return 1.0 if each.value is None else min(1.0, abs(each.value - each.part.limit) / wanted)
 
 
-def _rigs(rig: Rig) -> list[tuple[str, str, Rig, Goal | None]]:
+def _rigs(rig: Rig, goal: Goal) -> list[tuple[str, str, Rig, Goal]]:
+    """Changes of the rig that it allows, for the same goal."""
     from thermicon.circuit.rig.rigfile import RigError
 
-    made: list[tuple[str, str, Rig, Goal | None]] = []
-    most = _most_of_the_module(rig)
+    made = []
     for key, value_of, factor, words in FACTORS:
         try:
-            now = value_of(rig)
-            limit, limited = most.get(key, (math.inf, ""))
-            if now >= limit:
-                continue
-            value, said = (factor * now, words) if factor * now <= limit else (limit, limited)
-            changed = rig.with_(**{key: value})
+            value = factor * value_of(rig)
+            made.append((f"{key}={value:g}", words, rig.with_(**{key: value}), goal))
         except RigError:  # a thermode has no driver; a module may not allow the value
             continue
-        made.append((f"{key}={value:g}", said, changed, None))
     return made
 
 
-def _most_of_the_module(rig: Rig) -> dict[str, tuple[float, str]]:
-    """What a module with a name allows at most, by key, with words for it."""
-    from thermicon.circuit.rig.modules import build_of
-
-    name = json.loads(rig.document).get("module", {}).get("name")
-    if name is None:
-        return {}
-    build = build_of(name)
-    most = {"driver.current_limit_A": (build.i_max_A, f"the module's Imax of {build.i_max_A:g} A")}
-    if build.face_cm2 is not None:
-        most["contact.area_cm2"] = (build.face_cm2, f"contact with the module's whole face of {build.face_cm2:g} cm²")
-    return most
-
-
-def _relaxed(goal: Goal) -> list[tuple[str, str, Goal]]:
+def _relaxed(rig: Rig, goal: Goal) -> list[tuple[str, str, Rig, Goal]]:
     """The goal with half as much time or energy again, where it limits them."""
     made = []
-    for quantity, words in (("time", "half as much time again"), ("energy", "half as much energy again")):
+    for quantity in ("time", "energy"):
         if goal.of(quantity) is not None:
-            parts = tuple(
-                type(part)(part.quantity, 1.5 * part.limit, part.people) if part.quantity == quantity else part
-                for part in goal.parts
-            )
-            relaxed = Goal(parts)
-            text = next(part.text for part in relaxed.parts if part.quantity == quantity)
-            made.append((text, words, relaxed))
+            parts = [
+                replace(part, limit=1.5 * part.limit) if part.quantity == quantity else part for part in goal.parts
+            ]
+            text = next(part.text for part in parts if part.quantity == quantity)
+            made.append((text, f"half as much {quantity} again", rig, Goal(tuple(parts))))
     return made

@@ -5,27 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal, get_args
 
 from thermicon.icons.number_text import count_of
 
-from .subset_identification import OBJECTIVES, Objective
+Objective = Literal["worst", "correct", "bits", "bits-per-s"]
+OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 
 
 class ChoiceError(ValueError):
-    """The requested choice cannot be made; the text states why and what would help.
+    """The requested choice cannot be made; the text states why and what would help."""
 
-    Examples
-    --------
-    >>> Selection(1)
-    Traceback (most recent call last):
-    ...
-    thermicon.perception.selection.request.ChoiceError: 1 cannot be chosen: ...
-    """
+
+class UndecidedError(ChoiceError):
+    """It remains open whether any choice keeps the totals."""
 
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """A request: how many icons to choose, and what for.
+    """A request: how many icons to choose, and what for; a `ChoiceError` for what cannot be requested of any set.
 
     Attributes
     ----------
@@ -35,15 +33,8 @@ class Selection:
         What is maximised: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
     must
         Names of icons that are in any choice.
-    most_s
-        Most time that all chosen icons together last, s; None: any.
-    most_J
-        Most energy that they take of the driver, J; None: any.
-
-    Raises
-    ------
-    ChoiceError
-        For what cannot be requested of any set.
+    most_s, most_J
+        Most time, s, that all chosen icons together last, and most energy, J, that they take of the driver; None: any.
 
     Examples
     --------
@@ -60,8 +51,6 @@ class Selection:
     def __post_init__(self) -> None:
         if isinstance(self.must, str):
             raise ChoiceError(f"must is a tuple of names, such as must=({self.must!r},)")
-        if self.count != int(self.count):
-            raise ChoiceError(f"{self.count:g} icons cannot be chosen: give a whole number")
         object.__setattr__(self, "must", tuple(dict.fromkeys(self.must)))
         if self.objective not in OBJECTIVES:
             raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {self.objective!r}")
@@ -76,16 +65,13 @@ class Selection:
 
 def check_selection(asked: Selection, names: Sequence[str]) -> None:
     """Raise `ChoiceError` for more icons than there are, or one that must be in and is not there."""
-    from thermicon.icons.model.words import nearest
+    from thermicon.icons.near_words import did_you_mean
 
     if asked.count > len(names):
         raise ChoiceError(too_few(asked.count, len(names), ()))
     for name in asked.must:
         if name not in names:
-            near = nearest(name, names)
-            hint = (
-                f"did you mean {near}?" if near else f"there are {', '.join(names[:20])}" + (" …" if names[20:] else "")
-            )
+            hint = did_you_mean(name, names)
             raise ChoiceError(f"no icon is called {name!r}, which must be among the chosen; {hint}")
 
 

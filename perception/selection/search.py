@@ -22,13 +22,11 @@ from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
 from ..progress import Progress
 from .appraise import Appraisal
-from .candidates import Candidate, at_ends, found_set, listed_only, names_of
-from .evaluator import Evaluator
-from .finalists import FinalJudge, in_words
+from .candidates import Candidate, at_ends, found_set, names_of
+from .evaluator import Evaluator, FinalJudge, in_words
 from .goal import Goal
-from .request import ChoiceError
+from .request import OBJECTIVES, ChoiceError, Objective
 from .search_run import SearchRun, better
-from .subset_identification import OBJECTIVES, Objective
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -49,34 +47,21 @@ class SearchResult:
 
     Attributes
     ----------
-    found
-        The best set.
-    start
-        Icons that the search started from: for a goal for a share of people, the best listed ones by what it reaches.
+    found, start
+        The best set, and the icons that the search started from: for a goal for a share of people, the best listed
+        ones by what it reaches.
     before, after
         Scores of the starting and of the best set.
-    objective
-        What was maximised.
-    seed
-        Seed of the search.
-    evaluations
-        Number of icons evaluated for the nominal person.
-    refined
-        Number of them that were tried after the first sample, near the best sets.
+    objective, seed
+        What was maximised, and the seed of the search.
+    evaluations, refined
+        Number of icons evaluated for the nominal person, and of those tried on a few people near the best sets.
     at_ends
         Parameters of found members that lie at an end of their range, in words.
-    listed
-        Parameters with a unit that only take listed values, in words.
-    finalists
-        Number of different sets that were held at the end.
-    chosen_by
-        What the result was chosen by among them, in words.
+    finalists, chosen_by
+        Number of different sets that were held at the end, and what the result was chosen by among them, in words.
     climbed_by
         What the last climb went by where the goal is for a share of people, in words; empty otherwise.
-
-    See Also
-    --------
-    search : Returns a result.
     """
 
     found: IconSet
@@ -88,7 +73,6 @@ class SearchResult:
     evaluations: int
     refined: int
     at_ends: tuple[str, ...] = ()
-    listed: tuple[str, ...] = ()
     finalists: int = 1
     chosen_by: str = ""
     climbed_by: str = ""
@@ -162,8 +146,7 @@ def search(
     ChoiceError
         For a file without families, for fewer than two icons, or where no set can be played.
     ValueError
-        For an unknown norm, for a single draw or more than there are, and for a goal for a share of people without
-        draws to judge it by.
+        For an unknown norm, draws that there are not, and a goal for a share of people without draws to judge it by.
 
     Examples
     --------
@@ -208,11 +191,9 @@ def search(
         middle = run.improve(better(few, widest, held), few, last, REFINING, rng, REFINED, tell)
         best = run.improve(better(shared, start, middle, held), shared, last, REFINING, rng, REFINED, tell)
         finalists = _different([start, best, middle, widest, held])
-    scores = [judge.appraisal([candidate.icon for candidate in candidates]) for candidates in finalists]
-    merits = [
-        judge.merit([candidate.icon for candidate in candidates], score)
-        for candidates, score in zip(finalists, scores, strict=True)
-    ]
+    sets = [[candidate.icon for candidate in candidates] for candidates in finalists]
+    scores = [judge.appraisal(each) for each in sets]
+    merits = [judge.merit(each, score) for each, score in zip(sets, scores, strict=True)]
     place = max(range(len(finalists)), key=lambda k: merits[k])
     best, after = finalists[place], scores[place]
     names = dict(zip((candidate.icon.name for candidate in best), names_of(best), strict=True))
@@ -227,9 +208,8 @@ def search(
         evaluations=screened,
         refined=run.tried - screened,
         at_ends=at_ends(best),
-        listed=listed_only(best),
         finalists=len(finalists),
-        chosen_by=judge.words or objective,
+        chosen_by=judge.words,
         climbed_by="" if part is None else in_words(part),
     )
 

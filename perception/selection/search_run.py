@@ -144,7 +144,7 @@ class SearchRun:
         if self.each:
             own = np.array([self._place(candidate) for candidate in left])
             middle[(own[:, None] == own) & (own >= 0)] = ALIKE
-        return JudgedPool(left, pool, d, middle, pool.limits(*totals(judge)))
+        return JudgedPool(left, pool, d, middle, pool.limits(*judge.totals))
 
     def _good(self, pool: Pool, judge: Evaluator) -> list[int]:
         reasons = pool.objections(judge.goal, judge.observer)
@@ -156,7 +156,7 @@ class SearchRun:
         bad = [reason for reason in pool.objections(judge.goal, judge.observer) if reason is not None]
         left = pool.some(self._good(pool, judge))
         first = f", the first of which {bad[0]}" if bad else ""
-        over = f"; the totals: {left.totals_text(self.count, *totals(judge))}" if any(totals(judge)) else ""
+        over = f"; the totals: {left.totals_text(self.count, *judge.totals)}" if any(judge.totals) else ""
         return (
             f"no {self.count} icons can be chosen within the limits: {len(bad)} of {len(pool)} that were tried cannot "
             f"be chosen at all{first}{over}"
@@ -172,20 +172,15 @@ class SearchRun:
 
 def better(judge: Evaluator, *sets: list[Candidate]) -> list[Candidate]:
     """The best of some sets for the people of an evaluator; the first of those that are equal."""
-    values = []
-    for candidates in sets:
+
+    def value(candidates: list[Candidate]) -> float:
         pool = judge.pool([candidate.icon for candidate in candidates])
         d = judge.d_prime(pool)
         if judge.objective == "worst":
-            values.append(nearest_pair(np.median(d, axis=0), range(len(pool))))
-        else:
-            values.append(judge.namings(d, pool).score(range(len(pool)), judge.objective))
-    return sets[max(range(len(sets)), key=lambda k: values[k])]
+            return nearest_pair(np.median(d, axis=0), range(len(pool)))
+        return judge.namings(d, pool).score(range(len(pool)), judge.objective)
 
-
-def totals(judge: Evaluator) -> tuple[float | None, float | None]:
-    """Most time and energy of all icons together."""
-    return (None, None) if judge.goal is None else judge.goal.totals
+    return max(sets, key=value)
 
 
 def split_icons(

@@ -7,21 +7,89 @@ the points stay those of the whole pool.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from itertools import combinations
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.circuit.compiled import kernel
+
 from ..arrays import Array
 from ..identification.confusion import embed
+from .max_min_subset import Limits
+from .request import Objective
 
-Objective = Literal["worst", "correct", "bits", "bits-per-s"]
-OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 PEOPLE = 24
 HALF = 64
 """Noise of every person, used with both signs: 24 people give 3,072 presentations of each icon."""
+
+
+def _tally(counts: Any, size: int, draws: int, lapse: float) -> tuple[float, float]:
+    """Proportion correct and bits of one person's counts (size, size)."""
+    correct = 0.0
+    bits = 0.0
+    for b in range(size):
+        column = 0.0
+        for a in range(size):
+            column += counts[a, b]
+        answered = ((1.0 - lapse) * column / draws + lapse) / size
+        correct += (1.0 - lapse) * counts[b, b] / draws + lapse / size
+        for a in range(size):
+            p = (1.0 - lapse) * counts[a, b] / draws + lapse / size
+            if p > 0.0:
+                bits += p / size * math.log2(p / answered)
+    return correct / size, bits
+
+
+def _replaced(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others: Any) -> Any:
+    """Proportion correct and bits (2, others, people) of a subset with one icon replaced by each of `others`.
+
+    Who is nearest among those that stay is found once, so that each of `others` costs only its own distances.
+    """
+    people, draws, size = push.shape[0], push.shape[2], chosen.size
+    each = np.empty((2, others.size, people))
+    near = np.empty((size, draws))
+    who = np.empty((size, draws), dtype=np.int64)
+    for p in range(people):
+        for a in range(size):
+            for s in range(draws):
+                best = a
+                least = -push[p, chosen[a], s]
+                for b in range(size):
+                    value = half[p, chosen[a], chosen[b]] - push[p, chosen[b], s]
+                    if b != place and value < least:
+                        least = value
+                        best = b
+                near[a, s] = least
+                who[a, s] = best
+        for k in range(others.size):
+            other = others[k]
+            counts = np.zeros((size, size))
+            for a in range(size):
+                if a == place:
+                    continue
+                edge = half[p, chosen[a], other]
+                for s in range(draws):
+                    counts[a, place if edge - push[p, other, s] < near[a, s] else who[a, s]] += 1.0
+            for s in range(draws):
+                best = place
+                least = -push[p, other, s]
+                for b in range(size):
+                    value = half[p, other, chosen[b]] - push[p, chosen[b], s]
+                    if b != place and value < least:
+                        least = value
+                        best = b
+                counts[place, best] += 1.0
+            each[0, k, p], each[1, k, p] = tally(counts, size, draws, lapse[p])
+    return each
+
+
+_compile: Any = kernel(nogil=True)
+tally: Callable[..., tuple[float, float]] = _compile(_tally)
+replaced: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_replaced)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,79 +135,48 @@ class SubsetIdentification:
 
     def score(self, chosen: Sequence[int], objective: Objective) -> float:
         """Proportion correct, bits, or bits a second of the chosen: mean over people, or what the share reaches."""
-        from . import subset_kernels as subsetkernels
-
-        index = np.asarray(chosen, dtype=np.int64)
         # The last is "replaced" by itself; of equally near ones it wins no more often than where it stands.
-        each = subsetkernels.swapped(self.half, self.push, self.lapse, index, len(index) - 1, index[-1:])[:, 0]
-        return float(self._valued(each, self.durations_s[index].mean(), objective))
+        return float(self.replaced(chosen, len(chosen) - 1, chosen[-1:], objective)[0])
+
+    def replaced(self, chosen: Sequence[int], place: int, others: Sequence[int], objective: Objective) -> Array:
+        """Scores (others,) of the chosen with the one at a place replaced by each of `others`."""
+        index, tried = np.asarray(chosen, dtype=np.int64), np.asarray(others, dtype=np.int64)
+        each = replaced(self.half, self.push, self.lapse, index, place, tried)
+        correct, bits = each.mean(axis=-1) if self.share is None else np.quantile(each, 1.0 - self.share, axis=-1)
+        if objective != "bits-per-s":
+            return np.asarray(correct if objective == "correct" else bits)
+        trials = np.repeat(index[None], tried.size, axis=0)
+        trials[:, place] = tried
+        return np.asarray(bits / self.durations_s[trials].mean(axis=1))
 
     def swapped(self, chosen: Sequence[int], objective: Objective, allowed: NDArray[np.bool_]) -> Array:
         """Scores (k, n) with one chosen icon replaced by another; −inf where `allowed` (k, n) says no."""
-        from . import subset_kernels as subsetkernels
-
-        index = np.asarray(chosen, dtype=np.int64)
         found = np.full((len(chosen), len(self)), -math.inf)
         for place in range(len(chosen)):
             others = np.flatnonzero(allowed[place])
             if others.size:
-                each = subsetkernels.swapped(self.half, self.push, self.lapse, index, place, others)
-                trials = np.repeat(index[None], others.size, axis=0)
-                trials[:, place] = others
-                found[place, others] = self._valued(each, self.durations_s[trials].mean(axis=1), objective)
+                found[place, others] = self.replaced(chosen, place, others.tolist(), objective)
         return found
 
-    def _valued(self, each: Array, duration_s: Any, objective: Objective) -> Array:
-        """Values of an objective from correct and bits (2, …, people): the mean, or what the share of them reaches."""
-        if self.share is None:
-            # A running sum, as over all subsets, so that equal choices have equal scores there and here.
-            correct, bits = np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1]
-        else:
-            correct, bits = np.quantile(each, 1.0 - self.share, axis=-1)
-        values: Array = {"correct": correct, "bits": bits}.get(objective, bits / duration_s)
-        return values
-
     def enumerated(
-        self, count: int, objective: Objective, must: Sequence[int], costs: Array, most: Sequence[float]
+        self, count: int, objective: Objective, must: Sequence[int], limits: Limits
     ) -> tuple[tuple[int, ...], float, int] | None:
         """The best of all subsets that hold `must` and keep the limits, its score, and how many were looked at.
 
-        It is that of the people's mean, whatever `share` is.
+        All that share all but their last icon are scored together.
         """
-        from . import subset_kernels as subsetkernels
-
-        order = np.array([*must, *(k for k in range(len(self)) if k not in set(must))], dtype=np.int64)
-        best = np.full(count, -1, dtype=np.int64)
-        highest = np.asarray(most, dtype=np.float64)
-        found = np.array([-math.inf, 0.0])
-        subsetkernels.all_subsets(
-            np.ascontiguousarray(self.half[:, order][:, :, order]),
-            np.ascontiguousarray(self.push[:, order]),
-            self.lapse,
-            self.durations_s[order],
-            np.ascontiguousarray(costs[:, order]),
-            highest + 1e-9 * np.abs(highest),
-            np.array([len(must), _code(objective)], dtype=np.int64),
-            best,
-            found,
-        )
-        if best[0] < 0:
-            return None
-        chosen = tuple(sorted(int(k) for k in order[best]))
-        return chosen, self.score(chosen, objective), int(found[1])
-
-    def pair_errors(self) -> Array:
-        """Share (n, n) of presentations of one of a pair, either, that land nearer the other: symmetric, at most 2."""
-        n = len(self)
-        weight = 1.0 - self.lapse
-        errors = np.zeros((n, n))
-        for share, half, push in zip(weight, self.half, self.push, strict=True):
-            over = np.array([(push - push[i] > half[i][:, None]).mean(axis=-1) for i in range(n)])
-            errors += share * (over + over.T)
-        errors /= len(weight)
-        np.fill_diagonal(errors, 0.0)
-        return errors
-
-
-def _code(objective: Objective) -> int:
-    return OBJECTIVES.index(objective)
+        rest = [k for k in range(len(self)) if k not in must]
+        missing = count - len(must)
+        heads = [tuple(must[:-1])] if not missing else [(*must, *some) for some in combinations(rest, missing - 1)]
+        best, value, seen = None, -math.inf, 0
+        for head in heads:
+            last = [k for k in rest if missing == 1 or k > head[-1]] if missing else must[-1:]
+            last = [k for k in last if limits.kept([*head, k])]
+            if not last:
+                continue
+            scores = self.replaced([*head, last[0]], count - 1, last, objective)
+            seen += len(last)
+            if scores.max() > value:
+                value = float(scores.max())
+                best = tuple(sorted((*head, last[int(scores.argmax())])))
+        return None if best is None else (best, self.score(best, objective), seen)

@@ -24,7 +24,7 @@ from thermicon.notebooks.workbench.workbench import Workbench
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.ranking.rank_file import ranking_file
-from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
+from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number
 from thermicon.perception.selection.request import Selection
 
 TWO = """cue 1

@@ -13,7 +13,7 @@ from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
 from thermicon.perception.observer.people import People
-from thermicon.perception.selection.edit_result import Edit
+from thermicon.perception.selection.edit import Edit
 from thermicon.perception.selection.request import Selection
 
 RIG = Rig.load("thenar")

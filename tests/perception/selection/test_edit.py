@@ -10,8 +10,8 @@ from thermicon.icons import Icon, load_library, parse
 from thermicon.perception import cheapest_edit, draw_people, rank
 from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 from thermicon.perception.selection.appraise import population_dprime
-from thermicon.perception.selection.edit_result import Edit, NoEdit
-from thermicon.perception.selection.icon_numbers import numbers_of, repeated, with_number
+from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number
+from thermicon.perception.selection.edit import Edit, NoEdit
 
 PEOPLE = 40
 

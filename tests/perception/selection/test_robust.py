@@ -4,9 +4,8 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import Icon, load_library
 from thermicon.perception import draw_people
-from thermicon.perception.selection.appraise import population_dprime
+from thermicon.perception.selection.appraise import compare_sets, drawn_rigs, population_dprime
 from thermicon.perception.selection.request import ChoiceError
-from thermicon.perception.selection.robust import compare_sets, drawn_rigs
 
 
 @pytest.fixture(scope="module")

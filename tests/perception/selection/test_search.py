@@ -9,7 +9,7 @@ from thermicon.icons import Icon, IconSet, load_library, parse
 from thermicon.perception import frontier, rank, search
 from thermicon.perception.selection.appraise import Appraisal, appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
-from thermicon.perception.selection.finalists import FinalJudge
+from thermicon.perception.selection.evaluator import FinalJudge
 from thermicon.perception.selection.goal import GoalError
 from thermicon.perception.selection.goal_result import judge_goal
 from thermicon.perception.selection.request import ChoiceError
