@@ -6,6 +6,7 @@ must shrink, or another room must give what it takes: the sum never rises.
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections import Counter
 from pathlib import Path
@@ -60,6 +61,21 @@ def test_the_sum_only_falls() -> None:
     _judge("lines of the product", sum(lines for lines, _ in ROOMS.values()), BUDGET["sum"]["lines"])
     _judge("modules of the product", sum(modules for _, modules in ROOMS.values()), BUDGET["sum"]["modules"])
     _judge("lines of the tests", sum(lines for lines, _ in _rooms(("tests",)).values()), BUDGET["sum"]["test_lines"])
+
+
+def test_the_tests_are_at_most_half_of_the_product() -> None:
+    tests, product = (sum(lines for lines, _ in _rooms(folders).values()) for folders in (("tests",), PACKAGES))
+    assert tests <= BUDGET["sum"]["tests_over_product"] * product
+
+
+def test_the_docs_have_no_more_words_than_their_budget() -> None:
+    """Words are what holds a letter or a digit; what the site's build makes does not stand in the pages."""
+    pages = (path.read_text(encoding="utf-8") for path in (ROOT / "docs").rglob("*.md"))
+    _judge(
+        "words of docs",
+        sum(bool(re.search(r"\w", word)) for page in pages for word in page.split()),
+        BUDGET["sum"]["docs_words"],
+    )
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -1,5 +1,6 @@
-"""The constants that docs/explain/safety.md states are those of the code."""
+"""docs/explain/safety.md states the constants of the code, and names tests and files that exist."""
 
+import ast
 import re
 from pathlib import Path
 
@@ -12,7 +13,10 @@ from thermicon.circuit.safety.repeated import LONGEST_PAUSE_S
 from thermicon.circuit.safety.single_faults import BEYOND_K, INSTANTS, MARGIN, REACTIONS_S
 from thermicon.icons import load_library
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "explain" / "safety.md"
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "explain" / "safety.md"
+NAMED = re.compile(r"`?(tests/[\w/]+\.py)(?:::(\w+))?")
+FILE = re.compile(r"`((?:icons|circuit|perception|notebooks)/[\w./-]+\.\w+)`")
 
 
 def test_the_constants_without_a_source_are_those_of_the_code() -> None:
@@ -41,3 +45,33 @@ def test_a_session_of_a_closed_loop_is_judged_in_the_open_loop_scenarios() -> No
     assert f"**is judged in the {looped.scenarios} open-loop scenarios too**" in page
     coldest = next(check for check in looped.checks if check.quantity == "display" and not check.upper)
     assert coldest.value < looped.trace.display_C.min() - 1.0, "a loop would not let the display go so far"
+
+
+def faults_of(text: str) -> list[str]:
+    """What a page names that does not exist: a test file, a test in it, or a file of the project."""
+    found = [f"{name}: no such file" for name in FILE.findall(text) if not (ROOT / name).is_file()]
+    for file, test in NAMED.findall(text):
+        if not (ROOT / file).is_file():
+            found.append(f"{file}: no such file")
+        elif test and test not in named_in(ROOT / file):
+            found.append(f"{file}::{test}: no such test")
+    return found
+
+
+def named_in(path: Path) -> set[str]:
+    """Names of the test functions of a file, those in classes included."""
+    tree = ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
+    return {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name[:5] == "test_"}
+
+
+def test_every_file_and_test_that_the_page_names_exists() -> None:
+    assert faults_of(PAGE.read_text(encoding="utf-8")) == []
+
+
+def test_what_does_not_exist_is_found() -> None:
+    text = "`tests/none.py`, `tests/test_house.py::test_none`, `circuit/none.py`, `tests/test_house.py`"
+    assert faults_of(text) == [
+        "circuit/none.py: no such file",
+        "tests/none.py: no such file",
+        "tests/test_house.py::test_none: no such test",
+    ]
