@@ -56,7 +56,11 @@ def _described(builder: Builder) -> Builder:
     """Put arguments, result and errors before the example of a docstring."""
     call = signature(builder)
     summary, _, example = cleandoc(builder.__doc__ or "").partition("\n\n")
-    rows = [f"{name}\n    {ARGUMENTS.get(f'{builder.__name__}.{name}', ARGUMENTS[name])}" for name in call.parameters]
+    rows = [
+        f"{'*' * (argument.kind is argument.VAR_POSITIONAL)}{name}\n"
+        f"    {ARGUMENTS.get(f'{builder.__name__}.{name}', ARGUMENTS[name])}"
+        for name, argument in call.parameters.items()
+    ]
     sections = {
         "Parameters": "\n".join(rows),
         "Returns": f"{call.return_annotation.__name__}\n    The statement.",
