@@ -6,9 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from thermicon.icons.number_text import signed
 from thermicon.perception.evidence.conditioning import Conditioning, experiment_title, suspected
 from thermicon.perception.evidence.results import EDGE, UNMOVED_SD, PredictedRow
-from thermicon.perception.evidence.table_text import number, signed, span
+from thermicon.perception.evidence.targets import plain
 from thermicon.perception.evidence.verdicts import value_text
 from thermicon.perception.observer.channels import VARIABLES
 
@@ -97,7 +98,7 @@ def summary_text(known: Conditioning) -> str:
     factor, share = (known.median_half_width(log=log) for log in (True, False))
     return (
         f"Left out with its experiment, {inside} of {rows} published numbers lie inside the 95 % interval of their "
-        f"prediction ({0.95 * rows:.0f} expected). Median interval: a factor {number(factor)} either way for {logs} "
+        f"prediction ({0.95 * rows:.0f} expected). Median interval: a factor {plain(factor)} either way for {logs} "
         f"rows on a log scale, ±{100 * share:.0f} % of the published number for the others. Fitted numbers say "
         "nothing of prediction. Intervals of published numbers contain their standard error and the discrepancy that "
         "the inference allows a model of this kind."
@@ -106,10 +107,10 @@ def summary_text(known: Conditioning) -> str:
 
 def missed_text(row: PredictedRow) -> str:
     """State a missed row with its size and the mechanism suspected."""
+    ends = f"{plain(row.left_out_low)} to {plain(row.left_out_high)}"
     return (
-        f"{row.label.removesuffix(', both')} ({row.experiment}): published {number(row.published)}, predicted "
-        f"{number(row.left_out)} [{span(row.left_out_low, row.left_out_high)}], {signed(row.score, 1)} SD. Suspected: "
-        f"{suspected(row)}."
+        f"{row.label.removesuffix(', both')} ({row.experiment}): published {plain(row.published)}, predicted "
+        f"{plain(row.left_out)} [{ends}], {signed(row.score, '+.1f')} SD. Suspected: {suspected(row)}."
     )
 
 

@@ -19,7 +19,7 @@ from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable, receptor
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import DATA, Observer, load_thresholds
 from .results import UNMOVED_SD, Constant, load_constants
-from .statistics import load_evidence
+from .rows import load_evidence
 
 DIGITS = 4
 COMMENT = """Constants of the nominal observer, written by `python -m thermicon.perception.evidence observer`.

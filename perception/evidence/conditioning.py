@@ -1,29 +1,35 @@
-"""What the constants were inferred from: rows fitted and left out, constants and priors, what mechanisms are worth.
+"""What the constants were inferred from, and what they say: rows left out, what mechanisms are worth, onsets and sizes.
 
-Everything comes from the shipped results of the inference; nothing is fitted here. A row is left out together with its
-whole experiment, so that its prediction rests on the other nine. `conditioning_file` is all of it as plain data.
+Everything but onsets and sizes comes from the shipped results of the inference; nothing is fitted here. A row is left
+out together with its whole experiment, so that its prediction rests on the other nine.
+Stages of an onset are skin and receptor, nerve, cord to brain, and decision. A step of d′ = 1 is just noticeable, so
+that the peak d′ of a change is the number of just noticeable steps up to it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from statistics import median
-from typing import Any
+from typing import TYPE_CHECKING
 
-from .magnitudes import CHANGES_K, HOLD_S, RATE_K_PER_S, RIG, Magnitude, OnsetStages, magnitudes, stages_of_six
-from .results import (
-    EDGE,
-    UNMOVED_SD,
-    AblatedRow,
-    Constant,
-    PredictedRow,
-    load_ablation,
-    load_constants,
-    load_predictions,
-)
-from .statistics import load_evidence
+from thermicon.circuit import Rig
 
+from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable
+from ..observer.observer import Observer
+from ..observer.parts import SPINAL_M_PER_S, SPINE_M
+from ..sensation.bench import Bench, ramp
+from ..sensation.percept import perceive
+from .results import AblatedRow, Constant, PredictedRow, load_ablation, load_constants, load_predictions
+from .rows import load_evidence
+
+if TYPE_CHECKING:
+    from thermicon.icons import Icon
+
+RIG, ICONS = "thenar", "six-icons"
+CHANGES_K = (3.0, 10.0)
+RATE_K_PER_S, HOLD_S = 1.0, 3.0
 TITLES = {
     "thenar": "Forced choice at the thenar",
     "wrist": "Forced choice at the wrist",
@@ -51,6 +57,38 @@ SUSPECTED = {
     ("E4", "sigma_between_sd_log10_noise_removed", "warm"): SAME_NOISE,
 }
 """Mechanism suspected of each row that is missed when its experiment is left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Magnitude:
+    """Peak sensations of one variant for a change at the display: d′ of `CHANGES_K`, K."""
+
+    channel: Channel
+    variable: Variable
+    peaks: tuple[float, ...]
+
+    @property
+    def jnds(self) -> int:
+        """Whole steps of d′ = 1 up to the largest change."""
+        return int(self.peaks[-1])
+
+
+@dataclass(frozen=True, slots=True)
+class OnsetStages:
+    """Onset of one icon by stages, s; `leg_s` is its onset with conduction as slow as at the leg and no cord."""
+
+    icon: str
+    channel: Channel
+    receptor_s: float
+    nerve_s: float
+    cord_s: float
+    decision_s: float
+    leg_s: float
+
+    @property
+    def onset_s(self) -> float:
+        """Time from the start of the cue to the report, s."""
+        return self.receptor_s + self.nerve_s + self.cord_s + self.decision_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +136,8 @@ def load_conditioning() -> Conditioning:
     >>> load_conditioning()
     Conditioning(49 of 54 rows covered when left out; 42 constants, 9 not moved, 4 at an edge of the prior)
     """
+    from thermicon.icons import load_library
+
     constants = load_constants()
     # The spread between laboratories is a constant; the offset of a single one, in SDs of it, is not.
     return Conditioning(
@@ -105,7 +145,7 @@ def load_conditioning() -> Conditioning:
         constants=tuple(each for each in constants if each.unit != "SD"),
         offsets=tuple(each for each in constants if each.unit == "SD"),
         ablation=tuple(sorted(load_ablation(), key=lambda run: run.difference)),
-        stages=stages_of_six(),
+        stages=onset_stages(load_library(ICONS), Rig.load(RIG)),
         magnitudes=magnitudes(),
     )
 
@@ -116,7 +156,7 @@ def experiment_title(key: str) -> str:
     >>> experiment_title("wrist"), experiment_title("E3")
     ('Forced choice at the wrist', 'Method of limits on the forearm')
     """
-    return TITLES[key] if key in TITLES else load_evidence().experiment(key).title
+    return TITLES[key] if key in TITLES else load_evidence().experiments[key].title
 
 
 def suspected(row: PredictedRow) -> str:
@@ -126,99 +166,36 @@ def suspected(row: PredictedRow) -> str:
     return SUSPECTED.get((row.experiment, row.statistic, row.channel), "none named yet")
 
 
-def conditioning_file(known: Conditioning) -> dict[str, Any]:
-    """The keys under `conditioning`, in their order; every number has its unit beside it or in its name."""
-    return {
-        "rows": [_row(each) for each in known.rows],
-        "summary": {
-            "rows": len(known.rows),
-            "covered": len(known.rows) - len(known.missed),
-            "expected": 0.95 * len(known.rows),
-            "median_factor": known.median_half_width(log=True),
-            "rows_on_log_scale": sum(each.log for each in known.rows),
-            "median_share_of_published": known.median_half_width(log=False),
-        },
-        "constants": [_constant(each) for each in known.constants],
-        "laboratory_offsets": [_constant(each) for each in known.offsets],
-        "not_moved_above": UNMOVED_SD,
-        "edge_below": EDGE,
-        "ablation": [_ablated(each) for each in known.ablation],
-        "onset_stages": [_stages(each) for each in known.stages],
-        "magnitudes": [_magnitude(each) for each in known.magnitudes],
+def magnitudes() -> tuple[Magnitude, ...]:
+    """Peak d′ of a change by 3 and by 10 K from 32 °C at 1 K/s, held for 3 s, cold then warm of every variant."""
+    bench = Bench(Rig.load(RIG), surface="display")
+    played = {
+        c: [bench.play([ramp(c, size, RATE_K_PER_S, HOLD_S)], size / RATE_K_PER_S + HOLD_S) for size in CHANGES_K]
+        for c in CHANNELS
     }
+    made = []
+    for variable in VARIABLES:
+        observer = Observer.load(variable=variable)
+        for place, channel in enumerate(CHANNELS):
+            felt = [each.felt(observer)[place] for each in played[channel]]
+            peaks = tuple(float((each - each[..., :1]).max()) for each in felt)
+            made.append(Magnitude(channel, variable, peaks))
+    return tuple(made)
 
 
-def _row(row: PredictedRow) -> dict[str, Any]:
-    return {
-        "experiment": row.experiment,
-        "title": experiment_title(row.experiment),
-        "statistic": row.statistic,
-        "channel": row.channel,
-        "row": row.label,
-        "unit": row.unit,
-        "log_scale": row.log,
-        "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
-        "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
-        "left_out": {
-            "value": row.left_out,
-            "interval": [row.left_out_low, row.left_out_high],
-            "miss_sd": row.score,
-            "log_score": row.log_score,
-            "covered": row.covered,
-        },
-        "mechanism_suspected": suspected(row) or None,
-    }
+def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
+    """Stages of every icon that a nominal person feels, in the order of the icons."""
+    from thermicon.circuit import simulate
 
-
-def _constant(constant: Constant) -> dict[str, Any]:
-    return {
-        "name": constant.name,
-        "mechanism": constant.mechanism,
-        "unit": constant.unit,
-        "value": constant.value,
-        "interval": [constant.low, constant.high],
-        "prior_interval": [constant.prior_low, constant.prior_high],
-        "prior_source": constant.source,
-        "sd_over_prior": constant.narrowed,
-        "prior_quantile": constant.quantile,
-        "moved": constant.moved,
-        "at_edge": constant.at_edge,
-    }
-
-
-def _ablated(run: AblatedRow) -> dict[str, Any]:
-    return {
-        "variable": run.variable,
-        "without": run.without or None,
-        "replaced_by": run.replaced_by or None,
-        "log_evidence": run.log_evidence,
-        "difference": run.difference,
-        "sum_of_squares": run.squares,
-        "worst_row": run.worst,
-        "worst_sd": run.worst_sd,
-        "sources": run.sources.split(" | ") if run.sources else [],
-    }
-
-
-def _stages(each: OnsetStages) -> dict[str, Any]:
-    return {
-        "icon": each.icon,
-        "channel": each.channel,
-        "receptor_s": each.receptor_s,
-        "nerve_s": each.nerve_s,
-        "cord_s": each.cord_s,
-        "decision_s": each.decision_s,
-        "onset_s": each.onset_s,
-        "onset_with_conduction_of_leg_s": each.leg_s,
-    }
-
-
-def _magnitude(each: Magnitude) -> dict[str, Any]:
-    return {
-        "channel": each.channel,
-        "variable": each.variable,
-        "changes_K": list(CHANGES_K),
-        "peak_d_prime": list(each.peaks),
-        "just_noticeable_steps": each.jnds,
-        "conditions": f"{RATE_K_PER_S:g} K/s at the display, held {HOLD_S:g} s, {RIG}",
-    }
+    whole, leg = Observer.load(), Observer.load(without=["delays"])
+    stages = []
+    for icon in icons:
+        trace = simulate(icon, rig)
+        felt, late = perceive(trace, whole), perceive(trace, leg)
+        if felt.onset_s is None or felt.channel is None or late.onset_s is None:
+            continue
+        nerve = whole.path_m(trace.site) / whole.receptor(felt.channel).velocity_m_per_s
+        cord = SPINE_M / SPINAL_M_PER_S[felt.channel]
+        before = felt.onset_s - nerve - cord - whole.decision_s
+        stages.append(OnsetStages(icon.name, felt.channel, before, nerve, cord, whole.decision_s, late.onset_s))
+    return tuple(stages)

@@ -1,8 +1,10 @@
 """Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
 
-Six icons, and sequences of short pulses: published are the shares of the best 22 and 16 of 52 that are named correctly;
-their levels, lengths, site and display are unknown, so that the sequences are this project's own, and the result is
-shown and not judged.
+Six icons; waves that differ in shape alone; and sequences of short pulses: published are the shares of the best 22 and
+16 of 52 that are named correctly, but their levels, lengths, site and display are unknown, so that the sequences are
+this project's own, and the result is shown and not judged.
+The waves are square, sine and triangle, on both sides of baseline and on one, with two periods and one size, shipped as
+`wave-confusions`; sizes and periods of published waves were not available in numbers.
 
 The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow, and
 the laboratories of a new one's interval, whose observers stand behind the other experiments too.
@@ -13,7 +15,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import partial
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,13 +30,13 @@ from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..kernels.parallel import in_order
-from ..observer.channels import USUAL_NORM, VARIABLES, Variable, receptor_column
+from ..observer.channels import CHANNELS, USUAL_NORM, VARIABLES, Variable, receptor_column
 from ..observer.observer import DATA, Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
 from ..selection.appraise import population_dprime
 from ..selection.max_min_subset import max_min_subset
-from .predicted import Predicted, plausible_laboratories
+from .predicted import Predicted, interval_of, plausible_laboratories
 
 if TYPE_CHECKING:
     from thermicon.icons import Icon
@@ -57,14 +60,19 @@ class Identified:
         """Mean over people, rows sum to 1."""
         return normalised(self.probability.mean(axis=0))
 
+    @property
+    def said(self) -> str:
+        """The conditions of its predictions."""
+        return f"named from memory, {self.probability.shape[0]} people, {USUAL_NORM}"
+
     def predicted(
-        self, experiment: str, quantity: str, unit: str, score: Score, *, conditions: str, top: float = math.inf
+        self, experiment: str, quantity: str, unit: str, score: Score, *, conditions: str = "", top: float = math.inf
     ) -> Predicted:
         """A score with its interval: what each laboratory changes is added, and stays within 0 and `top`."""
         value, nominal = score(self.probability), score(self.few)
         each = tuple(float(np.clip(value + score(one) - nominal, 0.0, top)) for one in self.drawn)
-        low, high = np.percentile(each, [2.5, 97.5]).tolist() if each else (None, None)
-        return Predicted(experiment, quantity, "both", value, unit, low, high, self.variable, conditions, draws=each)
+        ends, said = interval_of(each), conditions or self.said
+        return Predicted(experiment, quantity, "both", value, unit, *ends, self.variable, said, draws=each)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,18 +91,22 @@ class Shown:
         thin = played.thinned(len(few), EVERY)
         nominal = Observer.load(variable=variable)
 
-        def thinly(observer: Observer, people: People) -> Array:
-            felt = respond(thin, people, observer, detection=False)
-            return identify(felt, USUAL_NORM, people, observer, self.seed, FEW_SAMPLES)[1].probability
+        def confusions(at: ReceptorTemperatures, observer: Observer, people: People, samples: int) -> Array:
+            felt = respond(at, people, observer, detection=False)
+            probability: Array = identify(felt, USUAL_NORM, people, observer, self.seed, samples)[1].probability
+            return probability
 
-        felt = respond(played, self.crowd, nominal, detection=False)
-        whole = identify(felt, USUAL_NORM, self.crowd, nominal, self.seed, SAMPLES)[1]
-        kept = np.zeros((0, *whole.probability.shape))
+        whole = confusions(played, nominal, self.crowd, SAMPLES)
+        kept = np.zeros((0, *whole.shape))
         if draws:
             others = plausible_laboratories(draws, self.seed, variable)
             invited = others.invited(len(few))
-            kept = np.stack(list(in_order(lambda k: thinly(*others.at(k, len(few)))[invited[k]], range(draws))))
-        return Identified(variable, self.labels, whole.probability, thinly(nominal, few), kept)
+
+            def drawn(k: int) -> Array:
+                return confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
+
+            kept = np.stack(list(in_order(drawn, range(draws))))
+        return Identified(variable, self.labels, whole, confusions(thin, nominal, few, FEW_SAMPLES), kept)
 
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
@@ -105,7 +117,7 @@ def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
     members, crowd = list(icons), draw_people(people, seed)
     names = tuple(icon.name for icon in members)
     end = run_end_s(duration_s(icon, rig) for icon in members)
-    columns = [[receptor_column(variable, channel) for channel in ("cold", "warm")] for variable in VARIABLES]
+    columns = [[receptor_column(variable, channel) for channel in CHANNELS] for variable in VARIABLES]
     probes = [probe for pair in columns for probe in pair]
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
     played = tuple(
@@ -115,38 +127,39 @@ def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
     return Shown(names, crowd, played, seed)
 
 
+def correct(probability: Array) -> float:
+    """Proportion correct, the mean over people."""
+    return float(proportion_correct(probability).mean())
+
+
+def correct_of(places: Sequence[int], probability: Array) -> float:
+    """Proportion correct of some icons, the mean of theirs."""
+    return float(np.mean([probability[:, k, k].mean() for k in places]))
+
+
 def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...]:
     """Proportion correct, information (exact, and as the experiment would report it), each icon, spread of people."""
-    said = f"named from memory, {found.probability.shape[0]} people, {USUAL_NORM}"
     most = math.log2(len(found.labels))
 
     def share_of_people(share: float) -> Score:
         return lambda p: float(np.percentile(proportion_correct(p), share))
 
-    def bits(p: Array) -> float:
-        return plugin_bits(p, trials, seed, EXPERIMENTS)
-
     asked: list[tuple[str, str, Score, float]] = [
-        ("proportion correct", "proportion", lambda p: float(proportion_correct(p).mean()), 1.0),
+        ("proportion correct", "proportion", correct, 1.0),
         ("proportion correct, lower end of people", "proportion", share_of_people(2.5), 1.0),
         ("proportion correct, upper end of people", "proportion", share_of_people(97.5), 1.0),
-        ("plug-in information", "bit", bits, most),
+        ("plug-in information", "bit", lambda p: plugin_bits(p, trials, seed, EXPERIMENTS), most),
         ("information", "bit", lambda p: float(information_bits(p).mean()), most),
     ]
-    asked += [(f"proportion correct, {name}", "proportion", named(k), 1.0) for k, name in enumerate(found.labels)]
-    made = [
-        found.predicted("six icons", name, unit, score, conditions=said, top=top) for name, unit, score, top in asked
+    asked += [
+        (f"proportion correct, {name}", "proportion", partial(correct_of, [k]), 1.0)
+        for k, name in enumerate(found.labels)
     ]
+    made = [found.predicted("six icons", name, unit, score, top=top) for name, unit, score, top in asked]
     low, high = np.percentile(proportion_correct(found.probability), [16.0, 84.0]).tolist()
     made[0] = replace(made[0], people=(low, high))
-    made[3] = replace(made[3], conditions=f"{said}; plug-in estimate of {trials} trials a person")
+    made[3] = replace(made[3], conditions=f"{found.said}; plug-in estimate of {trials} trials a person")
     return tuple(made)
-
-
-@lru_cache(maxsize=64)
-def named(k: int) -> Score:
-    """Proportion correct of the k-th icon."""
-    return lambda p: float(p[:, k, k].mean())
 
 
 CUES, RIG, CHOSEN = DATA / "short-pulses.cue", "tcs2", (22, 16)
@@ -162,13 +175,111 @@ def show_pulses(people: int, seed: int) -> tuple[Shown, ...]:
     return tuple(show([icons[place] for place in one.chosen], rig, people, seed) for one in best if one is not None)
 
 
-def named_pulses(each: Sequence[Identified]) -> tuple[Predicted, ...]:
-    """Proportion correct of each choice."""
-    return tuple(
-        found.predicted(
-            "short pulses", f"proportion correct of the best {len(found.labels)}", "proportion",
-            lambda p: float(proportion_correct(p).mean()), top=1.0,
-            conditions=f"named from memory, {found.probability.shape[0]} people, {RIG}, best by the worst pair of 52",
+def named_pulses(found: Identified) -> Predicted:
+    """Proportion correct of a choice."""
+    said = f"named from memory, {found.probability.shape[0]} people, {RIG}, best by the worst pair of 52"
+    asked = f"proportion correct of the best {len(found.labels)}"
+    return found.predicted("short pulses", asked, "proportion", correct, conditions=said, top=1.0)
+
+
+WAVES = "wave-confusions"
+SHAPES = ("square", "sine", "triangle")
+GROUPS = tuple((poles, period) for poles in ("bipolar", "unipolar") for period in (4, 8))
+"""About baseline or below it, and period in s."""
+TAIL_S = 2.0
+PAIRS = tuple(combinations(SHAPES, 2))
+
+
+@dataclass(frozen=True, slots=True)
+class Likeness:
+    """How alike two shapes of a group are at the skin: differences over the swing, largest and root mean square."""
+
+    group: str
+    pair: tuple[str, str]
+    largest: float
+    rms: float
+
+
+@dataclass(frozen=True, slots=True)
+class SkinWaves:
+    """Skin temperatures of one group, °C (shapes, rows) on a clock in s, as a display makes them."""
+
+    group: str
+    time_s: Array
+    skin_C: Array
+    display_C: Array
+
+
+def wave_name(shape: str, poles: str, period: int) -> str:
+    """Name of an icon of the set, such as sine-bipolar-4s."""
+    return f"{shape}-{poles}-{period}s"
+
+
+def skin_waves(rig: Rig) -> tuple[SkinWaves, ...]:
+    """What the display of a rig makes of the waves, a group at a time."""
+    from thermicon.circuit import simulate
+    from thermicon.circuit.solver.simulate import duration_s
+    from thermicon.icons import load_library
+
+    icons, made = load_library(WAVES), []
+    for poles, period in GROUPS:
+        own = [icons[wave_name(shape, poles, period)] for shape in SHAPES]
+        end = max(duration_s(icon, rig) for icon in own) + TAIL_S
+        traces = [simulate(icon, rig, tail_s=end - duration_s(icon, rig)) for icon in own]
+        rows = min(trace.time_s.size for trace in traces)
+        skin, display = (
+            np.stack([getattr(trace, f"{place}_C")[:rows] for trace in traces]) for place in ("skin", "display")
         )
-        for found in each
-    )  # fmt: skip
+        made.append(SkinWaves(f"{poles}, {period} s", traces[0].time_s[:rows], skin, display))
+    return tuple(made)
+
+
+def likeness(waves: tuple[SkinWaves, ...]) -> tuple[Likeness, ...]:
+    """Differences of every pair of shapes in every group, over the swing that is prescribed."""
+    found = []
+    for group in waves:
+        during = group.time_s <= group.time_s[-1] - TAIL_S
+        swing = float(np.ptp(group.display_C[SHAPES.index("triangle")]))
+        for pair in PAIRS:
+            first, second = (group.skin_C[SHAPES.index(shape)][during] for shape in pair)
+            apart = (first - second) / swing
+            rms = float(np.sqrt((apart**2).mean()))
+            found.append(Likeness(group.group, pair, float(np.abs(apart).max()), rms))
+    return tuple(found)
+
+
+def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted, ...]:
+    """How alike the shapes are at the skin, and whether they are each other's main confusions."""
+    places = {shape: [found.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
+    made, skin = [], "skin temperature over the swing, largest of four groups"
+    for pair in PAIRS:
+        both = " and ".join(pair)
+        largest = max(one.largest for one in alike if one.pair == pair)
+        asked, ends = f"largest difference of {both}", (None, None)
+        made.append(Predicted("wave shapes", asked, "both", largest, "1", *ends, found.variable, skin))
+        main, mixed = partial(_main, places, pair), partial(_mixed, places, pair)
+        made.append(found.predicted("wave shapes", f"confusion of {both} over any other", "1", main))
+        made.append(found.predicted("wave shapes", f"confusion of {both}", "proportion", mixed, top=1.0))
+    for shape in SHAPES:
+        score = partial(correct_of, places[shape])
+        made.append(found.predicted("wave shapes", f"proportion correct, {shape}", "proportion", score, top=1.0))
+    return tuple(made)
+
+
+def _main(places: dict[str, list[int]], pair: tuple[str, str], probability: Array) -> float:
+    """Confusion of a pair of shapes over that of either with an icon of another group, least of all groups."""
+    pooled = normalised(probability.mean(axis=0))
+    mixed, ratios = 0.5 * (pooled + pooled.T), []
+    for group in range(len(GROUPS)):
+        own = [places[shape][group] for shape in SHAPES]
+        first, second = (places[shape][group] for shape in pair)
+        others = [k for k in range(len(pooled)) if k not in own]
+        ratios.append(float(mixed[first, second]) / float(mixed[[first, second]][:, others].max()))
+    return min(ratios)
+
+
+def _mixed(places: dict[str, list[int]], pair: tuple[str, str], probability: Array) -> float:
+    """Mean confusion of a pair of shapes over the groups."""
+    pooled = normalised(probability.mean(axis=0))
+    mixed = 0.5 * (pooled + pooled.T)
+    return float(np.mean([mixed[first, second] for first, second in zip(*(places[s] for s in pair), strict=True)]))

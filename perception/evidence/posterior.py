@@ -1,11 +1,17 @@
-"""Log posterior of the constants: rows and priors as residuals, for one variant with some mechanisms off.
+"""Log posterior of the constants, rows and priors as residuals, and its maximum with the normal approximation there.
 
+The maximum takes seconds where a sampler needs an hour. Gauss–Newton on the residuals; the Laplace approximation of the
+evidence is
+
+    ln Z ≈ −½·Σ r² − ½·ln det(JᵀJ)
+
+for a vector in SDs of normal priors; what is left out is the same for every model of the same rows.
 What sampled draws say of each constant is a `Summary`: median, interval, and how far it is from its prior.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,16 +21,17 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..experiments.laboratory import Laboratory
 from ..experiments.published import Predictions, predict
-from ..observer.channels import CHANNELS, Variable
+from ..observer.channels import Variable
 from ..observer.draws import PosteriorDraws
-from ..observer.mechanisms import Without, find_mechanism
-from ..observer.priors import LABORATORIES, Priors, load_priors, priors_of
+from ..observer.priors import WITHIN_95, Priors, load_priors, priors_of
 from .results import UNMOVED_SD
 from .rows import Row, load_rows
 
 BoolArray = NDArray[np.bool_]
 FARTHEST = 30.0
 """A row that is missed by more standard deviations counts as this many, so that a wild step is not fatal."""
+LIMITS = ("cold limit", "warm limit", "softness of the limits")
+"""Constants that heat flow does not have; they are fixed where they do nothing."""
 
 
 @dataclass(frozen=True)
@@ -37,12 +44,9 @@ class Posterior:
     """
 
     variable: Variable = "temperature"
-    without: Without = frozenset()
     left_out: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
-        for name in self.without:
-            find_mechanism(name)
         known = {row.experiment for row in load_rows()}
         if unknown := sorted(self.left_out - known):
             raise ValueError(
@@ -52,26 +56,23 @@ class Posterior:
     @cached_property
     def fixed(self) -> Mapping[str, float]:
         """Parameters that are not inferred here, with their values."""
-        fixed: dict[str, float] = {}
-        for name in sorted(self.without):
-            fixed.update(find_mechanism(name).fixed)
-        if self.variable == "heat flow":
-            middle = load_priors().values(load_priors().middle)
-            fixed.update({name: middle[name] for name in ("cold limit", "warm limit", "softness of the limits")})
-        return fixed
+        middle = load_priors().values(load_priors().middle)
+        return {name: middle[name] for name in LIMITS} if self.variable == "heat flow" else {}
 
     @cached_property
     def priors(self) -> Priors:
         """Priors of what is inferred: the constants and an offset for each laboratory and channel."""
-        off = set(self.fixed)
-        if "laboratories" in self.without:
-            off |= {f"{place} {channel}" for place in LABORATORIES for channel in CHANNELS}
-        return priors_of(self.variable).without(tuple(off))
+        return priors_of(self.variable).without(tuple(self.fixed))
 
     @cached_property
     def rows(self) -> tuple[Row, ...]:
         """The rows that count."""
         return tuple(row for row in load_rows() if row.experiment not in self.left_out)
+
+    @cached_property
+    def counted(self) -> BoolArray:
+        """Which of all rows count."""
+        return np.array([row.experiment not in self.left_out for row in load_rows()])
 
     def values(self, vector: Array) -> dict[str, float]:
         """Constants by name from a vector in SDs of the prior."""
@@ -79,7 +80,7 @@ class Posterior:
 
     def predictions(self, vector: Array) -> Predictions:
         """Predictions of every row, left out or not."""
-        return predict(Laboratory(self.values(vector), self.variable, self.without))
+        return predict(Laboratory(self.values(vector), self.variable))
 
     def residuals(self, vector: Array) -> Array:
         """Misses of rows and distances from the priors' middles, in SDs: half their squares are −log posterior."""
@@ -92,10 +93,69 @@ class Posterior:
         clipped: Array = np.clip(np.nan_to_num(missed, nan=FARTHEST), -FARTHEST, FARTHEST)
         return clipped
 
-    @cached_property
-    def counted(self) -> BoolArray:
-        """Which of all rows count."""
-        return np.array([row.experiment not in self.left_out for row in load_rows()])
+
+STEP = 0.04
+"""Half the width of a central difference, in SDs of the prior: wide enough to see over the grain of few people."""
+CLOSE = 1e-3
+MOST_ROUNDS = 25
+
+
+@dataclass(frozen=True, slots=True)
+class Maximum:
+    """The most probable constants of a posterior: `vector` (n,) and its covariance (n, n), in SDs of the prior."""
+
+    posterior: Posterior
+    vector: Array
+    covariance: Array
+    log_evidence: float
+    rounds: int
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Constants by name."""
+        return self.posterior.values(self.vector)
+
+    @property
+    def sd(self) -> Array:
+        """SD (n,) of each constant, in SDs of its prior: 1 where the rows say nothing."""
+        spread: Array = np.sqrt(np.diag(self.covariance))
+        return spread
+
+    def interval(self, name: str, half_width: float = WITHIN_95) -> tuple[float, float]:
+        """Interval of one constant in its own unit; 95 % unless another number of SDs is given."""
+        place = self.posterior.priors.names.index(name)
+        prior, sd = self.posterior.priors.each[place], float(self.sd[place])
+        ends = (float(self.vector[place]) + side * half_width * sd for side in (-1.0, 1.0))
+        low, high = (prior.to_value(prior.middle + prior.sd * end) for end in ends)
+        return low, high
+
+
+def maximise(
+    posterior: Posterior, start: Array | None = None, progress: Callable[[int], None] | None = None
+) -> Maximum:
+    """Search from the middle of the priors or from `start`; `progress` is called with the rounds so far."""
+    from scipy.optimize import least_squares
+
+    rounds = 0
+
+    def jacobian(vector: Array) -> Array:
+        nonlocal rounds
+        rounds += 1
+        columns = []
+        for step in STEP * np.eye(vector.size):
+            columns.append((posterior.residuals(vector + step) - posterior.residuals(vector - step)) / (2.0 * STEP))
+        if progress is not None:
+            progress(rounds)
+        return np.stack(columns, axis=1)
+
+    first = np.zeros(len(posterior.priors)) if start is None else start
+    found = least_squares(
+        posterior.residuals, first, jac=jacobian, xtol=CLOSE, ftol=CLOSE, max_nfev=MOST_ROUNDS, x_scale=1.0
+    )
+    slopes: Array = np.asarray(found.jac)
+    curvature: Array = slopes.T @ slopes
+    log_evidence = -float(found.cost) - 0.5 * float(np.linalg.slogdet(curvature)[1])
+    return Maximum(posterior, found.x, np.linalg.inv(curvature).astype(np.float64), log_evidence, rounds)
 
 
 UNMOVED_SHIFT = 0.3
@@ -129,9 +189,8 @@ class Summary:
 
 def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
     """Every constant of a posterior, in the order of the table."""
-    priors = Posterior(draws.variable).priors
     rows = []
-    for prior in priors.each:
+    for prior in Posterior(draws.variable).priors.each:
         values = draws.values(prior.name)
         places = (np.array([prior.to_place(value) for value in values.tolist()]) - prior.middle) / prior.sd
         low, median, high = draws.interval(prior.name)

@@ -1,7 +1,8 @@
-"""One predicted number with its uncertainty: parameters that nobody has measured, and people.
+"""One predicted number with its uncertainty: parameters that nobody has measured, and people; and what goes with what.
 
 Intervals come from laboratories that the evidence leaves possible, as `rank` draws them; experiments that no population
-was simulated for ask their observers alone.
+was simulated for ask their observers alone. Unmeasured constants move several predictions at once: where what brings
+one nearer to its published number takes another away from its own, no choice of those constants can satisfy both.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import combinations
 
 import numpy as np
 
@@ -79,22 +81,11 @@ def predict(
     others = plausible_observers(draws, seed, variable=variable) if draws else ()
     made = []
     for one in asked:
-        value, each = one.answer(nominal), tuple(in_order(one.answer, others))
-        low, high = interval_of(each)
-        made.append(
-            Predicted(
-                experiment=experiment,
-                quantity=one.quantity,
-                channel=one.channel,
-                value=float(value) if np.isfinite(value) else None,
-                unit=one.unit,
-                low=low,
-                high=high,
-                variable=variable,
-                conditions=one.conditions,
-                draws=each,
-            )
-        )
+        found, each = one.answer(nominal), tuple(in_order(one.answer, others))
+        value = float(found) if np.isfinite(found) else None
+        ends = interval_of(each)
+        about = (one.quantity, one.channel, value, one.unit, *ends, variable, one.conditions)
+        made.append(Predicted(experiment, *about, draws=each))
     return tuple(made)
 
 
@@ -141,3 +132,78 @@ def plausible_observers(n: int = 32, seed: int = 0, *, variable: Variable = "tem
     """
     laboratories = plausible_laboratories(n, seed, variable)
     return tuple(laboratories.at(place, 1)[0] for place in range(n))
+
+
+STRONG, RARE = 0.5, 0.001
+"""Least rank correlation that is called one, and probability below which few observers are fewer than by chance."""
+FEWEST = 8
+"""Draws below which no correlation is reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answers:
+    """What every plausible observer answers to one row (inf: not felt), which of them satisfy it, and its label.
+
+    `away` is +1 where the nominal prediction is too high, −1 where it is too low, 0 where it holds.
+    """
+
+    label: str
+    each: tuple[float, ...]
+    holds: tuple[bool, ...]
+    away: int
+
+
+@dataclass(frozen=True, slots=True)
+class TradeOff:
+    """Two rows over the same observers: Spearman's correlation (None: one does not vary), shares that hold.
+
+    `share_both_by_chance` would satisfy both if the two had nothing to do with each other. `both_miss` is said of the
+    nominal predictions. `against` is True where both miss and what mends one worsens the other, False where it mends
+    both, and None where not both miss or the correlation is weak. `rarer_than_chance`: so few observers satisfy both
+    that chance alone would give as few or fewer with a probability below 0.001 (Fisher's exact test, one-sided).
+    """
+
+    first: str
+    second: str
+    correlation: float | None
+    share_first_holds: float
+    share_second_holds: float
+    share_both_hold: float
+    share_both_by_chance: float
+    both_miss: bool
+    against: bool | None
+    rarer_than_chance: bool
+
+
+def trade_offs(rows: Sequence[Answers]) -> tuple[TradeOff, ...]:
+    """Every pair of rows, in their order; nothing from fewer than eight observers."""
+    from scipy.stats import hypergeom
+
+    found = []
+    for first, second in combinations(rows, 2):
+        n = len(first.each)
+        if n < FEWEST:
+            continue
+        rho = correlation(first.each, second.each)
+        one, other = np.array(first.holds), np.array(second.holds)
+        a, b, both = float(one.mean()), float(other.mean()), float((one & other).mean())
+        missed = bool(first.away and second.away)
+        strong = missed and rho is not None and abs(rho) >= STRONG
+        against = first.away * second.away * (rho or 0.0) < 0.0 if strong else None
+        rarer = bool(hypergeom.cdf((one & other).sum(), n, one.sum(), other.sum()) < RARE)
+        found.append(TradeOff(first.label, second.label, rho, a, b, both, a * b, missed, against, rarer))
+    return tuple(found)
+
+
+def correlation(first: Sequence[float], second: Sequence[float]) -> float | None:
+    """Spearman's rank correlation; inf ranks last, None where one of the two does not vary.
+
+    >>> correlation((1.0, 2.0, 4.0), (10.0, 20.0, float("inf")))
+    1.0
+    """
+    from scipy.stats import rankdata
+
+    one, other = rankdata(first), rankdata(second)
+    if min(one.std(), other.std()) == 0.0:
+        return None
+    return round(float(np.corrcoef(one, other)[0, 1]), 12)

@@ -19,55 +19,47 @@ from ..observer.observer import Observer, load_thresholds
 from ..sensation.sensation import receptor_drive, sensation
 from .predicted import DRAWS, Asked, Predicted, predict
 
-RADIANT_S = 3.0
+RADIANT_S, DT_S = 3.0, 0.01
 
 
 @dataclass(frozen=True, slots=True)
 class Warming:
-    """Changes (rows,) in K at the surface and at the warm receptor, and heat flow there (W/m²)."""
+    """Changes (rows,) every DT_S for a flux of 1 W/m²: K at the surface and at the warm receptor, W/m² there."""
 
-    dt_s: float
     surface_K: Array
     warm_receptor_K: Array
     warm_receptor_W_per_m2: Array
 
 
-def radiant_warming(rig: Rig, flux_W_per_m2: float, duration_s: float, *, rate_Hz: float = 100.0) -> Warming:
-    """Warming of a rig's bare skin by a flux absorbed at its surface for `duration_s`.
+def radiant_warming(rig: Rig) -> Warming:
+    """Warming of a rig's bare skin by 1 W/m² that is absorbed at its surface for RADIANT_S; it rises with the flux.
 
-    >>> from thermicon.circuit import Rig
-    >>> warmed = radiant_warming(Rig.load("forearm"), 100.0, 3.0)
-    >>> bool(0.1 < warmed.surface_K[-1] < 0.2)
-    True
+    A ValueError names a rig whose column has no lump in the surface.
     """
     from scipy.linalg import expm
 
-    if not duration_s > 1.0 / rate_Hz:
-        raise ValueError(f"radiant heat for {duration_s:g} s is shorter than a step")
-    column, film = rig.column, rig.ambient.film_W_per_m2K
+    column = rig.column
     if column.resistance_m2K_per_W[0] > 0.0:
         raise ValueError(f"rig {rig.name} has no lump in the surface: leave out skin.elements for radiant heat")
     link = 1.0 / column.resistance_m2K_per_W[1:]
     lumps = column.capacity_J_per_m2K.size
     leak = column.perfusion_W_per_m2K + link
     leak[1:] += link[:-1]
-    leak[0] += film
+    leak[0] += rig.ambient.film_W_per_m2K
     matrix = np.diag(-leak) + np.diag(link[:-1], 1) + np.diag(link[:-1], -1)
-    rate = matrix / column.capacity_J_per_m2K[:, None]
-    source = np.zeros(lumps)
-    source[0] = flux_W_per_m2 / column.capacity_J_per_m2K[0]
+    # The flux is a state that stays 1.
     joint = np.zeros((lumps + 1, lumps + 1))
-    joint[:lumps, :lumps], joint[:lumps, lumps] = rate, source
-    step = expm(joint / rate_Hz)
-    state = np.zeros((round(duration_s * rate_Hz) + 1, lumps + 1))
+    joint[:lumps, :lumps] = matrix / column.capacity_J_per_m2K[:, None]
+    joint[0, lumps] = 1.0 / column.capacity_J_per_m2K[0]
+    step = expm(joint * DT_S)
+    state = np.zeros((round(RADIANT_S / DT_S) + 1, lumps + 1))
     state[:, lumps] = 1.0
     for k in range(1, state.shape[0]):
         state[k] = step @ state[k - 1]
     change = np.concatenate([state[:, :lumps], np.zeros((state.shape[0], 1))], axis=1)
     place = np.concatenate([[0.0], np.cumsum(column.resistance_m2K_per_W[1:])])
     receptor = rig.skin.resistance_to_m2K_per_W(rig.skin.warm_receptor_m)
-    felt, flow = _at(change, place, receptor), _flow(change, place, receptor)
-    return Warming(1.0 / rate_Hz, change[:, 0].copy(), felt, flow)
+    return Warming(change[:, 0].copy(), _at(change, place, receptor), _flow(change, place, receptor))
 
 
 def _at(change: Array, place: Array, here: float) -> Array:
@@ -82,11 +74,9 @@ def _flow(change: Array, place: Array, here: float) -> Array:
     """Heat flow into the skin there: the mean of both faces of a lump, else that of the face between lumps."""
     faces = (change[:, :-1] - change[:, 1:]) / np.diff(place)
     k = min(int(np.searchsorted(place, here + 1e-12, side="right")) - 1, place.size - 2)
-    if k > 0 and abs(place[k] - here) < 1e-9:
-        mean: Array = 0.5 * (faces[:, k - 1] + faces[:, k])
-        return mean
-    face: Array = faces[:, k]
-    return face
+    on_a_lump = k > 0 and abs(place[k] - here) < 1e-9
+    flow: Array = faces[:, k - 1 : k + 1].mean(axis=1) if on_a_lump else faces[:, k]
+    return flow
 
 
 def whole_body_warmth(
@@ -98,49 +88,38 @@ def whole_body_warmth(
     a thermode to the whole body, far beyond the areas it was measured on, and without any. The rise of the
     surface that goes with a flux is given beside, to set the published 6.3 W/m² against 0.003 °C.
     """
+    rig, warmed = _forearm()
     body = load_thresholds().one("area of the body").central
-    factor = Observer.load(variable=variable).site_factor("warm", _forearm().site)
+    factor = Observer.load(variable=variable).site_factor("warm", rig.site)
     said = (
         f"{RADIANT_S:g} s of radiant heat on bare skin of the forearm, absorbed at the surface, d′ = 1, "
         f"thresholds {factor:.3g} times those of the thenar"
     )
     whole = f"{said}, summed over {body:g} m²"
-
-    def flux(area_m2: float | None, observer: Observer) -> float:
-        return _flux_felt(observer, area_m2)
-
     asked = [
-        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(flux, body)),
-        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(flux, None)),
-        Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(_warmed().surface_K[-1])),
+        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(_flux_felt, body)),
+        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(_flux_felt, None)),
+        Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(warmed.surface_K[-1])),
     ]
     return predict("whole-body warmth", asked, variable, draws, seed)
 
 
-def _flux_felt(observer: Observer, area_m2: float | None) -> float:
+def _flux_felt(area_m2: float | None, observer: Observer) -> float:
     """Flux whose largest warm sensation is 1, by bisection of its logarithm."""
+    rig, warmed = _forearm()
+    rest, change = rig.skin.rest_C, warmed.warm_receptor_K
+    if observer.variable == "heat flow":
+        rest, change = rig.resting_flux_W_per_m2, warmed.warm_receptor_W_per_m2
     low, high = 1e-4, 1e6
     for _ in range(60):
         middle = float(np.sqrt(low * high))
-        low, high = (low, middle) if _warmth(observer, middle, area_m2) >= 1.0 else (middle, high)
+        drive = receptor_drive(rest + middle * change, DT_S, "warm", observer)
+        felt = sensation(drive, "warm", observer, area_m2=area_m2, site=rig.site).max() >= 1.0
+        low, high = (low, middle) if felt else (middle, high)
     return float(np.sqrt(low * high))
 
 
-def _warmth(observer: Observer, flux: float, area_m2: float | None) -> float:
-    warmed, rig = _warmed(), _forearm()
-    if observer.variable == "temperature":
-        received = rig.skin.rest_C + flux * warmed.warm_receptor_K
-    else:
-        received = rig.resting_flux_W_per_m2 + flux * warmed.warm_receptor_W_per_m2
-    drive = receptor_drive(received, warmed.dt_s, "warm", observer)
-    return float(sensation(drive, "warm", observer, area_m2=area_m2, site=rig.site).max())
-
-
 @lru_cache(maxsize=1)
-def _forearm() -> Rig:
-    return Rig.load("forearm")
-
-
-@lru_cache(maxsize=1)
-def _warmed() -> Warming:
-    return radiant_warming(_forearm(), 1.0, RADIANT_S)
+def _forearm() -> tuple[Rig, Warming]:
+    rig = Rig.load("forearm")
+    return rig, radiant_warming(rig)

@@ -1,7 +1,8 @@
-"""The shipped results of the inference: constants, predictions in and out of the fit, and the ablation.
+"""The shipped results of the inference: CSV tables, so that a spreadsheet opens them.
 
-The first two are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong to the
-shipped evidence and priors. All are CSV tables, so that a spreadsheet opens them.
+`python -m thermicon.perception.evidence` writes constants and left-out predictions by draws; a test checks that they
+belong to the shipped evidence and priors. Predictions by the maximum and the ablation are finished comparisons, whose
+first line says which version made them.
 """
 
 from __future__ import annotations
@@ -17,18 +18,16 @@ from pathlib import Path
 from statistics import NormalDist
 from typing import Any
 
-from thermicon.icons.near_words import did_you_mean
-
 from ..observer.channels import Variable, check_variable
+from ..observer.observer import DATA
 from ..observer.priors import WITHIN_95, load_priors, priors_of
 from .rows import load_rows
-from .statistics import DATA
 
 UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
 EDGE = 0.1
 """A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
-CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
+CONSTANTS, PREDICTIONS, ABLATION, LEFT_OUT = "constants.csv", "predictions.csv", "ablation.csv", "left-out.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +68,10 @@ class Constant:
 
 @dataclass(frozen=True, slots=True)
 class PredictedRow:
-    """A published number with its 95 % interval, fitted by each variant, and predicted without its experiment."""
+    """A published number with its 95 % interval, fitted by each variant, and predicted without its experiment.
+
+    Left out, constants are those of the maximum refitted without the experiment, and their error is normal around it.
+    """
 
     experiment: str
     statistic: str
@@ -106,6 +108,37 @@ class PredictedRow:
 
 
 @dataclass(frozen=True, slots=True)
+class LeftOutRow:
+    """One row predicted by draws of a posterior that never saw its experiment; numbers in the row's own unit.
+
+    `low` to `high` is the 95 % interval, `lower` to `upper` that of 50 %. `probability` is that of a smaller number
+    than the published one; `naive` is the log score of the naive baseline, NaN where there is none; `k_hat` the shape
+    of the weights' tail, good below 0.7.
+    """
+
+    experiment: str
+    statistic: str
+    channel: str
+    label: str
+    unit: str
+    published: float
+    low: float
+    lower: float
+    median: float
+    upper: float
+    high: float
+    probability: float
+    log_score: float
+    naive: float
+    k_hat: float
+    method: str
+
+    def covered(self, share: float) -> bool:
+        """Whether the central interval of a share contains the published number."""
+        return abs(self.probability - 0.5) <= 0.5 * share
+
+
+@dataclass(frozen=True, slots=True)
 class AblatedRow:
     """A variant without a mechanism: `difference` is its log evidence minus that of the variant with every mechanism.
 
@@ -126,32 +159,26 @@ class AblatedRow:
 
 @lru_cache(maxsize=4)
 def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
-    """Constants of a variant at its maximum.
-
-    >>> constant("cold limit").unit
-    'degC'
-    """
+    """Constants of a variant at its maximum."""
     return tuple(row for row in read_rows(CONSTANTS, Constant) if row.variable == variable)
 
 
 @lru_cache(maxsize=1)
 def load_predictions() -> tuple[PredictedRow, ...]:
-    """Predictions of every row."""
+    """Predictions of every row by the maximum, in the fit and out of it."""
     return tuple(read_rows(PREDICTIONS, PredictedRow))
 
 
 @lru_cache(maxsize=1)
+def load_left_out() -> tuple[LeftOutRow, ...]:
+    """Left-out predictions of every row by draws."""
+    return tuple(read_rows(LEFT_OUT, LeftOutRow))
+
+
+@lru_cache(maxsize=1)
 def load_ablation() -> tuple[AblatedRow, ...]:
-    """What each mechanism is worth, a finished comparison: its first line says which version made it."""
+    """What each mechanism is worth."""
     return tuple(read_rows(ABLATION, AblatedRow))
-
-
-def constant(name: str) -> Constant:
-    """One constant by name; a ValueError names the nearest."""
-    for each in load_constants():
-        if each.name == name:
-            return each
-    raise ValueError(f"there is no constant {name!r}: {did_you_mean(name, {each.name for each in load_constants()})}")
 
 
 def write_rows(rows: Sequence[Any], name: str, verb: str, folder: Path = DATA) -> None:

@@ -11,12 +11,21 @@ from thermicon.circuit import Rig
 from ..observer.channels import VARIABLES, Variable
 from ..observer.people import OLD_YEARS
 from ..progress import Progress, step_counter
-from .experiments import limits, methods, rate_curve, reaction_times
-from .experiments_timing import first_and_return, peak_lead
-from .identified import Identified, Shown, named_pulses, show, show_pulses, six_icons
+from .experiments import first_and_return, limits, methods, peak_lead, rate_curve, reaction_times
+from .identified import (
+    WAVES,
+    Identified,
+    Likeness,
+    likeness,
+    named_pulses,
+    show,
+    show_pulses,
+    six_icons,
+    skin_waves,
+    wave_shapes,
+)
 from .predicted import Predicted
 from .radiant import whole_body_warmth
-from .waves import LIBRARY, Likeness, likeness, skin_waves, wave_shapes, with_others
 
 SIX = "six-icons"
 
@@ -30,58 +39,59 @@ class Evidence:
     waves: tuple[Identified, ...]
     alike: tuple[Likeness, ...]
 
-    def of(self, variable: Variable) -> tuple[Predicted, ...]:
-        """Predictions of one variant."""
-        return tuple(one for one in self.predicted if one.variable == variable)
-
-    def find(self, variable: Variable, experiment: str, quantity: str, channel: str) -> Predicted:
-        """One prediction; raises ValueError where it was not made."""
-        for one in self.of(variable):
-            if (one.experiment, one.quantity, one.channel) == (experiment, quantity, channel):
+    def find(self, variable: Variable, experiment: str, quantity: str, channel: str, where: str = "") -> Predicted:
+        """One prediction, whose conditions contain `where`; raises ValueError where it was not made."""
+        for one in self.predicted:
+            same = (one.variable, one.experiment, one.quantity, one.channel)
+            if same == (variable, experiment, quantity, channel) and where in one.conditions:
                 return one
-        raise ValueError(f"no prediction of {quantity!r} ({channel}) by {experiment!r}")
+        raise ValueError(f"no experiment {experiment!r} predicts {quantity!r} ({channel})")
 
 
 def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: Progress | None = None) -> Evidence:
     """Run everything; `progress` is called with (steps done, steps in all)."""
-    from thermicon.icons import load_library
+    from thermicon.icons import IconSet, load_library
 
-    rig, six = Rig.load("thenar"), load_library(SIX)
+    rig, six, waves = Rig.load("thenar"), load_library(SIX), load_library(WAVES)
+    both = IconSet(waves.name, waves.title, waves.context, waves.metadata, (*waves.entries, *six.entries))
     alike = likeness(skin_waves(rig))
-    shown = show(six, rig, people, seed)
-    waves = show(with_others(load_library(LIBRARY), six), rig, people, seed)
-    sequences = show_pulses(people, seed)
+    shown, shown_waves, sequences = (
+        show(six, rig, people, seed),
+        show(both, rig, people, seed),
+        show_pulses(people, seed),
+    )
     predicted: list[Predicted] = []
-    named: dict[str, list[Identified]] = {SIX: [], "waves": []}
-    total = len(VARIABLES) * (len(_experiments("temperature", people, draws, seed)) + 3)
-    step = step_counter(progress, total)
+    six_named, waves_named = [], []
+    step = step_counter(progress, len(VARIABLES) * (len(_experiments("temperature", people, draws, seed)) + 3))
     for variable in VARIABLES:
         for run in _experiments(variable, people, draws, seed):
             predicted += run()
             step()
-        found = _named(named[SIX], shown, variable, draws)
-        predicted += six_icons(found, trials, seed)
+        six_named.append(shown.identify(variable, draws))
+        predicted += six_icons(six_named[-1], trials, seed)
         step()
-        predicted += wave_shapes(_named(named["waves"], waves, variable, draws), alike)
+        waves_named.append(shown_waves.identify(variable, draws))
+        predicted += wave_shapes(waves_named[-1], alike)
         step()
-        predicted += named_pulses([each.identify(variable, draws) for each in sequences])
+        predicted += [named_pulses(each.identify(variable, draws)) for each in sequences]
         step()
-    return Evidence(tuple(predicted), tuple(named[SIX]), tuple(named["waves"]), alike)
+    return Evidence(tuple(predicted), tuple(six_named), tuple(waves_named), alike)
 
 
 def _experiments(
     variable: Variable, people: int, draws: int, seed: int
 ) -> Sequence[Callable[[], tuple[Predicted, ...]]]:
+    drawn = {"draws": draws, "seed": seed}
     return (
-        partial(rate_curve, variable, draws=draws, seed=seed),
-        partial(limits, "hand", variable, people=people, draws=draws, seed=seed),
-        partial(limits, "forearm", variable, people=people, draws=draws, seed=seed),
+        partial(rate_curve, variable, **drawn),
+        partial(limits, "hand", variable, people=people, **drawn),
+        partial(limits, "forearm", variable, people=people, **drawn),
         partial(_old, variable, people, seed),
-        partial(reaction_times, variable, draws=draws, seed=seed),
-        partial(methods, variable, draws=draws, seed=seed),
-        partial(whole_body_warmth, variable, draws=draws, seed=seed),
-        partial(peak_lead, variable, draws=draws, seed=seed),
-        partial(first_and_return, variable, draws=draws, seed=seed),
+        partial(reaction_times, variable, **drawn),
+        partial(methods, variable, **drawn),
+        partial(whole_body_warmth, variable, **drawn),
+        partial(peak_lead, variable, **drawn),
+        partial(first_and_return, variable, **drawn),
     )
 
 
@@ -89,8 +99,3 @@ def _old(variable: Variable, people: int, seed: int) -> tuple[Predicted, ...]:
     """Limits of old people, under a name of their own; age is drawn with the people."""
     found = limits("hand", variable, people=people, age_years=OLD_YEARS, draws=0, seed=seed)
     return tuple(replace(one, experiment="limits on the hand, old") for one in found)
-
-
-def _named(kept: list[Identified], shown: Shown, variable: Variable, draws: int) -> Identified:
-    kept.append(shown.identify(variable, draws))
-    return kept[-1]

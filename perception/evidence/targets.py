@@ -6,21 +6,33 @@ by which it is judged. Published numbers themselves come from the table of thres
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import dataclass
-from pathlib import Path
+from functools import lru_cache
 
-from thermicon.circuit.records import Record, RecordError, Table, load_records
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+
+from thermicon.circuit.records import Record, RecordError, Table
 
 from ..observer.observer import DATA
 
-COLUMNS = (
-    "kind", "target", "name", "asks", "mechanism", "experiment", "rule", "apply", "times", "says",
-    "predicted_where", "published", "published_site", "published_where", "published_apply",
-)  # fmt: skip
-RULES = ("factor", "share", "range", "published range", "above", "below", "at least", "sign", "close", "shown")
-APPLY = ("", "negative", "one plus", "times", "warm over cold", "cold over warm", "cold minus warm")
-PAIRED = APPLY[4:]
+RULES: dict[str, tuple[str, ...]] = {
+    "factor": ("value", "published"),
+    "share": ("value", "published"),
+    "range": ("low", "high"),
+    "published range": ("published",),
+    "above": ("value",),
+    "below": ("value",),
+    "at least": ("value",),
+    "sign": ("published",),
+    "close": ("value", "published"),
+    "shown": (),
+}
+"""Rules by which a row is judged, and what each needs of the row."""
+PAIRED = ("warm over cold", "cold over warm", "cold minus warm")
 """What takes the predictions, and the published numbers, of both channels."""
+APPLY = ("", "negative", "one plus", "times", *PAIRED)
+MINUS = "−"
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +56,8 @@ class Published:
 class Row:
     """One number of a target: the prediction it names, the rule and its numbers (`value`, `low`, `high`)."""
 
-    target: int
+    __pydantic_config__ = ConfigDict(extra="forbid")
+
     name: str
     channel: str
     unit: str
@@ -72,12 +85,9 @@ class Row:
             raise RecordError(
                 f"{here}: apply = {self.apply or self.published_apply!r} is not one of {', '.join(APPLY)}"
             )
-        if self.rule in ("factor", "share", "above", "below", "at least", "close") and self.value is None:
-            raise RecordError(f"{here}: the rule {self.rule!r} needs a value")
-        if self.rule == "range" and (self.low is None or self.high is None):
-            raise RecordError(f"{here}: the rule 'range' needs low and high")
-        if self.rule in ("factor", "share", "published range", "sign", "close") and not self.published:
-            raise RecordError(f"{here}: the rule {self.rule!r} needs a published record")
+        for needed in RULES[self.rule]:
+            if getattr(self, needed) in (None, ""):
+                raise RecordError(f"{here}: the rule {self.rule!r} needs {needed}")
 
     @property
     def judged(self) -> bool:
@@ -92,41 +102,36 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """One published result: number, title, what it asks, whose it is, the mechanism suspected of misses, its rows."""
+    """One published result: number, title, whose it is, what it asks, the mechanism suspected of misses, its rows."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid")
 
     number: int
     title: str
-    asks: str
     source: str
+    asks: str
     mechanism: str
     rows: tuple[Row, ...]
 
 
-def load_targets(path: Path | None = None) -> tuple[Target, ...]:
-    """The shipped targets, or those of another file, in the order of their numbers.
+@lru_cache(maxsize=1)
+def load_targets() -> tuple[Target, ...]:
+    """The shipped targets in the order of their numbers.
 
     >>> [target.number for target in load_targets()]
     [1, 2, 3, 4, 5, 6, 7, 8, 9]
     """
-    table = load_records(DATA / "targets.toml" if path is None else path, extra=COLUMNS)
-    rows = [_row(record) for record in table if _text(record, "kind") == "row"]
-    made = []
-    for record in table:
-        kind = _text(record, "kind")
-        if kind not in ("target", "row"):
-            raise RecordError(f"{table.name}: {record.quantity!r} has kind = {kind!r}, which is neither target nor row")
-        if kind == "target":
-            number = _number(record)
-            own = tuple(row for row in rows if row.target == number)
-            if not own:
-                raise RecordError(f"{table.name}: target {number} has no row")
-            made.append(
-                Target(number, record.quantity, _text(record, "asks"), record.source, _text(record, "mechanism"), own)
-            )
-    lost = {row.target for row in rows} - {target.number for target in made}
-    if lost:
-        raise RecordError(f"{table.name}: rows of target {min(lost)}, which is not there")
-    return tuple(sorted(made, key=lambda target: target.number))
+    return read_targets((DATA / "targets.toml").read_text(encoding="utf-8"))
+
+
+def read_targets(text: str) -> tuple[Target, ...]:
+    """Targets from the text of a file; a RecordError says what is wrong in it, and where."""
+    try:
+        return TypeAdapter(tuple[Target, ...]).validate_python(tomllib.loads(text)["target"])
+    except ValidationError as fault:
+        first = fault.errors()[0]
+        place = ", ".join(str(part) for part in first["loc"])
+        raise RecordError(f"targets.toml: target {place}: {first['msg']}") from None
 
 
 def published_for(row: Row, table: Table) -> Published:
@@ -141,17 +146,17 @@ def published_for(row: Row, table: Table) -> Published:
         cold, warm = (_record(row, table, channel) for channel in ("cold", "warm"))
         if cold.channel != "both":
             value = combined(apply, cold.central, warm.central)
-            text = _said(row, _digits(value)) + _fitted(cold)
+            text = _said(row, plain(value), cold)
             return Published(text, cold.source, _under(cold), "1", value, fitted=cold.use == "calibrate")
     record = _record(row, table, row.channel if row.channel in ("cold", "warm") else "")
     unit = "" if record.unit in ("1", "sign") else f" {record.unit}"
     low, high = record.low, record.high
-    number = _digits(record.value) if record.value is not None else ""
+    number = plain(record.value) if record.value is not None else ""
     if record.unit == "sign":
-        number = "−" if record.central < 0 else "+"
-    span = f"{_digits(low)} to {_digits(high)}" if low is not None and high is not None else ""
+        number = MINUS if record.central < 0 else "+"
+    span = f"{plain(low)} to {plain(high)}" if low is not None and high is not None else ""
     text = f"{number} [{span}]" if number and span else number or span
-    said = _said(row, f"{text}{unit}") + _fitted(record)
+    said = _said(row, f"{text}{unit}", record)
     fitted = record.use == "calibrate"
     return Published(said, record.source, _under(record), record.unit, record.value, low, high, fitted)
 
@@ -167,17 +172,22 @@ def combined(apply: str, cold: float, warm: float) -> float:
     return warm / cold if apply == "warm over cold" else cold / warm
 
 
-def _digits(value: float) -> str:
-    return f"{value:.3g}".replace("-", "−")
+def plain(value: float) -> str:
+    """Three digits, with a real minus sign.
+
+    >>> plain(-0.12345), plain(16.466), plain(0.0)
+    ('−0.123', '16.5', '0')
+    """
+    text = f"{value:.3g}"
+    if "e" in text:
+        text = f"{value:.1e}" if abs(value) < 1e-3 else f"{value:.0f}"
+    return text.replace("-", MINUS)
 
 
-def _said(row: Row, number: str) -> str:
-    return row.says.replace("{}", number) if row.says else number
-
-
-def _fitted(record: Record) -> str:
-    """The mark of what the constants were inferred from."""
-    return ", fitted" if record.use == "calibrate" else ""
+def _said(row: Row, number: str, record: Record) -> str:
+    """A published number in the words of its row, marked where the constants were inferred from it."""
+    mark = ", fitted" if record.use == "calibrate" else ""
+    return (row.says.replace("{}", number) if row.says else number) + mark
 
 
 def _under(record: Record) -> str:
@@ -193,29 +203,3 @@ def _record(row: Row, table: Table, channel: str) -> Record:
             f"{table.name}: {len(fits)} records of {row.published!r}{where} for {row.label!r}: one is needed"
         )
     return fits[0]
-
-
-def _row(record: Record) -> Row:
-    texts = {key: _text(record, key) for key in COLUMNS if key not in ("kind", "target", "asks", "mechanism")}
-    return Row(
-        target=_number(record),
-        channel=record.channel,
-        unit=record.unit,
-        quantity=record.quantity,
-        source=record.source,
-        value=record.value,
-        low=record.low,
-        high=record.high,
-        **texts,
-    )
-
-
-def _text(record: Record, key: str) -> str:
-    return str(dict(record.extra).get(key, ""))
-
-
-def _number(record: Record) -> int:
-    found = dict(record.extra).get("target")
-    if not isinstance(found, float):
-        raise RecordError(f"targets: {record.quantity!r} does not say of which target: add target = its number")
-    return int(found)

@@ -17,9 +17,8 @@ from ..identification.laboratory import DRAWS
 from ..observer.channels import VARIABLES, Variable
 from ..observer.observer import load_thresholds
 from .conditioning import Conditioning, load_conditioning
-from .predicted import Predicted, interval_of
+from .predicted import Answers, Predicted, TradeOff, interval_of, trade_offs
 from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
-from .tradeoffs import Answers, TradeOff, trade_offs
 from .verdicts import Verdict, judge_row
 
 if TYPE_CHECKING:
@@ -56,7 +55,7 @@ class Line:
             return "both"
         if warmth.holds or flow.holds:
             return "temperature" if warmth.holds else "heat flow"
-        if math.isclose(warmth.miss, flow.miss, rel_tol=0.02) or warmth.miss == flow.miss:
+        if math.isclose(warmth.miss, flow.miss, rel_tol=0.02):
             return "neither"
         return f"neither, {'temperature' if warmth.miss < flow.miss else 'heat flow'} nearer"
 
@@ -119,7 +118,6 @@ def validate(
     draws: int = DRAWS,
     seed: int = 0,
     trials: int = TRIALS,
-    published: Table | None = None,
     progress: Progress | None = None,
 ) -> ValidationReport:
     """Predict every published target and judge it; the same arguments give the same report.
@@ -134,8 +132,6 @@ def validate(
         Seed of people and observers.
     trials
         Length of the identification experiment.
-    published
-        A table in place of the shipped one of published numbers.
     progress
         Called with (steps done, steps in all).
 
@@ -147,7 +143,7 @@ def validate(
     Raises
     ------
     ValueError
-        For no people, a single draw, and a table that lacks what a target names.
+        For no people, and a single draw.
 
     Examples
     --------
@@ -162,37 +158,24 @@ def validate(
         raise ValueError(f"a spread between persons needs at least two of them, not {people}")
     if draws < 0 or draws == 1:
         raise ValueError(f"an interval needs at least two draws, or 0 for none, not {draws}")
-    table = load_thresholds() if published is None else published
-    targets = load_targets()
-    known = {(row.target, row.label): published_for(row, table) for target in targets for row in target.rows}
-    return assemble(
-        targets, known, table, collect_evidence(people, draws, seed, trials, progress), people, draws, seed, trials
-    )
+    evidence = collect_evidence(people, draws, seed, trials, progress)
+    return assemble(evidence, load_thresholds(), people, draws, seed, trials)
 
 
-def assemble(
-    targets: Sequence[Target],
-    known: dict[tuple[int, str], Published],
-    table: Table,
-    evidence: Evidence,
-    people: int,
-    draws: int,
-    seed: int,
-    trials: int,
-) -> ValidationReport:
-    """Judge evidence that is there already."""
+def assemble(evidence: Evidence, table: Table, people: int, draws: int, seed: int, trials: int) -> ValidationReport:
+    """Judge evidence that is there already by a table of published numbers."""
     from thermicon.circuit.program import own_version
 
     sections = []
-    for target in targets:
+    for target in load_targets():
         lines = []
         for row in target.rows:
-            was = known[row.target, row.label]
-            lines.append(Line(row, was, tuple(_judged(row, was, table, evidence, variant) for variant in VARIABLES)))
+            was = published_for(row, table)
+            lines.append(Line(row, was, tuple(judged(row, was, table, evidence, variant) for variant in VARIABLES)))
         sections.append(Section(target, tuple(lines)))
     pairs = tuple(trade_offs(answers(sections, k)) for k in range(len(VARIABLES)))
-    known_from = load_conditioning()
-    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence, known_from)
+    made_from = load_conditioning()
+    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence, made_from)
 
 
 def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:
@@ -210,61 +193,61 @@ def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:
     return tuple(found.values())
 
 
+SHORTER = {
+    "over that with any other icon, least of four groups": "",
+    "confusion of ": "",
+    "threshold at 0.02 K/s over that at 0.1": "raised at 0.02 K/s",
+    "threshold at 0.03 K/s over that at 0.1": "raised at 0.03 K/s",
+}
+"""Names of rows as they fit on axes."""
+
+
 def short(row: Row) -> str:
-    """A label for axes: name, without what follows a colon or comma, and the channel."""
+    """A label for axes: name, without what follows a comma or bracket, and the channel."""
     name = row.name.split(",")[0] if row.channel != "both" else row.name
-    name = name.replace("over that with any other icon, least of four groups", "").replace("confusion of ", "")
-    name = name.replace("threshold at 0.02 K/s over that at 0.1", "raised at 0.02 K/s")
-    name = name.replace("threshold at 0.03 K/s over that at 0.1", "raised at 0.03 K/s")
-    name = name.partition(" (")[0]
-    return f"{name.strip()}, {row.channel}" if row.channel in ("cold", "warm") else name.strip()
+    for long, words in SHORTER.items():
+        name = name.replace(long, words)
+    name = name.partition(" (")[0].strip()
+    return f"{name}, {row.channel}" if row.channel in ("cold", "warm") else name
 
 
-def _judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:
-    mine = evidence.of(variable)
+def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:
+    """A row as one variant predicts it; a ValueError where nothing predicts it."""
+
+    def found(channel: str) -> Predicted:
+        return evidence.find(variable, row.experiment, row.quantity, channel, row.predicted_where)
+
     if row.apply in PAIRED:
-        cold, warm = (_pick(row, mine, channel) for channel in ("cold", "warm"))
-        found = _both(row, cold, warm)
+        made = _both(row, found("cold"), found("warm"))
     else:
-        found = _pick(row, mine, row.channel)
-        if row.apply == "negative":
-            found = _linear(found, -1.0, 0.0)
-        elif row.apply == "one plus":
-            found = _linear(found, 1.0, 1.0)
-        elif row.apply == "times":
-            found = _linear(found, table.one(row.times).central, 0.0)
-    found = replace(found, unit=row.unit)
-    verdict = judge_row(row, found.value, was)
+        made = found(row.channel)
+        if row.apply:
+            factor = table.one(row.times).central if row.apply == "times" else -1.0 if row.apply == "negative" else 1.0
+            made = _linear(made, factor, 1.0 if row.apply == "one plus" else 0.0)
+    made = replace(made, unit=row.unit)
     share = None
-    if row.judged and found.draws:
-        share = sum(bool(judge_row(row, each, was).holds) for each in found.draws) / len(found.draws)
-    return Judged(found, verdict, share)
-
-
-def _pick(row: Row, predicted: Sequence[Predicted], channel: str) -> Predicted:
-    for one in predicted:
-        same = (one.experiment, one.quantity, one.channel) == (row.experiment, row.quantity, channel)
-        if same and row.predicted_where in one.conditions:
-            return one
-    raise ValueError(f"{row.label}: no experiment {row.experiment!r} predicts {row.quantity!r} ({channel})")
+    if row.judged and made.draws:
+        share = sum(bool(judge_row(row, each, was).holds) for each in made.draws) / len(made.draws)
+    return Judged(made, judge_row(row, made.value, was), share)
 
 
 def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
-    """One prediction of two channels; None or nan where one of them was not felt."""
+    """One prediction of two channels; None or inf where one of them was not felt."""
     value = None if cold.value is None or warm.value is None else combined(row.apply, cold.value, warm.value)
-    each = []
-    for one, other in zip(cold.draws, warm.draws, strict=True):
-        felt = math.isfinite(one) and math.isfinite(other)
-        each.append(combined(row.apply, one, other) if felt else math.inf)
+    each = tuple(
+        combined(row.apply, one, other) if math.isfinite(one) and math.isfinite(other) else math.inf
+        for one, other in zip(cold.draws, warm.draws, strict=True)
+    )
     low, high = interval_of(each)
-    return replace(cold, channel="both", value=value, low=low, high=high, people=None, draws=tuple(each))
+    return replace(cold, channel="both", value=value, low=low, high=high, people=None, draws=each)
 
 
 def _linear(one: Predicted, times: float, plus: float) -> Predicted:
-    def moved(value: float) -> float:
-        return times * value + plus if math.isfinite(value) else math.inf
+    """A prediction times a number, and more."""
 
-    ends = [None if end is None else moved(end) for end in (one.low, one.high)]
-    low, high = ends if times > 0.0 else ends[::-1]
-    value = None if one.value is None else moved(one.value)
-    return replace(one, value=value, low=low, high=high, people=None, draws=tuple(moved(each) for each in one.draws))
+    def moved(value: float | None) -> float | None:
+        return None if value is None else times * value + plus if math.isfinite(value) else math.inf
+
+    low, high = (moved(one.low), moved(one.high)) if times > 0.0 else (moved(one.high), moved(one.low))
+    draws = tuple(times * each + plus if math.isfinite(each) else math.inf for each in one.draws)
+    return replace(one, value=moved(one.value), low=low, high=high, people=None, draws=draws)

@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 from ..observer.channels import VARIABLES
-from .conditioning import conditioning_file
+from .conditioning import (
+    CHANGES_K,
+    HOLD_S,
+    RATE_K_PER_S,
+    RIG,
+    Conditioning,
+    Magnitude,
+    OnsetStages,
+    experiment_title,
+    suspected,
+)
 from .predicted import Predicted
-from .tradeoffs import TradeOff
+from .results import EDGE, UNMOVED_SD, AblatedRow, Constant, PredictedRow
 from .validate import Judged, Line, ValidationReport
 from .verdicts import criterion_of_row
 
@@ -35,7 +46,7 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
             for section in report.sections
         ],
         "trade_offs": [
-            {"variant": variant, "pairs": [_trade(trade) for trade in pairs]}
+            {"variant": variant, "pairs": [asdict(trade) for trade in pairs]}
             for variant, pairs in zip(VARIABLES, report.trade_offs, strict=True)
         ],
         "confusions": [
@@ -48,31 +59,18 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
             for name, all_of in (("six-icons", evidence.six), ("wave-confusions", evidence.waves))
             for one in all_of
         ],
-        "wave_likeness": [
-            {"group": one.group, "pair": list(one.pair), "largest": one.largest, "rms": one.rms}
-            for one in evidence.alike
-        ],
+        "wave_likeness": [asdict(one) for one in evidence.alike],
         "predictions": [_predicted(one) for one in evidence.predicted],
         "conditioning": conditioning_file(report.conditioning),
     }
 
 
 def _line(line: Line) -> dict[str, Any]:
-    was = line.published
     return {
         "row": line.row.label,
         "unit": line.row.unit,
-        "published": {
-            "text": was.text,
-            "value": was.value,
-            "low": was.low,
-            "high": was.high,
-            "unit": was.unit,
-            "source": was.source,
-            "conditions": was.conditions,
-            "fitted": was.fitted,
-        },
-        "criterion": {"text": criterion_of_row(line.row, was), "source": line.row.source},
+        "published": asdict(line.published),
+        "criterion": {"text": criterion_of_row(line.row, line.published), "source": line.row.source},
         "better": line.nearer or None,
         "predicted": [_judged(one) for one in line.judged],
     }
@@ -92,21 +90,6 @@ def _judged(one: Judged) -> dict[str, Any]:
     }
 
 
-def _trade(trade: TradeOff) -> dict[str, Any]:
-    return {
-        "first": trade.first,
-        "second": trade.second,
-        "correlation": trade.correlation,
-        "share_first_holds": trade.first_holds,
-        "share_second_holds": trade.second_holds,
-        "share_both_hold": trade.both_hold,
-        "share_both_by_chance": trade.by_chance,
-        "both_miss": trade.both_miss,
-        "against": trade.against,
-        "rarer_than_chance": trade.rarer,
-    }
-
-
 def _predicted(one: Predicted) -> dict[str, Any]:
     return {
         "experiment": one.experiment,
@@ -123,3 +106,94 @@ def _predicted(one: Predicted) -> dict[str, Any]:
 
 def _finite(value: float | None) -> float | None:
     return None if value is None or not math.isfinite(value) else float(value)
+
+
+def conditioning_file(known: Conditioning) -> dict[str, Any]:
+    """The keys under `conditioning`, in their order; every number has its unit beside it or in its name."""
+    return {
+        "rows": [_row(each) for each in known.rows],
+        "summary": {
+            "rows": len(known.rows),
+            "covered": len(known.rows) - len(known.missed),
+            "expected": 0.95 * len(known.rows),
+            "median_factor": known.median_half_width(log=True),
+            "rows_on_log_scale": sum(each.log for each in known.rows),
+            "median_share_of_published": known.median_half_width(log=False),
+        },
+        "constants": [_constant(each) for each in known.constants],
+        "laboratory_offsets": [_constant(each) for each in known.offsets],
+        "not_moved_above": UNMOVED_SD,
+        "edge_below": EDGE,
+        "ablation": [_ablated(each) for each in known.ablation],
+        "onset_stages": [_stages(each) for each in known.stages],
+        "magnitudes": [_magnitude(each) for each in known.magnitudes],
+    }
+
+
+def _row(row: PredictedRow) -> dict[str, Any]:
+    return {
+        "experiment": row.experiment,
+        "title": experiment_title(row.experiment),
+        "statistic": row.statistic,
+        "channel": row.channel,
+        "row": row.label,
+        "unit": row.unit,
+        "log_scale": row.log,
+        "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
+        "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
+        "left_out": {
+            "value": row.left_out,
+            "interval": [row.left_out_low, row.left_out_high],
+            "miss_sd": row.score,
+            "log_score": row.log_score,
+            "covered": row.covered,
+        },
+        "mechanism_suspected": suspected(row) or None,
+    }
+
+
+def _constant(constant: Constant) -> dict[str, Any]:
+    return {
+        "name": constant.name,
+        "mechanism": constant.mechanism,
+        "unit": constant.unit,
+        "value": constant.value,
+        "interval": [constant.low, constant.high],
+        "prior_interval": [constant.prior_low, constant.prior_high],
+        "prior_source": constant.source,
+        "sd_over_prior": constant.narrowed,
+        "prior_quantile": constant.quantile,
+        "moved": constant.moved,
+        "at_edge": constant.at_edge,
+    }
+
+
+def _ablated(run: AblatedRow) -> dict[str, Any]:
+    return {
+        "variable": run.variable,
+        "without": run.without or None,
+        "replaced_by": run.replaced_by or None,
+        "log_evidence": run.log_evidence,
+        "difference": run.difference,
+        "sum_of_squares": run.squares,
+        "worst_row": run.worst,
+        "worst_sd": run.worst_sd,
+        "sources": run.sources.split(" | ") if run.sources else [],
+    }
+
+
+def _stages(each: OnsetStages) -> dict[str, Any]:
+    stages = asdict(each)
+    leg_s = stages.pop("leg_s")
+    return {**stages, "onset_s": each.onset_s, "onset_with_conduction_of_leg_s": leg_s}
+
+
+def _magnitude(each: Magnitude) -> dict[str, Any]:
+    return {
+        "channel": each.channel,
+        "variable": each.variable,
+        "changes_K": list(CHANGES_K),
+        "peak_d_prime": list(each.peaks),
+        "just_noticeable_steps": each.jnds,
+        "conditions": f"{RATE_K_PER_S:g} K/s at the display, held {HOLD_S:g} s, {RIG}",
+    }

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 
 from thermicon.icons.number_text import significant
 
-from .targets import Published, Row
-
-MINUS = "−"
+from .targets import MINUS, Published, Row, plain
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +34,15 @@ def judge_row(row: Row, predicted: float | None, published: Published) -> Verdic
     """The verdict on a predicted number, None where nothing was felt or there is no number.
 
     >>> from thermicon.perception.evidence.targets import Published, Row
-    >>> row = Row(2, "limits", "warm", "K", "limits", "threshold", "factor", "ours", value=1.5, published="limits")
+    >>> row = Row("limits", "warm", "K", "limits", "threshold", "factor", "ours", value=1.5, published="limits")
     >>> judge_row(row, 3.0, Published("1.5 K", "somebody", value=1.5)).text
     '×2.00, at most ×1.5 either way'
     """
     if row.rule == "shown":
         return Verdict(None, 0.0, "shown, not judged")
-    if predicted is None or math.isnan(predicted) or math.isinf(predicted):
-        return Verdict(False, math.inf, f"nothing felt; {criterion_of_row(row, published)}")
     asked = criterion_of_row(row, published)
+    if predicted is None or not math.isfinite(predicted):
+        return Verdict(False, math.inf, f"nothing felt; {asked}")
     if row.rule in ("factor", "share"):
         return _by_ratio(row, predicted, published, asked)
     low, high, strict = _bounds(row, published)
@@ -53,78 +51,67 @@ def judge_row(row: Row, predicted: float | None, published: Published) -> Verdic
     miss = max(under, over)
     if miss == 0.0 and not edge:
         return Verdict(True, 0.0, asked)
-    way = "short" if under > 0.0 or (edge and predicted == low) else "over"
-    unit = "" if row.unit == "1" else f" {row.unit}"
-    size = f"{plain(miss)}{unit} {'too low' if way == 'short' else 'too high'}"
-    return Verdict(False, miss, f"{size}; {asked}", -1 if way == "short" else 1)
+    short = under > 0.0 or (edge and predicted == low)
+    size = f"{plain(miss)}{_unit(row)} {'too low' if short else 'too high'}"
+    return Verdict(False, miss, f"{size}; {asked}", -1 if short else 1)
+
+
+CRITERIA = {
+    "factor": "at most ×{value:g} either way",
+    "share": "within ±{percent:g} %",
+    "above": "above {bound}{unit}",
+    "below": "below {bound}{unit}",
+    "at least": "at least {bound}{unit}",
+    "close": "within {bound}{unit} of {middle}",
+    "shown": "not judged",
+    "range": "{low} to {high}{unit}",
+    "published range": "{low} to {high}{unit}",
+    "sign": "{side} 0{unit}",
+}
 
 
 def criterion_of_row(row: Row, published: Published) -> str:
     """The rule in words, with its numbers."""
-    unit = "" if row.unit == "1" else f" {row.unit}"
-    value = 0.0 if row.value is None else row.value
-    if row.rule == "factor":
-        return f"at most ×{value:g} either way"
-    if row.rule == "share":
-        return f"within ±{100 * value:g} %"
-    if row.rule == "above":
-        return f"above {plain(value)}{unit}"
-    if row.rule == "below":
-        return f"below {plain(value)}{unit}"
-    if row.rule == "at least":
-        return f"at least {plain(value)}{unit}"
-    if row.rule == "sign":
-        return f"{'above' if (published.value or 0.0) > 0 else 'below'} 0{unit}"
-    if row.rule == "close":
-        return f"within {plain(value)}{unit} of {plain(published.value or 0.0)}"
-    if row.rule == "shown":
-        return "not judged"
-    low, high, _ = _bounds(row, published)
-    return f"{plain(low)} to {plain(high)}{unit}"
+    value, middle = row.value or 0.0, published.value or 0.0
+    low, high = _bounds(row, published)[:2] if row.rule.endswith("range") else (0.0, 0.0)
+    return CRITERIA[row.rule].format(
+        value=value,
+        percent=100.0 * value,
+        bound=plain(value),
+        unit=_unit(row),
+        middle=plain(middle),
+        low=plain(low),
+        high=plain(high),
+        side="above" if middle > 0.0 else "below",
+    )
 
 
 def value_text(row: Row, value: float, published: Published) -> str:
     """The value with as many digits as it takes to see on which side of the bounds of the rule it lies.
 
-    >>> value_text(Row(7, "ratio", "", "1", "x", "y", "at least", "ours", value=2.0), 1.9953, Published("", ""))
+    >>> value_text(Row("ratio", "", "1", "x", "y", "at least", "ours", value=2.0), 1.9953, Published("", ""))
     '1.995'
     """
     if row.rule in ("shown", "factor", "share") or not math.isfinite(value):
         return plain(value)
-    low, high, _ = _bounds(row, published)
-    bounds = [bound for bound in (low, high) if math.isfinite(bound)]
-    text = significant(value, *bounds)[0]
-    return (
-        text.replace("-", MINUS)
-        if "e" not in text and len(text) > len(plain(value).replace(MINUS, "-"))
-        else plain(value)
-    )
+    bounds = [bound for bound in _bounds(row, published)[:2] if math.isfinite(bound)]
+    text = significant(value, *bounds)[0].replace("-", MINUS)
+    return text if "e" not in text and len(text) > len(plain(value)) else plain(value)
 
 
-def plain(value: float) -> str:
-    """Three digits, with a real minus sign.
-
-    >>> plain(-0.12345), plain(16.466), plain(0.0)
-    ('−0.123', '16.5', '0')
-    """
-    text = f"{value:.3g}"
-    if "e" in text:
-        text = f"{value:.1e}" if abs(value) < 1e-3 else f"{value:.0f}"
-    return text.replace("-", MINUS)
+def _unit(row: Row) -> str:
+    return "" if row.unit == "1" else f" {row.unit}"
 
 
 def _by_ratio(row: Row, predicted: float, published: Published, asked: str) -> Verdict:
     ratio = predicted / _value(row, published)
     if ratio <= 0.0:
         return Verdict(False, math.inf, f"of the other sign; {asked}")
-    limit = row.value or 0.0
+    limit, size = row.value or 0.0, max(ratio, 1.0 / ratio)
     if row.rule == "factor":
-        size = max(ratio, 1.0 / ratio)
-        way = f"×{size:.2f}" if ratio >= 1.0 else f"÷{size:.2f}"
-        holds = size <= limit
+        way, holds = f"{'×' if ratio >= 1.0 else '÷'}{size:.2f}", size <= limit
     else:
-        percent = f"{100.0 * (ratio - 1.0):+.0f} %".replace("-", MINUS)
-        way, holds = percent, abs(ratio - 1.0) <= limit
+        way, holds = f"{100.0 * (ratio - 1.0):+.0f} %".replace("-", MINUS), abs(ratio - 1.0) <= limit
     if holds:
         return Verdict(True, 0.0, f"{way}, {asked}")
     return Verdict(False, abs(math.log(ratio)), f"{way}, {asked}", 1 if ratio > 1.0 else -1)
@@ -132,19 +119,17 @@ def _by_ratio(row: Row, predicted: float, published: Published, asked: str) -> V
 
 def _bounds(row: Row, published: Published) -> tuple[float, float, bool]:
     """Least, most, and whether the bounds themselves are outside."""
-    value = 0.0 if row.value is None else row.value
+    value = row.value or 0.0
     if row.rule == "range":
         return row.low or 0.0, row.high or 0.0, False
     if row.rule == "published range":
         if published.low is None or published.high is None:
             raise ValueError(f"{row.label}: the published record has no interval to be inside of")
         return published.low, published.high, False
-    if row.rule == "above":
-        return value, math.inf, True
+    if row.rule in ("above", "at least"):
+        return value, math.inf, row.rule == "above"
     if row.rule == "below":
         return -math.inf, value, True
-    if row.rule == "at least":
-        return value, math.inf, False
     middle = _value(row, published)
     if row.rule == "sign":
         return (0.0, math.inf, True) if middle > 0.0 else (-math.inf, 0.0, True)

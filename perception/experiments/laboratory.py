@@ -1,7 +1,9 @@
 """One laboratory's view of a set of constants: drives of its stimuli, sensitivities of its people, answers.
 
 Everything that a published experiment needs is asked of `Laboratory`: what receptors do under its thermode, how
-sensitive its people are at its site, area and age, and when or whether they answer.
+sensitive its people are at its site, area and age, and when or whether they answer. Its people and trials have the same
+quasi-random numbers for every set of constants: a change of a constant then changes a prediction smoothly, which a
+search for a maximum needs.
 """
 
 from __future__ import annotations
@@ -16,12 +18,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, Variable, sign_of
-from ..observer.mechanisms import DEPTH_MM, Without
 from ..observer.observer import load_thresholds
-from ..observer.parts import LEG_M_PER_S, Conduction, Transducer
+from ..observer.parts import Conduction, Transducer
 from ..observer.people import YOUNG_YEARS
-from ..sensation.sensation import END_CM2, FIELD_CM2, NO_LIMIT_C, area_factor
-from .crowd import PEOPLE, SEED, SHARES, TRIALS, Crowd, draw_crowd
+from ..sensation.detection import quarters
+from ..sensation.sensation import NO_LIMIT_C, area_factor
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
 
 DT_S = 0.025
@@ -32,12 +33,42 @@ LEAST_ROWS = 600
 """Samples of a response to a ramp that are computed at once: most stimuli take no more."""
 FEEBLE = 1e-9
 """Least drive whose logarithm is taken."""
-SURFACE_DEPTH_M: dict[Channel, float] = {channel: 1e-3 * depth for channel, depth in DEPTH_MM.items()}
-"""Depths where the mechanism of depth is off."""
-
-
+PEOPLE = 48
+SEED = 7
+SHARES = np.array([0.125, 0.375, 0.625, 0.875])
+"""Middles of four equal parts of a distribution: sizes of gain, and shares of trials that have answered."""
+TRIALS = SHARES.size**2
+SHARES.setflags(write=False)
 Samples = NDArray[np.int64]
 """Numbers of the samples of a drive that are enough to count passages."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """Standard normal numbers: `people` (people, 5) for cold and warm sensitivity, cold and warm criterion, and
+    decision; `decisions` (people, TRIALS) for decision times; `gains` (4,) for the gain of a presentation.
+    """
+
+    people: Array
+    decisions: Array
+    gains: Array
+
+    def __len__(self) -> int:
+        return int(self.people.shape[0])
+
+
+@lru_cache(maxsize=4)
+def draw_crowd(people: int = PEOPLE, seed: int = SEED) -> Crowd:
+    """A crowd whose columns have mean 0 and SD 1."""
+    from scipy.special import ndtri
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(5, seed=seed).random_base2(int(np.ceil(np.log2(people))))[:people]
+    normal = ndtri(np.clip(points, 1e-6, 1.0 - 1e-6))
+    normal = (normal - normal.mean(axis=0)) / normal.std(axis=0)
+    middles = ndtri((np.arange(TRIALS) + 0.5) / TRIALS)
+    decisions = np.random.default_rng(seed).permuted(np.tile(middles, (people, 1)), axis=1)
+    return Crowd(normal, decisions, quarters(1.0))
 
 
 @lru_cache(maxsize=64)
@@ -63,14 +94,10 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """Constants by name, as `priors.toml` names them, for one sensory variable.
-
-    `without` names mechanisms that are turned off; `people` of a seed take part.
-    """
+    """Constants by name, as `priors.toml` names them, for one sensory variable; `people` of a seed take part."""
 
     values: Mapping[str, float]
     variable: Variable = "temperature"
-    without: Without = frozenset()
     people: int = PEOPLE
     seed: int = SEED
 
@@ -147,8 +174,6 @@ class Laboratory:
         values = self.values
         skin = _skin(site_rig, values["contact resistance of a thermode"], values["effusivity of living skin"])
         depth = skin.corneum_m + 1e-3 * values[f"{channel} receptor depth"]
-        if "depth" in self.without:
-            depth = SURFACE_DEPTH_M[channel]
         rows = round(end_s / DT_S) + 1
         ramp, steady = self._response(site_rig, channel, skin, depth, rows)
         baseline = skin.resting(baseline_C, steady, self.variable)
@@ -173,28 +198,24 @@ class Laboratory:
         return row
 
     def _limit(self, channel: Channel) -> float:
-        """Limit of quality in °C; so far away that it does nothing where it is off, and for heat flow."""
-        if self.variable == "heat flow" or f"{channel} limit" in self.without:
+        """Limit of quality in °C; so far away for heat flow that it does nothing."""
+        if self.variable == "heat flow":
             return -NO_LIMIT_C * sign_of(channel)
         return self.values[f"{channel} limit"]
 
     def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:
         """Multiples of threshold per unit of drive of the median person of a laboratory at a site, area and age."""
         values = self.values
-        ends = (0.0, math.inf) if "ends of summation" in self.without else (FIELD_CM2, END_CM2)
-        gain = area_factor(area_cm2, _published().area_cm2, values[f"{channel} area exponent"], *ends)
+        gain = area_factor(area_cm2, _published().area_cm2, values[f"{channel} area exponent"])
         gain /= values[f"{channel} threshold drive"]
         if site == "forearm":
             gain /= values[f"{channel} threshold on the forearm"]
-        if "laboratories" not in self.without:
-            gain *= math.exp(values["sensitivity between laboratories"] * values[f"{laboratory} {channel}"])
+        gain *= math.exp(values["sensitivity between laboratories"] * values[f"{laboratory} {channel}"])
         decades = (age_years - YOUNG_YEARS) / 10.0
         return gain * math.exp(-values[f"{channel} sensitivity lost per decade"] * decades)
 
     def delay_s(self, channel: Channel, site: str) -> float:
         """Conduction from a site to the brain, s."""
-        if "delays" in self.without:
-            return _published().path_m[site] / LEG_M_PER_S[channel]
         return Conduction(channel, self.values[f"{channel} conduction velocity"], _published().path_m[site]).delay_s
 
     def passages(

@@ -20,8 +20,7 @@ from ..observer.channels import CHANNELS, Channel, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import on_forearm
 from ..observer.people import YOUNG_YEARS
-from .crowd import PEOPLE, SEED
-from .laboratory import Laboratory
+from .laboratory import PEOPLE, SEED, Laboratory
 from .tasks import UNSTATED, Played, Ramp, yes_no_logs
 
 if TYPE_CHECKING:

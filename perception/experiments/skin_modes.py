@@ -114,8 +114,8 @@ def course_of(ramp_response: Array, baseline: float, corners: Sequence[Corner], 
     return course
 
 
-def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0, corneum: float = 1.0) -> SkinModes:
-    """Modes of a shipped rig's skin; `effusivity` multiplies that of living tissue, `corneum` the outermost layer.
+def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0) -> SkinModes:
+    """Modes of a shipped rig's skin; `effusivity` multiplies that of living tissue.
 
     Effusivity √(k·ρ·c) is raised with conductivity and heat capacity alike, so that diffusivity stays.
 
@@ -124,7 +124,7 @@ def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0,
     """
     from scipy.linalg import eigh_tridiagonal
 
-    lumps = _lumps(site_rig, corneum)
+    lumps = _lumps(site_rig)
     between = lumps.resistance + lumps.resistance_of_living / effusivity
     between[0] += contact_m2K_per_W
     conductance = 1.0 / between
@@ -167,11 +167,11 @@ class _Lumps:
 
 
 @lru_cache(maxsize=16)
-def _lumps(site_rig: str, corneum: float) -> _Lumps:
+def _lumps(site_rig: str) -> _Lumps:
     rig = Rig.load(site_rig)
     blood = rig.column.blood_capacity_J_per_m3K
-    skin = _scaled(rig.skin, 1.0, corneum)
-    tissue, twice = column_of(skin, blood), column_of(_scaled(rig.skin, 2.0, corneum), blood)
+    skin = rig.skin
+    tissue, twice = column_of(skin, blood), column_of(_with_living_twice(skin), blood)
     living_resistance = 2.0 * (tissue.resistance_m2K_per_W - twice.resistance_m2K_per_W)
     living_capacity = twice.capacity_J_per_m2K - tissue.capacity_J_per_m2K
     return _Lumps(
@@ -187,14 +187,15 @@ def _lumps(site_rig: str, corneum: float) -> _Lumps:
     )
 
 
-def _scaled(skin: Skin, effusivity: float, corneum: float) -> Skin:
+def _with_living_twice(skin: Skin) -> Skin:
+    """Skin whose living layers have twice the effusivity."""
     layers = [
-        replace(layer, thickness_m=corneum * layer.thickness_m)
+        layer
         if layer.name == STRATUM_CORNEUM
         else replace(
             layer,
-            conductivity_W_per_mK=effusivity * layer.conductivity_W_per_mK,
-            heat_capacity_J_per_kgK=effusivity * layer.heat_capacity_J_per_kgK,
+            conductivity_W_per_mK=2.0 * layer.conductivity_W_per_mK,
+            heat_capacity_J_per_kgK=2.0 * layer.heat_capacity_J_per_kgK,
         )
         for layer in skin.layers
     ]

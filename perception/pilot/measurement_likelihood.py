@@ -19,8 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..experiments.crowd import PEOPLE, SEED
-from ..experiments.laboratory import Laboratory
+from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Condition, Setting, logs_of
 from ..experiments.tasks import DISCREPANCY, UNSTATED
 from ..kernels.parallel import in_order

@@ -10,8 +10,7 @@ import pytest
 
 from tests.perception.survival import log_survival
 from thermicon.perception import Observer
-from thermicon.perception.experiments.crowd import SHARES
-from thermicon.perception.experiments.laboratory import samples_of
+from thermicon.perception.experiments.laboratory import SHARES, samples_of
 from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.kernels import adapted_drive
 from thermicon.perception.kernels.passage import psychometric
