@@ -191,7 +191,7 @@ def draw_mechanisms(folder: Path) -> None:
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import load_library
     from thermicon.perception import Observer, perceive
-    from thermicon.perception.evidence.magnitudes import onset_stages
+    from thermicon.perception.evidence.conditioning import onset_stages
     from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
     from thermicon.perception.identification.episodes import remembered
 

@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from table_text import UNITS, markdown, number, signed, span
+
 from thermicon.circuit.records import Record
 from thermicon.perception.evidence.results import (
     UNMOVED_SD,
@@ -16,9 +18,7 @@ from thermicon.perception.evidence.results import (
     load_constants,
     load_predictions,
 )
-from thermicon.perception.evidence.rows import PEOPLE_WRIST, load_rows
-from thermicon.perception.evidence.statistics import load_evidence
-from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
+from thermicon.perception.evidence.rows import PEOPLE_WRIST, load_evidence, load_rows
 from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.observer.people import people_records
 
@@ -36,7 +36,7 @@ def experiments_table() -> str:
     counts: dict[str, int] = {}
     for row in load_rows():
         counts[row.experiment] = counts.get(row.experiment, 0) + 1
-    known = {each.key: each for each in load_evidence().experiments}
+    known = load_evidence().experiments
     lines = [
         (key, known[key].title, known[key].citation, known[key].licence, known[key].method, counts[key])
         if key in known

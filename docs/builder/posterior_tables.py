@@ -13,14 +13,13 @@ from functools import lru_cache
 
 import numpy as np
 from evidence_tables import TABLES as INFERRED
+from table_text import UNITS, markdown, number, signed, span
 
 from thermicon.perception.arrays import Array
 from thermicon.perception.evidence.left_out import FROM_WEIGHTS
-from thermicon.perception.evidence.left_out_table import LeftOutRow, load_left_out
 from thermicon.perception.evidence.posterior import UNMOVED_SHIFT, Summary, summarise
-from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
+from thermicon.perception.evidence.results import UNMOVED_SD, LeftOutRow, load_constants, load_left_out, read_rows
 from thermicon.perception.evidence.rows import load_rows
-from thermicon.perception.evidence.table_text import UNITS, markdown, number, signed, span
 from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
 

@@ -252,17 +252,21 @@ def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted
     """How alike the shapes are at the skin, and whether they are each other's main confusions."""
     places = {shape: [found.labels.index(wave_name(shape, *group)) for group in GROUPS] for shape in SHAPES}
     made, skin = [], "skin temperature over the swing, largest of four groups"
+    said = f"named from memory, {len(found.labels)} icons, {found.probability.shape[0]} people, {USUAL_NORM}"
     for pair in PAIRS:
         both = " and ".join(pair)
         largest = max(one.largest for one in alike if one.pair == pair)
         asked, ends = f"largest difference of {both}", (None, None)
         made.append(Predicted("wave shapes", asked, "both", largest, "1", *ends, found.variable, skin))
         main, mixed = partial(_main, places, pair), partial(_mixed, places, pair)
-        made.append(found.predicted("wave shapes", f"confusion of {both} over any other", "1", main))
-        made.append(found.predicted("wave shapes", f"confusion of {both}", "proportion", mixed, top=1.0))
+        for asked, unit, score, top in (
+            (f"confusion of {both} over any other", "1", main, math.inf),
+            (f"confusion of {both}", "proportion", mixed, 1.0),
+        ):
+            made.append(found.predicted("wave shapes", asked, unit, score, conditions=said, top=top))
     for shape in SHAPES:
-        score = partial(correct_of, places[shape])
-        made.append(found.predicted("wave shapes", f"proportion correct, {shape}", "proportion", score, top=1.0))
+        asked, score = f"proportion correct, {shape}", partial(correct_of, places[shape])
+        made.append(found.predicted("wave shapes", asked, "proportion", score, conditions=said, top=1.0))
     return tuple(made)
 
 

@@ -49,17 +49,19 @@ def row_predicted(row: Row, predicted: Array, weights: Array, k_hat: float, meth
         return float(weights @ ndtr((value - predicted) / row.sd))
 
     far = 12.0 * row.sd
-    low, high = float(predicted.min()) - far, float(predicted.max()) + far
+    least, most = float(predicted.min()) - far, float(predicted.max()) + far
 
     def quantile(share: float) -> float:
-        return row.shown(float(brentq(lambda value: below(value) - share, low, high, xtol=1e-6 * (high - low))))
+        return row.shown(float(brentq(lambda value: below(value) - share, least, most, xtol=1e-6 * (most - least))))
 
     z = (row.value - predicted) / row.sd
     logs = -0.5 * z * z + np.log(np.maximum(weights, 1e-300))
     top = float(logs.max())
     score = top + float(np.log(np.exp(logs - top).sum())) - float(np.log(row.sd * np.sqrt(2.0 * np.pi)))
-    numbers = (*map(quantile, SHARES), below(row.value), score, naive_log_score(row), k_hat)
-    return LeftOutRow(*row.key, row.label, row.unit, row.shown(row.value), *numbers, method)
+    low, lower, median, upper, high = map(quantile, SHARES)
+    scores = below(row.value), score, naive_log_score(row), k_hat
+    published = row.shown(row.value)
+    return LeftOutRow(*row.key, row.label, row.unit, published, low, lower, median, upper, high, *scores, method)
 
 
 def leave_out(

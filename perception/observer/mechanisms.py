@@ -42,7 +42,7 @@ DEPTH_MM: dict[Channel, float] = {"cold": 0.15, "warm": 0.30}
 """Depths below the face of the skin, stratum corneum included: Ho 2018, as cited by Shani & Lineykin 2021."""
 LIGHT_CONTACT_M2K_PER_W = 5.4e-4
 """Contact of the shipped rigs (Ho & Jones, for alumina); a strapped thermode presses harder and conducts better."""
-IN_INFERENCE = "turn it off in the inference: thermicon.perception.evidence.posterior.Posterior(without=…)"
+IN_INFERENCE = "what it is worth stands in perception/data/ablation.csv"
 
 MECHANISMS = (
     Mechanism(

@@ -12,7 +12,7 @@ from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from thermicon.perception.evidence.magnitudes import OnsetStages
+    from thermicon.perception.evidence.conditioning import OnsetStages
 
     from .effects import Effect
 

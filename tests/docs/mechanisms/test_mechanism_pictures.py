@@ -17,7 +17,7 @@ from mechanisms.draw_evidence import (
 from mechanisms.effects import EFFECTS, Curve, Effect
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception.evidence.magnitudes import OnsetStages, onset_stages
+from thermicon.perception.evidence.conditioning import OnsetStages, onset_stages
 from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
 
 effect_of = pytest.fixture(scope="module")(lambda: {name: effect() for name, effect in EFFECTS.items()})

@@ -5,16 +5,10 @@ import math
 
 import pytest
 
-from thermicon.perception.evidence.conditioning import (
-    SUSPECTED,
-    conditioning_file,
-    experiment_title,
-    load_conditioning,
-    suspected,
-)
+from thermicon.perception.evidence.conditioning import SUSPECTED, experiment_title, load_conditioning, suspected
 from thermicon.perception.evidence.results import EDGE, load_constants, load_predictions
 from thermicon.perception.evidence.validate import ValidationReport
-from thermicon.perception.evidence.validate_file import report_file
+from thermicon.perception.evidence.validate_file import conditioning_file, report_file
 from thermicon.perception.observer.mechanisms import MECHANISMS
 from thermicon.perception.observer.priors import Prior
 
@@ -83,7 +77,4 @@ def test_the_file_has_the_same_facts(validation_report: ValidationReport) -> Non
     for each in file["magnitudes"]:
         assert each["just_noticeable_steps"] == int(each["peak_d_prime"][1])
         assert 1.0 < each["peak_d_prime"][0] < each["peak_d_prime"][1]
-
-
-def test_experiments_have_titles() -> None:
     assert experiment_title("E1") == "Choice reaction time by area"

@@ -1,4 +1,4 @@
-"""The mechanisms one by one: what each does, and that each can be turned off."""
+"""The mechanisms of the likelihood one by one, against closed forms."""
 
 from __future__ import annotations
 
@@ -9,8 +9,6 @@ import pytest
 
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.experiments.laboratory import Laboratory, samples_of
-from thermicon.perception.experiments.published import predict
-from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
 from thermicon.perception.observer.parts import Conduction, Transducer
 from thermicon.perception.sensation.sensation import area_factor, summed_area_cm2
 
@@ -19,30 +17,6 @@ from thermicon.perception.sensation.sensation import area_factor, summed_area_cm
 def laboratory() -> Laboratory:
     posterior = Posterior()
     return Laboratory(posterior.values(np.zeros(len(posterior.priors))))
-
-
-@pytest.mark.parametrize("mechanism", MECHANISMS, ids=lambda each: each.name)
-def test_turning_a_mechanism_off_changes_a_prediction(mechanism) -> None:
-    posterior = Posterior(without=frozenset({mechanism.name}))
-    whole = Posterior()
-    assert not set(mechanism.fixed) & set(posterior.priors.names)
-    # At places off the middle, so that a mechanism whose prior's middle is "off" shows too.
-    start = np.full(len(whole.priors), 0.3)
-    named = dict(zip(whole.priors.names, start.tolist(), strict=True))
-    reduced = np.array([named[name] for name in posterior.priors.names])
-    keys = predict(Laboratory(whole.values(start)))
-    off = posterior.predictions(reduced)
-    assert off.keys() == keys.keys()
-    assert max(abs(off[key] - keys[key]) for key in keys) > 1e-3
-
-
-def test_an_unknown_mechanism_names_the_nearest() -> None:
-    with pytest.raises(ValueError, match=r"no mechanism 'warm limt'.*warm limit"):
-        find_mechanism("warm limt")
-    with pytest.raises(ValueError, match="no mechanism 'colour'"):
-        Posterior(without=frozenset({"colour"}))
-    with pytest.raises(ValueError, match="no experiment 'E9' to leave out"):
-        Posterior(left_out=frozenset({"E9"}))
 
 
 @pytest.mark.parametrize(("a", "p"), [(12.0, 1.0), (6.0, 2.0), (30.0, 0.7)])
@@ -96,9 +70,3 @@ def test_answers_come_later_by_conduction_and_decision(laboratory: Laboratory) -
     felt = np.isfinite(crossed)
     assert (simple[felt] > crossed[felt] + laboratory.delay_s("warm", "forearm")).all()
     assert (choice[felt] > simple[felt]).all()
-
-
-def test_heat_flow_answers_too() -> None:
-    posterior = Posterior("heat flow")
-    found = posterior.residuals(np.zeros(len(posterior.priors)))
-    assert np.isfinite(found).all()

@@ -1,4 +1,4 @@
-"""Chains, surrogate and diagnostics on posteriors that can be written down, and resuming to the same bytes."""
+"""Chains, surrogate and diagnostics on posteriors that can be written down, and what leaving out goes on from."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 from thermicon.circuit.records import RecordError
-from thermicon.perception.evidence import learning, sampling
-from thermicon.perception.evidence.chains import Chain, Reference, begin, diagnose, extend, smoothed_weights
+from thermicon.perception.evidence import chains as chains_module
+from thermicon.perception.evidence import sampling
+from thermicon.perception.evidence.chains import Reference, begin, diagnose, extend, smoothed_weights
 from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.sampling import in_the_middle, sample, shipped_vector
+from thermicon.perception.evidence.sampling import in_the_middle, load_sampled, sample, shipped_vector
 from thermicon.perception.evidence.surrogate import LimitFeatures, Surrogate, fit_surrogate
 from thermicon.perception.observer.channels import VARIABLES
 
@@ -69,15 +70,12 @@ def test_chains_have_the_moments_of_the_posterior() -> None:
     np.testing.assert_allclose(drawn.std(axis=(0, 1)), sd, rtol=0.1)
 
 
-def test_a_chain_is_the_same_in_one_go_and_in_parts(tmp_path: Path) -> None:
+def test_a_chain_is_the_same_in_one_go_and_in_parts() -> None:
     surrogate, reference = surrogate_and_reference()
     start = begin(SIZE, 7, 2)
     whole = extend(start, Bent(), reference, surrogate, 60)
-    part = extend(start, Bent(), reference, surrogate, 25)
-    part.save(tmp_path / "chain.npz")
-    rest = extend(Chain.load(tmp_path / "chain.npz"), Bent(), reference, surrogate, 35)
+    rest = extend(extend(start, Bent(), reference, surrogate, 25), Bent(), reference, surrogate, 35)
     np.testing.assert_array_equal(rest.white, whole.white)
-    assert [path.name for path in tmp_path.iterdir()] == ["chain.npz"]
 
 
 def test_chains_apart_have_not_converged() -> None:
@@ -99,15 +97,6 @@ def test_smoothed_weights_tell_a_wide_proposal_from_a_narrow_one() -> None:
     assert math.sqrt(float(weights @ wide**2)) == pytest.approx(1.0, abs=0.06)
 
 
-def test_a_folder_of_other_chains_is_refused(tmp_path: Path) -> None:
-    sampling._check_folder(tmp_path, Posterior(), 3)
-    sampling._check_folder(tmp_path, Posterior(), 3)
-    with pytest.raises(RecordError, match=r"have seed 3, not 4: give another folder"):
-        sampling._check_folder(tmp_path, Posterior(), 4)
-    with pytest.raises(RecordError, match=r"have left out \[\], not \['E3'\]"):
-        sampling._check_folder(tmp_path, Posterior(left_out=frozenset({"E3"})), 3)
-
-
 def test_the_shipped_maximum_is_where_sampling_begins() -> None:
     for variable in VARIABLES:
         vector = shipped_vector(Posterior(variable))
@@ -115,17 +104,21 @@ def test_the_shipped_maximum_is_where_sampling_begins() -> None:
 
 
 @pytest.mark.slow
-def test_a_short_run_can_be_repeated_and_resumed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(learning, "AROUND", 1500)
-    monkeypatch.setattr(learning, "ROUNDS", (240,))
-    monkeypatch.setattr(learning, "CHAIN_ROUNDS", 1)
+def test_a_short_run_can_be_repeated_and_gone_on_from(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(chains_module, "AROUND", 1500)
+    monkeypatch.setattr(chains_module, "ROUNDS", (240,))
+    monkeypatch.setattr(chains_module, "CHAIN_ROUNDS", 1)
     monkeypatch.setattr(sampling, "CHAIN_STEPS", 50)
-    posterior = Posterior()
-    once = sample(posterior, 5, least_steps=100, most_steps=200)
-    sample(posterior, 5, keep=tmp_path, least_steps=100, most_steps=100)
-    again = sample(posterior, 5, keep=tmp_path, least_steps=100, most_steps=200)
+    once, again = (sample(Posterior(), 5, least_steps=100, most_steps=200) for _ in range(2))
     np.testing.assert_array_equal(once.vectors, again.vectors)
     assert not once.diagnostics.converged
+    once.save(tmp_path / "sampled.npz")
+    reference, points, drawn = load_sampled(tmp_path / "sampled.npz", 5)
+    np.testing.assert_array_equal(drawn, once.vectors)
+    np.testing.assert_array_equal(points.misses, once.points.misses)
+    np.testing.assert_array_equal(reference.factor, once.reference.factor)
+    with pytest.raises(RecordError, match=r"was made from inputs .*, seed 5, not .*, seed 6: give another folder"):
+        load_sampled(tmp_path / "sampled.npz", 6)
 
 
 def test_features_of_the_limits_have_the_right_slopes() -> None:

@@ -1,48 +1,43 @@
-"""The targets are data: they load, name records that are there, and carry no published number of their own."""
+"""Targets are data: they load, name records that are there, and are judged by every rule in words."""
 
+import math
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from thermicon.circuit.records import RecordError, Table
 from thermicon.perception.evidence.calibrate import calibrate, to_toml
-from thermicon.perception.evidence.targets import Row, Target, load_targets, published_for
+from thermicon.perception.evidence.targets import Published, Row, combined, load_targets, published_for, read_targets
+from thermicon.perception.evidence.verdicts import criterion_of_row, judge_row, value_text
 from thermicon.perception.observer.observer import DATA, load_thresholds
 
-TARGETS = load_targets()
-
-
-def rows() -> list[Row]:
-    return [row for target in TARGETS for row in target.rows]
+ROWS = [(target, row) for target in load_targets() for row in target.rows]
+WAS = Published("2 s", "somebody", value=2.0, low=1.0, high=3.0, unit="s")
 
 
 def test_nine_targets_with_rows_and_a_mechanism_each() -> None:
-    assert [target.number for target in TARGETS] == list(range(1, 10))
-    for target in TARGETS:
+    assert [target.number for target in load_targets()] == list(range(1, 10))
+    for target in load_targets():
         assert target.asks
         assert target.mechanism
         # Of published pulses nothing is known but how many were named.
         assert any(row.judged for row in target.rows) == (target.title != "Sequences of short pulses")
-
-
-def test_labels_tell_rows_apart() -> None:
-    labels = [(row.target, row.label) for row in rows()]
+    labels = [(target.number, row.label) for target, row in ROWS]
     assert len(labels) == len(set(labels))
 
 
 def test_published_numbers_are_predicted_or_said_to_be_fitted() -> None:
     known, fitted = load_thresholds(), 0
-    for row in rows():
-        if row.published:
-            published = published_for(row, known)
-            assert published.source
-            uses = {r.use for r in known.select(row.published) if r.source == published.source}
-            fitted += published.text.endswith(", fitted")
-            assert published.text.endswith(", fitted") == ("calibrate" in uses)
-            assert uses & {"predict", "calibrate"}
-        else:
+    for _, row in ROWS:
+        if not row.published:
             assert published_for(row, known).value is None
+            continue
+        published = published_for(row, known)
+        assert published.source
+        uses = {r.use for r in known.select(row.published) if r.source == published.source}
+        fitted += published.text.endswith(", fitted")
+        assert published.text.endswith(", fitted") == ("calibrate" in uses)
+        assert uses & {"predict", "calibrate"}
     assert 0 < fitted < 12
 
 
@@ -50,18 +45,14 @@ def test_another_number_published_is_another_number_shown_and_the_observer_stays
     known = load_thresholds()
     moved = tuple(replace(r, value=r.value * 0.9, low=None) if r.use == "predict" and r.value else r for r in known)
     other = Table(known.name, moved)
-    changed = 0
-    for row in rows():
-        if row.published:
-            before, after = published_for(row, known), published_for(row, other)
-            changed += before.text != after.text
+    changed = sum(published_for(row, known).text != published_for(row, other).text for _, row in ROWS)
     assert changed > 20
     assert to_toml(calibrate(other)) == (DATA / "observer.toml").read_text(encoding="utf-8")
 
 
 def test_texts_of_published_numbers() -> None:
     known = load_thresholds()
-    texts = {row.label: published_for(row, known).text for row in rows()}
+    texts = {row.label: published_for(row, known).text for _, row in ROWS}
     assert texts["reaction time at 10 cm², cold"] == "0.77 [0.63 to 0.94] s, fitted"
     assert texts["back of the hand, men 20–30 y, warm"] == "1.62 [1.01 to 2.61] K"
     assert texts["felt peak minus the skin's, cold"] == "sign −"
@@ -70,30 +61,90 @@ def test_texts_of_published_numbers() -> None:
     assert texts["reaction time, warm over cold"] == "2.16, fitted"
 
 
-def write(folder: Path, text: str) -> tuple[Target, ...]:
-    path = folder / "targets.toml"
-    path.write_text(text, encoding="utf-8")
-    return load_targets(path)
+def row(rule: str, value: float | None = None, low: float | None = None, high: float | None = None) -> Row:
+    return Row("time", "cold", "s", "x", "y", rule, "ours", value=value, low=low, high=high, published="time")
 
 
-TARGET = '[[record]]\nkind = "target"\ntarget = 1\nquantity = "t"\nunit = "s"\nsource = "a"\n'
-ROW = '[[record]]\nkind = "row"\ntarget = 1\nname = "n"\nquantity = "q"\nunit = "s"\nsource = "a"\nrule = "shown"\n'
+@pytest.mark.parametrize(
+    ("asked", "predicted", "holds", "way", "text"),
+    [
+        (row("factor", 1.5), 2.9, True, 0, "×1.45, at most ×1.5 either way"),
+        (row("factor", 1.5), 3.2, False, 1, "×1.60, at most ×1.5 either way"),
+        (row("factor", 1.5), 1.0, False, -1, "÷2.00, at most ×1.5 either way"),
+        (row("factor", 1.5), -1.0, False, 0, "of the other sign; at most ×1.5 either way"),
+        (row("share", 0.25), 2.4, True, 0, "+20 %, within ±25 %"),
+        (row("share", 0.25), 1.4, False, -1, "−30 %, within ±25 %"),
+        (row("range", None, 1.6, 2.7), 2.7, True, 0, "1.6 to 2.7 s"),
+        (row("range", None, 1.6, 2.7), 3.0, False, 1, "0.3 s too high; 1.6 to 2.7 s"),
+        (row("published range"), 0.5, False, -1, "0.5 s too low; 1 to 3 s"),
+        (row("published range"), 1.5, True, 0, "1 to 3 s"),
+        (row("above", 1.0), 1.2, True, 0, "above 1 s"),
+        (row("above", 1.0), 1.0, False, -1, "0 s too low; above 1 s"),
+        (row("below", 1.0), 1.0, False, 1, "0 s too high; below 1 s"),
+        (row("below", 1.0), 0.9, True, 0, "below 1 s"),
+        (row("at least", 2.0), 2.0, True, 0, "at least 2 s"),
+        (row("at least", 2.0), 1.5, False, -1, "0.5 s too low; at least 2 s"),
+        (row("sign"), 0.1, True, 0, "above 0 s"),
+        (row("sign"), -0.1, False, -1, "0.1 s too low; above 0 s"),
+        (row("close", 0.5), 2.4, True, 0, "within 0.5 s of 2"),
+        (row("close", 0.5), 2.6, False, 1, "0.1 s too high; within 0.5 s of 2"),
+    ],
+)
+def test_every_rule(asked: Row, predicted: float, holds: bool, way: int, text: str) -> None:
+    found = judge_row(asked, predicted, WAS)
+    assert (found.holds, found.way, found.text) == (holds, way, text)
+    assert found.word == ("holds" if holds else "misses")
+    assert (found.miss == 0.0) == (holds or text.startswith("0 s"))
 
 
-def test_messages(tmp_path: Path) -> None:
-    assert write(tmp_path, TARGET + ROW)[0].rows[0].name == "n"
-    with pytest.raises(RecordError, match=r"target 1 has no row"):
-        write(tmp_path, TARGET)
-    with pytest.raises(RecordError, match=r"rows of target 2, which is not there"):
-        write(tmp_path, TARGET + ROW + ROW.replace("target = 1", "target = 2"))
-    with pytest.raises(RecordError, match=r"'t' has kind = 'goal', which is neither target nor row"):
-        write(tmp_path, TARGET.replace('"target"', '"goal"') + ROW)
-    with pytest.raises(RecordError, match=r"'q' does not say of which target: add target = its number"):
-        write(tmp_path, TARGET + ROW.replace("target = 1\n", "value = 1.0\n"))
-    with pytest.raises(RecordError, match=r"unknown key 'mechanisms'; did you mean mechanism"):
-        write(tmp_path, TARGET + 'mechanisms = "x"\n' + ROW)
-    many = Row(2, "limits", "cold", "K", "x", "y", "shown", "ours", published="limits threshold")
+def test_what_has_no_number_is_a_miss_and_what_is_shown_is_not_judged() -> None:
+    for nothing in (None, math.inf, math.nan):
+        found = judge_row(row("factor", 1.5), nothing, WAS)
+        assert (found.holds, found.text) == (False, "nothing felt; at most ×1.5 either way")
+    found = judge_row(row("shown"), 99.0, WAS)
+    assert (found.holds, found.word, found.text) == (None, "shown", "shown, not judged")
+    assert criterion_of_row(row("shown"), WAS) == "not judged"
+    below = Published("sign −", "somebody", value=-1.0, unit="sign")
+    assert judge_row(row("sign"), -0.2, below).text == "below 0 s"
+    assert judge_row(row("sign"), 0.2, below).text == "0.2 s too high; below 0 s"
+
+
+def test_a_value_reads_on_its_side_of_the_bound() -> None:
+    assert value_text(row("at least", 2.0), 1.9953, WAS) == "1.995"
+    assert value_text(row("at least", 2.0), 13.12, WAS) == "13.1"
+    assert value_text(row("shown"), -1.9999, WAS) == "−2"
+    assert combined("cold over warm", 1.0, 2.0) == 0.5
+
+
+TARGET = '[[target]]\nnumber = 1\ntitle = "t"\nsource = "a"\nasks = "b"\nmechanism = "c"\n'
+ROW = '[[target.rows]]\nname = "n"\nexperiment = "x"\nquantity = "q"\nchannel = "cold"\nunit = "s"\nsource = "a"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (TARGET, r"target 0, rows: Field required"),
+        (TARGET + 'mechanisms = "x"\n' + ROW + 'rule = "shown"', r"target 0, mechanisms: Unexpected keyword"),
+        (TARGET + ROW + 'rule = "near"', r"'n': rule = 'near' is not one of factor, share"),
+        (TARGET + ROW + 'rule = "factor"', r"'n': the rule 'factor' needs value"),
+        (TARGET + ROW + 'rule = "range"\nlow = 1.0', r"'n': the rule 'range' needs high"),
+        (TARGET + ROW + 'rule = "sign"', r"'n': the rule 'sign' needs published"),
+        (TARGET + ROW + 'rule = "shown"\napply = "twice"', r"'n': apply = 'twice' is not one of"),
+    ],
+)
+def test_a_wrong_target_is_named(text: str, message: str) -> None:
+    assert read_targets(TARGET + ROW + 'rule = "shown"')[0].rows[0].name == "n"
+    with pytest.raises(RecordError, match=message):
+        read_targets(text)
+
+
+def test_a_published_number_that_is_not_there_is_named() -> None:
+    many = Row("limits", "cold", "K", "x", "y", "shown", "ours", published="limits threshold")
     with pytest.raises(RecordError, match=r"6 records of 'limits threshold' for 'limits, cold': one is needed"):
-        published_for(replace(many, published_site=""), load_thresholds())
+        published_for(many, load_thresholds())
     with pytest.raises(RecordError, match=r"0 records .* whose conditions begin with 'girls' for 'limits, cold'"):
         published_for(replace(many, published_where="girls"), load_thresholds())
+    with pytest.raises(ValueError, match=r"time, cold: the published record has no value to compare with"):
+        judge_row(row("close", 0.5), 1.0, Published("felt", "somebody"))
+    with pytest.raises(ValueError, match=r"time, cold: the published record has no interval to be inside of"):
+        judge_row(row("published range"), 1.0, Published("2 s", "somebody", value=2.0))

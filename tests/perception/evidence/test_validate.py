@@ -13,10 +13,10 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import Table
 from thermicon.icons import load_library
 from thermicon.perception import rank
+from thermicon.perception.evidence.identified import GROUPS, SHAPES, WAVES, wave_name
 from thermicon.perception.evidence.targets import load_targets, published_for
-from thermicon.perception.evidence.validate import ValidationReport, answers, assemble, validate
+from thermicon.perception.evidence.validate import ValidationReport, answers, assemble, judged, validate
 from thermicon.perception.evidence.validate_file import report_file
-from thermicon.perception.evidence.waves import GROUPS, LIBRARY, SHAPES, wave_name
 from thermicon.perception.observer.channels import VARIABLES
 from thermicon.perception.observer.observer import load_thresholds
 
@@ -75,9 +75,7 @@ def test_published_numbers_come_from_the_records(report: ValidationReport) -> No
         known.name,
         tuple(replace(r, value=9.0, low=None, high=None) if r.quantity == "choice reaction time" else r for r in known),
     )
-    targets = load_targets()
-    was = {(row.target, row.label): published_for(row, moved) for target in targets for row in target.rows}
-    other = assemble(targets, was, moved, report.evidence, 12, 8, 0, 48)
+    other = assemble(report.evidence, moved, 12, 8, 0, 48)
     before, after = (r.sections[2].lines[0] for r in (report, other))
     assert (before.published.text, after.published.text) == ("0.77 [0.63 to 0.94] s, fitted", "9 s, fitted")
     assert before.judged[0].predicted == after.judged[0].predicted
@@ -115,7 +113,7 @@ def test_shares_of_draws_and_trade_offs(report: ValidationReport) -> None:
 
 
 def test_the_waves_of_a_group_differ_in_shape_alone() -> None:
-    waves = load_library(LIBRARY)
+    waves = load_library(WAVES)
     assert len(waves) == len(GROUPS) * len(SHAPES)
     for group in GROUPS:
         lowered = [waves[wave_name(shape, *group)].corners() for shape in SHAPES]
@@ -127,10 +125,6 @@ def test_messages(report: ValidationReport) -> None:
         validate(people=1)
     with pytest.raises(ValueError, match=r"an interval needs at least two draws, or 0 for none, not 1"):
         validate(draws=1)
-    with pytest.raises(ValueError, match=r"no prediction of 'x' \(cold\) by 'rate curve'"):
-        report.evidence.find("temperature", "rate curve", "x", "cold")
-    row = replace(load_targets()[0].rows[0], experiment="nothing")
-    target = replace(load_targets()[0], rows=(row,))
-    was = {(1, row.label): published_for(row, load_thresholds())}
+    row, known = replace(load_targets()[0].rows[0], experiment="nothing"), load_thresholds()
     with pytest.raises(ValueError, match=r"no experiment 'nothing' predicts 'largest change"):
-        assemble([target], was, load_thresholds(), report.evidence, 12, 8, 0, 48)
+        judged(row, published_for(row, known), known, report.evidence, "temperature")

@@ -13,7 +13,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.perception import Observer
 from thermicon.perception.evidence.results import load_constants
-from thermicon.perception.evidence.statistics import load_evidence
+from thermicon.perception.evidence.rows import load_evidence
 from thermicon.perception.experiments import published as experiments
 from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.on_bench import choice_reaction_time, forced_choice, method_of_limits

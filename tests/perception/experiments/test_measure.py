@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception.evidence.statistics import load_evidence
+from thermicon.perception.evidence.rows import load_evidence
 from thermicon.perception.experiments.measure import Condition, measure
 
 FOREARM = Rig.load("forearm").with_(**{"contact.area_cm2": 9.8})

@@ -49,10 +49,3 @@ def test_contact_and_effusivity_blunt_a_ramp() -> None:
     heavier = float(skin_modes("forearm", 1e-4, effusivity=1.4).ramp_response(0.15e-3, 1.0, 2)[1])
     assert lighter < 0.8 * reference
     assert heavier < 0.98 * reference
-
-
-def test_thicker_corneum_delays_what_lies_at_the_same_depth_below_it() -> None:
-    thin, thick = skin_modes("forearm", 2e-4), skin_modes("forearm", 2e-4, corneum=4.0)
-    assert thick.corneum_m == pytest.approx(4.0 * thin.corneum_m)
-    at = [float(each.ramp_response(each.corneum_m + 0.1e-3, 1.0, 2)[1]) for each in (thin, thick)]
-    assert at[1] < at[0]

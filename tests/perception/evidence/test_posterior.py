@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.maximum import LeftOut, maximise
-from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.evidence.posterior import Posterior, maximise
 from thermicon.perception.evidence.results import load_ablation, load_constants
-from thermicon.perception.evidence.rows import Row, load_rows
+from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.evidence.sampling import shipped_vector
 
 
@@ -25,9 +24,6 @@ class Line:
     def residuals(self, vector: np.ndarray) -> np.ndarray:
         return np.concatenate([[(vector.sum() - 2.0) / 0.5], vector])
 
-    def predictions(self, vector: np.ndarray) -> dict[tuple[str, str, str], float]:
-        return {("a", "b", "cold"): float(vector.sum())}
-
 
 def test_maximum_and_evidence_of_a_line_are_those_of_algebra() -> None:
     found = maximise(Line())  # type: ignore[arg-type]
@@ -36,14 +32,6 @@ def test_maximum_and_evidence_of_a_line_are_those_of_algebra() -> None:
     np.testing.assert_allclose(found.covariance, np.linalg.inv(curvature), atol=1e-8)
     cost = 0.5 * ((16 / 9 - 2) ** 2 * 4 + 2 * (8 / 9) ** 2)
     assert found.log_evidence == pytest.approx(-cost - 0.5 * np.log(np.linalg.det(curvature)))
-
-
-def test_a_left_out_row_is_judged_with_both_errors() -> None:
-    row = Row(("a", "b", "cold"), 1.0, 0.3, False, "s", "a row")
-    out = LeftOut(row, 0.0, 0.4)
-    assert out.score == pytest.approx(2.0)
-    assert out.interval == pytest.approx((-0.98, 0.98), abs=1e-3)
-    assert out.log_score == pytest.approx(-2.0 - np.log(0.5 * np.sqrt(2.0 * np.pi)))
 
 
 @pytest.mark.slow
@@ -90,17 +78,10 @@ class Some:
     def priors(self) -> tuple[str, ...]:
         return FEW
 
-    def filled(self, vector: np.ndarray) -> np.ndarray:
+    def residuals(self, vector: np.ndarray) -> np.ndarray:
         full = self.truth.copy()
         full[self.places] = vector
-        return full
-
-    def residuals(self, vector: np.ndarray) -> np.ndarray:
-        full = self.filled(vector)
         return np.concatenate([self.whole.misses(full), vector])
-
-    def predictions(self, vector: np.ndarray) -> dict[tuple[str, str, str], float]:
-        return self.whole.predictions(self.filled(vector))
 
 
 @pytest.mark.slow
@@ -142,3 +123,12 @@ def test_intervals_of_fifty_data_sets_cover_what_they_should() -> None:
     z = np.stack(scores)
     assert 0.85 < (np.abs(z) < 1.96).mean() <= 0.99
     assert (np.abs(z) < 1.96).mean(axis=0).min() > 0.6
+
+
+def test_heat_flow_answers_too_and_an_unknown_experiment_is_named() -> None:
+    posterior = Posterior("heat flow")
+    assert not {"cold limit", "warm limit"} & set(posterior.priors.names)
+    assert np.isfinite(posterior.residuals(np.zeros(len(posterior.priors)))).all()
+    assert len(Posterior(left_out=frozenset({"E3"})).rows) < len(posterior.rows)
+    with pytest.raises(ValueError, match="no experiment 'E9' to leave out"):
+        Posterior(left_out=frozenset({"E9"}))

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit.records import RecordError
-from thermicon.perception.evidence.rows import load_rows
-from thermicon.perception.evidence.statistics import DATA, load_evidence, read_evidence
+from thermicon.perception.evidence.rows import load_evidence, load_rows, read_evidence
+from thermicon.perception.observer.observer import DATA
 
 
 def test_every_statistic_has_an_experiment_an_error_and_a_licence() -> None:
@@ -17,20 +17,9 @@ def test_every_statistic_has_an_experiment_an_error_and_a_licence() -> None:
     assert len(evidence.statistics) == 323
     assert {row.experiment for row in evidence.statistics} == {f"E{n}" for n in range(1, 8)}
     assert all(math.isfinite(row.se) for row in evidence.statistics)
-    assert all(evidence.experiment(row.experiment).licence for row in evidence.statistics)
-
-
-def test_log_rows_are_taken_in_logarithms() -> None:
-    row = load_evidence().find("E3", "threshold_gm", "cold")
-    assert row.scale == "log"
-    assert row.place == pytest.approx(math.log(1.476))
-
-
-def test_an_unknown_statistic_names_its_neighbours() -> None:
+    assert all(each.licence for each in evidence.experiments.values())
     with pytest.raises(RecordError, match=r"no statistic 'treshold_gm' \(cold\): did you mean threshold_gm"):
-        load_evidence().find("E3", "treshold_gm", "cold")
-    with pytest.raises(RecordError, match="no experiment 'E9'; there are E1"):
-        load_evidence().experiment("E9")
+        evidence.find("E3", "treshold_gm", "cold")
 
 
 @pytest.mark.parametrize(
@@ -52,11 +41,16 @@ def test_a_wrong_row_is_named_by_line_and_column(tmp_path: Path, before: str, af
 
 
 def test_rows_are_published_numbers_with_errors() -> None:
-    rows = load_rows()
-    assert len({row.key for row in rows}) == len(rows) == 54
-    limits = next(row for row in rows if row.key == ("E3", "threshold_gm", "warm"))
+    rows = {row.key: row for row in load_rows()}
+    assert len(rows) == len(load_rows()) == 54
+    limits = rows["E3", "threshold_gm", "warm"]
+    assert limits.value == pytest.approx(math.log(1.859))
     assert limits.shown(limits.value) == pytest.approx(1.859)
-    # 2 % of sampling error and 5 % that the model may miss by.
+    # 2 % of sampling error and 5 % that the model may miss by; 20 % of a spread.
     assert limits.sd == pytest.approx(math.hypot(0.02016, 0.05))
-    width = next(row for row in rows if row.key == ("E4", "sigma_gm_age30", "warm"))
+    spread = load_evidence().find("E3", "between_sd_log10_noise_removed", "warm")
+    assert rows["E3", spread.statistic, "warm"].sd == pytest.approx(math.hypot(spread.se, 0.2 * spread.value))
+    width = rows["E4", "sigma_gm_age30", "warm"]
     assert width.value == pytest.approx(math.log(2.269) - 0.14)
+    steps = rows["steps", "steps from threshold to pain", "warm"]
+    assert (steps.value, steps.sd) == (pytest.approx(math.log(30.0)), 0.3)
