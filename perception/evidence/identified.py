@@ -103,7 +103,8 @@ class Shown:
             invited = others.invited(len(few))
 
             def drawn(k: int) -> Array:
-                return confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
+                found: Array = confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
+                return found
 
             kept = np.stack(list(in_order(drawn, range(draws))))
         return Identified(variable, self.labels, whole, confusions(thin, nominal, few, FEW_SAMPLES), kept)

@@ -17,7 +17,7 @@ from mechanisms.draw_evidence import (
 from mechanisms.effects import EFFECTS, Curve, Effect
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception.evidence.conditioning import OnsetStages, onset_stages
+from thermicon.perception.evidence.conditioning import onset_stages
 from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
 
 effect_of = pytest.fixture(scope="module")(lambda: {name: effect() for name, effect in EFFECTS.items()})
@@ -105,12 +105,6 @@ def test_stages_add_up_to_the_onset_and_are_drawn_in_order() -> None:
     np.testing.assert_allclose(ends[-1], [each.onset_s for each in stages])
     assert all(each.leg_s > each.onset_s for each in stages)
     assert inside(axes)
-
-
-def test_an_onset_says_where_its_time_goes() -> None:
-    assert (
-        repr(OnsetStages("a", "warm", 1.0, 0.5, 0.1, 0.2, 2.4)) == "OnsetStages(a: 1.80 s by warm, 1.00 s at receptors)"
-    )
 
 
 def test_the_ablation_is_drawn_by_its_difference() -> None:
