@@ -1,29 +1,17 @@
 """The faces of thermicon: command line, figures, notebooks."""
 
-from .startup import guard, print_anywhere
+from .startup import guard
 
+guard()  # before anything that takes time to import, or that may be broken
 
-def _examine(error: BaseException) -> int:
-    import sys
-
-    from .cli.examine import doctor
-
-    print_anywhere()
-    return doctor("--json" in sys.argv, error)
-
-
-guard(_examine)  # before anything that takes time to import, or that may be broken
-
-from contextlib import suppress
 from typing import TYPE_CHECKING
+
+from lazy_loader import attach_stub
 
 if TYPE_CHECKING:
     from IPython.core.interactiveshell import InteractiveShell
 
-with suppress(ImportError):  # where it is missing, ``thermicon doctor`` has to say so
-    from lazy_loader import attach_stub
-
-    __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
 
 
 def load_ipython_extension(shell: "InteractiveShell") -> None:

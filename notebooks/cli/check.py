@@ -14,8 +14,7 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
-from .cues import MOST_ICONS, warn_of_site
-from .options import RigOptions, sets_like
+from .options import MOST_ICONS, RigOptions, sets_like, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig

@@ -15,8 +15,7 @@ from thermicon.icons.number_text import number
 
 from ..files.outputs import STDOUT, check_output
 from ..messages import fail, note, usage
-from .cues import pick, read_set
-from .options import IconName, out, write_text
+from .options import IconName, out, pick, read_set, write_text
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet

@@ -3,34 +3,33 @@
 from __future__ import annotations
 
 import re
+import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.circuit.delivery.export_folder import check_export_folder
+from thermicon.circuit.delivery.export_folder import before_of, check_export_folder
+from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import number
 
 from ..files.exporting import felt_beside, others
-from ..messages import REFUSED, Missing, note, progress_bar, usage
-from ..report.gate_words import gate_words
-from .cues import pick, read_set, warn_of_site
-from .options import IconName, NoFile, RigOptions, Tail, out
-from .verifying import verify_folder
+from ..messages import BAD_INPUT, REFUSED, Missing, note, progress_bar, usage
+from ..report.blocks import grid
+from ..report.gate_words import CAUTION, gate_words, steps_of
+from ..report.terminal import show
+from .options import IconName, NoFile, RigOptions, Tail, out, pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Export
-    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
 
 NUMBER = re.compile(r"\d+(\.\d+)?")
 LONGEST_PAUSE_S = 600.0
 """As in `thermicon.circuit.safety.repeated`, repeated here to avoid its imports."""
-CAUTION = (
-    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
-    "works without software"
-)
+LARGEST = 2**30
+"""Bytes; a larger file is no drive of any format's device, and is not read."""
 
 
 def export_command(
@@ -183,15 +182,58 @@ def refused(ready: Export) -> bool:
     return bool(ready.barred)
 
 
-def steps_of(delivery: DeliveredDrive) -> str:
-    """Update rate of a drive, or its number of segments."""
-    from thermicon.circuit.delivery.setpoints import Setpoints
-
-    played = delivery.played
-    if isinstance(played, Setpoints):
-        return f"in {len(played.segments)} segments"
-    return f"at {number(delivery.rate_Hz, 1)} Hz"
-
-
 def _shown(names: Sequence[str], most: int = 6) -> list[str]:
     return [*names[:most], *([f"and {len(names) - most} more"] if len(names) > most else [])]
+
+
+def verify_folder(folder: Path) -> None:
+    """Check the files of an export folder and show which belong together; exit code 1 if some do not."""
+    from thermicon.circuit.delivery.verify import verify
+
+    files, others = _read(folder)
+    found = verify(files)
+    if found.claims:
+        rows = [
+            (_clean(claims.drive), _clean(sidecar), "yes" if found.belongs(sidecar) else "NO")
+            for sidecar, claims in found.claims.items()
+        ]
+        show([grid(("drive", "sidecar", "belongs"), rows, names=("drive", "sidecar"))])
+    for name, what in others:
+        note(f"note: {_clean(name)} is a {what} and was not checked")
+    for finding in found.findings:
+        if finding.kind == "told":
+            note(f"note: {_clean(str(finding))}")
+    wrong = [finding for finding in found.findings if finding.kind == "wrong"]
+    for finding in wrong:
+        note(f"wrong: {_clean(str(finding))}", always=True)
+    if wrong:
+        note(f"{folder}: {len(wrong)} {'thing does' if len(wrong) == 1 else 'things do'} not belong together")
+        raise typer.Exit(BAD_INPUT)
+    count = len(found.claims)
+    drives = "1 drive and its sidecar belong" if count == 1 else f"{count} drives and their sidecars belong"
+    show([f"{folder}: {drives} together"])
+
+
+def _read(folder: Path) -> tuple[dict[str, bytes], list[tuple[str, str]]]:
+    """Plain files of a folder by name, and what else is in it."""
+    if not folder.is_dir():
+        if folder.exists():
+            raise OutputError(f"cannot verify {folder}: it is a file; give the folder of an export")
+        left = before_of(folder)
+        more = f"; an export was interrupted, and the folder as it was is {left}" if left.exists() else ""
+        raise OutputError(f"cannot verify {folder}: there is no such folder{more}")
+    files, others = {}, []
+    for path in sorted(folder.iterdir()):
+        state = path.lstat()
+        if not stat.S_ISREG(state.st_mode):
+            others.append((path.name, "link" if path.is_symlink() else "folder" if path.is_dir() else "device"))
+        elif state.st_size > LARGEST:
+            others.append((path.name, f"file of {state.st_size / 2**30:.1f} GiB"))
+        else:
+            files[path.name] = path.read_bytes()
+    return files, others
+
+
+def _clean(text: str) -> str:
+    """Text of files without what could move a terminal's cursor."""
+    return "".join(each if each.isprintable() else "?" for each in text)

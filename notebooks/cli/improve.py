@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -10,19 +10,30 @@ import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import progress_bar, usage
-from ..report.frontier_report import frontier_report
+from ..report.improve_report import frontier_report, search_report
 from ..report.rank_report import rank_report
+from ..report.set_report import SetReport, cures, report_of
 from ..report.terminal import show
-from .cues import read_set, warn_of_frames
-from .options import CrowdOptions, FigureOptions, FileNames, RigOptions, out, write_text
-from .ranking import cures, report_of
-from .search_result import FoundSet
-from .sweep import write_frame
+from .options import (
+    CrowdOptions,
+    FigureOptions,
+    FileNames,
+    RigOptions,
+    out,
+    read_set,
+    warn_of_frames,
+    write_frame,
+    write_text,
+)
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal
+    from thermicon.perception.selection.reach import Advice
+    from thermicon.perception.selection.search import SearchResult
+
+    from ..report.blocks import Block
 
 USUAL_EVALUATIONS, MOST_CHOSEN = 2000, 64
 Objective = Literal["worst", "correct", "bits", "bits-per-s"]
@@ -114,12 +125,34 @@ def improve_command(
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
     what = objective or ("correct" if up_to is not None else _objective(wanted))
     if up_to is not None:
-        tabulate(icons, where, up_to, what, how, outputs)
+        from thermicon.perception import frontier
+
+        with progress_bar("choosing") as progress:
+            tried = frontier(icons, where, most=up_to, objective=what, progress=progress, **how)
+        for path in outputs:
+            if path.suffix.lower() in FIGURE_SUFFIXES:
+                FigureOptions(path).write(tried.plot().figure)
+            else:
+                write_frame(tried.to_frame(), path)
+        told = frontier_report(tried, icons.title)
     elif searched:
-        tried = USUAL_EVALUATIONS if evaluations is None else evaluations
-        search_set(icons, where, choose, what, must, tried, how, outputs)
+        from thermicon.perception import search
+
+        count = USUAL_EVALUATIONS if evaluations is None else evaluations
+        with progress_bar("searching") as progress:
+            found = search(
+                icons, where, count=choose, objective=what, evaluations=count, must=must, progress=progress, **how
+            )
+        for path in outputs:
+            write_text(str(found.found), path)
+        told = [] if STDOUT in outputs else beside_start(found, icons, where, must, how)
     else:
-        choose_icons(icons, where, choose, what, must, edits, how, outputs)
+        made = chosen(icons, where, choose, what, must, edits, how)
+        for path in outputs:
+            write_text(made.to_json() + "\n", path)
+        told = rank_report(made, icons.title, cures(made.ranking, icons, where))
+    if STDOUT not in outputs:
+        show(told)
 
 
 def _objective(goal: Goal | None) -> Objective:
@@ -128,78 +161,51 @@ def _objective(goal: Goal | None) -> Objective:
     return "worst" if not wanted else "correct" if wanted[0] == "correct" else "bits"
 
 
-def choose_icons(
+def chosen(
     icons: IconSet,
     rig: Rig,
     count: int | None,
     objective: Objective,
     must: Sequence[str] | None,
     edits: bool,
-    how: Mapping[str, Any],
-    outputs: Sequence[Path],
-) -> None:
+    how: dict[str, Any],
+) -> SetReport:
     """Choose the best few icons as they are, or edit them; judge them by a goal."""
     from thermicon.perception.selection.request import Selection
 
     goal: Goal | None = how["goal"]
     limits = (None, None) if goal is None else (goal.of("time"), goal.of("energy"))
-    found = report_of(
+    return report_of(
         icons,
         rig,
-        how["parameters"],
+        how.pop("parameters"),
         edits="all" if edits or (count is None and goal is None) else "worst" if count is None else "none",
         choosing=None if count is None else Selection(count, objective, tuple(must or ()), *limits),
         warnings=tuple(rig.warnings),
-        **{name: value for name, value in how.items() if name != "parameters"},
+        **how,
     )
-    for path in outputs:
-        write_text(found.to_json() + "\n", path)
-    if STDOUT not in outputs:
-        show(rank_report(found, icons.title, cures(found.ranking, icons, rig)))
 
 
-def tabulate(
-    icons: IconSet, rig: Rig, most: int, objective: Objective, how: Mapping[str, Any], outputs: Sequence[Path]
-) -> None:
-    """Choose the best 2, 3, … icons, and show scores and total time of each choice."""
-    from thermicon.perception import frontier
+def beside_start(
+    found: SearchResult, icons: IconSet, rig: Rig, must: Sequence[str] | None, how: dict[str, Any]
+) -> list[Block]:
+    """Rank the found set and its start as the search did; try what would help where the found one misses the goal."""
+    from thermicon.icons import IconSet
+    from thermicon.perception import rank
+    from thermicon.perception.selection.goal_result import judge_goal
+    from thermicon.perception.selection.reach import what_would_help
 
-    with progress_bar("choosing") as progress:
-        found = frontier(icons, rig, most=most, objective=objective, progress=progress, **how)
-    for path in outputs:
-        if path.suffix.lower() in FIGURE_SUFFIXES:
-            FigureOptions(path).write(found.plot().figure)
-        else:
-            write_frame(found.to_frame(), path)
-    if STDOUT not in outputs:
-        show(frontier_report(found, icons.title))
-
-
-def search_set(
-    icons: IconSet,
-    rig: Rig,
-    count: int | None,
-    objective: Objective,
-    must: Sequence[str] | None,
-    evaluations: int,
-    how: Mapping[str, Any],
-    outputs: Sequence[Path],
-) -> None:
-    """Search the families of a set for a better one, and show it beside the set that the search began with."""
-    from thermicon.perception import search
-
-    with progress_bar("searching") as progress:
-        found = search(
-            icons,
-            rig,
-            count=count,
-            objective=objective,
-            evaluations=evaluations,
-            must=must,
-            progress=progress,
-            **how,
-        )
-    for path in outputs:
-        write_text(str(found.found), path)
-    if STDOUT not in outputs:
-        show(FoundSet.ranked(found, icons, rig, must, how).report(icons.title, rig.name, evaluations))
+    start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
+    goal, asked = how["goal"], {name: value for name, value in how.items() if name != "goal"}
+    if how["observer"].posterior is None:
+        asked["parameters"] = 0
+    with progress_bar("ranking") as bar:
+        rankings = [rank(each, rig, **asked, progress=bar) for each in (start, found.found)]
+    before, after = (SetReport(each, goal=None if goal is None else judge_goal(goal, each)) for each in rankings)
+    advice: Advice | None = None
+    if after.goal is not None and not after.goal.met:
+        like = {name: how[name] for name in ("seed", "tracking", "norm", "observer")}
+        like |= {"objective": found.objective, "count": len(found.found), "must": must}
+        with progress_bar("trying changes") as bar:
+            advice = what_would_help(icons, rig, after.goal.goal, found.found, step=bar, **like)
+    return search_report(found, before, after, advice, icons.title)

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass
 from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated
 
 import typer
 
 from thermicon.icons.atomic import check_folder, complete_or_absent, stopped_cleanly
-from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
 
 from ..files.document import Document
 from ..files.outputs import FILE, OBSERVER, PAGE_FOLDER, RIG
@@ -31,34 +27,9 @@ FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
 """Endings of files: who gives one wants something else than a folder of that name."""
 CUE = ".cue"
 FIRST, PAGE = "01_first_icon.ipynb", "workbench.ipynb"
-MOST_BYTES = 200_000_000
-"""Bytes of a notebook that is looked at; with all its pictures one has some millions."""
-STAMP = "thermicon"
-"""The key of a copy's metadata that holds the fingerprint it was written with."""
 PROMPT = "--ServerApp.kernel_websocket_connection_class=thermicon.notebooks.cli.prompt_socket.PromptSocket"
 """Option of JupyterLab by which answers of a kernel on this machine do not wait; a gateway has a socket of its own."""
 ENDS_ITSELF_S, TIDIES_UP_S = 3.0, 10.0
-
-State = Literal["new", "current", "older", "changed"]
-
-
-@dataclass(frozen=True, slots=True)
-class Copied:
-    """Names of the notebooks by what became of them: written anew, the same already, or kept as the person has them."""
-
-    written: tuple[str, ...]
-    current: tuple[str, ...]
-    kept: tuple[str, ...]
-
-    @property
-    def text(self) -> str:
-        """Summary of what was written, without the folder."""
-        if not self.written:
-            return "nothing to write, all notebooks exist" if self.current else ""
-        parts = [f"wrote {_counted(self.written)}"]
-        if self.current:
-            parts.append(f"{_counted(self.current)} already there")
-        return ", ".join(parts)
 
 
 def lab_command(
@@ -94,12 +65,12 @@ def lab_command(
         bool, typer.Option("--allow-root", help="Let JupyterLab run as root, as in a container.")
     ] = False,
     force: Annotated[
-        bool, typer.Option("--force", help="Also replace notebooks that you changed by the shipped ones.")
+        bool, typer.Option("--force", help="Also replace notebooks that are there by the shipped ones.")
     ] = False,
 ) -> None:
     """Copy the notebooks to a folder and open JupyterLab there; Ctrl-C stops it.
 
-    Notebooks that you changed are kept. Notebooks that you only ran are replaced if thermicon has a newer version.
+    Notebooks that are there already are kept.
     """
     if page and files_only:
         raise usage("opens nothing, so no page can be served", "--files-only")
@@ -121,7 +92,9 @@ def lab_command(
     if file is not None:
         serve_file(file, shown, no_browser, port)
         return
-    report_copies(copy_notebooks(folder, force), folder)
+    written, kept = copy_notebooks(folder, force)
+    cure = " (--force replaces them)" if kept else ""
+    note(f"{folder}: {len(written)} notebooks written, {len(kept)} there already{cure}")
     if not files_only:
         command = command_of(folder, page, no_browser, port)
         serve([*command, *(["--allow-root"] if allow_root else [])], program, shown if page else {})
@@ -150,60 +123,47 @@ def serve_file(file: Path, shown: Mapping[str, str], no_browser: bool, port: int
     """Serve the workbench on one file; the notebook that it is made of stays out of the file's folder."""
     note(f"{file}: the page opens, saves and exports below {shown[PAGE_FOLDER]}")
     with tempfile.TemporaryDirectory(prefix="thermicon-page-", ignore_cleanup_errors=True) as own:
-        (Path(own) / PAGE).write_bytes(_stamped(shipped_notebooks()[PAGE]))
+        (Path(own) / PAGE).write_bytes(shipped_notebooks()[PAGE])
         serve(command_of(Path(own), True, no_browser, port), "voila", shown)
 
 
-def copy_notebooks(folder: Path, force: bool = False) -> Copied:
-    """Put the shipped notebooks into a folder, which is made if missing: all that are due, or none.
+def copy_notebooks(folder: Path, force: bool = False) -> tuple[list[str], list[str]]:
+    """Put the shipped notebooks into a folder, which is made if missing; names of those written, and of those kept.
 
-    A notebook there is replaced when its cells are those it was written with (its outputs do not count), or with
-    ``force``. Raises OutputError where the folder cannot be used.
+    All that are not there are written, or none; with ``force``, those too that are there. Raises OutputError where the
+    folder cannot be used.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as made:
-    ...     copy_notebooks(Path(made)).text, copy_notebooks(Path(made)).text
-    ('wrote 9 notebooks', 'nothing to write, all notebooks exist')
+    ...     [[len(names) for names in copy_notebooks(Path(made))] for _ in range(2)]
+    [[9, 0], [0, 9]]
     """
     check_folder(folder)
     shipped = shipped_notebooks()
-    states = {name: _state(folder / name, notebook) for name, notebook in shipped.items()}
-    due = {"new", "older", "changed"} if force else {"new", "older"}
-    written = tuple(name for name, state in states.items() if state in due)
+    kept = [name for name in shipped if (folder / name).exists() and not force]
+    written = [name for name in shipped if name not in kept]
     made = not folder.exists()
     try:
         folder.mkdir(exist_ok=True)
         with stopped_cleanly(), ExitStack() as drafts:  # all are written before the first gets its name
             for name in written:
-                drafts.enter_context(complete_or_absent(folder / name)).write_bytes(_stamped(shipped[name]))
+                drafts.enter_context(complete_or_absent(folder / name)).write_bytes(shipped[name])
     except BaseException:
         if made:
             with suppress(OSError):
                 folder.rmdir()
         raise
-    return Copied(
-        written,
-        tuple(name for name, state in states.items() if state == "current"),
-        tuple(name for name, state in states.items() if state == "changed" and not force),
-    )
+    return written, kept
 
 
-def shipped_notebooks() -> dict[str, dict[str, Any]]:
+def shipped_notebooks() -> dict[str, bytes]:
     """The notebooks of this version by name, in order.
 
     >>> list(shipped_notebooks())[0], PAGE in shipped_notebooks()
     ('01_first_icon.ipynb', True)
     """
     found = [path for path in resources.files("thermicon.notebooks").iterdir() if path.name.endswith(".ipynb")]
-    return {path.name: json.loads(path.read_text("utf-8")) for path in sorted(found, key=lambda path: path.name)}
-
-
-def report_copies(copied: Copied, folder: Path) -> None:
-    """Report what was written and what was kept."""
-    if copied.text:
-        note(f"{folder}: {copied.text}")
-    for name in copied.kept:
-        note(f"{folder / name}: kept because you changed it; --force replaces it")
+    return {path.name: path.read_bytes() for path in sorted(found, key=lambda path: path.name)}
 
 
 def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> list[str]:
@@ -239,47 +199,12 @@ def serve(command: list[str], program: str, told: Mapping[str, str]) -> None:
         try:
             code = server.wait()
         except KeyboardInterrupt:
-            _end(server)
+            for end, wait_s in ((server.terminate, ENDS_ITSELF_S), (server.kill, TIDIES_UP_S)):
+                try:
+                    server.wait(wait_s)
+                    break
+                except subprocess.TimeoutExpired:
+                    end()
             raise interrupted() from None
     if code != 0:
         fail(f"{program} ended with an error (exit code {code}); its messages are above")
-
-
-def _end(server: subprocess.Popen[bytes]) -> None:
-    with suppress(subprocess.TimeoutExpired):
-        server.wait(ENDS_ITSELF_S)
-        return
-    server.terminate()
-    with suppress(subprocess.TimeoutExpired):
-        server.wait(TIDIES_UP_S)
-        return
-    server.kill()
-
-
-def _state(path: Path, shipped: Mapping[str, Any]) -> State:
-    """Compare the file at a path with the notebook shipped under its name."""
-    if not path.exists():
-        return "new"
-    try:
-        there = json.loads(read_limited(path, MOST_BYTES))
-        found, stamp = _fingerprint(there), there.get("metadata", {}).get(STAMP)
-    except (ValueError, AttributeError, KeyError, TypeError, RecursionError, NotRegular, TooLarge):
-        return "changed"  # not a notebook: the user's own file
-    if found == _fingerprint(shipped):
-        return "current"
-    return "older" if found == stamp else "changed"
-
-
-def _fingerprint(notebook: Mapping[str, Any]) -> str:
-    """Hash of kinds and texts of the cells: what a person writes, without what running and saving adds."""
-    cells = [[cell["cell_type"], "".join(cell["source"])] for cell in notebook["cells"]]
-    return hashlib.sha256(json.dumps(cells).encode()).hexdigest()[:16]
-
-
-def _stamped(notebook: Mapping[str, Any]) -> bytes:
-    metadata = {**notebook["metadata"], STAMP: _fingerprint(notebook)}
-    return (json.dumps({**notebook, "metadata": metadata}, indent=1, ensure_ascii=False) + "\n").encode()
-
-
-def _counted(names: tuple[str, ...]) -> str:
-    return "1 notebook" if len(names) == 1 else f"{len(names)} notebooks"

@@ -14,8 +14,7 @@ from ..files.outputs import check_output
 from ..messages import usage
 from ..report.blocks import grid
 from ..report.terminal import show
-from .cues import read_set, warn_of_site
-from .options import RigOptions, write_text
+from .options import RigOptions, read_set, warn_of_site, write_text
 
 
 def list_command(

@@ -1,4 +1,4 @@
-"""The command line: every command of ``thermicon``, grouped by job.
+"""The command line: every command of ``thermicon`` by job, and how errors, interrupts and closed pipes end one.
 
 A command imports what it needs when it runs, so that ``check`` answers at once. The work of each command is in a module
 of this package.
@@ -7,16 +7,18 @@ of this package.
 from __future__ import annotations
 
 import gc
+import io
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from pickle import UnpicklingError
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from ..messages import be_quiet, interrupted
-from ..startup import is_command, print_anywhere, warn_if_hidden
-from .app import Commands
+from ..messages import be_quiet, fail, interrupted, into_nowhere, is_ours, late_notes
 from .options import flat
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
@@ -38,9 +40,99 @@ COMMANDS = {
     "export": ("export", PLAY),
     "study": ("study", PLAY),
     "lab": ("lab", NOTEBOOKS),
-    "doctor": ("main", INSTALLATION),
+    "doctor": ("doctor", INSTALLATION),
 }
 """Each command with its module of this room, whose function NAME_command it is, and its job."""
+
+SENTENCE = 400
+"""More letters than any first sentence of a command's help has."""
+UNITS = {"S": " s", "HZ": " Hz", "J": " J", "K": " K", "POINTS": " percentage points", "PERCENT": " %"}
+"""Units by the metavar of an option; others have none."""
+NUMBERS = {
+    "int": "is not a whole number; write one, such as 12",
+    "float": "is not a number; write digits with a decimal point and without a unit, such as 2.5",
+}
+BOUNDS = ("greater_than_equal", "less_than_equal")
+
+
+class Commands(TyperGroup):
+    """A group of commands that ends with a message and an exit code, never with a traceback for a wrong input."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """List the commands by job, each with its whole first sentence."""
+        width = max(map(len, self.commands))
+        for job in dict.fromkeys(command.rich_help_panel for command in self.commands.values()):  # type: ignore[attr-defined]
+            rows = [
+                (name.ljust(width), command.get_short_help_str(SENTENCE))
+                for name, command in self.commands.items()
+                if command.rich_help_panel == job  # type: ignore[attr-defined]
+            ]
+            with formatter.section(job):
+                formatter.write_dl(rows)
+
+    def make_context(self, *arguments: Any, **extra: Any) -> Any:
+        """Read the command line; Ctrl-C exits with 130."""
+        # Python's workers, and every server that is started from here, import nothing from where they are started.
+        os.environ.setdefault("PYTHONSAFEPATH", "1")
+        try:
+            return super().make_context(*arguments, **extra)
+        except KeyboardInterrupt:
+            raise interrupted() from None
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; bad input exits with 1, Ctrl-C with 130, a reader that went away with 0."""
+        try:
+            with late_notes():
+                result = super().invoke(ctx)
+                sys.stdout.flush()
+        except KeyboardInterrupt:
+            raise interrupted() from None
+        except BrokenPipeError:
+            into_nowhere(sys.stdout)
+            raise typer.Exit(0) from None
+        except MemoryError:
+            fail("not enough memory; use fewer people, a lower sample rate (--rate) or a shorter --tail")
+        except OSError as error:
+            place = f"{error.filename}: " if error.filename else ""
+            fail(f"{place}{error.strerror or error}")
+        except (EOFError, UnpicklingError):  # as numba reads what a crash of the machine left half-written
+            from thermicon.icons.userfolder import cache_folder
+
+            fail(f"machine code in {cache_folder() / 'compiled'} is damaged: delete this folder; it is made again")
+        except RecursionError:
+            fail("the input is nested too deeply to be read")
+        except Exception as error:
+            if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
+                fail(f"a path cannot be followed because its links form a circle: {str(error).partition('from ')[2]}")
+            if isinstance(error, typer.BadParameter):
+                reworded(error)
+                raise
+            if not is_ours(error):
+                raise
+            fail(str(error))
+        else:
+            return result
+
+
+def reworded(error: Any) -> None:
+    """Say, in place of the parser's own words, which value an option cannot have, and what it may be.
+
+    `error` is a bad parameter of the command line; others stay as they are.
+    """
+    from thermicon.circuit.inputs import quoted
+
+    param, faults = getattr(error, "param", None), getattr(error.__cause__, "errors", None)
+    if param is None or faults is None:
+        return
+    fault = faults()[0]
+    kind, text, unit = fault["type"].partition("_")[0], str(fault["input"]), UNITS.get(param.metavar or "", "")
+    if kind in NUMBERS:
+        error.message = f"{quoted(text)} {NUMBERS[kind]}"
+    elif fault["type"] in BOUNDS:
+        error.message = f"{float(text):.10g}{unit} is outside {param.min:.10g} to {param.max:.10g}{unit}"
+    else:
+        wrong, joint, choices = error.message.removeprefix("Value error, ").removesuffix(".").partition(" is not one ")
+        error.message = wrong + joint + choices.replace("'", "")
 
 
 def _print_version(wanted: bool) -> None:
@@ -61,19 +153,6 @@ def thermicon(
 ) -> None:
     """Design thermal icons, simulate them on display and skin, and predict which ones people confuse."""
     be_quiet(quiet)
-
-
-def doctor_command(
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of lines.")] = False,
-) -> None:
-    """Check the installation: versions, extras, ngspice, the cache, the kernel of Jupyter, and a self-test.
-
-    Every line is ok, a note (something that can be done without) or a fault, with its cure. With a fault, the exit code
-    is 1.
-    """
-    from .examine import doctor
-
-    raise typer.Exit(doctor(json))
 
 
 def program(words: Sequence[str] = ()) -> typer.Typer:
@@ -110,10 +189,10 @@ def main() -> None:
     """Run the command line of the process; the entry point of the ``thermicon`` command."""
     # What imports create is not garbage, and looking for some after each 700 objects takes a twentieth of a command.
     gc.set_threshold(100_000)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")  # where the output has no code for a character
     try:
-        if is_command():
-            warn_if_hidden()
-        print_anywhere()
         program(sys.argv[1:])(prog_name="thermicon")
     except KeyboardInterrupt:
         sys.exit(interrupted().exit_code)

@@ -1,29 +1,36 @@
-"""Options that commands share, in groups: each checks itself, loads what it names, and knows its words again.
+"""What commands share: groups of options, cue files as input, and files as output.
 
-A command takes groups as arguments; `command` lays their options out beside its own for typer.
+A group checks itself, loads what it names, and knows its words again. A command takes groups as arguments; `flat` lays
+their options out beside its own for typer.
 """
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_type_hints
 
 import typer
 
 from thermicon.icons.atomic import complete_or_absent
+from thermicon.icons.number_text import number
 
 from ..figures.style import SCREEN, Look, read_width_mm
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
 from ..messages import DEFAULT_RIG, check_changes, check_draws, load_observer, load_rig, note, usage
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from thermicon.circuit import Rig
+    from thermicon.icons import Icon, IconSet
     from thermicon.perception.observer.observer_model import ObserverModel
 
 MOST_PEOPLE, MOST_DRAWS, LARGEST_SEED = 100_000, 10_000, 2**32 - 1
+MOST_ICONS = 2000
+"""More icons at once than anyone reads about; families may have 100,000."""
 LONGEST_TAIL_S = 86_400.0
 
 
@@ -88,16 +95,13 @@ class Options:
         ['--observer', 'lab.csv', '--people', '20']
         """
         own: tuple[Field[Any], ...] = fields(self)  # type: ignore[arg-type]
-        given = ((field.name, getattr(self, field.name)) for field in own if getattr(self, field.name) != field.default)
-        return [word for name, value in given for word in _option(name, value, paths)]
-
-
-def _option(name: str, value: object, paths: bool) -> list[str]:
-    words = []
-    for each in value if isinstance(value, list) else [value]:
-        shown = each.name if isinstance(each, Path) and not paths else str(each)
-        words += [f"--{name.replace('_', '-')}", *([] if each is True else [shown])]
-    return words
+        words: list[str] = []
+        for field in own:
+            value = getattr(self, field.name)
+            for each in [] if value == field.default else value if isinstance(value, list) else [value]:
+                shown = each.name if isinstance(each, Path) and not paths else str(each)
+                words += [f"--{field.name.replace('_', '-')}", shown]
+        return words
 
 
 @dataclass(frozen=True)
@@ -177,7 +181,8 @@ class CrowdOptions(ObserverOptions):
     intervals: Intervals = None
 
     def __post_init__(self) -> None:
-        check_intervals(self.intervals)
+        if self.intervals == 1:
+            raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--intervals")
 
     @property
     def asked(self) -> dict[str, Any]:
@@ -189,12 +194,6 @@ class CrowdOptions(ObserverOptions):
         from thermicon.perception.identification.laboratory import DRAWS
 
         return check_draws(model, self.intervals, "--intervals", DRAWS)
-
-
-def check_intervals(draws: int | None) -> None:
-    """Fail with a usage error for a single draw."""
-    if draws == 1:
-        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--intervals")
 
 
 @dataclass(frozen=True)
@@ -234,6 +233,120 @@ class FigureOptions(Options):
             note(f"wrote {self.figure}")
 
 
+class JoinError(Exception):
+    """Files that cannot be joined, because two of them have an icon of the same name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Joined:
+    """Several sets taken as one. Unlike those of an ``IconSet``, its icons may prescribe different things."""
+
+    sets: tuple[IconSet, ...]
+    files: tuple[str, ...]
+
+    @property
+    def title(self) -> str:
+        """The titles of all sets, the name of its file for one that has none; nothing where none has a title."""
+        if not any(each.title for each in self.sets):
+            return ""
+        return "; ".join(each.title or Path(file).name for file, each in zip(self.files, self.sets, strict=True))
+
+    def __iter__(self) -> Iterator[Icon]:
+        return (icon for each in self.sets for icon in each)
+
+    def __len__(self) -> int:
+        return sum(map(len, self.sets))
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.sets))
+
+
+def read_all(files: Sequence[str]) -> list[IconSet]:
+    """Read every file; CueErrors carries what is wrong in all of them, not only in the first."""
+    from thermicon.icons import CueErrors, read_cue
+    from thermicon.icons.model.errors import CueError
+
+    sets: list[IconSet] = []
+    errors: list[CueError] = []
+    more = 0
+    for file in files:
+        try:
+            sets.append(read_cue(file))
+        except CueErrors as found:
+            errors += found.errors
+            more += found.more
+    if errors:
+        raise CueErrors(tuple(errors), more)
+    return sets
+
+
+def read_set(files: Sequence[str]) -> IconSet:
+    """Read files and join their icons into one set; JoinError when two icons share a name."""
+    sets = read_all(files)
+    if len(sets) == 1:
+        return sets[0]
+    owner: dict[str, str] = {}
+    for file, each in zip(files, sets, strict=True):
+        for icon in each:
+            if icon.name in owner:
+                raise JoinError(
+                    f"{file}: the icon {icon.name} is also in {owner[icon.name]}; "
+                    f"names must differ within a set, so rename one of them"
+                )
+            owner[icon.name] = file
+    return cast("IconSet", Joined(tuple(sets), tuple(files)))
+
+
+def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> tuple[str, ...]:
+    """Warn on stderr of files for another site than the rig's, and of different baselines; return the warnings."""
+    warnings: list[str] = []
+    sets = icons.sets if isinstance(icons, Joined) else (icons,)
+    levels: dict[float, list[str]] = {}
+    for file, each in zip(files, sets, strict=True):
+        warnings += warn_of_site(file, each, rig)
+        own = each.context.baseline_C
+        levels.setdefault(rig.skin.rest_C if own is None else own, []).append(Path(file).name)
+    if len(levels) > 1:
+        told = ", ".join(f"{number(level, 2)} °C in {' and '.join(names)}" for level, names in levels.items())
+        warnings.append(f"baselines differ: {told}; between them the skin must adapt again, which the model leaves out")
+        note(f"warning: {warnings[-1]}")
+    return tuple(warnings)
+
+
+def warn_of_site(file: str, icons: IconSet, rig: Rig) -> tuple[str, ...]:
+    """Warn on stderr when a set is for another site than the rig's; return the warning, if there is one."""
+    site = icons.context.site
+    if site is None or site == rig.site:
+        return ()
+    warning = f"{file} is for the site {site}, the rig {rig.name} is for {rig.site}"
+    note(f"warning: {warning}")
+    return (warning,)
+
+
+def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:
+    """Return the icon of this name, or all of them; an unknown name is an error that lists the nearest.
+
+    More than ``most`` icons, as a family may have, are a usage error.
+    """
+    if name is not None:
+        return [icons[name]]
+    if len(icons) > most:
+        first = next(iter(icons)).name
+        raise usage(
+            f"there are {len(icons):,} icons, and at most {most:,} are allowed; name one, such as {first}", "--icon"
+        )
+    return list(icons)
+
+
+def only(icons: IconSet, name: str | None, where: str) -> Icon:
+    """Return the icon of this name, or the only one there is; a usage error that lists them where there are more."""
+    found = pick(icons, name)
+    if len(found) > 1:
+        names = ", ".join([icon.name for icon in found[:20]] + ["…"] * (len(found) > 20))
+        raise usage(f"{where} has {len(found)} icons; name one of {names}", "--icon")
+    return found[0]
+
+
 def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8") -> None:
     """Write text to a file, complete or not at all, and say so, with what `more` there is to say; - is stdout."""
     if output == STDOUT:
@@ -242,6 +355,16 @@ def write_text(text: str, output: Path, more: str = "", encoding: str = "utf-8")
     with complete_or_absent(output) as draft:
         draft.write_text(text, encoding=encoding, newline="\n")
     note(f"wrote {output}{more}")
+
+
+def write_frame(frame: pd.DataFrame, output: Path) -> None:
+    """Write a table as ``.parquet`` or ``.csv``, by its suffix, and say so; - prints it."""
+    if output == STDOUT or output.suffix != ".parquet":
+        write_text(frame.to_csv(index=False, float_format="%.9g", lineterminator="\n"), output)
+        return
+    with complete_or_absent(output) as draft:
+        frame.to_parquet(draft, index=False)
+    note(f"wrote {output}")
 
 
 def flat(function: Callable[..., None]) -> Callable[..., None]:

@@ -14,8 +14,17 @@ from thermicon.icons.number_text import percent
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
-from .cues import read_set, warn_of_frames
-from .options import FigureOptions, FileNames, Json, ObserverOptions, RigOptions, out, write_text
+from .options import (
+    FigureOptions,
+    FileNames,
+    Json,
+    ObserverOptions,
+    RigOptions,
+    out,
+    read_set,
+    warn_of_frames,
+    write_text,
+)
 from .ranking import command_text
 
 if TYPE_CHECKING:

@@ -5,31 +5,37 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from json import dumps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from thermicon.icons.atomic import check_folder
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate
-from ..messages import note, progress_bar, usage
-from ..report.rank_report import MOST_LINES, next_step, rank_report
+from ..messages import check_draws, fail, note, progress_bar, usage
+from ..report.rank_report import MOST_LINES, doubt_report, next_step, rank_report
 from ..report.terminal import show
-from .cues import MOST_ICONS, read_set, warn_of_frames
-from .options import CrowdOptions, FigureOptions, FileNames, Json, Options, RigOptions, out, write_text
+from .options import (
+    MOST_ICONS,
+    CrowdOptions,
+    FigureOptions,
+    FileNames,
+    Json,
+    Options,
+    RigOptions,
+    out,
+    read_set,
+    warn_of_frames,
+    write_text,
+)
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception import Goal, Ranking, Task
-    from thermicon.perception.observer.observer_model import ObserverModel
-    from thermicon.perception.selection.request import Selection
+    from thermicon.perception import Ranking, Task
 
-    from ..report.set_report import SetReport
-
-OTHER_PICTURES = (".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".eps")
 TRIALS, MOST_WORKERS = 48, 1024
 TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s"), "context": (0.0, 1.0, ""), "bias": (0.0, 5.0, "")}
 """Keys of --task with their limits, those of `thermicon.perception.Task`, repeated here to avoid its imports."""
@@ -46,45 +52,16 @@ class SetFigureOptions(FigureOptions):
 
     def check_place(self) -> None:
         """Fail where figures can neither go to a folder, nor one of the set to a file."""
-        place = self.figure
-        if place is None:
-            return
         if self.picture is not None:
-            check_output(place, FIGURE_SUFFIXES, "a figure")
-            return
-        if not place.is_dir() and (place.exists() or place.suffix.lower() in OTHER_PICTURES):
-            hint = place.with_suffix("") if place.suffix else "figures"
-            raise usage(
-                f"{place} is the name of a file; give a folder, such as {hint}, for all figures, or a .pdf, .svg or "
-                ".png for that of the set",
-                "--figure",
-            )
-        check_folder(place)
+            check_output(self.picture, FIGURE_SUFFIXES, "a figure")
+        elif self.figure is not None:
+            check_folder(self.figure)
 
     @property
     def picture(self) -> Path | None:
-        """The file of the one figure of the set, where one was asked for."""
-        single = self.figure is not None and self.figure.suffix.lower() in FIGURE_SUFFIXES
-        return self.figure if single and self.figure is not None and not self.figure.is_dir() else None
-
-
-@dataclass(frozen=True)
-class RankedBy(CrowdOptions):
-    """Virtual people with a form of memory, or the rules of the literature."""
-
-    norm: Annotated[
-        Literal["episodes", "naming", "rules"],
-        typer.Option("--norm", "--by", help="How icons are remembered; rules: by the literature's rules, not people."),
-    ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
-
-    @property
-    def asked(self) -> dict[str, Any]:
-        """Arguments of `rank`."""
-        return {**super().asked, "norm": "episodes", "by": "rules"} if self.norm == "rules" else super().asked
-
-    def draws(self, model: ObserverModel) -> int:
-        """How many draws to use; rules have none."""
-        return 0 if self.norm == "rules" else super().draws(model)
+        """The file of the one figure of the set, where one was asked for: a name with an ending."""
+        single = self.figure is not None and self.figure.suffix and not self.figure.is_dir()
+        return self.figure if single else None
 
 
 @dataclass(frozen=True)
@@ -137,7 +114,7 @@ def _read_task(text: str) -> tuple[str, float]:
 
 def rank_command(
     files: FileNames,
-    crowd: RankedBy,
+    crowd: CrowdOptions,
     task: TaskOptions,
     rig: RigOptions,
     figure: SetFigureOptions,
@@ -175,12 +152,11 @@ def rank_command(
     check_separate(files, [json, report, figure.picture])
     here = read_workers(workers)
     if doubt:
-        if crowd.norm == "rules":
-            raise usage("is about predictions for people: leave out --by rules", "--doubt")
-        from .doubt import doubt_about
-
         given = {"--task": task.task, "--report": report, "--workers": workers, "--details": details}
-        doubt_about(files, crowd, rig, figure, json, {**given, "--tracking": crowd.tracking})
+        for option, value in {**given, "--tracking": crowd.tracking}.items():
+            if value:
+                raise usage("belongs to a ranking; leave it out, or --doubt", option)
+        doubt_about(files, crowd, rig, figure, json)
         return
     icons = read_set(files)
     if len(icons) > MOST_ICONS:
@@ -188,23 +164,15 @@ def rank_command(
             f"there are {len(icons):,} icons, and every pair is compared: at most {MOST_ICONS:,} can be ranked at once"
         )
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
+    from ..report.set_report import cures, report_of
+
     where = rig.load()
     warnings = (*where.warnings, *warn_of_frames(files, icons, where))
     model = crowd.load(where)
     draws = crowd.draws(model)
     _say_if_first()
-    found = report_of(
-        icons,
-        where,
-        draws,
-        edits="none" if crowd.norm == "rules" else "worst",
-        warnings=warnings,
-        workers=here,
-        **crowd.asked,
-        trials=task.trials,
-        task=task.load(),
-        observer=model,
-    )
+    asked = {**crowd.asked, "trials": task.trials, "task": task.load(), "observer": model}
+    found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
     if figure.figure is not None:
@@ -220,9 +188,36 @@ def rank_command(
     if json == STDOUT:
         typer.echo(found.to_json())
     else:
-        following = "" if crowd.norm == "rules" else _following(found.ranking, icons, files, rig, crowd)
-        told = rank_report(found, icons.title, near, following, details)
-        show(told, None if details else MOST_LINES)
+        following = _following(found.ranking, icons, files, rig, crowd)
+        show(rank_report(found, icons.title, near, following, details), None if details else MOST_LINES)
+
+
+def doubt_about(
+    files: Sequence[str], crowd: CrowdOptions, rig: RigOptions, figure: SetFigureOptions, json: Path | None
+) -> None:
+    """Study which constants carry the doubt about a set: the table on stdout, other outputs on request."""
+    if figure.figure is not None and figure.picture is None:
+        raise usage("with --doubt there is one figure: name a .pdf, .svg or .png file", "--figure")
+    from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS, sensitivity
+
+    if crowd.intervals is not None and crowd.intervals < FEWEST_DRAWS:
+        raise usage(f"{crowd.intervals} draws are too few for --doubt: give {FEWEST_DRAWS} or more", "--intervals")
+    icons = read_set(files)
+    if len(icons) < 2:
+        fail(f"{files[0]}: --doubt needs at least two icons, since one alone is never confused")
+    where = rig.load()
+    warn_of_frames(files, icons, where)
+    model = crowd.load(where, "what carries the doubt is read from draws of a posterior")
+    draws = check_draws(model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
+    asked = {name: value for name, value in crowd.asked.items() if name != "tracking"}
+    with progress_bar("doubt") as progress:
+        found = sensitivity(icons, where, draws=draws, observer=model, progress=progress, **asked)
+    if json is not None:
+        write_text(dumps(asdict(found), ensure_ascii=False, indent=1) + "\n", json)
+    if figure.figure is not None:
+        figure.write(found.plot().figure)
+    if json != STDOUT:
+        show(doubt_report(found, icons.title))
 
 
 def _following(ranking: Ranking, icons: IconSet, files: Sequence[str], rig: RigOptions, crowd: CrowdOptions) -> str:
@@ -232,52 +227,6 @@ def _following(ranking: Ranking, icons: IconSet, files: Sequence[str], rig: RigO
     step = next_step(ranking, any(isinstance(each, Family) for each in getattr(icons, "entries", ())))
     groups = (rig, crowd) if step.command in ("rank", "improve") else (rig,)
     return f"{command_text(files, *groups, paths=True, command=step.command)} {shlex.join(step.options)}".rstrip()
-
-
-def report_of(
-    icons: IconSet,
-    rig: Rig,
-    draws: int,
-    *,
-    edits: Literal["worst", "all", "none"] = "worst",
-    choosing: Selection | None = None,
-    goal: Goal | None = None,
-    warnings: tuple[str, ...] = (),
-    workers: int | str | None = None,
-    **how: Any,
-) -> SetReport:
-    """Rank a set; choose of it, judge it by a goal and edit its pairs, as far as that is asked.
-
-    `draws` are those of an interval, `how` other arguments of `rank`.
-    """
-    from thermicon.perception import choose, rank
-    from thermicon.perception.kernels.parallel import beside
-    from thermicon.perception.progress import step_counter
-    from thermicon.perception.ranking.rank import with_intervals
-    from thermicon.perception.selection.edit import cheapest_edits
-    from thermicon.perception.selection.goal_result import judge_goal
-    from thermicon.perception.selection.request import check_selection
-
-    from ..report.set_report import SetReport
-
-    if choosing is not None:
-        check_selection(choosing, [icon.name for icon in icons])
-    if goal is not None:
-        goal.check_count(None if choosing is None else choosing.count)
-        goal.check_draws(draws)
-    with progress_bar("ranking") as progress:
-        ranking = without = rank(icons, rig, parameters=0, workers=workers, progress=progress, **how)
-    # One edit takes as long as the draws, mostly on one core; more of them wait for the draws.
-    cores = workers if isinstance(workers, int) else None
-    edited = beside(lambda: cheapest_edits(without, edits), cores if edits == "worst" else 1)
-    choice = None
-    with progress_bar("intervals" if choosing is None else "choosing") as progress:
-        if choosing is not None:
-            choice = choose(ranking, choosing, parameters=draws, progress=progress)
-        elif draws:
-            ranking = with_intervals(ranking, draws, step_counter(progress, draws))
-    reached = None if goal is None else judge_goal(goal, ranking, choice)
-    return SetReport(ranking, choice, reached, edited(), warnings)
 
 
 def read_workers(text: str | None) -> int | str | None:
@@ -301,15 +250,6 @@ def _say_if_first() -> None:
     if folder is not None and sys.stderr.isatty() and not (ranked := folder / "ranked").exists():
         note("compiling for this computer, once: this ranking takes about half a minute longer")
         ranked.touch()
-
-
-def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
-    """Return, by name, how each icon that the rig does not reach could be changed so that it is reached."""
-    from thermicon.circuit import nearest_reachable
-
-    missed = {score.name for score in ranking.icons if not score.reachable}
-    near = {icon.name: nearest_reachable(icon, rig) for icon in icons if icon.name in missed}
-    return {name: found.sentence for name, found in near.items() if found is not None}
 
 
 def command_text(files: Sequence[str], *groups: Options, paths: bool = False, command: str = "rank") -> str:

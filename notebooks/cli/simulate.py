@@ -4,28 +4,46 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from thermicon.icons.atomic import complete_or_absent
-from thermicon.icons.number_text import number, signed, span
 
 from ..figures.overview import FELT_TAIL_S, draw_overview
-from ..files.outputs import STDOUT, SUBCIRCUIT_SUFFIXES, TRACE_SUFFIXES, check_output, check_separate
+from ..files.outputs import (
+    NETLIST_SUFFIXES,
+    STDOUT,
+    SUBCIRCUIT_SUFFIXES,
+    TRACE_SUFFIXES,
+    check_output,
+    check_separate,
+)
 from ..messages import note, usage
-from .cues import pick, read_set, warn_of_site
-from .netlist import netlist_file, subcircuit_file
-from .options import LARGEST_SEED, LONGEST_TAIL_S, FigureOptions, IconName, NoFile, RigOptions, out
+from ..report.run_report import describe, headline
+from .options import (
+    LARGEST_SEED,
+    LONGEST_TAIL_S,
+    FigureOptions,
+    IconName,
+    NoFile,
+    RigOptions,
+    only,
+    out,
+    pick,
+    read_set,
+    warn_of_site,
+    write_text,
+)
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
-    from thermicon.circuit.fitting.log import Log
 
 LONGEST_GAP_S, MOST_PLAYS = 3600.0, 5000
 """Those of `thermicon.circuit.SessionPlan`, repeated here to avoid its imports."""
+NGSPICE = ".sp"
+"""The ending of a netlist that makes ngspice write all probes; LTspice does not read that."""
 
 
 def simulate_command(
@@ -88,14 +106,6 @@ def simulate_command(
             help="Seconds simulated after the last corner.  [default: 0; 10 in figures]",
         ),
     ] = None,
-    measured: Annotated[
-        Path | None,
-        out(
-            "LOG",
-            "Lay a measured log beside the trace, in the figure too: rms and largest miss of every column.",
-            "--measured",
-        ),
-    ] = None,
 ) -> None:
     """Simulate icons: the current that plays them, and temperatures and heat flow down to the receptors.
 
@@ -106,12 +116,12 @@ def simulate_command(
     session, suffix = order is not None or random is not None, "" if output is None else output.suffix.lower()
     circuit = suffix in SUBCIRCUIT_SUFFIXES and not session and current is None
     needs_file = {"--icon": icon, "--tail": tail}
-    alone = {"--rate": rate != 100.0, "--measured": measured, **needs_file}
+    alone = {"--rate": rate != 100.0, **needs_file}
     in_session = {"--gap": gap is not None, "--seed": seed is not None, "--tracking": tracking}
     _refuse({"--hold": hold}, current is None, "belongs to --current, which plays a drive")
     _refuse(in_session, not session, "belongs to a session; give --order FILE or --random N")
     _refuse({"--seed": seed is not None}, random is None, "belongs to --random")
-    _refuse({"--figure": figure.figure, "--measured": measured}, circuit, "belongs to a trace, not to a circuit")
+    _refuse({"--figure": figure.figure}, circuit, "belongs to a trace, not to a circuit")
     _refuse({"--current": current, "--random": random and order, **alone}, session, "does not go with a session")
     _refuse(needs_file, current is not None, "belongs to a cue FILE; a drive has no icons and ends at its last row")
     if circuit and file is None and output is not None:
@@ -121,7 +131,7 @@ def simulate_command(
     if (file is None) == (current is None):
         raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
     if current is not None:
-        simulate_drive(current, hold, rig.load(), rate, Wanted(output, figure, measured))
+        simulate_drive(current, hold, rig.load(), rate, output, figure)
     elif file is not None and circuit and output is not None:
         netlist_file(file, icon, rig.load(), tail or 0.0, output)
     elif file is not None and session:
@@ -129,7 +139,7 @@ def simulate_command(
 
         session_file(file, rig.load(), order, random, 10.0 if gap is None else gap, seed or 0, tracking, output, figure)
     elif file is not None:
-        simulate_file(file, icon, rig.load(), rate, tail, Wanted(output, figure, measured))
+        simulate_file(file, icon, rig.load(), rate, tail, output, figure)
 
 
 def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
@@ -139,106 +149,79 @@ def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
             raise usage(why, option)
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """What is to be made of a run: the trace in a file, the overview, and a measured log beside it."""
-
-    output: Path | None
-    figure: FigureOptions
-    measured: Path | None
-
-    def check(self, read: str | Path, names: Sequence[str]) -> list[Path]:
-        """Fail where a file cannot be written or would replace what is read; return a picture's path for each run."""
-        picture = self.figure.figure
-        pictures = [] if picture is None else [picture]
-        if picture is not None and len(names) > 1:
-            pictures = [picture.with_name(f"{picture.stem}-{name}{picture.suffix}") for name in names]
-        check_separate([read], [self.output, *pictures])
-        if self.output is not None:
-            check_output(self.output, TRACE_SUFFIXES, "a trace")
-        return pictures
-
-    def log(self) -> Log | None:
-        """The measured log, if there is one; what is to be known of it goes to stderr."""
-        if self.measured is None:
-            return None
-        from thermicon.circuit.fitting.log_files import read_log
-
-        log = read_log(self.measured)
-        for sentence in log.notes:
-            note(f"note: {sentence}")
-        return log
-
-    def tell(self, traces: Sequence[Trace], rig: Rig, pictures: Sequence[Path], cures: Sequence[str | None]) -> None:
-        """Warnings and files on stderr, then a summary or the traces on stdout, whose reader may not wait for files."""
-        if self.output is not None and self.output != STDOUT:
-            write_traces(traces, self.output)
-        for trace in traces:
-            for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
-                if warning not in rig.warnings:  # already reported when the rig was loaded
-                    note(f"warning: {trace.icon or 'drive'}: {warning}")
-        if self.output is not None:
-            for trace, better in zip(traces, cures, strict=True):
-                note(headline(trace) + (f"; {better}" if better else ""))
-        for path in (self.output, *pictures):
-            if path not in (None, STDOUT):
-                note(f"wrote {path}")
-        if self.output is None:
-            for trace, better in zip(traces, cures, strict=True):
-                typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
-        elif self.output == STDOUT:
-            write_traces(traces, STDOUT)
-
-
-def simulate_file(file: str, icon: str | None, rig: Rig, rate_Hz: float, tail_s: float | None, wanted: Wanted) -> None:
+def simulate_file(
+    file: str,
+    icon: str | None,
+    rig: Rig,
+    rate_Hz: float,
+    tail_s: float | None,
+    output: Path | None,
+    figure: FigureOptions,
+) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
 
     whole = read_set([file])
     icons = pick(whole, icon)
-    if wanted.measured is not None and len(icons) > 1:
-        raise usage(f"belongs to one icon, {file} has {len(icons)}: name it with --icon", "--measured")
-    log, pictures = wanted.log(), wanted.check(file, [each.name for each in icons])
+    pictures = [] if figure.figure is None else [figure.figure]
+    if figure.figure is not None and len(icons) > 1:
+        pictures = [figure.figure.with_stem(f"{figure.figure.stem}-{each.name}") for each in icons]
+    _check_outputs(file, output, pictures)
     warn_of_site(file, whole, rig)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes, log, wanted.figure.look, settled=tail_s is None)
+        draw_overview(played, picture, rig.changes, figure.look, settled=tail_s is None)
     near = [
         None if trace.reachable else nearest_reachable(each, rig) for each, trace in zip(icons, traces, strict=True)
     ]
-    wanted.tell(traces, rig, pictures, [None if found is None else found.sentence for found in near])
-    _beside(log, traces[0], wanted.output)
+    tell(traces, rig, output, pictures, [None if found is None else found.sentence for found in near])
 
 
-def simulate_drive(drive: Path, hold: bool, rig: Rig, rate_Hz: float, wanted: Wanted) -> None:
+def simulate_drive(
+    drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: FigureOptions
+) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
     from thermicon.circuit.solver.drive import read_drive
     from thermicon.circuit.solver.simulate import simulate_current
 
-    pictures, log = wanted.check(drive, [""]), wanted.log()
+    pictures = [] if figure.figure is None else [figure.figure]
+    _check_outputs(drive, output, pictures)
     played = read_drive(drive, hold=hold)
     trace = simulate_current(played, rig, rate_Hz=rate_Hz)
     for picture in pictures:
-        draw_overview(simulate_current(played, rig), picture, rig.changes, log, wanted.figure.look)
-    wanted.tell([trace], rig, pictures, [None])
-    _beside(log, trace, wanted.output)
+        draw_overview(simulate_current(played, rig), picture, rig.changes, figure.look)
+    tell([trace], rig, output, pictures, [None])
 
 
-def _beside(log: Log | None, trace: Trace, output: Path | None) -> None:
-    """Report how far a log lies from the trace: on stdout, or beside a trace on stderr."""
-    if log is None:
-        return
-    from thermicon.circuit.fitting.overlay import overlay
+def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
+    """Fail where a file cannot be written or would replace what is read."""
+    check_separate([read], [output, *pictures])
+    if output is not None:
+        check_output(output, TRACE_SUFFIXES, "a trace")
 
-    beside = overlay(trace, log)
-    lines = [f"measured − simulated ({log.name}, shifted by {number(beside.shift_s, 3)} s)"]
-    for each in beside.columns:
-        words, _, unit = each.column.rpartition("_")
-        unit = "K" if unit == "C" else unit
-        largest = f"{signed(each.largest, '.3g')} {unit} at {number(each.largest_s, 1)} s"
-        lines.append(f"  {words.replace('_', ' '):<9} rms {each.rms:.3g} {unit}, largest {largest}")
-    (note if output == STDOUT else typer.echo)("\n".join(lines))
+
+def tell(
+    traces: Sequence[Trace], rig: Rig, output: Path | None, pictures: Sequence[Path], cures: Sequence[str | None]
+) -> None:
+    """Warnings and files on stderr, then a summary or the traces on stdout, whose reader may not wait for files."""
+    if output is not None and output != STDOUT:
+        write_traces(traces, output)
+    for trace in traces:
+        for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
+            if warning not in rig.warnings:  # already reported when the rig was loaded
+                note(f"warning: {trace.icon or 'drive'}: {warning}")
+    if output is not None:
+        for trace, better in zip(traces, cures, strict=True):
+            note(headline(trace) + (f"; {better}" if better else ""))
+    for path in (output, *pictures):
+        if path not in (None, STDOUT):
+            note(f"wrote {path}")
+    if output is None:
+        for trace, better in zip(traces, cures, strict=True):
+            typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
+    elif output == STDOUT:
+        write_traces(traces, STDOUT)
 
 
 def unsafe(trace: Trace) -> list[str]:
@@ -266,43 +249,36 @@ def write_traces(traces: Sequence[Trace], output: Path) -> None:
         write_trace(list(traces), draft)
 
 
-def headline(trace: Trace) -> str:
-    """One line about a run: its length, and whether it reached its target or why not."""
-    start = f"{trace.icon or 'drive'}: {number(float(trace.time_s[-1]), 2)} s"
-    if trace.outcome is None:
-        return start
-    if not trace.outcome.reached:
-        return f"{start}, NOT reached: {trace.outcome.reason}"
-    miss = abs(trace.outcome.largest_miss_K)
-    miss_text = "everywhere within 1 mK" if miss < 1e-3 else f"largest miss {number(miss, 3)} K"
-    slowest = trace.outcome.slowest_step_s
-    steps = "" if slowest is None else f", slowest step {number(slowest, 2)} s"
-    return f"{start}, reached ({miss_text}{steps})"
+def subcircuit_file(rig: Rig, output: Path) -> None:
+    """Write module and skin of a rig as a library of subcircuits."""
+    from thermicon.circuit.delivery.subcircuit import subcircuits
+
+    check_output(output, SUBCIRCUIT_SUFFIXES, "a library of subcircuits")
+    text = subcircuits(rig)
+    more = f": thermicon_module and thermicon_skin; in a schematic, .include {output.name}"
+    write_text(text, output, more, "ascii")
 
 
-def _current(trace: Trace) -> str:
-    if not trace.has_current:
-        return "none: the thermode controls its temperature itself"
-    return span(float(trace.current_A.min()), float(trace.current_A.max()), "A", 2)
+def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path) -> None:
+    """Write the circuit of a rig that plays an icon; what ends with .sp makes ngspice write all probes."""
+    from thermicon.circuit import netlist, simulate
+    from thermicon.circuit.delivery.netlist_landing import lead_s
+    from thermicon.circuit.solver.inverse import design
 
-
-def describe(trace: Trace) -> str:
-    """Summarise a run: outcome, drive, extremes and changes at the receptors."""
-    from thermicon.circuit.rig.load import LOAD_SITES
-
-    peaks = []
-    for name, column in (("cold receptor", trace.cold_receptor_C), ("warm receptor", trace.warm_receptor_C)):
-        change = column - column[0]
-        low, high = float(change.min()), float(change.max())
-        peaks.append(f"{name} {span(low, high, 'K', 2)}")
-    lines = [
-        headline(trace),
-        f"  current   {_current(trace)}",
-        f"  display   {span(float(trace.display_C.min()), float(trace.display_C.max()), '°C')}",
-        f"  skin      {span(float(trace.skin_C.min()), float(trace.skin_C.max()), '°C')}",
-        f"  change    {'; '.join(peaks)}",
-    ]
-    if trace.site in LOAD_SITES:
-        face = span(float(trace.skin_C.min()), float(trace.skin_C.max()), "°C")
-        lines[3:] = [f"  load      {face} ({trace.site})"]
-    return "\n".join(lines)
+    check_output(output, NETLIST_SUFFIXES, "a netlist")
+    record = f"{output.stem}.txt" if output.suffix.lower() == NGSPICE else None
+    check_separate([file], [output])
+    icons = read_set([file])
+    played = only(icons, icon, file)
+    warn_of_site(file, icons, rig)
+    trace = simulate(played, rig, tail_s=tail_s)
+    plan = design(played, rig, float(trace.time_s[-1]))
+    title = f"{played.name} of {Path(file).name}"
+    text = netlist(rig, plan.drive, rest_A=plan.rest_A, lead_A=plan.lead_A, title=title, out_file=record)
+    note(headline(trace))
+    if rig.contact.lands_s is not None:
+        note(f"the netlist's clock begins when the hand lands; the cue begins at {lead_s(rig):g} s")
+    how = f"open it in LTspice, or run ngspice -b -r {output.stem}.raw {output.name}"
+    if record is not None:
+        how = f"ngspice -b {output.name} writes the probes into {record}"
+    write_text(text, output, f"; {how}", "ascii")

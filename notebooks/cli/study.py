@@ -10,7 +10,7 @@ import typer
 from thermicon.icons.number_text import number
 
 from ..messages import REFUSED, note, progress_bar
-from .export import CAUTION
+from ..report.gate_words import CAUTION
 from .options import out
 
 if TYPE_CHECKING:

@@ -6,20 +6,31 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from thermicon.icons.atomic import complete_or_absent
-from thermicon.icons.number_text import percent, span
+from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, SITE
 
-from ..files.outputs import STDOUT, TRACE_SUFFIXES, check_output, check_separate
+from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
 from ..messages import Progress, fail, note, progress_bar, usage
-from ..report.sweep_report import sweep_report
+from ..report.run_report import sweep_lines, sweep_report
 from ..report.terminal import show
-from .cues import pick, read_set, warn_of_site
-from .options import FigureOptions, FileName, IconName, Intervals, People, RigOptions, Seed, Table, Tail, write_text
+from .options import (
+    FigureOptions,
+    FileName,
+    IconName,
+    Intervals,
+    People,
+    RigOptions,
+    Seed,
+    Table,
+    Tail,
+    pick,
+    read_set,
+    warn_of_site,
+    write_frame,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,7 +40,18 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon, IconSet
 
     from ..figures.style import Look
-    from ..report.varied import Vary
+
+MOST_VALUES = 10_000
+FORM = (
+    "give KEY=LOW:HIGH:N, for example contact.area_cm2=4:16:7, LOW:HIGH:Nlog for equal ratios, or values such as "
+    "site=thenar,fingertip"
+)
+RECEPTORS = tuple(
+    f"{channel}_receptor_{what}"
+    for channel in ("cold", "warm")
+    for what in ("peak_change_K", "attack_K_per_s", "delay_s")
+)
+"""Columns for what the receptors see: largest change, steepest rate towards it, lag of its half behind the skin's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +63,15 @@ class Measured:
     people: int = 60
     intervals: int = 64
     seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Vary:
+    """A dotted key of the rig file, `people.age_years` or `site`, and its values: in the file's unit, or names."""
+
+    key: str
+    values: tuple[float | str, ...]
+    log: bool
 
 
 def sweep(
@@ -102,7 +133,7 @@ def sweep(
     import pandas as pd
 
     from thermicon.circuit.safety.verdict import Summary
-    from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, SITE, check_conditions
+    from thermicon.perception.ranking.swept import check_conditions
 
     varied = [(key, values), *([second] if second is not None else [])]
     for name, numbers in varied:
@@ -130,14 +161,6 @@ def sweep(
     return frame.astype(kinds).sort_values("icon", key=lambda names: names.map(order), kind="stable", ignore_index=True)
 
 
-RECEPTORS = tuple(
-    f"{channel}_receptor_{what}"
-    for channel in ("cold", "warm")
-    for what in ("peak_change_K", "attack_K_per_s", "delay_s")
-)
-"""Columns for what the receptors see: largest change, steepest rate towards it, lag of its half behind the skin's."""
-
-
 def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float) -> dict[str, Any]:
     import numpy
 
@@ -158,7 +181,7 @@ def _measure(
 ) -> None:
     """Add what people perceive to the last rows, those of the icons, and a row of the whole set."""
     from thermicon.circuit import InputError
-    from thermicon.perception.ranking.swept import ALL, measured_rows
+    from thermicon.perception.ranking.swept import measured_rows
 
     try:
         found = measured_rows(
@@ -215,10 +238,6 @@ def sweep_command(
     --people and with --intervals, and a last row of each is that of the whole set; intervals are those of a new
     laboratory, 95 %.
     """
-    from thermicon.perception.ranking.swept import AGE
-
-    from ..report.varied import read_measures, read_varied
-
     varied = read_varied(vary)
     what = () if measure is None else read_measures(measure, intervals or 0)
     if not what and any(each.key == AGE for each in varied):
@@ -242,16 +261,11 @@ def sweep_command(
             measured=Measured(whole, what, people, intervals or 0, seed) if what else None,
             progress=progress,
         )
-    keys, points = [each.key for each in varied], "combinations" if others else "values"
+    keys = [each.key for each in varied]
     if frame["duration_s"].isna().all():
-        count = math.prod(len(each.values) for each in varied)
-        reason = frame["reason"].iloc[0]
-        fail(f"--vary {' and '.join(keys)}: none of the {count} {points} can be played; the first: {reason}")
-    for line in (
-        *(headline(frame[frame["icon"] == each.name], points) for each in icons),
-        *_measured_lines(frame, keys, what),
-        *_impossible(frame, keys),
-    ):
+        count, reason = math.prod(len(each.values) for each in varied), frame["reason"].iloc[0]
+        fail(f"--vary {' and '.join(keys)}: none of the {count} values can be played; the first: {reason}")
+    for line in sweep_lines(frame, [each.name for each in icons], keys):
         note(line)
     if figure.figure is not None:
         figure.write(_figure(frame, varied, figure.look, what))
@@ -263,85 +277,86 @@ def sweep_command(
 
 def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Sequence[str]) -> Figure:
     """Lines over one key, heat maps over two: of what is measured, else of what the rig does."""
-    from thermicon.perception.ranking.swept import ALL, MEASURES
+    from ..figures.sweep_figure import LABELS, MOST_ROWS, SHADES, measure_figure, sweep_figure, sweep_map
 
-    columns = [MEASURES[name] for name in what]
+    columns, keys = [MEASURES[name] for name in what], [each.key for each in varied]
     if len(varied) == 1 and columns:
-        from ..figures.sweep_figure import measure_figure
-
-        return measure_figure(frame, varied[0].key, columns, ALL, log=varied[0].log, across=look.across(2))
+        return measure_figure(frame, keys[0], columns, ALL, log=varied[0].log, across=look.across(2))
     if len(varied) == 1:
-        from ..figures.sweep_figure import sweep_figure
-
-        return sweep_figure(frame, varied[0].key, log=varied[0].log, across=look.across(3))
-    from ..figures.sweep_figure import MOST_ROWS, sweep_map
-
+        return sweep_figure(frame, keys[0], log=varied[0].log, across=look.across(3))
     if (count := frame["icon"].nunique()) > MOST_ROWS:
         note(f"the figure shows the first {MOST_ROWS} of {count} icons; --icon NAME selects another one")
-    if columns:
-        from ..figures.sweep_figure import LABELS, SHADES
-
-        maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, *_ in columns]
-        return sweep_map(frame, varied[0].key, varied[1].key, maps)
-    return sweep_map(frame, varied[0].key, varied[1].key)
+    maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, *_ in columns]
+    return sweep_map(frame, keys[0], keys[1], *([maps] if maps else []))
 
 
-def write_frame(frame: pd.DataFrame, output: Path) -> None:
-    """Write a table as ``.parquet`` or ``.csv``, by its suffix, and say so; - prints it."""
-    if output == STDOUT or output.suffix != ".parquet":
-        write_text(frame.to_csv(index=False, float_format="%.9g", lineterminator="\n"), output)
-        return
-    with complete_or_absent(output) as draft:
-        frame.to_parquet(draft, index=False)
-    note(f"wrote {output}")
+def read_measures(text: str, intervals: int) -> tuple[str, ...]:
+    """Read ``--measure``, beside the draws for intervals; what cannot be is a usage error."""
+    names = tuple(name.strip() for name in text.split(","))
+    for name in names:
+        if name not in MEASURES:
+            raise usage(f"{name!r} is not one of {', '.join(MEASURES)}", "--measure")
+    if len(set(names)) < len(names):
+        raise usage(f"{text!r}: the same quantity is given twice", "--measure")
+    if intervals == 1:
+        raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--intervals")
+    if intervals == 0 and "correct_95" in names:
+        raise usage("correct_95 is about people and model together, and needs 2 draws or more", "--intervals")
+    return names
 
 
-def headline(rows: pd.DataFrame, points: str = "values") -> str:
-    """Report at how many points one icon was reached, and how large its misses are."""
-    ran = rows[rows["duration_s"].notna()]
-    judged = ran[ran["reached"].notna()]
-    if len(judged):
-        miss = judged["largest_miss_K"].abs()
-        low, high = float(miss.min()), float(miss.max())
-        miss_text = "everywhere within 1 mK" if high < 1e-3 else f"largest miss {span(low, high, 'K', 3)}"
-        parts = [f"reached at {int(judged['reached'].sum())} of {len(rows)} {points}", miss_text]
-    else:
-        parts = [f"played at {len(ran)} of {len(rows)} {points}"]
-    if unsafe := int((~ran["safe"]).sum()):
-        parts.append(f"NOT SAFE at {unsafe}")
-    if len(ran) < len(rows):
-        parts.append(f"impossible at {len(rows) - len(ran)}")
-    return f"{rows['icon'].iloc[0]}: {', '.join(parts)}"
+def read_varied(texts: Sequence[str]) -> tuple[Vary, ...]:
+    """Read every ``--vary``: one key, or two for a grid of all their combinations; more are a usage error."""
+    varied = tuple(map(read_vary, texts))
+    if len(varied) > 2:
+        raise usage(f"{len(varied)} keys are given; at most 2 can be varied, and 2 make a grid", "--vary")
+    if len({vary.key for vary in varied}) < len(varied):
+        raise usage(f"{varied[0].key} is given twice; a grid needs two different keys", "--vary")
+    if (count := math.prod(len(vary.values) for vary in varied)) > MOST_VALUES:
+        raise usage(f"{count:,} combinations are more than {MOST_VALUES:,}; use fewer values", "--vary")
+    return varied
 
 
-def _measured_lines(frame: pd.DataFrame, keys: Sequence[str], what: Sequence[str]) -> list[str]:
-    """Proportion correct of the set where it is lowest and highest, and so what 95 % of people reach, if measured."""
-    from thermicon.perception.ranking.swept import ALL
+def read_vary(text: str) -> Vary:
+    """Read one ``--vary``; a text of another form is a usage error that shows the form.
 
-    lines = []
-    for column, words in (("correct", "correct"), ("correct_95", "correct for 95 % of people")):
-        if column not in what:
-            continue
-        rows = frame[(frame["icon"] == ALL) & frame[column].notna()]
-        if rows.empty:
-            continue
-        ordered = rows.sort_values(column, kind="stable")
-        low, high = (
-            f"{percent(row[column])} {words} at {', '.join(_setting(key, row[key]) for key in keys)}"
-            for row in (ordered.iloc[0], ordered.iloc[-1])
-        )
-        lines.append(f"{ALL}: from {low} to {high}")
-    return lines
+    >>> read_vary("contact.area_cm2=4:9:3").values, read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log").values
+    ((4.0, 6.5, 9.0), (0.0001, 0.001, 0.01))
+    """
 
+    def no(why: str) -> typer.BadParameter:
+        return usage(f"{text!r}: {why}", "--vary")
 
-def _setting(key: str, value: float | str) -> str:
-    return f"{key} = {value if isinstance(value, str) else f'{value:g}'}"
+    def read(word: str) -> float:
+        try:
+            value = float(word)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise no(f"{word!r} is not a number; {FORM}")
+        return value
 
-
-def _impossible(frame: pd.DataFrame, keys: Sequence[str]) -> list[str]:
-    """Return the first reason why a point could not be played, as a line; none where all could."""
-    lost = frame[frame["duration_s"].isna() & frame["reason"].notna()]
-    return [
-        f"impossible, as at {', '.join(_setting(key, row[key]) for key in keys)}: {row['reason']}"
-        for _, row in lost[:1].iterrows()
-    ]
+    key, _, rest = (part.strip() for part in text.partition("="))
+    listed = ":" not in rest and "," in rest
+    parts = [part.strip() for part in rest.split("," if listed else ":")]
+    if not key or not all(parts) or not (listed or len(parts) == 3):
+        raise no(FORM)
+    if listed:
+        values = tuple(parts) if key == SITE else tuple(map(read, parts))
+        if len(set(values)) < len(values):
+            raise no("the same value is given twice")
+        return Vary(key, values, False)
+    if key == SITE:
+        raise no("sites are names; give them as site=thenar,fingertip")
+    low, high, log, number = read(parts[0]), read(parts[1]), parts[2].endswith("log"), parts[2].removesuffix("log")
+    if not number.isdecimal():
+        raise no(f"{parts[2]!r} is not a number of values; {FORM}")
+    if not 2 <= int(number) <= MOST_VALUES:
+        raise no(f"{number} values is outside 2 to {MOST_VALUES}")
+    if low == high:
+        raise no(f"both ends are {low:g}; a sweep needs two different ends")
+    if log and not (low > 0 and high > 0):
+        raise no("equal ratios need both ends above 0; leave out log for equal steps")
+    shares = [k / (int(number) - 1) for k in range(int(number))]
+    values = tuple(low * (high / low) ** share if log else low + (high - low) * share for share in shares)
+    return Vary(key, tuple(float(f"{value:.12g}") for value in values), log)

@@ -1,39 +1,18 @@
-"""``thermicon validate``: predicted and published results side by side, as a table or as an executed notebook."""
+"""``thermicon validate``: predicted and published results side by side, as a table or as JSON."""
 
 from __future__ import annotations
 
-import tempfile
-from contextlib import suppress
-from importlib import resources
-from importlib.util import find_spec
 from json import dumps
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from thermicon.icons.atomic import check_folder, complete_or_absent
-
 from ..files.outputs import STDOUT, check_output
-from ..messages import fail, note, progress_bar, usage
-from .options import Json, Seed, out, write_text
-
-if TYPE_CHECKING:
-    from thermicon.perception.evidence.validate import ValidationReport
-
-NOTEBOOK, DATA = "07_validation.ipynb", "validation.json"
-COMPUTED = "data = report_file("
-"""How the cell of the notebook begins that computes the numbers; a report has them in its file."""
-KEPT = f'import json\nfrom pathlib import Path\n\ndata = json.loads(Path("{DATA}").read_text(encoding="utf-8"))'
-QUIET = "--IPKernelApp.log_level=40"
-NEEDED = ("nbclient", "ipykernel")
+from ..messages import progress_bar, usage
+from .options import Json, Seed, write_text
 
 
 def validate_command(
-    output: Annotated[
-        Path | None,
-        out("DIR", "Write the numbers and a notebook that shows them to this folder.", "-o", "--output"),
-    ] = None,
     people: Annotated[int, typer.Option(metavar="N", min=2, max=2000, help="Number of virtual people.")] = 200,
     draws: Annotated[
         int,
@@ -46,75 +25,22 @@ def validate_command(
 ) -> None:
     """Validate the model: predict published results that it was not calibrated on, and show every miss with its size.
 
-    Without -o, a table is printed. With -o, validation.json has all numbers, with predictions from temperature and from
-    heat flow side by side, and the executed notebook 07_validation.ipynb shows them in tables and figures.
+    The JSON has all numbers, with predictions from temperature and from heat flow side by side; the notebook
+    07_validation.ipynb, which lab copies, shows them in tables and figures.
     """
     if draws == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
-    if output is not None:
-        check_folder(output)
-        if missing := [name for name in NEEDED if find_spec(name) is None]:
-            fail(f"-o executes a notebook, which needs {missing[0]}: pip install {missing[0]}, or use --json")
     if json is not None:
         check_output(json, (), "JSON")
     from thermicon.perception.evidence.validate import validate
+    from thermicon.perception.evidence.validate_file import report_file
+
+    from ..report.terminal import show
+    from ..report.validate_report import validate_report
 
     with progress_bar("validating") as progress:
         report = validate(people=people, draws=draws, seed=seed, progress=progress)
     if json is not None:
-        write_text(json_text(report), json)
-    if output is not None:
-        write_report(report, output)
-        for name in (NOTEBOOK, DATA):
-            note(f"wrote {output / name}")
-    elif json != STDOUT:
-        from ..report.terminal import show
-        from ..report.validate_report import validate_report
-
+        write_text(dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n", json)
+    if json != STDOUT:
         show(validate_report(report))
-
-
-def write_report(report: ValidationReport, folder: Path) -> None:
-    """Write the numbers and the executed notebook, both or none.
-
-    Raises `OutputError` where the folder cannot be written.
-    """
-    numbers = json_text(report)
-    notebook = executed_notebook(numbers)
-    made = not folder.exists()
-    try:
-        folder.mkdir(exist_ok=True)
-        with complete_or_absent(folder / DATA) as data, complete_or_absent(folder / NOTEBOOK) as shown:
-            data.write_text(numbers, encoding="utf-8")
-            shown.write_text(notebook, encoding="utf-8")
-    except BaseException:
-        if made:
-            with suppress(OSError):
-                folder.rmdir()
-        raise
-
-
-def executed_notebook(numbers: str) -> str:
-    """The shipped notebook with its outputs, for numbers that lie beside it as `DATA`."""
-    import nbformat
-    from nbclient import NotebookClient
-
-    text = (resources.files("thermicon.notebooks") / NOTEBOOK).read_text(encoding="utf-8")
-    notebook = nbformat.reads(text, as_version=4)  # type: ignore[no-untyped-call]
-    (computing,) = [cell for cell in notebook.cells if cell.source.startswith(COMPUTED)]
-    computing.source = KEPT
-    with tempfile.TemporaryDirectory(prefix="thermicon-validation-") as work:
-        (Path(work) / DATA).write_text(numbers, encoding="utf-8")
-        place = {"metadata": {"path": work}}
-        NotebookClient(
-            notebook, kernel_name="python3", resources=place, record_timing=False, extra_arguments=[QUIET]
-        ).execute()
-    executed: str = nbformat.writes(notebook)  # type: ignore[no-untyped-call]
-    return executed + "\n"
-
-
-def json_text(report: ValidationReport) -> str:
-    """Every number of the report as JSON."""
-    from thermicon.perception.evidence.validate_file import report_file
-
-    return dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from thermicon.circuit import Trace
-    from thermicon.circuit.fitting.log import Log
     from thermicon.perception import Percept
 
     from ..timeline.scene import Drawing, Scene
@@ -126,12 +125,11 @@ def draw_overview(
     trace: Trace,
     picture: Path,
     rig_changes: Sequence[str] = (),
-    measured: Log | None = None,
     look: Look = SCREEN,
     *,
     settled: bool = False,
 ) -> None:
-    """Write the overview figure of one trace, its percept included where there is skin, beside a measured log.
+    """Write the overview figure of one trace, its percept included where there is skin.
 
     `settled`: the time axis ends when everything has come to rest, rather than with the trace.
     """
@@ -139,10 +137,6 @@ def draw_overview(
 
     trace = evenly_timed(trace)
     figure = overview(trace, None if trace.site in LOAD_SITES else perceive(trace), rig_changes)
-    if measured is not None:
-        ax = figure.axes[0]
-        measured.draw_beside(trace, ax)
-        key_beside(ax)
     if settled:
         end_when_settled(figure)
     write_figure(figure, picture, look)

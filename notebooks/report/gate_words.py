@@ -12,12 +12,17 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import number, signed
 
 if TYPE_CHECKING:
+    from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.circuit.safety.checks import Scenario
     from thermicon.circuit.safety.demands import Demands
     from thermicon.circuit.safety.gate import Gate
     from thermicon.circuit.safety.repeated import Repeated
 
+CAUTION = (
+    "safety is a calculation, not a medical or ethical clearance; hardware on skin needs a temperature cut-off that "
+    "works without software"
+)
 MOST_NAMES = 6
 QUICKEST_S = 0.02
 """The gate does not look for reactions quicker than this: where none is safe, it states 0."""
@@ -128,6 +133,16 @@ def demands_text(gates: Sequence[Named]) -> str:
         parts.append(f"zero current in contact for {_strictest(limited, _zero_s)} at most")
     pause_s = max(one.pause_at_least_s or 0.0 for _, one in every)
     return f"{', '.join(parts)}; in any play after {number(pause_s, 1)} s of pause or more"
+
+
+def steps_of(delivery: DeliveredDrive) -> str:
+    """Update rate of a drive, or its number of segments."""
+    from thermicon.circuit.delivery.setpoints import Setpoints
+
+    played = delivery.played
+    if isinstance(played, Setpoints):
+        return f"in {len(played.segments)} segments"
+    return f"at {number(delivery.rate_Hz, 1)} Hz"
 
 
 def short_scenario(run: Scenario) -> str:

@@ -1,4 +1,4 @@
-"""What stands behind a ranking: its numbers with intervals, the worst pair with its reasons, assumptions and rules."""
+"""What stands behind a ranking: notes, its numbers with intervals, the worst pair with its reasons, and assumptions."""
 
 from __future__ import annotations
 
@@ -7,24 +7,92 @@ from typing import Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
-from .blocks import Block, Bullets, Heading, Text
+from .blocks import Block, Bullets, Heading
 from .choices import laboratory
-from .rank_notes import playable
 
 MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
+DETECTED = (
+    "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
+    "channel what most of them go by, from 50 % on."
+)
 
 
 def detail_blocks(result: Mapping[str, Any]) -> list[Block]:
-    """The scores of the set, its worst pair, and what they depend on; by rules, the rules of the set."""
-    if result["by"] == "rules":
-        return [*rules_blocks(result), *disagreement_blocks(result)]
+    """The scores of the set, its worst pair, and what they depend on."""
     scores = [*number_points(result), *norm_points(result), *carried_points(result["icons"])]
     found: list[Block] = [Heading("The set"), Bullets(tuple(scores))]
     if result["set"]["worst_pair"]:
         first, *reasons = worst_points(result)
         found += [Heading(first), Bullets(tuple(reasons)), *edits_blocks(result)]
     return [*found, *assumption_blocks(result["assumptions"]), *disagreement_blocks(result)]
+
+
+def playable(icons: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the icons that are safe and reached; the others are ranked separately."""
+    return [icon for icon in icons if icon["safe"] and icon["reachable"]]
+
+
+def trouble_lines(icons: Sequence[dict[str, Any]], cures: Mapping[str, str]) -> list[str]:
+    """Return one line per icon that is unsafe or not reached, with its cure, and one line on exceeded soft limits."""
+    lines = []
+    for icon in icons:
+        if icon["reason"]:
+            states = ["NOT SAFE"] * (not icon["safe"]) + ["not reached"] * (not icon["reachable"])
+            cure = f"; {cures[icon['name']]}" if icon["name"] in cures else ""
+            lines.append(f"* {icon['name']} is {' and '.join(states)}: {icon['reason']}{cure}")
+    if lines:
+        lines.append("* ranked separately; the set's numbers include these icons as the rig would play them")
+    amber = [icon for icon in icons if icon["cautions"]]
+    if amber:
+        names = ", ".join(icon["name"] for icon in amber)
+        verb = "exceed" if len(amber) > 1 else "exceeds"
+        first = f"of {amber[0]['name']}, " if len(amber) > 1 else ""
+        lines.append(f"Caution: {names} {verb} a soft safety limit: {first}{amber[0]['cautions'][0]}")
+    return lines
+
+
+def outside_lines(icons: Sequence[dict[str, Any]]) -> list[str]:
+    """Return one line per way in which icons lie outside the range of the data, with the icons concerned."""
+    names_by_reason: dict[str, list[str]] = {}
+    for icon in icons:
+        for reason in icon["outside_data"]:
+            names_by_reason.setdefault(reason, []).append(icon["name"])
+    every = len(icons) > 1
+    return [
+        f"Outside the data: {'all icons' if every and len(names) == len(icons) else ', '.join(names)}: {reason}"
+        for reason, names in names_by_reason.items()
+    ]
+
+
+def task_note(task: dict[str, Any]) -> str:
+    """Return how the identification task differs from the default one.
+
+    >>> task_note({"context": 0.0, "gap_s": 10.0, "bias": 0.0})
+    ', 10 s between icons'
+    """
+    parts = [f", {100 * task['context']:g} % of memory noise from the set's range"] if task["context"] else []
+    parts += [] if task["gap_s"] is None else [f", {task['gap_s']:g} s between icons"]
+    parts += [f", response bias with a standard deviation of {task['bias']:g}"] if task["bias"] else []
+    return "".join(parts)
+
+
+def crowd_text(result: Mapping[str, Any]) -> str:
+    """For how many people and on which rig, with its changes."""
+    changes = result["rig_changes"]
+    what_if = f" with {', '.join(changes)}" if changes else ""
+    crowd = count_of(result["people"], "virtual person", "virtual people")
+    return f"{crowd} on the {result['rig']} rig{what_if}"
+
+
+def caveat(result: Mapping[str, Any]) -> str:
+    """Return the sentences that state what the numbers rest on and what they are not."""
+    norm = "" if result["norm"] == "episodes" else f", {result['norm']} norm"
+    return (
+        f"Predicted for {crowd_text(result)} "
+        f"(seed {result['seed']}, {result['tracking']} tracking{norm}{task_note(result['task'])}). "
+        f"These are predictions of a model, not measurements. {DETECTED}"
+    )
 
 
 def number_points(result: Mapping[str, Any]) -> Iterator[str]:
@@ -185,37 +253,14 @@ def _site(site: Mapping[str, Any]) -> str:
 
 
 def disagreement_blocks(result: Mapping[str, Any]) -> list[Block]:
-    """Where rules and model disagree, of the chosen icons where some are, and why they may."""
+    """Where rules of thumb and model disagree, of the chosen icons where some are."""
     found = result["set"]["rules_disagree"]
     if result["chosen"]:
         chosen = {*result["chosen"]["icons"]}
         found = [each for each in found if {each[key] for key in ("icon", "a", "b") if key in each} <= chosen]
-    made: list[Block] = []
-    for some, why in (
-        ([each for each in found if "a" in each], "rules compare two icons played back to back, while naming one needs "
-         "memory"),
-        ([each for each in found if "a" not in each], "rules require a change and a rate, the model a report in half "
-         "of the trials"),
-    ):  # fmt: skip
-        more = len(some) - MOST_DISAGREEMENTS
-        told = [each["text"] for each in some[:MOST_DISAGREEMENTS]] + [f"and {more} more; --json lists all"] * (
-            more > 0
-        )
-        made += [Heading(f"Rules and model disagree: {why}", 3), Bullets(tuple(told))] if some else []
-    return made
-
-
-def rules_blocks(result: Mapping[str, Any]) -> list[Block]:
-    """The set by rules: distinguishable pairs, rules on the rig, and the worst pair with its rules."""
-    pairs, whole = result["pairs"], result["set"]
-    apart = sum(pair["distinguishable_by_rules"] for pair in pairs)
-    points = [f"{apart} of {count_of(len(pairs), 'pair')} distinguishable by the rules"] if pairs else []
-    made: list[Block] = [Heading("The set"), Bullets((*points, *(rule["text"] for rule in whole["rules"])))]
-    if whole["worst_pair"]:
-        worst = worst_pair(result)
-        word = "distinguishable" if worst["distinguishable_by_rules"] else "not distinguishable"
-        made += [
-            Text(f"Worst pair by rules: {worst['a']} and {worst['b']}, {word}"),
-            Bullets(tuple(rule["text"] for rule in worst["rules"])),
-        ]
-    return made
+    if not found:
+        return []
+    why = "rules compare two icons played back to back, while naming one needs memory"
+    points = [each["text"] for each in found[:MOST_DISAGREEMENTS]]
+    points += [f"and {len(found) - MOST_DISAGREEMENTS} more; --json lists all"] * (len(found) > MOST_DISAGREEMENTS)
+    return [Heading(f"Rules of thumb and model disagree ({why})", 3), Bullets(tuple(points))]

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import number, percent
 
 from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Row, Text, as_html, as_markdown, grid
-from .rank_details import worst_pair
-from .rank_notes import task_note
+from .rank_details import task_note
 from .rank_report import rank_report
 
 if TYPE_CHECKING:
@@ -26,15 +25,10 @@ if TYPE_CHECKING:
     from .set_report import SetReport
 
 MOST_OVERVIEWS = 24
-FEW, LARGE, SMALL = 12, 84, 66
-"""Dots an inch of overviews: large for few icons."""
+FEW, LARGE, SMALL, MAPS = 12, 84, 66, 120
+"""Dots an inch: of overviews, large for few icons, and of the maps of the set."""
 OVERVIEW_PIXELS = 700
-SALT = "thermicon"
-VECTOR_ICONS = 8
-"""Pictures of more icons are pixels, which take less room, and stand below one another."""
 MOST_PAIRS = 60
-OWN_UNITS = {"intensity": "1", "rate": "× per s", "duration": "s", "pause": "s"}
-"""Units of what single icons have of a component, where 1 is a multiple of threshold; differences are in d′."""
 LIMITS = (
     "Everything here follows from a model of the skin and of its receptors, calibrated on published thresholds. No "
     "experiment has confirmed it for these icons.",
@@ -75,7 +69,6 @@ def report(
         *(Text(f"warning: {line}", "warn") for line in result["warnings"]),
         *rank_report(made, "", cures, details=True),
         *_settings(result, rig, command),
-        *_components(result),
         *view_parts(made.ranking),
         *_pairs(result),
         *_rules(result),
@@ -112,23 +105,6 @@ def _settings(result: dict[str, Any], rig: Rig, command: str) -> Iterator[Block]
     yield Text("The hash covers the icons' text, the rig and the observer's parameters: equal hashes mean equal input.")
 
 
-def _components(result: dict[str, Any]) -> Iterator[Block]:
-    if result["by"] == "rules" or not result["set"]["worst_pair"]:
-        return
-    pair = worst_pair(result)
-    yield Heading(f"Components of the distance of {pair['a']} and {pair['b']}")
-    rows = []
-    for part in pair["parts"]:
-        own = OWN_UNITS.get(part["part"], part["unit"])
-        shown = [_sized(part[key], own if key in "ab" else part["unit"]) for key in ("a", "b", "value", "noticeable")]
-        rows.append([part["part"], *shown, "–" if part["above"] is None else "yes" if part["above"] else "no"])
-    yield grid(("component", pair["a"], pair["b"], "difference", "just noticeable", "noticeable"), rows)
-    yield Text(
-        "Intensity and rate are in multiples of threshold. Just noticeable holds for icons played back to back; naming "
-        "one from memory needs several times as much."
-    )
-
-
 def _sized(value: float | None, unit: str) -> str:
     """Write a component with its unit; a factor has a multiplication sign.
 
@@ -142,7 +118,7 @@ def _sized(value: float | None, unit: str) -> str:
 
 
 def _pairs(result: dict[str, Any]) -> Iterator[Block]:
-    if result["by"] == "rules" or not result["pairs"]:
+    if not result["pairs"]:
         return
     yield Heading("Pairs, the most confused first")
     rows = sorted(result["pairs"], key=lambda pair: (-pair["confused_probability"], pair["a"], pair["b"]))
@@ -172,26 +148,17 @@ def _rules(result: dict[str, Any]) -> Iterator[Block]:
 
 
 def view_parts(ranking: Ranking) -> Iterator[Block]:
-    """Yield heat maps, perceptual map and places; nothing for one icon or by rules."""
-    if ranking.by == "rules" or len(ranking.icons) < 2:
+    """Yield heat maps, perceptual map and places; nothing for one icon."""
+    if len(ranking.icons) < 2:
         return
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance, plot_places
     from thermicon.perception.plots.draw_map import plot_map
 
-    vector = len(ranking.icons) <= VECTOR_ICONS
     yield Heading("Pictures of the set")
     confused = "Rows: the icon presented. Columns: the response. The diagonal is correct. Similar icons are adjacent."
-    maps = (
-        _drawn(plot_confusion(ranking), "answers to each icon, per cent", confused, vector),
-        _drawn(
-            plot_distance(ranking),
-            "d′ of every pair",
-            "Median over people of the d′ between two icons.",
-            vector,
-        ),
-    )
-    yield from (Row(maps),) if vector else maps
+    yield _drawn(plot_confusion(ranking), "answers to each icon, per cent", confused)
+    yield _drawn(plot_distance(ranking), "d′ of every pair", "Median over people of the d′ between two icons.")
     found = map_of(ranking)
     bent = (
         f"Distances in the plane approach d′ (stress {found.stress:.2f}; 0: exact). Only distances matter; directions "
@@ -199,18 +166,15 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     )
     if found.covariance is not None:
         bent += f" Each ellipse holds half of {found.people} people, whose maps were rotated and shifted onto this one."
-    yield _drawn(plot_map(found), "the icons as points of a plane", bent, vector)
+    yield _drawn(plot_map(found), "the icons as points of a plane", bent)
     if ranking.spread is not None and ranking.people > 1:
         places = "Each person ranks the icons by how often they are named correctly; ties share their ranks."
-        yield _drawn(plot_places(ranking), "probability of each place for each icon", places, vector)
+        yield _drawn(plot_places(ranking), "probability of each place for each icon", places)
 
 
-def _drawn(axes: Axes, said: str, caption: str, vector: bool) -> Picture:
+def _drawn(axes: Axes, said: str, caption: str) -> Picture:
     figure: Any = axes.figure
-    width = round(96 * figure.get_figwidth())
-    if not vector:
-        return Picture(caption, said, "png", width, png_of(figure, 120))
-    return Picture(caption, said, "svg+xml", width, svg_of(figure))
+    return Picture(caption, said, "png", round(96 * figure.get_figwidth()), png_of(figure, MAPS))
 
 
 def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
@@ -228,8 +192,7 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
             f"reported in {percent(score['detected_probability'])} of the trials of all people",
         ]
         peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())
-        said = [*(facts if result["by"] == "model" else []), "largest change " + ", ".join(peaks)]
-        yield Text("; ".join(said) + ".", "lead")
+        yield Text("; ".join([*facts, "largest change " + ", ".join(peaks)]) + ".", "lead")
         small = as_svg(icon.plot()).encode("utf-8")
         course = Picture("", f"prescribed course of {icon.name}", "svg+xml", 320, small)
         yield Row((Code(cue_text(icon)), course))
@@ -253,16 +216,6 @@ def _overview(icon: Icon, rig: Rig, count: int) -> Picture:
     data = png_of(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
     alt = f"temperatures, heat flow, current and sensation of {icon.name}"
     return Picture("", alt, "png", OVERVIEW_PIXELS, data)
-
-
-def svg_of(figure: Figure) -> bytes:
-    """A figure as SVG, the same bytes every time: no date, and names drawn from a fixed salt."""
-    import matplotlib
-
-    held = io.BytesIO()
-    with matplotlib.rc_context({"svg.hashsalt": SALT, "svg.fonttype": "path"}):
-        figure.savefig(held, format="svg", metadata={"Date": None})
-    return held.getvalue()
 
 
 def png_of(figure: Figure, dpi: float, colours: int = 64) -> bytes:

@@ -10,11 +10,21 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span,
 
 from .blocks import Block, Bullets, Cards, Cell, Grid, Heading, Text, grid
 from .choices import choice_lines, goal_lines, laboratory
-from .rank_details import detail_blocks, edit_text, edits_blocks, worst_pair
-from .rank_notes import caveat, crowd_text, outside_lines, playable, trouble_lines
+from .rank_details import (
+    caveat,
+    crowd_text,
+    detail_blocks,
+    edit_text,
+    edits_blocks,
+    outside_lines,
+    playable,
+    trouble_lines,
+    worst_pair,
+)
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
+    from thermicon.perception.ranking.sensitivity import Sensitivity
 
     from .set_report import SetReport
 
@@ -22,8 +32,9 @@ MOST_LINES = 20
 """Lines of a ranking without details, at 80 columns."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
+MOST_CONSTANTS = 12
+"""Constants in the table of what carries the doubt; a file has them all."""
 RANKED = ("icon", "detected", "onset", "channel", "correct", "most confused with")
-BY_RULES = ("icon", "score", "rules passed", "distinct pairs", "margin", "fails")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,13 +54,12 @@ def rank_report(
     ``details``, all but the first note, the reasons and what the numbers depend on are left out.
     """
     result = made.to_dict(mapped=False)  # the map is drawn, not printed
-    model = result["by"] == "model"
     place = {row["icon"]: k for k, row in enumerate(made.ranking.rows())}
     icons = sorted(result["icons"], key=lambda icon: place[icon["name"]])
     notes = [*trouble_lines(result["icons"], cures or {}), *outside_lines(icons)]
     if not details and len(notes) > 1:
         notes = [notes[0], f"{count_of(len(notes) - 1, 'more note')}: thermicon rank --details"]
-    advice = edit_text(worst_pair(result)) if model and result["set"]["worst_pair"] else ""
+    advice = edit_text(worst_pair(result)) if result["set"]["worst_pair"] else ""
     where = laboratory(result["observer"], result["set"]["own_laboratory"])
     chosen = list(choice_lines(result["chosen"], where)) if result["chosen"] else []
     said = [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]
@@ -59,14 +69,14 @@ def rank_report(
     return [
         *([Heading(title, 1)] if title else []),
         *([Text("\n".join(goal_lines(result["goal"])))] if result["goal"] else []),
-        *([Cards(cards(result, where))] if model else []),
+        Cards(cards(result, where)),
         Text("\n".join(filter(None, said))),
         *told,
         *([] if details else edits_blocks(result)),
         *(Text(note, "note" if note.startswith("Outside") else "warn") for note in notes),
         icon_table(icons, result),
-        *(detail_blocks(result) if details or not model else []),
-        Text(caveat(result) if details or not model else f"{short} More: {'rank ' * (not following)}--details"),
+        *(detail_blocks(result) if details else []),
+        Text(caveat(result) if details else f"{short} More: {'rank ' * (not following)}--details"),
     ]
 
 
@@ -102,8 +112,6 @@ def cards(result: Mapping[str, Any], where: str) -> tuple[tuple[str, str], ...]:
 def icon_table(icons: Sequence[dict[str, Any]], result: Mapping[str, Any]) -> Grid:
     """One row per icon in this order; those that are unsafe or not reached have a star and stand apart."""
     apart = len(playable(icons))
-    if result["by"] == "rules":
-        return grid(BY_RULES, [_by_rules(icon, result["pairs"]) for icon in icons], BY_RULES[1:5], BY_RULES[:5])
     labels, chosen = result["confusion"]["labels"], (result["chosen"] or {"icons": ()})["icons"]
     rows: list[tuple[str | Cell, ...]] = [
         (
@@ -127,29 +135,6 @@ def rival(confusion: Mapping[str, Any], place: int) -> str:
         return "–"
     share, label = max(others)
     return f"{label} {percent(share)}"
-
-
-def _by_rules(icon: Mapping[str, Any], pairs: Sequence[dict[str, Any]]) -> tuple[str, ...]:
-    """Share of rules passed, distinguishable pairs, the smallest margin and what fails."""
-    rules = [rule for rule in icon["rules"] if not rule["from_model"]]
-    own = [pair for pair in pairs if icon["name"] in (pair["a"], pair["b"])]
-    return (
-        icon["name"],
-        percent(icon["rules_score"]),
-        f"{sum(rule['pass'] for rule in rules)} of {len(rules)}",
-        f"{sum(pair['distinguishable_by_rules'] for pair in own)} of {len(own)}" if own else "–",
-        margin(icon["rules_margin"]),
-        ", ".join(rule["rule"] for rule in rules if not rule["pass"]) or "–",
-    )
-
-
-def margin(share: float | None) -> str:
-    """Write a margin as a multiple of its threshold; below 1, the threshold is missed.
-
-    >>> margin(1.79), margin(-0.25), margin(None)
-    ('2.79 ×', '0.75 ×', '–')
-    """
-    return "–" if share is None else f"{1.0 + share:.3g} ×"
 
 
 def next_step(ranking: Ranking, has_families: bool) -> Step:
@@ -178,3 +163,33 @@ def next_step(ranking: Ranking, has_families: bool) -> Step:
     if len(left) >= max(2.0, 0.5 * len(ranking.icons)):
         return Step("improve", ("--choose", str(len(left))))
     return Step("improve", ("--edits",))
+
+
+def doubt_report(found: Sensitivity, title: str) -> list[Block]:
+    """Report one row per constant that counts, the most important first, and what to measure first."""
+    numbers = ("correct", "bits", "correct low–high")
+    rows = [
+        (
+            effect.constant,
+            f"{effect.low:.3g} to {effect.high:.3g}{'' if effect.unit in ('', '1') else f' {effect.unit}'}",
+            percent(effect.proportion_correct),
+            percent(effect.information_bits),
+            f"{percent(effect.at_low)} – {percent(effect.at_high)}",
+        )
+        for effect in found.effects[:MOST_CONSTANTS]
+    ]
+    what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
+    crowd = count_of(found.people, "virtual person", "virtual people")
+    lead = "Measure first, by the share of the variance of the proportion correct that would go:"
+    return [
+        *([Heading(title, 1)] if title else []),
+        grid(("constant", "95 % of draws", *numbers), rows, numbers),
+        Text(lead if found.first else "No measurement would narrow the prediction noticeably."),
+        Bullets(tuple(f"{percent(each.proportion_correct)}: {each.measurement}" for each in found.first)),
+        Text(
+            "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that "
+            "shares need not add up to 100 %. Beside them the proportion correct expected at both ends of the "
+            f"interval. {found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, "
+            f"{found.norm} norm): contact and outermost layer of the skin vary too, unlike in the intervals of rank."
+        ),
+    ]

@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.perception.ranking.rank_file import as_text, plain, ranking_file
 
+from ..messages import progress_bar
+
 if TYPE_CHECKING:
-    from thermicon.perception import Ranking
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+    from thermicon.perception import Goal, Ranking
     from thermicon.perception.selection.choose import Choice
     from thermicon.perception.selection.edit import Edit, NoEdit
     from thermicon.perception.selection.goal_result import GoalResult
+    from thermicon.perception.selection.request import Selection
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,3 +58,56 @@ class SetReport:
     def to_json(self) -> str:
         """The content of `rank --json` as text, the same bytes for the same arguments."""
         return as_text(self.to_dict())
+
+
+def report_of(
+    icons: IconSet,
+    rig: Rig,
+    draws: int,
+    *,
+    edits: Literal["worst", "all", "none"] = "worst",
+    choosing: Selection | None = None,
+    goal: Goal | None = None,
+    warnings: tuple[str, ...] = (),
+    workers: int | str | None = None,
+    **how: Any,
+) -> SetReport:
+    """Rank a set; choose of it, judge it by a goal and edit its pairs, as far as that is asked.
+
+    `draws` are those of an interval, `how` other arguments of `rank`.
+    """
+    from thermicon.perception import choose, rank
+    from thermicon.perception.kernels.parallel import beside
+    from thermicon.perception.progress import step_counter
+    from thermicon.perception.ranking.rank import with_intervals
+    from thermicon.perception.selection.edit import cheapest_edits
+    from thermicon.perception.selection.goal_result import judge_goal
+    from thermicon.perception.selection.request import check_selection
+
+    if choosing is not None:
+        check_selection(choosing, [icon.name for icon in icons])
+    if goal is not None:
+        goal.check_count(None if choosing is None else choosing.count)
+        goal.check_draws(draws)
+    with progress_bar("ranking") as progress:
+        ranking = without = rank(icons, rig, parameters=0, workers=workers, progress=progress, **how)
+    # One edit takes as long as the draws, mostly on one core; more of them wait for the draws.
+    cores = workers if isinstance(workers, int) else None
+    edited = beside(lambda: cheapest_edits(without, edits), cores if edits == "worst" else 1)
+    choice = None
+    with progress_bar("intervals" if choosing is None else "choosing") as progress:
+        if choosing is not None:
+            choice = choose(ranking, choosing, parameters=draws, progress=progress)
+        elif draws:
+            ranking = with_intervals(ranking, draws, step_counter(progress, draws))
+    reached = None if goal is None else judge_goal(goal, ranking, choice)
+    return SetReport(ranking, choice, reached, edited(), warnings)
+
+
+def cures(ranking: Ranking, icons: IconSet, rig: Rig) -> dict[str, str]:
+    """Return, by name, how each icon that the rig does not reach could be changed so that it is reached."""
+    from thermicon.circuit import nearest_reachable
+
+    missed = {score.name for score in ranking.icons if not score.reachable}
+    near = {icon.name: nearest_reachable(icon, rig) for icon in icons if icon.name in missed}
+    return {name: found.sentence for name, found in near.items() if found is not None}

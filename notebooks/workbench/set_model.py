@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..cli.cues import MOST_ICONS
+from ..cli.options import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
 from ..report.set_report import SetReport
 from ..timeline.frames import CanvasFrame, terms_of, traces_of

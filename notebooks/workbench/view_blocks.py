@@ -8,12 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 from thermicon.icons.number_text import number, percent
 
-from ..cli.export import CAUTION, steps_of
 from ..report.blocks import Bullets, Cards, Cell, Facts, Heading, Text, fragment, grid, shown
 from ..report.choices import choice_lines, goal_lines, laboratory
-from ..report.gate_words import gate_words, short_scenario
-from ..report.rank_details import edit_text
-from ..report.rank_notes import caveat, outside_lines, trouble_lines
+from ..report.gate_words import CAUTION, gate_words, short_scenario, steps_of
+from ..report.rank_details import caveat, edit_text, outside_lines, trouble_lines
 from ..report.rank_report import cards, icon_table
 from ..timeline.frames import SIMULATED, terms_of
 

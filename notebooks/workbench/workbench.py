@@ -176,7 +176,7 @@ class Workbench:
         """
         from thermicon.perception import rank
 
-        from ..cli.cues import MOST_ICONS
+        from ..cli.options import MOST_ICONS
 
         if len(self.icons) > MOST_ICONS:
             many = f"{len(self.icons):,} icons are more than the {MOST_ICONS:,} that are compared at once"

@@ -81,15 +81,12 @@ def test_two_sets_are_paired_by_name_and_the_better_is_told(cli: Cli, two: Path,
     assert warned.count("warning:") == len({line for line in warned.splitlines() if line.startswith("warning:")}) > 0
 
 
-def test_two_sets_without_a_common_name_are_scored(cli: Cli, two: Path, tmp_path: Path) -> None:
+def test_two_sets_without_a_common_name_are_predicted(cli: Cli, two: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.cue"
     other.write_text(two.read_text(encoding="utf-8").replace("cool-step", "dip").replace("warm-step", "glow"))
     said = cli("compare", two, other)
     assert said.exit_code == 0, said.stderr
-    assert "predicted: no difference between A and B" in " ".join(said.stdout.split())
-    rows = [line.split() for line in said.stdout.splitlines() if " thenar " in line]
-    assert [row[0] for row in rows] == [two.name, "other.cue"]
-    assert rows[0][2:6] == rows[1][2:6]
+    assert said.stdout.startswith("predicted: no difference between A and B")
 
 
 def measured(folder: Path, cli: Cli, two: Path) -> tuple[Path, Path]:

@@ -34,7 +34,7 @@ from thermicon.icons.recordings.recorded import read_readings
 from thermicon.notebooks.cli.compare import _shifted
 from thermicon.notebooks.files.trace_files import align, read_curves
 from thermicon.notebooks.messages import is_ours
-from thermicon.notebooks.report.compare_report import Comparison, compare_report
+from thermicon.notebooks.report.run_report import Comparison, compare_report
 from thermicon.notebooks.study.study_file import parse_study, study_text
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.measurements_file import read_measurements

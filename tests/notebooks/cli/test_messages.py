@@ -57,7 +57,7 @@ def test_a_command_line_alone_shows_how_it_is_used(cli: Cli) -> None:
 @pytest.mark.parametrize(
     ("line", "code", "words"),
     [
-        (("rank", "six-icons", "--seed", "9" * 5000), 2, "has too many digits to be read"),
+        (("rank", "six-icons", "--seed", "9" * 5000), 2, "is not a whole number"),
         (("check", "six-icons", "--set", "driver.update_Hz=" + "9" * 5000), 1, "must be a number in Hz"),
         (("check", "six-icons", "--set", "contact.area_cm2=" + "[" * 3000), 1, "must be a number in cm²"),
     ],

@@ -12,7 +12,6 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks import startup
 from thermicon.notebooks.cli.main import COMMANDS, main, program
 
 Cli = Callable[..., Any]
@@ -67,7 +66,7 @@ def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     assert (run.returncode, run.stderr) == (130, "interrupted\n")
 
 
-@pytest.mark.parametrize("where", ["app.TyperGroup.make_context", "app.TyperGroup.invoke", "main.program"])
+@pytest.mark.parametrize("where", ["main.TyperGroup.make_context", "main.TyperGroup.invoke", "main.program"])
 def test_an_interrupt_is_told_wherever_it_comes(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str
 ) -> None:
@@ -149,16 +148,3 @@ def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFix
     show([grid(["icon"], [["[red]loud[/red]"]]), "[b]plain[/b]"])
     assert "[b]plain[/b]" in (said := capsys.readouterr().out)
     assert "[red]loud[/red]" in said
-
-
-def test_a_checkout_that_hides_the_installed_package_is_reported(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert startup.hidden_by("/a/notebooks", []) is None
-    assert startup.hidden_by(str(Path(startup.__file__).parent), startup.installed_folders()) is None
-    startup.warn_if_hidden()
-    assert capsys.readouterr().err == ""
-    monkeypatch.setattr(startup, "installed_folders", lambda: ["/site/thermicon/notebooks"])
-    startup.warn_if_hidden()
-    (line,) = capsys.readouterr().err.splitlines()
-    assert "hides the installed" in line and "/site/thermicon/notebooks" in line

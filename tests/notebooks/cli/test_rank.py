@@ -14,7 +14,6 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.icons.number_text import percent_span
 from thermicon.notebooks.cli import ranking
-from thermicon.notebooks.report.blocks import Bullets, Heading
 from thermicon.notebooks.report.rank_report import Step, next_step
 
 Cli = Callable[..., Any]
@@ -70,21 +69,6 @@ def test_rows_of_the_confusions_sum_to_one(ranked: dict[str, Any]) -> None:
     for row in ranked["confusion"]["probability"]:
         assert sum(row) == pytest.approx(1.0, abs=1e-9)
         assert all(0 <= share <= 1 for share in row)
-
-
-@pytest.mark.slow
-def test_the_same_question_gets_the_same_bytes(cli: Cli, two: Path, tmp_path: Path) -> None:
-    texts = []
-    for name in ("a.json", "b.json"):
-        assert cli("rank", two, "--people", 10, "--json", tmp_path / name).exit_code == 0
-        texts.append((tmp_path / name).read_bytes())
-    assert texts[0] == texts[1]
-
-
-def test_json_on_stdout_is_nothing_but_json(cli: Cli, two: Path) -> None:
-    said = cli("rank", two, "--people", 5, "--json", "-")
-    assert said.exit_code == 0
-    assert json.loads(said.stdout)["people"] == 5
 
 
 def test_the_table_reads_well_in_a_pipe(process: Cli, two: Path) -> None:
@@ -147,17 +131,8 @@ def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> N
     )
     table = cli("rank", two, more, "--people", 5, "--intervals", 0).stdout
     assert table.startswith("Two for a test; more.cue\n")
-
-
-def test_joined_files_without_titles_have_none(cli: Cli, tmp_path: Path) -> None:
-    files = []
-    for name, verb in (("a", "warm"), ("b", "cool")):
-        path = tmp_path / f"{name}.cue"
-        path.write_text(f"cue 1\nicon {name} {{ {verb} by 2 °C at 1 °C/s; return at 1 °C/s }}\n", encoding="utf-8")
-        files.append(path)
-    said = cli("rank", *files, "--people", 2, "--intervals", 0)
-    assert "named correctly" in said.stdout.splitlines()[0]
-    assert said.stderr == ""
+    first, *_ = cli("rank", more, "--people", 5, "--intervals", 0).stdout.splitlines()
+    assert "detected" in first, "a file without a title has none"
 
 
 @pytest.mark.slow
@@ -217,17 +192,6 @@ def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
     assert "NOT SAFE" not in words
 
 
-@pytest.mark.slow
-def test_a_set_is_ranked_by_rules_alone(cli: Cli) -> None:
-    result = cli("rank", "six-icons", "--by", "rules")
-    assert result.exit_code == 0, result.stderr
-    assert "- 15 of 15 pairs distinguishable by the rules" in result.stdout
-    assert "named correctly" not in result.stdout
-    refused = cli("rank", "six-icons", "--by", "rules", "--doubt")
-    assert refused.exit_code == 2
-    assert "leave out --by rules" in refused.stderr
-
-
 def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "near.cue"
     cues = [
@@ -238,22 +202,10 @@ def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
     words = " ".join(cli("rank", path, "--people", 2, "--intervals", 0, "--json", out, "--details").stdout.split())
     found = json.loads(out.read_text(encoding="utf-8"))["set"]["rules_disagree"]
     assert len(found) > 5
-    assert words.index("Worst pair") < words.index("Rules and model disagree: rules compare two icons ")
+    assert words.index("Worst pair") < words.index("Rules of thumb and model disagree (rules compare two icons ")
     assert "while naming one needs memory" in words
     assert words.count("below the 2.563 criterion") == 5
     assert f"- and {len(found) - 5} more; --json lists all" in words
-
-
-def test_icons_that_rules_and_model_judge_differently_are_told() -> None:
-    from thermicon.notebooks.report.rank_details import disagreement_blocks
-
-    found = [{"icon": "a", "text": "a: rules say felt, the model 0.42 detected (felt from 0.5)"}]
-    assert disagreement_blocks({"set": {"rules_disagree": found}, "chosen": None}) == [
-        Heading(
-            "Rules and model disagree: rules require a change and a rate, the model a report in half of the trials", 3
-        ),
-        Bullets(("a: rules say felt, the model 0.42 detected (felt from 0.5)",)),
-    ]
 
 
 @pytest.mark.slow
@@ -267,22 +219,6 @@ def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> N
     folder = tmp_path / "figures"
     said = cli("rank", path, "--people", 5, "--intervals", 0, "--figure", folder)
     assert said.stderr == f"wrote ranking.png, distance.png, confusion.png and 1 overview into {folder}\n"
-
-
-@pytest.mark.slow
-def test_figures_go_into_a_folder_that_is_made(cli: Cli, two: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "figures"
-    said = cli("rank", two, "--people", 5, "--intervals", 0, "--figure", folder)
-    assert said.exit_code == 0, said.stderr
-    assert sorted(path.name for path in folder.iterdir()) == [
-        "confusion.png",
-        "distance.png",
-        "map.png",
-        "overview-cool-step.png",
-        "overview-warm-step.png",
-        "places.png",
-        "ranking.png",
-    ]
 
 
 def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -308,14 +244,6 @@ def test_icons_outside_the_data_are_told(cli: Cli, tmp_path: Path) -> None:
     words = " ".join(cli("rank", path, *options, "--details").stdout.split())
     assert "Outside the data: all icons: no detection threshold is on record for the fingertip: those of " in words
     assert "Outside the data" not in cli("rank", path, "--people", 1, "--intervals", 0).stdout
-
-
-def test_what_is_outside_is_said_once_with_its_icons() -> None:
-    from thermicon.notebooks.report.rank_notes import outside_lines
-
-    icons = [{"name": n, "outside_data": ["too fast"] if n != "b" else []} for n in "abc"]
-    assert outside_lines(icons) == ["Outside the data: a, c: too fast"]
-    assert outside_lines(icons[:1]) == ["Outside the data: a: too fast"]
 
 
 def test_a_first_ranking_says_once_on_a_terminal_that_it_compiles(

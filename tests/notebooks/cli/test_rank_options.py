@@ -99,15 +99,6 @@ def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:
     assert "Traceback" not in said.stderr
 
 
-@pytest.mark.slow
-def test_the_error_of_sampling_is_in_the_json(cli: Cli, tmp_path: Path) -> None:
-    out = tmp_path / "six.json"
-    said = cli("rank", "six-icons", "--people", 20, "--intervals", 0, "--json", out)
-    assert said.exit_code == 0, said.stderr
-    found = json.loads(out.read_text(encoding="utf-8"))["confusion"]
-    assert 0 < found["standard_error"] < found["person_standard_error"] < 0.005
-
-
 def test_the_table_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.json", tmp_path / "out.png"
     said = cli("rank", two, *QUICK, "--json", out, "--figure", picture)

@@ -135,12 +135,9 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
     low, high = result["set"]["proportion_correct_interval"]
     assert f"95 % of people: {100 * low:.0f}–{100 * high:.0f} %" in words
     for part in ("direction", "intensity", "rate", "duration", "pause"):
-        assert words.count(part) >= 2
+        assert part in words
     for heading in ("Settings", "The set", "Pictures of the set", "Rules of thumb", "Icons", "Safety"):
         assert f"<h2>{heading}</h2>" in made
-    shares = re.search(r"<td>rate</td>(.*?)</tr>", made, re.S)
-    assert shares is not None
-    assert shares[1].count("× per s") == 2
 
 
 @pytest.mark.slow
@@ -156,16 +153,6 @@ def test_the_report_as_markdown_has_the_same_words_and_no_pictures(ranking: Rank
     assert "| icon | detected | onset | channel | correct | most confused with |" in said
     assert "data:image" not in said
     assert "![" not in said
-
-
-@pytest.mark.slow
-def test_by_rules_it_has_no_number_of_the_model(rig: Rig, three: IconSet) -> None:
-    words = read(report(SetReport(rank(three, rig, people=2, by="rules")), three, rig)).text
-    for word in ("bits", "detected", "d′ ", "perceptual", "named correctly"):
-        assert word not in words.replace("model: d′ ", "")
-    assert "Worst pair by rules: " in words
-    assert "3 of 3" in words
-    assert "rules passed" in words
 
 
 def test_one_icon_has_no_pairs(rig: Rig) -> None:

@@ -1,0 +1,206 @@
+"""What ``improve`` says: how many icons of a pool are distinguishable, and what a search found beside its start."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from thermicon.icons.number_text import count_of, number, percent, percent_span
+
+from .blocks import Block, Bullets, Heading, Text, grid
+from .choices import NAMES, goal_lines, goal_value, laboratory
+from .rank_details import trouble_lines
+from .rank_report import BARELY
+
+if TYPE_CHECKING:
+    from thermicon.perception.selection.frontier import Frontier, FrontierPoint
+    from thermicon.perception.selection.reach import Advice, Trial
+    from thermicon.perception.selection.search import SearchResult
+
+    from .set_report import SetReport
+
+MOST_EXCLUDED, MOST_TRIALS = 3, 3
+REFINING_PEOPLE = 24
+"""As in `thermicon.perception.selection.evaluator`, repeated here to avoid its imports."""
+LEAST_AGAIN = 0.01
+"""Share of what is wanted, below which a second search is not worth a sentence."""
+
+
+def frontier_report(found: Frontier, title: str) -> list[Block]:
+    """Report one row for each number of icons, the names of the largest choices, and what was left out."""
+    heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goal)))
+    rows = [
+        (
+            str(len(point.icons)) + ("" if point.optimal else " *"),
+            percent(point.proportion_correct),
+            f"from {percent(point.reached)}",
+            number(point.d_prime),
+            f"{point.information_bits:.2f}",
+            f"{number(point.total_s)} s",
+            "–" if point.total_J != point.total_J else f"{number(point.total_J)} J",
+            *([] if point.goal is None else ["✓" if point.goal.met else "✗"]),
+        )
+        for point in found.points
+    ]
+    crowd = count_of(found.people, "virtual person", "virtual people")
+    what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
+    more = len(found.excluded) - MOST_EXCLUDED
+    said = [
+        *(f"The {len(point.icons)}: {_named(point)}" for point in found.points[-1:]),
+        *(["* not proven to be the best of their number"] * any(not point.optimal for point in found.points)),
+        *_amber(found),
+        *_goal(found),
+        *(f"Left out: {name} {reason}" for name, reason in found.excluded[:MOST_EXCLUDED]),
+        *([f"and {more} more left out"] if more > 0 else []),
+    ]
+    return [
+        *([Heading(title, 1)] if title else []),
+        grid(heads, rows, heads[:7]),
+        Text("\n".join(said)),
+        Text(
+            f"The best by {found.objective} of {found.pool} icons that can be {'chosen' if found.goal else 'played'}, "
+            f"for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}). {_reached(found)} These are "
+            "predictions of a model, not measurements."
+        ),
+    ]
+
+
+def _named(point: FrontierPoint) -> str:
+    return ", ".join(f"{name} (amber)" if name in point.amber else name for name in point.icons)
+
+
+def _amber(found: Frontier) -> Iterator[str]:
+    """From how many icons on a choice has one that passes a soft limit; nothing where none has."""
+    sizes = [str(len(point.icons)) for point in found.points if point.amber]
+    if sizes:
+        yield f"With icons that pass a soft limit of safety (amber): the choices of {', '.join(sizes)}"
+
+
+def _goal(found: Frontier) -> Iterator[str]:
+    """The largest choice that meets the goal with its parts, or the smallest with what is in its way."""
+    judged = [(len(point.icons), point.goal) for point in found.points if point.goal is not None]
+    if not judged:
+        return
+    met = [each for each in judged if each[1].met]
+    if met:
+        count, result = met[-1]
+        more = "the largest choice here" if count == judged[-1][0] else "by no larger choice of these"
+        yield from goal_lines(result.to_dict(), f"met by the best {count}, {more}")
+    else:
+        count, result = judged[0]
+        yield from goal_lines(result.to_dict(), f"met by none of these choices; the best {count}:")
+
+
+def _reached(found: Frontier) -> str:
+    if found.draws:
+        return (
+            "What 95 % of people reach is about people and the uncertainty of the model together "
+            f"({found.draws} draws), as in a goal."
+        )
+    return "What 95 % of people reach is about people alone, at the nominal constants: milder than in a goal."
+
+
+def search_report(
+    found: SearchResult, before: SetReport, after: SetReport, advice: Advice | None, title: str
+) -> list[Block]:
+    """Report the found set, its scores next to those of the initial set, the goal, and the caveat."""
+    ranking, icons = after.ranking, found.found
+    tried = [f"{icon.name}: {icon.metadata.tags[-1]}" for icon in icons if "found by search" in icon.metadata.tags]
+    said = [*_remarks(found, after), f"After: worst pair {' and '.join(found.after.worst_pair)}"]
+    said.append(f"Before: {', '.join(icon.name for icon in found.start)}")
+    goal: list[Block] = []
+    if after.goal is not None:
+        goal.append(Text("\n".join(goal_lines(after.goal.to_dict()))))
+        goal += [] if after.goal.met else advice_blocks(advice)
+    climbed = f", in the last climb {found.climbed_by}" if found.climbed_by else ""
+    return [
+        *([Heading(title, 1)] if title else []),
+        Text("Found:"),
+        Bullets(tuple(tried)),
+        grid(("", "before", "after"), _scores(found, before, after), ("before", "after")),
+        Text("\n".join(said)),
+        *goal,
+        Text(
+            f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
+            f"people, whatever --people is; what they maximised was {NAMES[found.objective]}{climbed} (seed "
+            f"{found.seed}). Of {count_of(found.finalists, 'set')} held at the end, this one was chosen by "
+            f"{NAMES.get(found.chosen_by, found.chosen_by)}. Before and after are for "
+            f"{count_of(ranking.people, 'virtual person', 'virtual people')} on the {ranking.job.rig.name} rig.\n"
+            "These are predictions of a model, not measurements, and the set was optimised for that same model: "
+            "expect lower scores from people."
+        ),
+    ]
+
+
+def _scores(found: SearchResult, before: SetReport, after: SetReport) -> Iterator[tuple[str, str, str]]:
+    """Rows of scores; of shares of people that the goal asks for, what it judges."""
+    a, b, pair = found.before, found.after, (before.ranking, after.ranking)
+    yield "worst pair, d′", number(a.d_prime), number(b.d_prime)
+    yield "proportion correct", percent(a.proportion_correct), percent(b.proportion_correct)
+    if pair[1].people > 1:
+        one, other = (percent_span(*each.proportion_correct_interval) for each in pair)
+        yield "  middle 95 % of people", one, other
+    intervals = [each.new_laboratory for each in pair if each.new_laboratory]
+    if len(intervals) == len(pair):
+        one, other = (percent_span(*each.proportion_correct) for each in intervals)
+        yield f"  {laboratory(pair[1].observer, pair[1].own_laboratory)} (95 %)", one, other
+    if before.goal is not None and after.goal is not None:
+        for parts in zip(before.goal.parts, after.goal.parts, strict=True):
+            if (people := parts[0].part.people) is not None:
+                one, other = (goal_value(part.to_dict())[0] for part in parts)
+                yield f"  goal: {parts[0].part.quantity} for {100.0 * people:g} % of people", one, other
+    yield "information, bits", f"{a.information_bits:.2f}", f"{b.information_bits:.2f}"
+    yield "information rate, bits/s", f"{a.bits_per_s:.2f}", f"{b.bits_per_s:.2f}"
+    yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)
+
+
+def _remarks(found: SearchResult, after: SetReport) -> Iterator[str]:
+    """Ranges that end too early, and icons that cannot be played, are not green, or that many people will miss."""
+    if found.at_ends:
+        yield f"At the end of its range: {'; '.join(found.at_ends)}. A wider range may hold a better set."
+    icons = after.to_dict(mapped=False)["icons"]
+    yield from trouble_lines(icons, {})
+    for icon in icons:
+        if icon["detected_probability"] < BARELY:
+            yield f"{icon['name']} is detected in {percent(icon['detected_probability'])} of trials only"
+
+
+def advice_blocks(advice: Advice | None) -> list[Block]:
+    """Which changes bring a goal nearer that this search did not reach, and which were tried in vain.
+
+    >>> advice_blocks(None)[0].text
+    'Not reached by this search, and no change could be tried.'
+    """
+    if advice is None or not advice.trials:
+        return [Text("Not reached by this search, and no change could be tried.")]
+
+    def named(trials: Sequence[Trial]) -> list[str]:
+        return [f"{trial.words} ({trial.change})" for trial in trials]
+
+    helpful, more = advice.helpful[:MOST_TRIALS], named(advice.helpful[MOST_TRIALS:])
+    if helpful:
+        head = (
+            f"Not reached by this search. What would bring it nearer, for {REFINING_PEOPLE} people, each against the "
+            "best set of the rig as it is:"
+        )
+        points = [f"{said}: {_nearer(trial, advice)}" for said, trial in zip(named(helpful), helpful, strict=True)]
+        points += [f"nearer by less: {'; '.join(more)}"] * bool(more)
+        points += [f"tried and no nearer: {'; '.join(named(advice.idle))}"] * bool(advice.idle)
+    else:
+        head, points = "Not reached by this search. None of the changes tried brings it nearer:", named(advice.idle)
+    if advice.again > LEAST_AGAIN:
+        points.append(
+            f"searching again alone came nearer by {100.0 * advice.again:.0f} % of what is wanted: give more "
+            "--evaluations, or another --seed"
+        )
+    return [Text(head), Bullets(tuple(points))]
+
+
+def _nearer(trial: Trial, advice: Advice) -> str:
+    """The part that misses most without the change, before and with it."""
+    from thermicon.perception.selection.reach import missing
+
+    place = max(range(len(advice.baseline.parts)), key=lambda k: missing(advice.baseline.parts[k]))
+    before, after = (goal_value(each.parts[place].to_dict())[0] for each in (advice.baseline, trial.result))
+    met = ", and the goal is met" if trial.met else ""
+    return f"{advice.baseline.parts[place].part.text}: {before} → {after}{met}"
