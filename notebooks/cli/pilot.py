@@ -30,7 +30,7 @@ from .ranking import command_text
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-    from thermicon.perception.pilot.measurements import Measurements
+    from thermicon.perception.pilot.measurements_file import Measurements
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.trials import Trials
 

@@ -15,9 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from thermicon.perception.pilot.data import Answered, Measured
-    from thermicon.perception.pilot.fit import Fit, MeasurementFit
     from thermicon.perception.pilot.observed import Observed
-    from thermicon.perception.pilot.prediction import Three
+    from thermicon.perception.pilot.prediction import Fit, MeasurementFit, Three
 
 MOST_PAIRS, MOST_ICONS, LONGEST = 8, 16, 18
 
@@ -83,7 +82,8 @@ def _pairs(ax: Axes, found: Observed[Answered, Fit]) -> None:
     both = list(zip(found.fit.pairs, found.fit_after.pairs, strict=True))
     worst = sorted(both, key=lambda pair: -max(pair[0].observed, pair[0].predicted))[:MOST_PAIRS]
     rows = [
-        Row(f"{p.a}\n– {p.b}", (p.predicted, *p.interval), (q.predicted, *q.interval), p.observed) for p, q in worst
+        Row(f"{p.a}\n– {p.b}", (p.predicted, *p.predicted_interval), (q.predicted, *q.predicted_interval), p.observed)
+        for p, q in worst
     ]
     _draw(ax, rows)
     ax.set_title("most confused pairs in this experiment\nper cent of trials", fontsize=10)

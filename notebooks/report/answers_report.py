@@ -12,9 +12,8 @@ from .blocks import Block, Bullets, Grid, Text, grid
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.data import Answered
-    from thermicon.perception.pilot.fit import Fit
     from thermicon.perception.pilot.observed import Observed
-    from thermicon.perception.pilot.prediction import Three
+    from thermicon.perception.pilot.prediction import Fit, Three
     from thermicon.perception.pilot.trials import AnswerScore
 
 MOST_PEOPLE, MOST_PAIRS = 20, 8
@@ -110,7 +109,7 @@ def pairs(fit: Fit) -> list[Block]:
     points = [
         f"{pair.a} and {pair.b}: confused {'more' if pair.observed > pair.predicted else 'less'} than predicted, in "
         f"{percent(pair.observed)} of {pair.trials} trials; predicted {percent(pair.predicted)} "
-        f"({percent_span(*pair.interval)})"
+        f"({percent_span(*pair.predicted_interval)})"
         for pair in missed[:MOST_PAIRS]
     ]
     points += [f"and {len(missed) - MOST_PAIRS} more"] * (len(missed) > MOST_PAIRS)

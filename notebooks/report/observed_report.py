@@ -13,8 +13,8 @@ from .blocks import Block, Bullets, Grid, Heading, Text, grid
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.data import Measured
-    from thermicon.perception.pilot.fit import MeasurementFit
     from thermicon.perception.pilot.observed import Observed
+    from thermicon.perception.pilot.prediction import MeasurementFit
 
 MOST_CONSTANTS = 8
 LEAST_VALUES = 6

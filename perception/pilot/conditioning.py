@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, Generic, Protocol, Self, TypeVar
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,43 +31,31 @@ With few participants, of whom one is unusual, weights of little effect still er
 Step = Callable[[], None]
 
 
-class Simulated(Protocol):
-    """What is simulated of data in some laboratories."""
-
-    def of(self, which: NDArray[np.int64]) -> Self:
-        """What is simulated in some of them."""
-
-    def joined(self, other: Self) -> Self:
-        """What is simulated here and in further laboratories."""
-
-
-S = TypeVar("S", bound=Simulated)
-
-
-class Data(Protocol[S]):
+class Data(Protocol):
     """What a laboratory found out of its people, and how likely that is in others.
 
-    `by_people` says that the simulated depends on who the people of a laboratory are: people who are kept must then be
-    others, and the likelihood of fresh laboratories is too much a matter of chance to weigh them. `rounds` of fresh
-    laboratories are simulated at most; `stream` keeps their chance apart from that of other data.
+    What is simulated of it has `of` and `joined`. `by_people` says that it depends on who the people of a laboratory
+    are: people who are kept must then be others, and the likelihood of fresh laboratories is too much a matter of
+    chance to weigh them. `rounds` of fresh laboratories are simulated at most; `stream` keeps their chance apart from
+    that of other data.
     """
 
     stream: ClassVar[int]
     rounds: ClassVar[int]
     by_people: ClassVar[bool]
 
-    def simulate(self, some: Laboratories, step: Step | None = None) -> S:
+    def simulate(self, some: Laboratories, step: Step | None = None) -> Any:
         """Simulate the data in laboratories; `step` is called after each."""
 
-    def log_likelihood(self, simulated: S) -> Array:
+    def log_likelihood(self, simulated: Any) -> Array:
         """Ln likelihood (laboratories,) of the data, up to a constant."""
 
-    def polynomial(self, place: Array, simulated: S, short: Array) -> Callable[[Array], Array]:
+    def polynomial(self, place: Array, simulated: Any, short: Array) -> Callable[[Array], Array]:
         """Ln likelihood of coordinates, fitted to laboratories whose own is so much lower than near the data."""
 
 
 @dataclass(frozen=True, slots=True)
-class Conditioned(Generic[S]):
+class Conditioned:
     """What data make of the laboratories.
 
     `before` are the laboratories that were weighed, with what was `simulated` in them; `after` is a sample of equal
@@ -77,22 +65,18 @@ class Conditioned(Generic[S]):
     """
 
     before: Laboratories
-    simulated: S
+    simulated: Any
     effective: float
     after: Laboratories
-    simulated_after: S
+    simulated_after: Any
     effective_after: float
     rounds: int
-
-    def __repr__(self) -> str:
-        how = "reweighted" if not self.rounds else f"refreshed in {self.rounds} rounds"
-        return f"Conditioned({len(self.before)} laboratories, ESS {self.effective:.0f}; {len(self.after)} {how})"
 
 
 @quiet_blas()
 def condition(
-    data: Data[S], before: Laboratories, *, seed: int = 0, kept: int | None = None, step: Step | None = None
-) -> Conditioned[S]:
+    data: Data, before: Laboratories, *, seed: int = 0, kept: int | None = None, step: Step | None = None
+) -> Conditioned:
     """Condition laboratories on data; `kept` is how many are sampled (None: half)."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, data.stream]))
     kept = max(2, len(before) // 2) if kept is None else kept
@@ -108,8 +92,8 @@ def condition(
 
 
 def _refreshed(
-    data: Data[S], place: Array, simulated: S, logs: Array, kept: int, rng: np.random.Generator, step: Step | None
-) -> tuple[Laboratories, S, float, int]:
+    data: Data, place: Array, simulated: Any, logs: Array, kept: int, rng: np.random.Generator, step: Step | None
+) -> tuple[Laboratories, Any, float, int]:
     """Fresh laboratories, what is simulated there, how many are effective, and the rounds that it took."""
     start, short = place, np.zeros(len(place)) if data.by_people else logs.max() - logs
     for rounds in range(1, data.rounds + 1):
@@ -140,8 +124,8 @@ def _refreshed(
 
 
 def _resampled(
-    data: Data[S], place: Array, simulated: S, weights: Array, kept: int, rng: np.random.Generator, step: Step | None
-) -> tuple[Laboratories, S]:
+    data: Data, place: Array, simulated: Any, weights: Array, kept: int, rng: np.random.Generator, step: Step | None
+) -> tuple[Laboratories, Any]:
     """A sample of equal weights, with people who did not take part, and what is simulated there."""
     chosen = systematic(weights, kept, rng)
     after = Laboratories(place[chosen], rng.integers(SEEDS, size=kept))
@@ -158,11 +142,7 @@ def _tempered(logs: Array, least: float) -> Array:
 
 
 def systematic(weights: Array, n: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Numbers of n resampled items, by one random start: each as often as its weight says, up to rounding.
-
-    >>> systematic(np.array([0.5, 0.0, 0.5]), 4, np.random.default_rng(0)).tolist()
-    [0, 0, 2, 2]
-    """
+    """Numbers of n resampled items, by one random start: each as often as its weight says, up to rounding."""
     ends = np.cumsum(weights)
     found: NDArray[np.int64] = np.searchsorted(ends / ends[-1], (np.arange(n) + rng.random()) / n, side="right")
     return np.minimum(found, len(weights) - 1)

@@ -15,20 +15,17 @@ import numpy as np
 from ..arrays import Array
 from ..experiments.measure import Setting
 from .conditioning import Step
-from .fit import Fit, MeasurementFit, compare, compare_measurements
 from .likelihood import PooledLikelihood, log_likelihoods, person_log_likelihoods
 from .measurement_likelihood import Emulated, Predicted, log_likelihood, predicted
-from .measurements import Measurements
+from .measurements_file import Measurements
 from .playing import Confusions, Stage
-from .prediction import Three, three
+from .prediction import Fit, MeasurementFit, Three, compare, compare_measurements, three
 from .states import Laboratories, LaboratoryPrior
 from .trials import AnswerScore, Trials, score_person, score_pooled
 
 NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
-"""Ln L by which a laboratory is less likely than those near the data if it counts half in a fit.
-
-Laboratories far from the data keep the polynomial from bending there, and count for little else.
-"""
+"""Ln L by which a laboratory is less likely than those near the data if it counts half in a fit: those far from the
+data keep the polynomial from bending there, and count for little else."""
 
 
 @dataclass(frozen=True)

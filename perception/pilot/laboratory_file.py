@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -38,7 +37,7 @@ OF_SOURCE = "R-hat, converged and likelihoods: those of the draws that were resa
 
 def laboratory_draws(
     prior: LaboratoryPrior,
-    found: Conditioned[Any],
+    found: Conditioned,
     predicted: Array,
     played: Stage,
     provenance: Sequence[str],
@@ -75,11 +74,7 @@ def laboratory_draws(
 
 
 def how_resampled(laboratories: int, effective: float, rounds: int) -> str:
-    """How laboratories were resampled, in a few words.
-
-    >>> how_resampled(100, 83.4, 0)
-    'by weights from 100 laboratories, effective sample size 83'
-    """
+    """How laboratories were resampled, in a few words."""
     if not rounds:
         return f"by weights from {laboratories} laboratories, effective sample size {effective:.0f}"
     times = "1 round" if rounds == 1 else f"{rounds} rounds"
@@ -120,17 +115,8 @@ NEAREST, AGAIN = 6, 8
 def middle_of(some: Laboratories, constants: Array, predicted: Array, played: Stage) -> int:
     """Number of the laboratory in the middle.
 
-    Parameters
-    ----------
-    some
-        The sample.
-    constants
-        Constants (laboratories, constants) that must be near their medians.
-    predicted
-        What each predicts (laboratories, numbers), to be near its means; the first column is the proportion correct.
-    played
-        The set, to ask the nearest once more, with other people.
-
+    `constants` (laboratories, constants) must be near their medians, and what each predicts, `predicted` (laboratories,
+    numbers), near its means; the first column is the proportion correct. The nearest are asked the set once more.
     """
     _, first, group, times = np.unique(some.place, axis=0, return_index=True, return_inverse=True, return_counts=True)
     # Resampled more than once, a laboratory has been asked with several groups of people.
@@ -151,11 +137,7 @@ def middle_of(some: Laboratories, constants: Array, predicted: Array, played: St
 
 
 def off_middle(values: Array) -> Array:
-    """Mean square (rows,) of how many SDs a row lies from the median of each column, in logarithms where they exist.
-
-    >>> int(off_middle(np.array([[0.0], [1.0], [5.0]])).argmin())
-    1
-    """
+    """Mean square (rows,) of how many SDs a row lies from the median of each column, in logarithms where they exist."""
     positive = (values > 0.0).all(axis=0)
     values = np.where(positive, np.log(np.where(positive, values, 1.0)), values)
     spread = values.std(axis=0)

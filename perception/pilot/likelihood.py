@@ -38,10 +38,6 @@ def log_likelihoods(probability: Small, counts: Array) -> Array:
     """Ln L_j of every laboratory and participant (laboratories, participants).
 
     `probability` (laboratories, people, icons, icons), `counts` (participants, icons, icons).
-
-    >>> probability = np.array([[[[0.9, 0.1], [0.2, 0.8]]]], dtype=np.float32)
-    >>> round(float(np.exp(log_likelihoods(probability, np.array([[[1.0, 0.0], [1.0, 0.0]]]))[0, 0])), 3)
-    0.18
     """
     each = person_log_likelihoods(probability, counts)
     largest = each.max(axis=1)
@@ -70,11 +66,7 @@ def normalised_weights(log_weights: Array) -> Array:
 
 
 def effective(weights: Array) -> float:
-    """Effective sample size of weights that add up to 1.
-
-    >>> effective(np.full(4, 0.25))
-    4.0
-    """
+    """Effective sample size of weights that add up to 1."""
     return float(1.0 / np.square(weights).sum())
 
 

@@ -25,7 +25,7 @@ from ..experiments.tasks import DISCREPANCY, UNSTATED
 from ..kernels.parallel import in_order
 from ..observer.draws import BETWEEN_LABORATORIES
 from .likelihood import features_of, ridge, smooth_features
-from .measurements import Measurements
+from .measurements_file import Measurements
 from .states import OFFSETS, Laboratories, LaboratoryPrior
 
 RATING_SCALE = 0.7

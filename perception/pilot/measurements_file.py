@@ -1,9 +1,13 @@
-"""The door for thresholds, reaction times and ratings: a CSV file of values, or what is wrong with it."""
+"""Thresholds, reaction times and ratings that a laboratory measured, and the door for them.
+
+Each value has a condition that can be simulated. The door reads a CSV file of values, or says what is wrong with it.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, cast, overload
 
@@ -13,9 +17,9 @@ from thermicon.circuit.inputs import quoted
 from thermicon.icons.files.table import as_number
 from thermicon.icons.near_words import nearest_words
 
+from ..arrays import Array, own_arrays
 from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
 from ..observer.channels import CHANNELS, Channel
-from .measurements import Measurements
 from .trials_file import TrialsError, check_labels, label, table_in
 
 if TYPE_CHECKING:
@@ -58,6 +62,62 @@ NUMBERS = {
 LONGEST_RAMP_S = 120.0
 
 
+@dataclass(frozen=True, slots=True)
+class Measurements:
+    """Values of some participants under some conditions.
+
+    `values` (participants, conditions) are means or medians in the unit of the condition, NaN where nothing was
+    measured; `errors` their standard errors and `trials` the number behind each, NaN where not known. `source` and
+    `digest` are the name of the file and the first 16 digits of its SHA-256.
+    """
+
+    conditions: tuple[Condition, ...]
+    participants: tuple[str, ...]
+    values: Array
+    errors: Array
+    trials: Array
+    source: str = ""
+    digest: str = ""
+
+    def __post_init__(self) -> None:
+        own_arrays(self, "values", "errors", "trials")
+        wanted = (len(self.participants), len(self.conditions))
+        for name, own in (("values", self.values), ("errors", self.errors), ("trials", self.trials)):
+            if own.shape != wanted or 0 in wanted:
+                raise ValueError(f"{name} of measurements must have shape {wanted}, with at least one row and column")
+            if (own[~np.isnan(own)] <= 0.0).any() or np.isinf(own).any():
+                raise ValueError(f"{name} of measurements must be above 0 and finite")
+        there = self.given
+        if not there.any(axis=0).all() or not there.any(axis=1).all():
+            raise ValueError("every participant and every condition needs at least one value")
+
+    @property
+    def given(self) -> Array:
+        """Where there is a value (participants, conditions)."""
+        return ~np.isnan(self.values)
+
+    @property
+    def total(self) -> int:
+        """Number of values."""
+        return int(self.given.sum())
+
+    @property
+    def means(self) -> Array:
+        """Geometric mean over participants (conditions,)."""
+        found: Array = np.exp(np.nanmean(np.log(self.values), axis=0))
+        return found
+
+    @property
+    def assumed_errors(self) -> int:
+        """Values whose error is neither stated nor follows from a number of trials."""
+        return int((self.given & np.isnan(self.errors) & np.isnan(self.trials)).sum())
+
+    def __repr__(self) -> str:
+        counts = ((len(self.participants), "participant"), (self.total, "value"), (len(self.conditions), "condition"))
+        words = [f"{count} {word}{'s' * (count != 1)}" for count, word in counts]
+        return f"Measurements({', '.join(words)})"
+
+
 def is_measurements(path: str | Path) -> bool:
     """Whether the header of a file is that of measurements, not of trials."""
     header = {cell.lower() for cell in table_in(Path(path), (), EXAMPLE, "table of trials or measurements")[0].header}
@@ -65,29 +125,12 @@ def is_measurements(path: str | Path) -> bool:
 
 
 def read_measurements(path: str | Path, rig: Rig) -> Measurements:
-    """Read thresholds, reaction times and ratings of participants.
+    """Read thresholds, reaction times and ratings of participants; a `TrialsError` says what is wrong, and where.
 
-    Parameters
-    ----------
-    path
-        A CSV file with the columns participant, kind, channel, value, unit and, where they apply, method, size_K,
-        rate_K_per_s, hold_s, baseline_C, standard_error and trials.
-    rig
-        The rig that they were measured on, whose resting skin is the baseline where the table names none.
+    A CSV file has the columns participant, kind, channel, value, unit and, where they apply, method, size_K,
+    rate_K_per_s, hold_s, baseline_C, standard_error and trials. The resting skin of the rig, which the values were
+    measured on, is the baseline where the table names none. Participants and conditions are in the order of the file.
 
-    Returns
-    -------
-    Measurements
-        Participants and conditions in the order of the file.
-
-    Raises
-    ------
-    TrialsError
-        For a file that cannot be read or has no rows, missing columns, unknown kinds, methods, channels and units,
-        numbers out of range, and a value that stands twice.
-
-    Examples
-    --------
     >>> import pathlib, tempfile
     >>> from thermicon.circuit import Rig
     >>> with tempfile.TemporaryDirectory() as folder:

@@ -19,11 +19,10 @@ from ..observer.observer_model import ObserverModel
 from ..progress import Progress, step_counter
 from .conditioning import Conditioned, condition
 from .data import Answered, Measured
-from .fit import Fit, MeasurementFit
 from .laboratory_file import laboratory_draws, laboratory_texts
-from .measurements import Measurements
+from .measurements_file import Measurements
 from .playing import Confusions, Stage, laboratories_for, stage
-from .prediction import ChangedConstant, ChangedPrediction, Three, changed
+from .prediction import ChangedConstant, ChangedPrediction, Fit, MeasurementFit, SetPrediction, Three, changed
 from .states import LaboratoryPrior
 from .trials import Trials
 
@@ -63,7 +62,7 @@ class Observed(Generic[D, F]):
     fit_after: F
     predictions: tuple[ChangedPrediction, ...]
     constants: tuple[ChangedConstant, ...]
-    conditioned: Conditioned[Any]
+    conditioned: Conditioned
     confusions_after: Confusions
     prior: LaboratoryPrior
     played: Stage
@@ -79,17 +78,20 @@ class Observed(Generic[D, F]):
         found = self.conditioned
         how = "weights" if not found.rounds else f"{found.rounds} rounds of fresh laboratories"
         return (
-            *self.data.provenance(f"on {', '.join((self.rig, *self.rig_changes))}, {self.norm} norm"),
+            *self.data.provenance(f"on {self._where}, {self.norm} norm"),
             f"effective draws: {found.effective:.0f} of {len(found.before)}, by {how}",
             f"seed of the laboratories: {self.seed}",
         )
+
+    @property
+    def _where(self) -> str:
+        return ", ".join((self.rig, *self.rig_changes))
 
     def draws(self) -> PosteriorDraws:
         """Draws of constants and memory in this laboratory, equally weighted; its offset is part of the thresholds."""
         after, details = self.confusions_after, self.data.details(self.conditioned.simulated_after)
         predicted = np.column_stack([after.correct, after.bits, details])
-        rig = ", ".join((self.rig, *self.rig_changes))
-        return laboratory_draws(self.prior, self.conditioned, predicted, self.played, self.provenance, rig)
+        return laboratory_draws(self.prior, self.conditioned, predicted, self.played, self.provenance, self._where)
 
     def files(self) -> tuple[str, str]:
         """Texts of the parameter file (TOML) and of the table of draws (CSV) of this laboratory."""
@@ -120,7 +122,7 @@ class Observed(Generic[D, F]):
 
     def __repr__(self) -> str:
         own = self.predictions[0]
-        ends = [each.proportion_correct for each in (own.before, own.after)]
+        ends = (own.before.proportion_correct, own.after.proportion_correct)
         spans = " → ".join(f"{100 * low:.1f}–{100 * high:.1f} %" for _, low, high in ends)
         return f"Observed({self.data!r}: {spans})"
 
@@ -177,15 +179,12 @@ def observed(
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> from thermicon.perception.pilot.synthetic import synthetic_measurements, synthetic_trials
+    >>> from thermicon.perception.pilot.synthetic import synthetic_trials
     >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
     >>> answers = synthetic_trials(icons, rig, participants=2, trials=12, seed=3)
     >>> found = observed(answers, icons, rig, draws=20)
     >>> len(found.data.each), found.data.pooled.trials
     (2, 24)
-    >>> values = synthetic_measurements(rig, participants=3, seed=2)
-    >>> len(observed(values, icons, rig, draws=20).fit.conditions)
-    4
     """
     names = tuple(icon.name for icon in icons)
     if isinstance(trials, Trials) and trials.icons != names:
@@ -198,7 +197,7 @@ def observed(
     step = step_counter(progress, (1 + len(others)) * (number + kept))
     main = stage(icons, rig, prior, seed=seed, tracking=tracking)
     data: Any = Answered(trials, main) if isinstance(trials, Trials) else Measured(trials, prior, Setting.of(rig))
-    found: Conditioned[Any] = condition(data, before, seed=seed, kept=kept, step=step)
+    found: Conditioned = condition(data, before, seed=seed, kept=kept, step=step)
 
     def both(played: Stage) -> tuple[Confusions, Confusions]:
         return played.confusions(before, step), played.confusions(found.after, step)
@@ -211,7 +210,8 @@ def observed(
         fit=data.compare(found.simulated, seed),
         fit_after=data.compare(found.simulated_after, seed),
         predictions=tuple(
-            ChangedPrediction.of(each.title, *pair) for each, pair in zip((icons, *others), pairs, strict=True)
+            ChangedPrediction(*(SetPrediction.of(each.title, one) for one in pair))
+            for each, pair in zip((icons, *others), pairs, strict=True)
         ),
         constants=changed(
             prior.names, prior.values(before), prior.values(found.after), found.effective_after, prior.units

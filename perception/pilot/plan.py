@@ -36,7 +36,6 @@ DRAWS, EXPERIMENTS = 300, 600
 PARTICIPANTS, TRIALS = (4, 8, 12, 16, 24, 32, 48), (12, 24, 48, 96)
 MOST_PARTICIPANTS, MOST_TRIALS = 500, 5000
 POWER, WIDTH, LENGTH = 0.8, 0.10, 20
-Whole = NDArray[np.int64]
 FEWEST = 2
 """Participants that an interval over participants needs."""
 
@@ -55,11 +54,6 @@ class Design:
     width: float
     found: float | None = None
     wrong: float | None = None
-
-    @property
-    def total(self) -> int:
-        """Trials of all participants, of one set."""
-        return self.participants * self.trials
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -105,7 +99,7 @@ class Plan:
     def cheapest(self) -> Design | None:
         """The design of the fewest trials that gives what was asked for, of equal ones that of fewer participants."""
         good = [each for each in self.designs if self.enough(each)]
-        return min(good, key=lambda each: (each.total, each.participants)) if good else None
+        return min(good, key=lambda each: (each.participants * each.trials, each.participants)) if good else None
 
     def to_dict(self) -> dict[str, Any]:
         """Every number as plain data."""
@@ -130,9 +124,7 @@ class Plan:
         return json.dumps(self.to_dict(), ensure_ascii=False, indent=1)
 
     def __repr__(self) -> str:
-        best = self.cheapest
-        how = "none is enough" if best is None else f"{best.participants} participants × {best.trials} trials"
-        return f"Plan({len(self.predictions)} set{'s' * (len(self.predictions) > 1)}: {how})"
+        return f"Plan({len(self.designs)} designs, the cheapest {self.cheapest})"
 
 
 def plan(
@@ -260,7 +252,9 @@ def _simulated(played: Sequence[Confusions], people: int, trials: int, stream: n
     )
 
 
-def _shares(one: Confusions, where: Whole, invited: Whole, trials: int, rng: np.random.Generator) -> Array:
+def _shares(
+    one: Confusions, where: NDArray[np.int64], invited: NDArray[np.int64], trials: int, rng: np.random.Generator
+) -> Array:
     """Proportion correct (experiments, participants) of presentations as even as possible."""
     icons = len(one.icons)
     chances = np.diagonal(one.probability, axis1=2, axis2=3)[where[:, None], invited].astype(np.float64)

@@ -125,9 +125,5 @@ def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tr
 
 
 def laboratories_for(icons: int, wanted: int) -> int:
-    """How many of the wanted laboratories fit into memory for a set of this size.
-
-    >>> laboratories_for(6, 1000)
-    1000
-    """
+    """How many of the wanted laboratories fit into memory for a set of this size."""
     return min(wanted, MOST_CELLS // (people_for_intervals(icons) * icons**2))

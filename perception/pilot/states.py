@@ -62,20 +62,17 @@ class LaboratoryPrior:
 
     `records` are those of an observer, from which the intervals of memory are read (None: the shipped ones). Memory
     that the draws have themselves is kept with their constants, on the scale of its shipped interval.
-
-    >>> prior = LaboratoryPrior(PosteriorDraws.load(), "episodes")
-    >>> some = prior.first(50, seed=0)
-    >>> len(some), prior.constants(some).shape == (50, len(prior.draws.names))
-    (50, True)
     """
 
     def __init__(self, draws: PosteriorDraws, norm: Norm, records: Table | None = None) -> None:
         self.draws, self.norm = draws, norm
         own = [each for each in memory_parameters(norm) if each.name in draws.memory_names]
         free = [each for each in memory_parameters(norm, records=records) if each.name not in draws.memory_names]
-        self.memory, self._of_draws = (*own, *free), len(own)
+        self.memory = (*own, *free)
         known = {prior.name: prior for prior in priors_of(draws.variable).each}
         self._scales: tuple[Prior, ...] = tuple(known[name] for name in draws.names)
+        # Coordinates that belong to the draws: constants, and memory that they have themselves.
+        self._held, self._free = len(self._scales) + len(own), len(free)
         places = np.array([[p.to_place(v) for p, v in zip(self._scales, row, strict=True)] for row in draws.draws])
         places = np.hstack([places, *(_scores(each, draws)[:, None] for each in own)])
         self._middle = places.mean(axis=0)
@@ -97,15 +94,6 @@ class LaboratoryPrior:
                 f"{model.name} has no posterior draws, from which laboratories are made: give a table of draws (.csv)"
             )
         return cls(model.posterior, norm, model.records)
-
-    @property
-    def _held(self) -> int:
-        """Coordinates that belong to the draws: constants, and memory that they have themselves."""
-        return len(self._scales) + self._of_draws
-
-    @property
-    def _free(self) -> int:
-        return len(self.memory) - self._of_draws
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -155,9 +155,5 @@ def best_list(
 
 
 def steps_of(length: int) -> int:
-    """Number of additions that a list of a length is built in.
-
-    >>> steps_of(20), steps_of(100)
-    (20, 25)
-    """
+    """Number of additions that a list of a length is built in."""
     return -(-length // -(-length // MOST_STEPS))

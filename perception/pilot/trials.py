@@ -23,25 +23,10 @@ from ..arrays import Array, own_arrays
 class Trials:
     """Answers of some participants to the icons of a set.
 
-    Attributes
-    ----------
-    icons
-        Names of all icons that could be answered, in the order of the set.
-    participants
-        Labels of the participants.
-    counts
-        Answers (participants, icons presented, icons answered).
-    time_s
-        Median time of each participant's correct answers, s; NaN where none was recorded.
-    source, digest
-        Name of the file, and the first 16 digits of its SHA-256.
-    warnings
-        What is doubtful about the times in the file, with place and cure.
-
-    Raises
-    ------
-    ValueError
-        For counts of another shape, negative or fractional ones, and for a participant without answers.
+    `icons` are the names of all that could be answered, in the order of the set; `counts` (participants, icons
+    presented, icons answered). `time_s` is the median time of each participant's correct answers, s (NaN: none was
+    recorded); `source` and `digest` are the name of the file and the first 16 digits of its SHA-256, `warnings` what is
+    doubtful about it, with place and cure.
 
     Examples
     --------
@@ -194,11 +179,7 @@ def score_pooled(trials: Trials) -> AnswerScore:
 
 
 def wilson(successes: float, trials: float) -> tuple[float, float]:
-    """Wilson's 95 % interval of a proportion.
-
-    >>> tuple(round(end, 3) for end in wilson(18, 20))
-    (0.699, 0.972)
-    """
+    """Wilson's 95 % interval of a proportion."""
     share, square = successes / trials, Z_95**2 / trials
     middle = (share + 0.5 * square) / (1.0 + square)
     half = Z_95 * math.sqrt(share * (1.0 - share) / trials + 0.25 * square / trials) / (1.0 + square)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +24,6 @@ MOST_MB, MOST_ROWS, MOST_PARTICIPANTS = 20, 200_000, 1000
 LONGEST_LABEL, LONGEST_TIME_S = 100, 3600.0
 LEAST_TIMES, SLOW_S, SLOWEST_S = 3, 60.0, 600.0
 """Times by which a unit is judged; medians above which whole numbers from 100 on, or any, can only be milliseconds."""
-PAUSE, MOST_PAUSES = 30.0, 5
-"""Times over SLOW_S and so many times the median are doubtful; of so many, each has a warning of its own."""
 LIKE_TIMES = re.compile(
     r"(.*\.)?(rt|latency|((reaction|response|answer)[ _]?)?time)[ _(\[]*(s|sec(ond)?s?|ms|msecs?|milliseconds)?[)\]]?",
     re.IGNORECASE,
@@ -38,30 +36,12 @@ class TrialsError(InputError):
 
 
 def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
-    """Read the answers of an identification experiment.
+    """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
-    Parameters
-    ----------
-    path
-        A CSV file with the columns participant, trial, presented, responded and, if recorded, time_s. Semicolons and
-        tabs also separate columns; lines that begin with # are comments.
-    icons
-        Names of the icons of the set, which are all answers that there are.
+    A CSV file has the columns participant, trial, presented, responded and, if recorded, time_s. Semicolons and tabs
+    also separate columns; lines that begin with # are comments. Participants are in the order of the file. A
+    `TrialsError` says what is wrong, where, and what helps.
 
-    Returns
-    -------
-    Trials
-        Participants in the order of the file.
-
-    Raises
-    ------
-    TrialsError
-        For a file that cannot be read, is too large or has no rows, for missing columns, for a trial that stands twice,
-        for names that are not in the set, for times that are negative, over an hour or not numbers, and for times that
-        are plainly milliseconds.
-
-    Examples
-    --------
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "trials.csv"
@@ -71,15 +51,13 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     """
     file = Path(path)
     table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT)
-    rows = list(table.records((*COLUMNS, TIME)))
-    _check_unit_of_times(file, [row for _, row in rows])
     names, known = tuple(icons), set(icons)
     places = {name: place for place, name in enumerate(names)}
-    participants: dict[str, int] = {}
-    answers: list[tuple[int, int, int]] = []
-    times: list[tuple[int, float]] = []
-    timed: list[tuple[str, int, float]] = []
+    answers: dict[str, list[tuple[int, int]]] = {}
+    right: dict[str, list[float]] = {}
     first: dict[tuple[str, str], int] = {}
+    rows = list(table.records((*COLUMNS, TIME)))
+    _check_unit_of_times(file, [row for _, row in rows])
     for line, row in rows:
         where = f"{file}:{line}"
         person, trial = label(row["participant"], "participant", where), label(row["trial"], "trial", where)
@@ -89,54 +67,28 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
                 f"{first[person, trial]}; number the trials of a participant on, or remove the copy"
             )
         first[person, trial] = line
-        pair = [_icon(row[column], column, known, where) for column in ("presented", "responded")]
-        number = participants.setdefault(person, len(participants))
-        answers.append((number, places[pair[0]], places[pair[1]]))
+        shown, said = (places[_icon(row[column], column, known, where)] for column in ("presented", "responded"))
+        answers.setdefault(person, []).append((shown, said))
         if row.get(TIME):
-            timed.append((person, line, _time(row[TIME], where)))
-            if pair[0] == pair[1]:
-                times.append((number, timed[-1][2]))
-    check_labels(file, participants)
-    counts = np.zeros((len(participants), len(names), len(names)))
-    np.add.at(counts, tuple(np.array(answers).T), 1.0)
-    medians = tuple(
-        float(np.median(each)) if (each := [time for person, time in times if person == number]) else math.nan
-        for number in range(len(participants))
-    )
-    doubts = (*_unread_times(file, table.header), *_pauses(file, timed))
-    return Trials(names, tuple(participants), counts, medians, file.name, digest, doubts)
+            time = _time(row[TIME], where)
+            if shown == said:
+                right.setdefault(person, []).append(time)
+    check_labels(file, answers)
+    counts = np.zeros((len(answers), len(names), len(names)))
+    for number, pairs in enumerate(answers.values()):
+        np.add.at(counts[number], tuple(np.array(pairs).T), 1.0)
+    medians = tuple(float(np.median(right[person])) if person in right else math.nan for person in answers)
+    return Trials(names, tuple(answers), counts, medians, file.name, digest, _unread_times(file, table.header))
 
 
-def _unread_times(file: Path, header: Sequence[str]) -> list[str]:
+def _unread_times(file: Path, header: Sequence[str]) -> tuple[str, ...]:
     """That times in a column of another name are not read, in a table without the one that is."""
-    if TIME in header:
-        return []
-    return [
+    return tuple(
         f"{file}: times in the column {quoted(name)} are not read: name it {TIME} and give s, or leave it as it is if "
         "they are of no interest"
         for name in header
-        if LIKE_TIMES.fullmatch(name)
-    ]
-
-
-def _pauses(file: Path, timed: Sequence[tuple[str, int, float]]) -> list[str]:
-    """Times of (participant, line, s) that are far longer than the others of the participant, or of all if few."""
-    each: dict[str, list[float]] = {}
-    for person, _, value in timed:
-        each.setdefault(person, []).append(value)
-    together, found = [value for _, _, value in timed], list[str]()
-    for person, line, value in timed:
-        own = each[person] if len(each[person]) >= LEAST_TIMES else together
-        middle = float(np.median(own))
-        if len(own) >= LEAST_TIMES and value > max(SLOW_S, PAUSE * middle):
-            whose = f"of participant {quoted(person)}" if own is not together else "of all times"
-            found.append(
-                f"{file}:{line}: {TIME} is {value:g} s, and the median {whose} is {middle:.3g} s: correct it, or leave "
-                "it empty; the answer counts in either case"
-            )
-    if (more := len(found) - MOST_PAUSES) > 0:
-        found[MOST_PAUSES:] = [f"{file}: {more} more {'time is' if more == 1 else 'times are'} that long"]
-    return found
+        if TIME not in header and LIKE_TIMES.fullmatch(name)
+    )
 
 
 def _check_unit_of_times(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
@@ -144,26 +96,15 @@ def _check_unit_of_times(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
     times: dict[str, list[float]] = {}
     for row in rows:
         if math.isfinite(value := as_number(row.get(TIME, ""))):
-            times.setdefault(row["participant"], []).append(value)
-    together = [value for each in times.values() for value in each]
-    slow = [name for name, each in times.items() if is_milliseconds(each)]
-    others = [name for name, each in times.items() if len(each) >= LEAST_TIMES and name not in slow]
-    if slow and others:
-        more = f" and {len(slow) - 1} more" if len(slow) > 1 else ""
-        middle, whose = float(np.median(times[slow[0]])), f" of participant {quoted(slow[0])}{more}"
-    elif slow or is_milliseconds(together):
-        middle, whose = float(np.median(together)), ""
-    else:
-        return
-    raise TrialsError(f"{path}: {TIME}{whose} has a median of {middle:g}: {LIKE_MILLISECONDS}")
+            times.setdefault(f" of participant {quoted(row['participant'])}", []).append(value)
+    together = {"": [value for each in times.values() for value in each]}
+    for whose, each in (times | together).items():
+        if is_milliseconds(each):
+            raise TrialsError(f"{path}: {TIME}{whose} has a median of {np.median(each):g}: {LIKE_MILLISECONDS}")
 
 
 def is_milliseconds(times: Sequence[float]) -> bool:
-    """Whether times of answers are plainly not in s: whole numbers from 100 on with a median over a minute, or over 10.
-
-    >>> is_milliseconds([1240, 980, 2315]), is_milliseconds([1.24, 0.98, 2.315]), is_milliseconds([61.5, 80, 75.2])
-    (True, False, False)
-    """
+    """Whether times of answers are plainly not in s: whole from 100 on, with a median over a minute, or over 10."""
     if len(times) < LEAST_TIMES:
         return False
     middle, whole = float(np.median(times)), all(time >= 100.0 and time == int(time) for time in times)
@@ -204,7 +145,7 @@ def label(cell: str, column: str, where: str) -> str:
     return cell
 
 
-def check_labels(path: Path, participants: Sequence[str] | dict[str, int]) -> None:
+def check_labels(path: Path, participants: Collection[str]) -> None:
     """Refuse labels of participants that differ by case alone, and more participants than an experiment has."""
     folded: dict[str, str] = {}
     for name in participants:

@@ -142,7 +142,11 @@ class SubsetIdentification:
         """Scores (others,) of the chosen with the one at a place replaced by each of `others`."""
         index, tried = np.asarray(chosen, dtype=np.int64), np.asarray(others, dtype=np.int64)
         each = replaced(self.half, self.push, self.lapse, index, place, tried)
-        correct, bits = each.mean(axis=-1) if self.share is None else np.quantile(each, 1.0 - self.share, axis=-1)
+        if self.share is None:
+            # A running sum does not depend on how many are scored together, so that equal choices have equal scores.
+            correct, bits = np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1]
+        else:
+            correct, bits = np.quantile(each, 1.0 - self.share, axis=-1)
         if objective != "bits-per-s":
             return np.asarray(correct if objective == "correct" else bits)
         trials = np.repeat(index[None], tried.size, axis=0)

@@ -11,9 +11,9 @@ import pytest
 from tests.weights import weighted_quantile
 from thermicon.perception.pilot.conditioning import condition, systematic
 from thermicon.perception.pilot.data import Answered
-from thermicon.perception.pilot.fit import compare
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
 from thermicon.perception.pilot.playing import Confusions
+from thermicon.perception.pilot.prediction import compare
 from thermicon.perception.pilot.states import Laboratories
 from thermicon.perception.pilot.trials import Trials
 

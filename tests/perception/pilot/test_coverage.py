@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.perception.pilot.madeup import USUAL, measurements_of
 from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
 from thermicon.circuit.cores import quiet_blas
@@ -20,7 +21,7 @@ from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, l
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
 from thermicon.perception.pilot.playing import Confusions, stage
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
-from thermicon.perception.pilot.synthetic import USUAL, answers_of, measurements_of, spread
+from thermicon.perception.pilot.synthetic import answers_of, spread
 
 ENDS = (0.025, 0.975)
 RIG = Rig.load("thenar")

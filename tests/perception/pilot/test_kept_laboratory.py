@@ -13,9 +13,9 @@ from thermicon.perception import rank
 from thermicon.perception.identification.laboratory import DRAWS
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.data import Answered
-from thermicon.perception.pilot.fit import Fit
 from thermicon.perception.pilot.laboratory_file import middle_of, off_middle
 from thermicon.perception.pilot.observed import Observed, observed
+from thermicon.perception.pilot.prediction import Fit
 from thermicon.perception.pilot.synthetic import synthetic_trials
 from thermicon.perception.ranking.sensitivity import sensitivity
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.perception.pilot.madeup import USUAL, synthetic_measurements
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.laboratory import Laboratory
@@ -17,7 +18,6 @@ from thermicon.perception.pilot.conditioning import Conditioned, condition
 from thermicon.perception.pilot.data import Measured
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
-    Predicted,
     groups_of,
     log_errors,
     log_likelihood,
@@ -25,10 +25,9 @@ from thermicon.perception.pilot.measurement_likelihood import (
     predicted,
     shared_covariance,
 )
-from thermicon.perception.pilot.measurements import Measurements
+from thermicon.perception.pilot.measurements_file import Measurements
 from thermicon.perception.pilot.observed import observed
 from thermicon.perception.pilot.states import OFFSETS, LaboratoryPrior
-from thermicon.perception.pilot.synthetic import USUAL, synthetic_measurements
 
 RIG = Rig.load("thenar")
 CHOICE = Condition("threshold", "forced_choice", "cold", 32.0, None, 1.0, 3.0)
@@ -103,7 +102,7 @@ def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
         assert sign * (high - low) > 0.08
 
 
-def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measurements, Conditioned[Predicted]]:
+def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measurements, Conditioned]:
     """Measurements that so few draws do not carry, and the laboratories conditioned on them."""
     some = synthetic_measurements(RIG, participants=12, trials=60, seed=1, conditions=SHARP)
     return some, condition(Measured(some, prior, Setting.of(RIG)), prior.first(draws, 2), kept=kept)

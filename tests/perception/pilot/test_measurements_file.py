@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.perception.pilot.madeup import synthetic_measurements
 from thermicon.circuit import Rig
-from thermicon.perception.pilot.measurements import Measurements
-from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
-from thermicon.perception.pilot.synthetic import synthetic_measurements
+from thermicon.perception.pilot.measurements_file import Measurements, is_measurements, read_measurements
 from thermicon.perception.pilot.trials_file import TrialsError
 
 HEAD = "participant,kind,method,channel,size_K,value,unit,standard_error,trials,baseline_C\n"

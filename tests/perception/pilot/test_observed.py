@@ -15,8 +15,8 @@ from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorD
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.data import Answered
-from thermicon.perception.pilot.fit import Fit
 from thermicon.perception.pilot.observed import Observed, observed
+from thermicon.perception.pilot.prediction import Fit
 from thermicon.perception.pilot.states import LaboratoryPrior
 from thermicon.perception.pilot.synthetic import synthetic_trials, trials_text
 from thermicon.perception.pilot.trials import Trials
@@ -73,7 +73,7 @@ def test_made_up_answers_are_read_back_and_depend_on_the_seed(
 @pytest.mark.slow
 def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers: Trials) -> None:
     own = found.to_dict()
-    assert json.loads(found.to_json()) == own
+    assert json.loads(found.to_json()) == json.loads(json.dumps(own))
     assert own["trials"] == answers.total == 54
     assert own["counts"] == answers.pooled.astype(int).tolist()
     assert [each["who"] for each in own["each"]] == ["P1", "P2", "P3"]

@@ -86,9 +86,6 @@ def test_one_participant_in_milliseconds_is_named(tmp_path: Path) -> None:
     rows = [f"P1,{k},dip,dip,{1.2 + 0.1 * k}" for k in range(9)] + [f"P2,{k},dip,dip,{1200 + k}" for k in range(4)]
     with pytest.raises(TrialsError, match=r"time_s of participant 'P2' has a median of 1201\.5: these look like mill"):
         read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
-    rows += [f"P{k},{trial},dip,dip,{1200 + trial}" for k in range(3, 6) for trial in range(9)]
-    with pytest.raises(TrialsError, match=r"time_s of participant 'P2' and 3 more has a median of 1201\.5"):
-        read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
 
 
 @pytest.mark.parametrize("times", [(61.5, 80, 75), (1240, 1.5), (65, 72, 90), (1.2, 1.5, 1800)])
@@ -98,24 +95,6 @@ def test_slow_answers_stay_seconds(tmp_path: Path, times: tuple[float, ...]) -> 
     assert found.time_s == (float(np.median(times)),)
 
 
-def test_a_time_far_longer_than_the_others_is_warned_of_with_its_line(tmp_path: Path) -> None:
-    rows = [f"P1,{k},dip,dip,{1.5 + 0.1 * k}" for k in range(5)] + ["P1,9,dip,cool-step,1800", "P2,1,dip,dip,61"]
-    path = written(tmp_path, *rows, head=f"{HEAD},time_s")
-    pause, other = read_trials(path, ICONS).warnings
-    assert pause == (
-        f"{path}:7: time_s is 1800 s, and the median of participant 'P1' is 1.75 s: correct it, or leave it empty; the "
-        "answer counts in either case"
-    )
-    assert other.startswith(f"{path}:8: time_s is 61 s, and the median of all times is 1.8 s: ")
-    rows = [f"P1,{k},dip,dip,{90 if k < 6 else 1.5}" for k in range(20)]
-    many = read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS).warnings
-    assert (len(many), many[-1]) == (6, f"{path}: 1 more time is that long")
-    slow = written(
-        tmp_path, *(f"P1,{k},dip,dip,{time}" for k, time in enumerate((1.5, 2, 3, 59))), head=f"{HEAD},time_s"
-    )
-    assert read_trials(slow, ICONS).warnings == ()
-
-
 @pytest.mark.parametrize(
     "column", ["time_ms", "Time_s", "RT", "key_resp.rt", "response_time (s)", "reaction time [ms]"]
 )
@@ -123,13 +102,8 @@ def test_times_under_another_name_are_said_not_to_be_read(tmp_path: Path, column
     path = written(tmp_path, "P1,1,dip,dip,900", head=f"{HEAD},{column}")
     (said,) = read_trials(path, ICONS).warnings
     assert said.startswith(f"{path}: times in the column {column!r} are not read: name it time_s and give s")
-    both = written(tmp_path, "P1,1,dip,dip,900,0.9", head=f"{HEAD},{column},time_s")
-    assert read_trials(both, ICONS).warnings == ()
-
-
-@pytest.mark.parametrize("column", ["timeline", "start", "part", "sometimes", "note"])
-def test_other_columns_are_nobodys_business(tmp_path: Path, column: str) -> None:
-    assert read_trials(written(tmp_path, "P1,1,dip,dip,7", head=f"{HEAD},{column}"), ICONS).warnings == ()
+    for head in (f"{HEAD},{column},time_s", f"{HEAD},timeline,sometimes"):
+        assert read_trials(written(tmp_path, "P1,1,dip,dip,900,0.9", head=head), ICONS).warnings == ()
 
 
 def test_empty_absent_binary_and_large_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
