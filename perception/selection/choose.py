@@ -20,10 +20,9 @@ from ..identification.population import RATE_HZ
 from ..progress import Progress, step_counter
 from .appraise import Appraisal, appraise, nearest_two
 from .max_min_subset import Limits, SubsetChoice, max_min_subset, nearest_pair
-from .pick import pick
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection
-from .subset_identification import SubsetIdentification
+from .subset_identification import SubsetIdentification, pick
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking

@@ -29,10 +29,9 @@ from .appraise import nearest_two, population_response
 from .goal import Goal
 from .goal_result import GoalResult, SetOutcome, judge_goal
 from .max_min_subset import SubsetChoice
-from .pick import pick
 from .pool import Pool, soft_finding
 from .request import ChoiceError, Objective, Selection
-from .subset_identification import SubsetIdentification
+from .subset_identification import SubsetIdentification, pick
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,9 +12,9 @@ from ..arrays import Array
 from .candidates import Candidate, sample_candidates
 from .evaluator import Evaluator
 from .max_min_subset import Limits, max_min_subset, nearest_pair
-from .pick import ALIKE, climb, pick, swaps
 from .pool import Pool
 from .request import ChoiceError
+from .subset_identification import ALIKE, climb, pick, swaps
 
 if TYPE_CHECKING:
     from thermicon.icons import Family, Icon, IconSet

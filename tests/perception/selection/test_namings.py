@@ -8,9 +8,8 @@ import pytest
 from thermicon.perception.identification.confusion import confuse
 from thermicon.perception.identification.measures import information_bits, proportion_correct
 from thermicon.perception.selection.max_min_subset import Limits
-from thermicon.perception.selection.pick import ceiling, pick
 from thermicon.perception.selection.request import Objective
-from thermicon.perception.selection.subset_identification import SubsetIdentification
+from thermicon.perception.selection.subset_identification import SubsetIdentification, ceiling, pick
 
 OBJECTIVES: tuple[Objective, ...] = ("correct", "bits", "bits-per-s")
 
