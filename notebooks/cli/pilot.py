@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 LEAST_DRAWS, MOST_DRAWS, USUAL_DRAWS, USUAL_PLAN_DRAWS = 20, 20_000, 1000, 300
 """The least as in `thermicon.perception.pilot.observed`, repeated here to avoid its imports."""
-MOST_LENGTH, MOST_SIZES, MOST_PARTICIPANTS, MOST_TRIALS = 1000, 12, 500, 5000
-PARTICIPANTS, TRIALS, LENGTH = "4,8,12,16,24,32,48", "12,24,48,96", 20
+MOST_SIZES, MOST_PARTICIPANTS, MOST_TRIALS = 12, 500, 5000
+PARTICIPANTS, TRIALS = "4,8,12,16,24,32,48", "12,24,48,96"
 KEEP_IT = "With --keep lab.toml, rank, improve and the workbench can predict for this laboratory."
 NEEDS = "laboratories are drawn from draws of a posterior"
 
@@ -86,15 +86,6 @@ def pilot_command(
             "distinguish them.  [default: 10; 80]",
         ),
     ] = None,
-    presentations: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            min=1,
-            max=MOST_LENGTH,
-            help="Plan: number of presentations of a pilot with one participant.  [default: 20]",
-        ),
-    ] = None,
     draws: Annotated[
         int | None,
         typer.Option(
@@ -109,11 +100,11 @@ def pilot_command(
     """Plan an identification experiment, or compare its answers with the prediction and sharpen it by them.
 
     Without answers, whole experiments are simulated in laboratories that the evidence allows: how many participants and
-    trials give the wanted interval of FILE's per cent correct, or distinguish two sets, and which icons to pilot. With
+    trials give the wanted interval of FILE's per cent correct, or distinguish two sets. With
     answers, FILE is the set that was presented; further ones are predicted for the laboratory too. A laboratory is one
     draw of the posterior with people of its own: those that make the answers likely count more.
     """
-    planned = {"--participants": participants, "--trials": trials, "--wanted": wanted, "--presentations": presentations}
+    planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
     observed = {"--keep": keep, "--figure": figure.figure}
     for option, value in (planned if answers is not None else observed).items():
         if value is not None:
@@ -147,7 +138,6 @@ def pilot_command(
             participants=people,
             trials=times,
             wanted=None if wanted is None else wanted / 100.0,
-            length=presentations or LENGTH,
             draws=draws or USUAL_PLAN_DRAWS,
             **crowd.asked,
             observer=model,

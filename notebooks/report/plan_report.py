@@ -1,4 +1,4 @@
-"""What ``thermicon pilot`` says of a plan: sizes of experiments, what each gives, and the icons to pilot."""
+"""What ``thermicon pilot`` says of a plan: sizes of experiments, and what each gives."""
 
 from __future__ import annotations
 
@@ -7,20 +7,16 @@ from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, percent, percent_span
 
-from .blocks import Block, Bullets, Grid, Text, grid
+from .blocks import Block, Grid, Text, grid
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.plan import Design, Plan
 
-MOST_LISTED = 12
-CLEAR = 2.0
-"""A list is called better than random ones where it is so many SDs of them better."""
-
 
 def plan_report(found: Plan, names: Sequence[str]) -> list[Block]:
-    """Report predictions, designs, the one to take, and the pilot."""
+    """Report predictions, designs, and the one to take."""
     predicted, designed = (Text("\n".join(lines)) for lines in (prediction_lines(found, names), design_lines(found)))
-    return [predicted, designs_table(found), designed, *pilot_blocks(found)]
+    return [predicted, designs_table(found), designed]
 
 
 def prediction_lines(found: Plan, names: Sequence[str]) -> list[str]:
@@ -81,21 +77,3 @@ def design_lines(found: Plan) -> list[str]:
             f"{' of each set' if found.difference is not None else ''}."
         )
     return lines
-
-
-def pilot_blocks(found: Plan) -> list[Block]:
-    """The trial list of the pilot, and what it is expected to be worth."""
-    pilot, what = found.pilot, "difference" if found.difference is not None else "per cent correct"
-    named = list(pilot.presented.items())
-    points = [f"{name}: {times} ×" for name, times in named[:MOST_LISTED]]
-    points += [f"and {len(named) - MOST_LISTED} more icons, see --json"] * (len(named) > MOST_LISTED)
-    average, spread = pilot.sd_random
-    worth = (
-        f"Expected SD of the {what} between laboratories, in points: {100 * pilot.sd_before:.2f} now, "
-        f"{100 * pilot.sd:.2f} after this list, {100 * average:.2f} after a random list, {100 * pilot.sd_even:.2f} "
-        "after one that presents all icons alike."
-    )
-    if average - pilot.sd < CLEAR * spread:
-        worth += " The choice hardly matters here: random lists of that length narrow the answer about as much."
-    head = Text(f"Pilot with one participant, {pilot.length} presentations in random order:")
-    return [head, Bullets(tuple(points)), Text(worth)]

@@ -1,4 +1,4 @@
-"""Plan an experiment: how many participants and trials it needs, and which icons to pilot, by simulating all of it.
+"""Plan an experiment: how many participants and trials it needs, by simulating all of it.
 
 Every simulated experiment takes place in another laboratory that the evidence allows. Participants are drawn from its
 people, each names every set, and the mean over participants is reported with Student's 95 % interval; two sets are
@@ -26,7 +26,6 @@ from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
 from .prediction import SetPrediction, Three, three
 from .states import LaboratoryPrior
-from .trial_list import TrialList, best_list, steps_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -35,7 +34,7 @@ if TYPE_CHECKING:
 DRAWS, EXPERIMENTS = 300, 600
 PARTICIPANTS, TRIALS = (4, 8, 12, 16, 24, 32, 48), (12, 24, 48, 96)
 MOST_PARTICIPANTS, MOST_TRIALS = 500, 5000
-POWER, WIDTH, LENGTH = 0.8, 0.10, 20
+POWER, WIDTH = 0.8, 0.10
 FEWEST = 2
 """Participants that an interval over participants needs."""
 
@@ -75,15 +74,12 @@ class Plan:
         All of them, by participants and trials.
     wanted
         What was asked for: the power of two sets, or the width of the interval of one.
-    pilot
-        The trial list that is expected to narrow the answer most.
     """
 
     predictions: tuple[SetPrediction, ...]
     difference: Three | None
     designs: tuple[Design, ...]
     wanted: float
-    pilot: TrialList
     rig: str
     rig_changes: tuple[str, ...]
     norm: str
@@ -116,7 +112,6 @@ class Plan:
             "wanted": {"power" if self.difference is not None else "interval_width": self.wanted},
             "designs": [each.to_dict() for each in self.designs],
             "cheapest": None if cheapest is None else cheapest.to_dict(),
-            "pilot": self.pilot.to_dict(self.seed),
         }
 
     def to_json(self) -> str:
@@ -135,7 +130,6 @@ def plan(
     participants: Sequence[int] = PARTICIPANTS,
     trials: Sequence[int] = TRIALS,
     wanted: float | None = None,
-    length: int = LENGTH,
     draws: int = DRAWS,
     seed: int = 0,
     norm: str = USUAL_NORM,
@@ -143,7 +137,7 @@ def plan(
     observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
 ) -> Plan:
-    """Simulate experiments of several sizes, and choose the icons of a pilot.
+    """Simulate experiments of several sizes.
 
     Parameters
     ----------
@@ -155,8 +149,6 @@ def plan(
         Sizes to try: participants, and trials of each participant with each set.
     wanted
         Power (two sets, None: 0.8), or width of the 95 % interval of the proportion correct (one set, None: 0.1).
-    length
-        Presentations of the pilot to one participant.
     draws
         Draws of the posterior, each with a laboratory around it.
     seed
@@ -182,16 +174,16 @@ def plan(
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> found = plan(read_cue("six-icons"), Rig.load("thenar"), participants=[4, 40], trials=[24], draws=20, length=2)
-    >>> found.designs[1].width < found.designs[0].width, found.pilot.length
-    (True, 2)
+    >>> found = plan(read_cue("six-icons"), Rig.load("thenar"), participants=[4, 40], trials=[24], draws=20)
+    >>> found.designs[1].width < found.designs[0].width
+    True
     """
     _check(participants, trials, wanted, draws)
     sets = [icons] if other is None else [icons, other]
     prior = LaboratoryPrior.of(observer, check_norm(norm))
     number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
     laboratories = prior.first(number, seed)
-    total = number * len(sets) + len(participants) * len(trials) + steps_of(max(length, 1))
+    total = number * len(sets) + len(participants) * len(trials)
     step = step_counter(progress, total)
     played = [stage(each, rig, prior, seed=seed, tracking=tracking).confusions(laboratories, step) for each in sets]
     apart = None if other is None else played[0].correct - played[1].correct
@@ -200,13 +192,11 @@ def plan(
         for j, times in enumerate(trials):
             designs.append(_simulated(played, people, times, np.random.SeedSequence([seed, 24, k, j])))
             step()
-    target = played[0].correct if apart is None else apart
     return Plan(
         predictions=tuple(SetPrediction.of(each.title, one) for each, one in zip(sets, played, strict=True)),
         difference=None if apart is None else three(apart),
         designs=tuple(designs),
         wanted=wanted if wanted is not None else (WIDTH if other is None else POWER),
-        pilot=best_list(played[0], target, length, seed=seed, step=step),
         rig=rig.name,
         rig_changes=tuple(rig.changes),
         norm=norm,
