@@ -25,10 +25,9 @@ from ..safety.single_faults import AFTER_ROWS_S
 from ..safety.tally import Tally
 from ..solver.batch_inputs import Bank, State, run_follow
 from ..solver.network import COMPLIANCE_V, HIGHEST_A, LOWEST_A
-from .delivery_deviation import loss_limit
-from .following_module import FollowingModule
+from .delivered_drive import loss_limit
 from .samples import Samples
-from .temperatures import past_most_cooling, rest_of_a_loop, updates_of
+from .temperatures import FollowingModule, past_most_cooling, rest_of_a_loop, updates_of
 
 SENSOR_K = 0.3
 """Greatest offset of the sensors of loop and cut-off: what interchangeable thermistors promise (±0.2 K), and glue."""

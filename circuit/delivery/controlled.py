@@ -31,10 +31,9 @@ from ..solver.kernel_follow import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
 from .any_loop import SENSOR_K, AnyLoop, Limits_A
 from .delivered_drive import DeliveredDrive
-from .following_module import FollowingModule
 from .formats.form import samples_of
 from .samples import Samples
-from .temperatures import rest_of_a_loop, updates_of
+from .temperatures import FollowingModule, rest_of_a_loop, updates_of
 
 BESIDE_K = 0.5
 """How far beside its set-points a display is judged: a wrong sensor, and what a loop swings by on the average."""

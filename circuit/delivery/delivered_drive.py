@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+import numpy as np
 
 from thermicon.icons import Icon
 
+from ..records import Table, load_records
 from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace
-from .delivery_deviation import DeliveryDeviation, delivery_deviation
 from .device import Device
 from .devicefile import DeviceError
 from .samples import Samples
@@ -54,15 +58,6 @@ class DeliveredDrive:
         The delivery of a thermode without its lag: a constant lag is a delay and not a loss.
     narrowed
         What was changed where the range of the device is too small; None where it is not.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Device
-    >>> from thermicon.circuit.delivery.deliver import deliver
-    >>> from thermicon.icons import load_library
-    >>> delivery = deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
-    >>> delivery.delivered
-    Drive(802 rows, ...)
     """
 
     icon: Icon
@@ -121,3 +116,59 @@ class DeliveredDrive:
     def file_s(self) -> float:
         """Duration in s of the file; a file of set-points omits the rest with which the simulation begins."""
         return float(self.played.time_s[-1])
+
+
+PLACES = {"skin": "skin_C", "cold receptor": "cold_receptor_C", "warm receptor": "warm_receptor_C"}
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """Delivered minus designed at one place: largest difference in K (signed) and its time in s, rms in K."""
+
+    place: str
+    largest_K: float
+    at_s: float
+    rms_K: float
+
+
+@dataclass(frozen=True, slots=True)
+class DeliveryDeviation:
+    """How far a delivered trace deviates from the designed one, at the skin and at both receptors."""
+
+    places: tuple[Deviation, ...]
+
+    def __repr__(self) -> str:
+        places = ", ".join(
+            f"{place.place} {place.largest_K * 1e3:+.3g} mK (rms {place.rms_K * 1e3:.3g})" for place in self.places
+        )
+        return f"DeliveryDeviation({places})"
+
+    @property
+    def lost(self) -> tuple[Deviation, ...]:
+        """The deviation at each receptor where its rms is over the stated loss."""
+        limit = loss_limit("receptor difference")
+        return tuple(place for place in self.places if "receptor" in place.place and place.rms_K > limit)
+
+
+def delivery_deviation(designed: Trace, delivered: Trace) -> DeliveryDeviation:
+    """Return how far the delivered trace deviates from the designed one; both have the same rows."""
+    if len(designed.time_s) != len(delivered.time_s):
+        raise ValueError(f"traces of {len(designed.time_s)} and {len(delivered.time_s)} rows cannot be compared")
+    deviations = []
+    for place, column in PLACES.items():
+        deviation_K = getattr(delivered, column) - getattr(designed, column)
+        most = int(np.argmax(np.abs(deviation_K)))
+        rms = float(np.sqrt(np.mean(deviation_K**2)))
+        deviations.append(Deviation(place, float(deviation_K[most]), float(designed.time_s[most]), rms))
+    return DeliveryDeviation(tuple(deviations))
+
+
+@cache
+def loss_table() -> Table:
+    """The stated losses, each with its source."""
+    return load_records(resources.files("thermicon.circuit") / "data" / "loss.toml")
+
+
+def loss_limit(quantity: str) -> float:
+    """Return the limit of one kind of loss."""
+    return loss_table().one(quantity).central

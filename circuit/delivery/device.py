@@ -151,18 +151,7 @@ class Device:
 
 
 def device_names() -> tuple[str, ...]:
-    """Return the names of the shipped devices.
-
-    Returns
-    -------
-    tuple of str
-        Names that `Device.load` accepts.
-
-    Examples
-    --------
-    >>> "qst-tcs2" in device_names()
-    True
-    """
+    """Return the names of the shipped devices."""
     return tuple(sorted(path.name.removesuffix(".toml") for path in _folder().iterdir() if path.name.endswith(".toml")))
 
 

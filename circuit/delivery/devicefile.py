@@ -22,17 +22,7 @@ from ..records import Record, RecordError
 
 
 class DeviceError(InputError):
-    """An impossible device, or one that cannot play a cue: what, where, value, limit, unit, cure.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Device
-    >>> try:
-    ...     Device.load("dac-15")
-    ... except DeviceError as problem:
-    ...     print(problem)
-    dac-15: no such device; ...
-    """
+    """An impossible device, or one that cannot play a cue: what, where, value, limit, unit, cure."""
 
 
 DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]

@@ -17,27 +17,13 @@ from .device import Device
 from .export_folder import HOW, check_export_folder, publish
 from .formats import Format, load_format
 from .pack import pack
-from .prepare import Prepared, prepare_set
-from .refusal import Refusal
+from .prepare import Prepared, Refusal, prepare_set
 
 CURE = "give a new or empty folder, or use the command thermicon export, which replaces an earlier export"
 
 
 class ExportError(InputError):
-    """An export that was refused, or a folder that cannot take one; the text says why and what to change.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from thermicon.icons import load_library
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = (Path(folder) / "notes.txt").write_text("mine")
-    ...     try:
-    ...         export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-protocol-ini", folder=folder)
-    ...     except ExportError as problem:
-    ...         print("refused:", problem)
-    refused: .../notes.txt already exists and was kept; ...
-    """
+    """An export that was refused, or a folder that cannot take one; the text says why and what to change."""
 
 
 class Felt(Protocol):
@@ -72,9 +58,9 @@ class Export:
     Examples
     --------
     >>> from thermicon.icons import load_library
-    >>> result = export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-protocol-ini")
+    >>> result = export(load_library("six-icons")["warming-step"], "tcs2", format="tcs2-serial")
     >>> result.refused, sorted(result.files)
-    ((), ['warming-step.json', 'warming-step.protocol.ini'])
+    ((), ['warming-step.json', 'warming-step.tcs2.txt'])
     """
 
     rig: Rig

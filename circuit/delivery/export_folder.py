@@ -7,16 +7,17 @@ renamed to NAME.before and the new folder to NAME.
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import shutil
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from thermicon.icons.atomic import MARK, OutputError, check_folder, kept_text, stopped_cleanly
-
-from .claims import LONGEST, claims_of
 
 CURE = "give a folder of its own, such as -o drives"
 HOW = "--force replaces it"
@@ -61,12 +62,6 @@ def publish(files: Mapping[str, bytes], folder: Path, replace: bool = False, how
 
     A folder that is not empty is replaced only with ``replace``; ``how`` tells a person how to ask for that. None where
     there was nothing before. Raises OutputError, with the folder as it was, where this cannot be.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as made:
-    ...     _ = publish({"a.json": b"{}", "a.csv": b"1"}, Path(made) / "drives")
-    ...     sorted(path.name for path in (Path(made) / "drives").iterdir())
-    ['a.csv', 'a.json']
     """
     try:
         goal = check_export_folder(folder, replace, how)
@@ -169,3 +164,40 @@ def _flush(folder: Path) -> None:
             os.fsync(place)
         finally:
             os.close(place)
+
+
+LONGEST = 64 * 2**20
+"""Bytes; nothing longer is taken for a sidecar."""
+
+
+@dataclass(frozen=True, slots=True)
+class Claims:
+    """The drive that a sidecar describes, and the digests (SHA-256) of it and of the files of its set, by name.
+
+    A digest is empty where the sidecar holds none.
+    """
+
+    drive: str
+    digests: Mapping[str, str]
+
+
+def claims_of(content: bytes) -> Claims | None:
+    """Return what a file claims as a sidecar; None where it is not a sidecar."""
+    document = table_of(content)
+    if document is None or not isinstance(document.get("file"), str) or "thermicon" not in document:
+        return None
+    shared = document.get("set_files")
+    named = {str(name): str(digest) for name, digest in shared.items()} if isinstance(shared, dict) else {}
+    return Claims(document["file"], {document["file"]: str(document.get("drive_sha256") or ""), **named})
+
+
+def table_of(content: bytes) -> dict[str, Any] | None:
+    """Return the JSON object that a file holds, None where it holds none."""
+    if len(content) > LONGEST:
+        return None
+    try:
+        document = json.loads(content)
+        json.dumps(document, ensure_ascii=False).encode("utf-8")  # half characters and endless nesting are no text
+    except (ValueError, RecursionError):
+        return None
+    return document if isinstance(document, dict) else None

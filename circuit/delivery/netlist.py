@@ -7,19 +7,21 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
 from itertools import pairwise
+
+import numpy as np
 
 from ..arrays import Array
 from ..inputs import InputError
 from ..program import own_version
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
+from ..rig.rigfile import RigError
 from ..solver.drive import Drive
+from ..solver.landing import lead_of
 from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
-from .netlist_landing import EDGE_S, check_landing, contact_lines, lead_currents, lead_s, led_points, points
 
 LONGEST_STEP_S = 2.5e-3
 """Longest step for either program: at 10 ms a steep ramp of the current costs them 2 mK."""
@@ -170,33 +172,17 @@ def _electrical(rig: Rig, corners: list[tuple[float, float]]) -> Iterator[str]:
     yield "+ )"
     yield f"Gdriver 0 plus command 0 {gain!r}"
     yield from _section("the module's electrical port")
-    yield from electrical_lines(partial(_value, rig), "0")
+    yield "Vsense plus ohmic 0"
+    yield f"Rmodule ohmic seebeck {rig.module.resistance_ohm!r}"
+    yield f"Bseebeck seebeck 0 V={rig.module.seebeck_V_per_K!r}*(V(hot)-V(cold))"
 
 
 def _module(rig: Rig) -> Iterator[str]:
-    yield from _section(f"the module's thermal side; {ZERO_C_IN_K!r} makes kelvin of degC")
-    yield from thermal_lines(partial(_value, rig), rig.module.leg_nodes)
-
-
-def _value(rig: Rig, name: str, part: int = 1) -> str:
-    return repr(getattr(rig.module, name) / part)
-
-
-Value = Callable[..., str]
-"""Writes a number of the module by its name in a rig file, and by how many it is divided."""
-
-
-def electrical_lines(value: Value, minus: str) -> Iterator[str]:
-    """The module between `plus` and another node: an ammeter, its resistance, and its Seebeck voltage."""
-    yield "Vsense plus ohmic 0"
-    yield f"Rmodule ohmic seebeck {value('resistance_ohm')}"
-    yield f"Bseebeck seebeck {minus} V={value('seebeck_V_per_K')}*(V(hot)-V(cold))"
-
-
-def thermal_lines(value: Value, cells: int) -> Iterator[str]:
     """Both plates and the legs between them, which store heat in so many cells, or conduct alone where that is 0."""
-    alpha, square = value("seebeck_V_per_K"), "I(Vsense)*I(Vsense)"
-    joule = "" if cells else f"{value('resistance_ohm', 2)}*{square}"
+    module, cells = rig.module, rig.module.leg_nodes
+    alpha, square = repr(module.seebeck_V_per_K), "I(Vsense)*I(Vsense)"
+    joule = "" if cells else f"{module.resistance_ohm / 2!r}*{square}"
+    yield from _section(f"the module's thermal side; {ZERO_C_IN_K!r} makes kelvin of degC")
     yield f"Bcold cold 0 I={alpha}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense){joule and '-' + joule}"
     yield f"Bhot 0 hot I={alpha}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense){joule and '+' + joule}"
     if cells:
@@ -204,12 +190,12 @@ def thermal_lines(value: Value, cells: int) -> Iterator[str]:
     chain = ["hot", *(f"leg{cell + 1}" for cell in range(cells)), "cold"]
     for place, (above, below) in enumerate(pairwise(chain)):
         part = max(1, 2 * cells if place in (0, cells) else cells)
-        yield f"Rtheta{place if cells else ''} {above} {below} {value('thermal_resistance_K_per_W', part)}"
+        yield f"Rtheta{place if cells else ''} {above} {below} {module.thermal_resistance_K_per_W / part!r}"
     for leg in chain[1:-1]:
-        yield f"C{leg} {leg} 0 {value('leg_capacity_J_per_K', cells)}"
-        yield f"B{leg} 0 {leg} I={value('resistance_ohm', cells)}*{square}"
-    yield f"Chot hot 0 {value('hot_plate_J_per_K')}"
-    yield f"Ccold cold 0 {value('cold_plate_J_per_K')}"
+        yield f"C{leg} {leg} 0 {module.leg_capacity_J_per_K / cells!r}"
+        yield f"B{leg} 0 {leg} I={module.resistance_ohm / cells!r}*{square}"
+    yield f"Chot hot 0 {module.hot_plate_J_per_K!r}"
+    yield f"Ccold cold 0 {module.cold_plate_J_per_K!r}"
 
 
 def _sink(rig: Rig, net: Network, start_A: float) -> Iterator[str]:
@@ -299,3 +285,81 @@ def _comment(text: str) -> list[str]:
         text = text.replace(sign, plain)
     plain = " ".join(text.encode("ascii", "replace").decode("ascii").split())
     return textwrap.wrap(plain, 110, initial_indent=f"* {indent}", subsequent_indent=f"* {indent}  ")
+
+
+EDGE_S = 1e-6
+"""Width of the flank that replaces a jump of a held current; less where rows are closer than four of these."""
+
+
+def lead_s(rig: Rig) -> float:
+    """Time in s from the landing to the beginning of a cue, in whole updates of the driver; 0 for a hand that rests."""
+    return lead_of(rig) / rig.driver.update_Hz
+
+
+def check_landing(rig: Rig) -> None:
+    """Raise RigError where a hand lands on a rig whose heat sink begins a cue at a temperature of its own.
+
+    In a run, such a sink is set to its starting temperature when the cue begins; nothing in a circuit can do that.
+    """
+    passive = rig.heat_sink.passive
+    if rig.contact.lands_s is not None and passive is not None and not passive.steady:
+        raise RigError(
+            f"rig {rig.name}: contact.lands_s = {rig.contact.lands_s:g} s: in a netlist, a passive heat sink cannot be "
+            "set to heat_sink.temperature_C when the cue begins; remove heat_sink.temperature_C (a sink in balance) or "
+            "contact.lands_s"
+        )
+
+
+def lead_currents(rig: Rig, drive: Drive, rest_A: float | None, lead_A: Array | None) -> Array:
+    """Currents in A until the hand lands and for each update since: those of a design, or one that is held.
+
+    Raises ValueError for another number of them.
+    """
+    count = lead_of(rig) + 1
+    if lead_A is None:
+        return np.full(count, float(drive.current_A[0]) if rest_A is None else rest_A)
+    if len(lead_A) != count:
+        raise ValueError(f"a lead of {lead_s(rig):g} s has {count} currents, one before it, not {len(lead_A)}")
+    return np.asarray(lead_A, dtype=float)
+
+
+def led_points(rig: Rig, drive: Drive, lead_A: Array) -> list[tuple[float, float]]:
+    """Corners of the current from the landing on: the lead, then the drive, a flank of 1 µs for each jump."""
+    count, after = len(lead_A) - 1, lead_s(rig)
+    if not count:
+        return points(drive, float(lead_A[0]))
+    held = Drive(np.arange(count + 1) / rig.driver.update_Hz, np.append(lead_A[1:], lead_A[-1]), held=True)
+    # The last corner of the lead is the first of the drive.
+    cue = points(drive, float(lead_A[-1]))
+    return [*points(held, float(lead_A[0]))[:-1], *((after + time, current) for time, current in cue)]
+
+
+def contact_lines(rig: Rig, resistance_K_per_W: float, first: str) -> Iterator[str]:
+    """The contact that closes when the hand lands, and what display and skin have before; `first` is a skin lump."""
+    film_W_per_K = rig.ambient.film_W_per_m2K * rig.contact.area_m2
+    rest_W = rig.resting_flux_W_per_m2 * rig.contact.area_m2
+    yield "* V(landed) is 0 in the operating point and 1 from the landing on"
+    yield f"Vlanded landed 0 PWL(0 0 {EDGE_S!r} 1)"
+    yield f"Bcontact cold skin I=V(landed)*(V(cold)-V(skin))/{resistance_K_per_W!r}"
+    yield "* until then: the display in air, and the heat that bare skin at rest takes up at its face"
+    yield f"Bair cold 0 I=(1-V(landed))*{film_W_per_K!r}*(V(cold)-{rig.ambient.temperature_C!r})"
+    yield f"Brest 0 {first} I=(1-V(landed))*{rest_W!r}"
+
+
+def points(drive: Drive, rest_A: float | None) -> list[tuple[float, float]]:
+    """Corners of a drive's current: (time s, A), a flank of 1 µs for each jump."""
+    times, currents = drive.time_s.tolist(), drive.current_A.tolist()
+    start: list[tuple[float, float]] = [(0.0, currents[0])]
+    if rest_A is not None and rest_A != currents[0]:
+        edge = min(EDGE_S, times[1] / 4)
+        slope = 0.0 if drive.held else (currents[1] - currents[0]) / times[1]
+        start = [(0.0, float(rest_A)), (edge, currents[0] + slope * edge)]
+    if not drive.held:
+        return [*start, *zip(times[1:], currents[1:], strict=True)]
+    points, before = start, currents[0]
+    for k in range(1, len(times) - 1):
+        if currents[k] != before:
+            half = min(EDGE_S / 2, (times[k] - times[k - 1]) / 4, (times[k + 1] - times[k]) / 4)
+            points += [(times[k] - half, before), (times[k] + half, currents[k])]
+            before = currents[k]
+    return [*points, (times[-1], before)]

@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict, fields
+from typing import Any
 
+from ..program import own_version, this_program
+from ..records import Record
+from ..safety.verdict import summarise
+from .delivered_drive import DeliveredDrive, DeliveryDeviation, loss_table
+from .device import Device
 from .formats import Format, FormatError
-from .formats.form import Played
-from .prepare import Prepared
-from .prevent import must_prevent
-from .refusal import Refusal
-from .sidecar import sealed, sidecar, sidecar_text
+from .formats.form import Played, events_in, must_prevent
+from .prepare import Prepared, Refusal
+from .samples import Samples
+from .setpoints import Setpoints, lag_of
+from .worstcase import OpenLoopSpread
 
 
 def check_names(names: Sequence[str], form: Format) -> None:
     """Raise FormatError that names both where two icons would get files of one name.
 
     Names that differ only in capitals count as one, since some disks make no difference.
-
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> check_names(["dip", "double-dip"], load_format("csv"))
     """
     taken: dict[str, str] = {}
     for name in names:
@@ -44,39 +51,7 @@ def pack(
     felt: Mapping[str, Mapping[str, object]] | None = None,
     losses: Mapping[str, Sequence[str]] | None = None,
 ) -> dict[str, bytes]:
-    """Return the files of an export: a sidecar and a drive for each cue, then what belongs to the set.
-
-    Parameters
-    ----------
-    ready
-        The prepared cues; one with refusals is marked as forced.
-    form
-        The file format.
-    felt
-        For each cue, by its name, the report of perception on the delivered drive.
-    losses
-        For each cue, by its name, sentences on what is lost in delivery.
-
-    Returns
-    -------
-    dict
-        Bytes by file name; nothing is written.
-
-    Raises
-    ------
-    FormatError
-        Where two cues would get the same name, or one is unsafe.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Device, Rig
-    >>> from thermicon.circuit.delivery.prepare import prepare_set
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> from thermicon.icons import load_library
-    >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")
-    >>> list(pack(prepare_set([icon], Rig.load("tcs2"), Device.load("qst-tcs2"), form), form))
-    ['warming-step.json', 'warming-step.protocol.ini']
-    """
+    """Return the files of an export: a sidecar and a drive for each cue, then what belongs to the set."""
     check_names([cue.delivery.icon.name for cue in ready], form)
     drives = {}
     for cue in ready:
@@ -96,7 +71,7 @@ def pack(
     if form.player is not None and ready:
         names = [cue.delivery.icon.name for cue in ready]
         played = [_played(cue, drives[name][0], form) for cue, name in zip(ready, names, strict=True)]
-        shared = form.player(played, must_prevent([{"hardware_must_prevent": cue.verdict.demanded} for cue in ready]))
+        shared = form.player(played, must_prevent([cue.verdict.demanded for cue in ready]))
     files: dict[str, bytes] = {}
     for cue in ready:
         name = cue.delivery.icon.name
@@ -125,10 +100,180 @@ def _played(cue: Prepared, file: str, form: Format) -> Played:
 
 
 def sidecar_name(name: str, form: Format) -> str:
-    """Name of the sidecar of an icon.
-
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> sidecar_name("double-dip", load_format("c-array"))
-    'double_dip.json'
-    """
+    """Name of the sidecar of an icon."""
     return f"{form.stem(name)}.json"
+
+
+NO_CLEARANCE = (
+    "A simulation was checked against limits. This is not a medical or ethical clearance. Hardware that touches people "
+    "needs a temperature cut-off of its own that works without any software."
+)
+
+OF_THE_TARGET = ("reached", "largest_miss_K", "largest_miss_s", "rms_miss_K")
+"""Left out of `predicted`: a design is judged by its target (`reached`), what is delivered by the design."""
+
+
+def sidecar(
+    delivery: DeliveredDrive,
+    form: Format,
+    deviation: DeliveryDeviation,
+    safety: Mapping[str, object],
+    felt: Mapping[str, object] | None,
+    forced: Sequence[str],
+    *,
+    demanded: Mapping[str, object],
+    drive: bytes,
+    set_files: Mapping[str, bytes],
+    spread: OpenLoopSpread | None = None,
+) -> dict[str, Any]:
+    """Return everything known about one exported drive; units are in the names.
+
+    `safety` and `felt` are the reports of gate and perception, `forced` the reasons why the drive would have been
+    refused (empty where it was not), `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes
+    of its files, recorded by their digests. `spread` is the effect of an unmeasured module under an open loop.
+    """
+    icon, rig, outcome, device = delivery.icon, delivery.rig, delivery.outcome, _device(delivery.device)
+    text, warnings = str(icon), [*rig.warnings, *delivery.warnings]
+    if not delivery.device.played:
+        warnings.append(f"{delivery.device.name}: no such device was ever driven by thermicon")
+    return {
+        "thermicon": own_version(),
+        "program": this_program(),
+        "what_it_is_not": NO_CLEARANCE,
+        "format": {
+            **{"name": form.name, "source": form.source, "how_to_play": form.how},
+            **(form.facts(delivery) if form.facts else {}),
+        },
+        "file": form.file_name(delivery),
+        "drive_sha256": digest(drive),
+        "set_files": {name: digest(content) for name, content in set_files.items()},
+        "columns": [asdict(column) for column in form.columns(delivery)],
+        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.context.control},
+        "rig_sha256": digest(rig.document.encode("utf-8")),
+        "rig": {
+            "name": rig.name,
+            "content_hash": digest(rig.document.encode("utf-8")),
+            "changes": list(rig.changes),
+            "document": json.loads(rig.document),
+        },
+        "device_sha256": digest_of_content(device),
+        "device": device,
+        "update_rate_Hz": {"requested": delivery.requested_Hz, "realised": delivery.rate_Hz},
+        "played": _played_facts(delivery),
+        "events": [_event(event, icon.context.control) for event in events_in(delivery)],
+        "reached": None if outcome is None else outcome.reached,
+        "reason": None if outcome is None else outcome.reason,
+        "predicted": _predicted(delivery),
+        "delivered_minus_designed": {place.place: _without(asdict(place), "place") for place in deviation.places},
+        "open_loop_spread": None if spread is None else spread.to_dict(),
+        "perception": None if felt is None else dict(felt),
+        "stated_losses": [_record(record) for record in loss_table()],
+        "safety": dict(safety),
+        "hardware_must_prevent": dict(demanded),
+        "warnings": warnings,
+        "forced": bool(forced),
+        "forced_over": list(forced),
+        "seed": None,
+    }
+
+
+def sidecar_text(content: Mapping[str, Any]) -> bytes:
+    """Return a sidecar as JSON; missing numbers are null, never NaN."""
+    return (json.dumps(plain(content), ensure_ascii=False, indent=2, allow_nan=False) + "\n").encode("utf-8")
+
+
+def sealed(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a sidecar with the SHA-256 of its own text, which is that of the file without this key."""
+    bare = {key: value for key, value in content.items() if key != "sidecar_sha256"}
+    return {**bare, "sidecar_sha256": digest(sidecar_text(bare))}
+
+
+def _event(event: Any, control: str) -> dict[str, object]:
+    unit = "level_A" if control == "current" else "level_C"
+    return {"name": event.name, "time_s": event.time_s, unit: event.level, "level_of": control}
+
+
+def _played_facts(delivery: DeliveredDrive) -> dict[str, object]:
+    played = delivery.played
+    if isinstance(played, Setpoints):
+        return {
+            "segments": len(played.segments),
+            "tick_s": played.tick_s,
+            "step_K": played.step_K,
+            "baseline_C": float(played.level_C[0]),
+            "least_level_C": float(played.level_C.min()),
+            "greatest_level_C": float(played.level_C.max()),
+            "icon_begins_at_s": 0.0,
+            "duration_s": delivery.file_s,
+            "cue_ends_at_s": played.cue_s,
+            "lag_s": lag_of(delivery.device),
+            "clock": (
+                "times count from the start command; the display follows with the lag, which is a delay and not "
+                "counted as a miss or a loss"
+            ),
+        }
+    return _samples(played, delivery.lead_s)
+
+
+def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
+    numbers: dict[str, object] = dict(summarise(delivery.trace).to_dict())
+    predicted = {key: value for key, value in numbers.items() if key not in OF_THE_TARGET}
+    if not isinstance(delivery.played, Setpoints):
+        return predicted
+    return {**predicted, "duration_s": delivery.file_s}
+
+
+def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
+    scale = samples.scale
+    unit = {"1": "duty", "°C": "C"}.get(scale.unit, scale.unit)
+    ends = (scale.offset + scale.step * scale.lowest, scale.offset + scale.step * scale.highest)
+    return {
+        "samples": len(samples.codes),
+        "icon_begins_at_s": lead_s,
+        "duration_s": float(samples.time_s[-1]),
+        f"offset_{unit}": scale.offset,
+        f"step_{unit}": scale.step,
+        "lowest_code": scale.lowest,
+        "highest_code": scale.highest,
+        f"low_level_{unit}": ends[0],
+        f"high_level_{unit}": ends[1],
+        f"rest_{unit}": float(samples.command[0]),
+        f"least_command_{unit}": float(samples.command.min()),
+        f"greatest_command_{unit}": float(samples.command.max()),
+    }
+
+
+def _device(device: Device) -> dict[str, object]:
+    named = {field.name: getattr(device, field.name) for field in fields(device) if field.name != "records"}
+    return {**named, "records": [_record(record) for record in device.records]}
+
+
+def _record(record: Record) -> dict[str, object]:
+    known = {
+        key: getattr(record, key)
+        for key in ("quantity", "unit", "value", "low", "high", "source", "conditions", "confidence")
+    }
+    return {key: value for key, value in known.items() if value not in (None, "")}
+
+
+def _without(content: dict[str, Any], key: str) -> dict[str, Any]:
+    return {name: value for name, value in content.items() if name != key}
+
+
+def digest(content: bytes) -> str:
+    """Return the SHA-256 of bytes in hexadecimal digits."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def digest_of_content(content: Any) -> str:
+    """Return the SHA-256 of content as JSON with sorted keys, the text that a rig's document is kept in."""
+    return digest(json.dumps(plain(content), sort_keys=True, ensure_ascii=False).encode("utf-8"))
+
+
+def plain(content: Any) -> Any:
+    """Return content as JSON can hold it: mappings, lists, finite numbers; NaN and infinity become None."""
+    if isinstance(content, Mapping):
+        return {str(key): plain(value) for key, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [plain(value) for value in content]
+    return None if isinstance(content, float) and not math.isfinite(content) else content

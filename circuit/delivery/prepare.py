@@ -4,59 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Literal
 
 from thermicon.icons import Icon
+from thermicon.icons.number_text import signed
 
 from ..rig.rig import Rig
-from ..safety.checks import Check
+from ..safety.gate import Gate
 from ..safety.repeated import check_pause
+from ..safety.words import more_and_cure
+from ..solver.inverse import design
+from ..solver.simulate import duration_s
+from ..solver.trace import Outcome
 from .deliver import deliver
-from .delivered_drive import DeliveredDrive
-from .delivery_deviation import DeliveryDeviation
+from .delivered_drive import DeliveredDrive, DeliveryDeviation, loss_limit
 from .device import Device
 from .formats import Format
-from .refusal import Refusal, refusals_of
-from .spread import OpenLoopSpread, open_loop_spread
-from .worstcase import worst_cases
+from .setpoints import Setpoints
+from .worstcase import OpenLoopSpread, open_loop_spread, worst_cases
 
-
-class Verdict(Protocol):
-    """The verdict of a safety gate on one delivered cue."""
-
-    @property
-    def colour(self) -> str:
-        """Green, amber or red; red is never written."""
-
-    @property
-    def reason(self) -> str | None:
-        """Why it is red, in one sentence."""
-
-    @property
-    def mended_by_pause(self) -> bool:
-        """Whether a longer pause is all that is missing."""
-
-    @property
-    def findings(self) -> Sequence[Check]:
-        """The limits that are exceeded, the hard ones first."""
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """One sentence for each soft limit exceeded."""
-
-    @property
-    def scenarios(self) -> int:
-        """Number of corners and endings in which the cue was judged."""
-
-    def to_dict(self) -> dict[str, object]:
-        """The content for the sidecar."""
-
-    @property
-    def demanded(self) -> dict[str, object]:
-        """What the hardware must prevent, as the sidecar and the players hold it."""
-
-
-Judge = Callable[[Sequence[DeliveredDrive], float | None], Sequence[Verdict]]
+Judge = Callable[[Sequence[DeliveredDrive], float | None], Sequence[Gate]]
 """A function that judges delivered cues, as `worst_cases` does."""
 
 
@@ -76,18 +43,10 @@ class Prepared:
         Why it is not written; empty where it is.
     spread
         How far an open-loop delivery varies with the uncertainty of the rig; None where it was not calculated.
-
-    Examples
-    --------
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> from thermicon.icons import load_library
-    >>> icon, form = load_library("six-icons")["warming-step"], load_format("tcs2-protocol-ini")
-    >>> prepare_set([icon], Rig.load("tcs2"), Device.load("qst-tcs2"), form)
-    (Prepared('warming-step' for qst-tcs2, 8 s, safety green),)
     """
 
     delivery: DeliveredDrive
-    verdict: Verdict
+    verdict: Gate
     deviation: DeliveryDeviation
     refusals: tuple[Refusal, ...]
     spread: OpenLoopSpread | None = None
@@ -117,43 +76,7 @@ def prepare_set(
     pause_s: float | None = None,
     step: Callable[[int, int], None] | None = None,
 ) -> tuple[Prepared, ...]:
-    """Deliver cues by a device, and judge their safety, their targets and their losses.
-
-    Parameters
-    ----------
-    icons, rig, device
-        The cues, which may be played repeatedly in any order, the rig that they are designed for, and the device.
-    form
-        The file format, which must suit the device.
-    judge
-        Judges each delivery within the worst sequence of all of them.
-    tail_s
-        Time in s that is played after the last corner.
-    pause_s
-        Pause in s between plays; None: the recovery time.
-    step
-        Is called after each cue with how many are done, of how many.
-
-    Returns
-    -------
-    tuple of Prepared
-        Each delivery with its verdict, and the reasons against writing it.
-
-    Raises
-    ------
-    PauseError, FormatError, DeviceError, RigError
-        For an impossible pause, a format that does not suit the device, a cue that the device cannot play, and a
-        baseline that cannot be held.
-
-    Examples
-    --------
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> from thermicon.icons import load_library
-    >>> icons, rig = list(load_library("six-icons"))[:2], Rig.load("thenar")
-    >>> ready = prepare_set(icons, rig, Device.load("dac-16"), load_format("csv"), pause_s=60.0)
-    >>> [(one.verdict.colour, one.refusals) for one in ready]
-    [('green', ()), ('green', ())]
-    """
+    """Deliver cues by a device, and judge their safety, their targets and their losses."""
     check_pause(pause_s)
     form.check(device)
     deliveries = []
@@ -165,7 +88,139 @@ def prepare_set(
     return tuple(_judged(delivery, verdict) for delivery, verdict in zip(deliveries, verdicts, strict=True))
 
 
-def _judged(delivery: DeliveredDrive, verdict: Verdict) -> Prepared:
+def _judged(delivery: DeliveredDrive, verdict: Gate) -> Prepared:
     deviation = delivery.deviation
     refusals = refusals_of(delivery, verdict, deviation)
     return Prepared(delivery, verdict, deviation, refusals, open_loop_spread(delivery))
+
+
+_HEADS = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
+
+STRONGEST = 20.0
+"""How many times a driver's limits are raised, at most, to find the current that a cue needs."""
+FINELY_A = 0.05
+"""The needed current is reported in steps of this size, rounded up: a limit that a person would type."""
+FREE_V = 1000.0
+"""A compliance voltage that holds nothing back, in V: only the current is sought."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refusal:
+    """Why a cue is not exported."""
+
+    kind: Literal["unsafe", "unreachable", "lossy"]
+    text: str
+    tells: tuple[str, ...] = ()
+
+    @property
+    def forcible(self) -> bool:
+        """Whether the export may be forced."""
+        return self.kind != "unsafe"
+
+    def __str__(self) -> str:
+        return f"{_HEADS[self.kind]}: {self.text}"
+
+
+def refusals_of(delivery: DeliveredDrive, verdict: Gate, deviation: DeliveryDeviation) -> tuple[Refusal, ...]:
+    """Return the causes against exporting a cue, those that cannot be forced first.
+
+    A consequence is not listed besides its cause: what a device with too small a range misses or loses is reported with
+    the range, and losses are not reported where the drive is unsafe.
+    """
+    refusals, narrowed = [], delivery.narrowed
+    tells = (narrowed.text,) if narrowed else ()
+    if verdict.colour == "red":
+        reason = verdict.reason or "the gate says red"
+        more = "" if verdict.mended_by_pause else more_and_cure(verdict.findings)
+        refusals.append(Refusal("unsafe", reason + more))
+    lost = lost_text(deviation)
+    if delivery.outcome is not None and not delivery.outcome.reached:
+        text = _out_of_reach(delivery, delivery.outcome, verdict.colour != "red")
+        refusals.append(Refusal("unreachable", text, tells))
+        lost = "" if narrowed else lost
+    elif narrowed and narrowed.outcome is not None and not narrowed.outcome.reached:
+        refusals.append(Refusal("unreachable", f"{narrowed.text}. With that it {narrowed.outcome.reason}", tells))
+        lost = ""
+    if lost and verdict.colour != "red":
+        text = f"{narrowed.text}. With that {lost}" if narrowed else ""
+        refusals.append(Refusal("lossy", text, tells) if narrowed else _lossy(delivery, lost))
+    return tuple(refusals)
+
+
+def needed_A(icon: Icon, rig: Rig) -> float | None:
+    """Return the smallest current limit in A with which a rig reaches a cue's target, rounded up to 0.05 A.
+
+    Both directions grow together. None where no current does, where the cue prescribes none, or where the rig has a
+    loop of its own, whose gains matter more. The compliance voltage is left out.
+    """
+    if icon.context.control == "current" or rig.controller is not None:
+        return None
+    most, least, end = rig.driver.current_max_A, rig.driver.current_min_A, duration_s(icon, rig)
+
+    def reaches(limit_A: float) -> bool:
+        wide = rig.with_(
+            **{
+                "driver.current_limit_A": limit_A,
+                "driver.current_min_A": least * limit_A / most,
+                "driver.voltage_limit_V": FREE_V,
+            }
+        )
+        outcome = design(icon, wide, end).outcome
+        return outcome is not None and outcome.reached
+
+    low, high = most, most * STRONGEST
+    if not reaches(high):
+        return None
+    while high - low > 0.1 * FINELY_A:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if reaches(middle) else (middle, high)
+    return round(FINELY_A * -(-high // FINELY_A), 2)
+
+
+def lost_text(deviation: DeliveryDeviation) -> str:
+    """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
+    limit = loss_limit("receptor difference")
+    if not deviation.lost:
+        return ""
+    first, *others = sorted(deviation.lost, key=lambda place: -place.rms_K)
+    also = "".join(f" (the {place.place} by {place.rms_K:.3f} K)" for place in others)
+    return f"the {first.place} differs by {first.rms_K:.3f} K (rms) from the design{also}, over the stated {limit:g} K"
+
+
+def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome, safe: bool) -> str:
+    """The rig's own shortfall, with what it would take; a cue that is unsafe should not get more current."""
+    text = outcome.reason or "the target is missed"
+    if delivery.drives is None:  # a thermode, which has neither driver nor module
+        return f"{text}; use a slower or smaller change, or use a thermode that can"
+    rig, driver = delivery.rig, delivery.rig.driver
+    limits_met = [name for name, _ in outcome.limits]
+    if not limits_met or rig.controller is not None or not safe:
+        return f"{text}; use a slower or smaller change"
+    if limits_met == ["compliance voltage"]:
+        return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or use a slower change"
+    needed = needed_A(delivery.icon, rig)
+    if needed is None:
+        return f"{text}; no current of this module reaches it: use a slower or smaller change"
+    narrow = ""
+    if delivery.narrowed:
+        narrow = f" and {delivery.device.name} plays at most {delivery.narrowed.most_A:g} A"
+    return (
+        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: use a "
+        f"slower or smaller change, or raise the limit if driver and module can"
+    )
+
+
+def _lossy(delivery: DeliveredDrive, lost: str) -> Refusal:
+    """What is lost, why, and what would lose less."""
+    device, played = delivery.device, delivery.played
+    if isinstance(played, Setpoints):
+        why = f"{device.name}: its set-points have steps of {played.step_K:g} K"
+    elif delivery.device_warnings:
+        why = "; ".join(delivery.device_warnings)
+    elif delivery.rate_Hz < 0.9 * delivery.requested_Hz:
+        why = f"{device.name}: it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
+    else:
+        unit = " of full duty" if device.driven_by == "duty" else f" {device.unit}"
+        why = f"{device.name}: its steps are {signed(played.scale.step, '.3g')}{unit}"
+    text = f"{lost}; {why}; use a device that is finer or faster there"
+    return Refusal("lossy", text, () if isinstance(played, Setpoints) else delivery.device_warnings)

@@ -65,9 +65,6 @@ def closed(device: Device, setpoints: Setpoints) -> Setpoints:
 
     The next play begins at the baseline, to which the device would otherwise jump. Raises DeviceError where the device
     has too few segments.
-
-    >>> closed(Device.load("qst-tcs2"), Setpoints(0.01, 0.1, 320, ((200, 300),))).segments
-    ((200, 300), (200, 320))
     """
     last = setpoints.segments[-1][1]
     away_K = abs(last - setpoints.baseline) * setpoints.step_K
@@ -110,11 +107,7 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
 
 
 def lag_of(device: Device) -> float:
-    """Return the lag in s by which a thermode's surface follows its set-points; 0 where it states none.
-
-    >>> lag_of(Device.load("qst-tcs2"))
-    0.21
-    """
+    """Return the lag in s by which a thermode's surface follows its set-points; 0 where it states none."""
     record = device.record("lag")
     return 0.0 if record is None else record.central
 
@@ -127,10 +120,6 @@ def display_of(
     The step is the tick or a whole fraction of it, and the set-points are linear from tick to tick; the last is held.
     The device's ramp rate limits the display. `lagged` adds its lag (first order, from rest); without it
     the display is as fast as the device can make it, which is the worse case for the skin.
-
-    >>> step, display = display_of(Setpoints(0.01, 0.1, 320, ((2, 300),)), Device.load("qst-tcs2"), lagged=False)
-    >>> step, display.tolist()
-    (0.01, [32.0, 31.0, 30.0])
     """
     step = part_of(setpoints.tick_s)
     end = float(setpoints.time_s[-1]) if end_s is None else end_s

@@ -116,11 +116,7 @@ def _play(rig: Rig, drive: Drive, start: Start | None) -> Trace:
 
 
 def steady_level(current_A: Array) -> float:
-    """Return the current of the steady start: the mean of the first rows that differ by noise alone.
-
-    >>> steady_level(np.array([0.1, 0.1, 0.5, 0.5])), round(steady_level(np.array([0.1, 0.11, 0.1, 0.5, 0.51])), 3)
-    (0.1, 0.103)
-    """
+    """Return the current of the steady start: the mean of the first rows that differ by noise alone."""
     noise = MAD_TO_SD * float(np.median(np.abs(np.diff(current_A)))) / np.sqrt(2.0)
     away = np.abs(current_A - current_A[0]) > STEADY_SPREAD * noise
     count = int(np.argmax(away)) if away.any() else len(current_A)

@@ -85,11 +85,7 @@ def half_width(log: bool, sd: float) -> float:
 
 
 def is_identified(log: bool, sd: float, usual: float) -> bool:
-    """Whether an interval is narrower than what is assumed anyway.
-
-    >>> is_identified(True, 0.01, 0.3), is_identified(False, 5.0, 3.0)
-    (True, False)
-    """
+    """Whether an interval is narrower than what is assumed anyway."""
     return half_width(log, sd) < usual
 
 

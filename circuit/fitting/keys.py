@@ -18,17 +18,7 @@ from ..rig.uncertainty import uncertainty_of
 
 
 class FitError(InputError):
-    """A log or a request that cannot be fitted: what, where, and what to change.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig
-    >>> try:
-    ...     free_keys(["contact.resistence_m2K_per_W"], Rig.load("thenar"))
-    ... except FitError as problem:
-    ...     print(problem)
-    contact.resistence_m2K_per_W: cannot be fitted; did you mean contact.resistance_m2K_per_W?
-    """
+    """A log or a request that cannot be fitted: what, where, and what to change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,11 +111,7 @@ COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
 
 
 def fittable(rig: Rig) -> tuple[str, ...]:
-    """Return the keys that can be fitted on a rig, in the order of the circuit.
-
-    >>> fittable(Rig.load("tcs2"))[:2]
-    ('contact.resistance_m2K_per_W', 'contact.area_cm2')
-    """
+    """Return the keys that can be fitted on a rig, in the order of the circuit."""
     parts = {"load": rig.bench_load, "controller": rig.controller, "thermode": rig.thermode}
     stated = {table: part is not None for table, part in parts.items()}
     without = () if rig.bench_load is None else WITHOUT_SKIN if rig.bench_load.site == METAL else WITHOUT_CONTACT

@@ -55,39 +55,7 @@ def synthetic_log(
     tail_s: float = 0.0,
     name: str = "synthetic.csv",
 ) -> Log:
-    """Return the log of a cue played on a rig, with noise; the same seed gives the same log.
-
-    Parameters
-    ----------
-    rig
-        The rig that stands in the laboratory.
-    seed
-        Seed of noise and offsets.
-    icon
-        The cue; None: the shipped calibration drive.
-    columns
-        What is measured beside the current.
-    rate_Hz
-        Rows per second, and updates of the driver: a log that is slower than its driver does not hold the whole drive.
-    noise_K, noise_V
-        Standard deviation of a reading.
-    offset_sd_K
-        Standard deviation of the offset of each temperature sensor, drawn once.
-    tail_s
-        Time in s that the log continues after the cue.
-    name
-        Name of the log.
-
-    Returns
-    -------
-    Log
-        Rows at `rate_Hz`, each with the current of its instant.
-
-    Examples
-    --------
-    >>> synthetic_log(Rig.load("thenar"), seed=1)
-    Log('synthetic.csv', 6001 rows, 60 s: current_A, display_C, voltage_V)
-    """
+    """Return the log of a cue played on a rig, with noise; the same seed gives the same log."""
     if rig.thermode is None:
         rig = rig.with_(**{"driver.update_Hz": rate_Hz})
     trace = simulate(icon or calibration_icon(), rig, rate_Hz=rate_Hz, tail_s=tail_s)
@@ -138,43 +106,8 @@ def plan(
 ) -> tuple[Expected, ...]:
     """Return how well each choice of sensors will identify parameters of a rig.
 
-    Parameters
-    ----------
-    rig
-        The rig as far as it is known.
-    free
-        Keys to fit.
-    icon
-        The cue to be played; None: the shipped calibration drive.
-    rate_Hz
-        Rows of the log per second.
-    noise_K, noise_V
-        Standard deviation of a reading.
-    offset_K
-        Standard deviation of a temperature sensor's offset.
-    fixed_skin
-        Take the layers of the skin as known, instead of spread as between people.
-
-    Returns
-    -------
-    tuple of Expected
-        One for each choice of sensors, the least first.
-
-    Raises
-    ------
-    FitError
-        For a key that cannot be fitted.
-
-    Notes
-    -----
     From the curvature of the sum of squares at the rig as given, with white noise: what is left out of the rig adds to
     it.
-
-    Examples
-    --------
-    >>> expected = plan(Rig.load("thenar"), ["contact.resistance_m2K_per_W"])
-    >>> expected[0].half_widths[0] > expected[1].half_widths[0]
-    True
     """
     keys = free_keys(free, rig)
     log = synthetic_log(

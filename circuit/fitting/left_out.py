@@ -83,14 +83,7 @@ def late_column(problem: Problem, solution: Solution) -> str:
 
 
 def noise_of(channel: Channel) -> float:
-    """SD of what changes from row to row, by second differences, which leave slow changes out.
-
-    >>> rng = np.random.default_rng(0)
-    >>> time = np.arange(600) / 10
-    >>> slow = Channel("display_C", "a.csv", 0, time, np.sin(time / 5) + 0.02 * rng.standard_normal(600))
-    >>> round(noise_of(slow), 2)
-    0.02
-    """
+    """SD of what changes from row to row, by second differences, which leave slow changes out."""
     bends = np.diff(channel.values, 2)
     own = MAD_TO_SD * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
     return float(max(own, channel.resolution / np.sqrt(12.0)))
@@ -129,10 +122,6 @@ def _can_move(value: float | None) -> bool:
 
 
 def milli(value: float, unit: str) -> str:
-    """A difference in K or V in thousandths, from 1 on in the unit itself.
-
-    >>> milli(0.0344, "V"), milli(-1.23, "K")
-    ('34.4 mV', '−1.23 K')
-    """
+    """A difference in K or V in thousandths, from 1 on in the unit itself."""
     text = f"{1e3 * value:.3g} m{unit}" if abs(value) < 0.9995 else f"{value:.3g} {unit}"
     return text.replace("-", "−")

@@ -45,16 +45,7 @@ MOST_A, MOST_V = 50.0, 200.0
 
 
 class LogError(FitError):
-    """A log that cannot be used: file, row or column, what is wrong with it, and the cure.
-
-    Examples
-    --------
-    >>> try:
-    ...     Log.of("rig.csv", {"time_s": range(30), "current_A": [0.1] * 29})
-    ... except LogError as problem:
-    ...     print(problem)
-    rig.csv: unequal lengths: time_s has 30 rows, current_A has 29; cut the longer column
-    """
+    """A log that cannot be used: file, row or column, what is wrong with it, and the cure."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -162,11 +153,7 @@ class Log:
 
 
 def is_measured(name: str) -> bool:
-    """Whether a column can be compared with a simulation.
-
-    >>> is_measured("probe_thermistor_C"), is_measured("pressure_kPa")
-    (True, False)
-    """
+    """Whether a column can be compared with a simulation."""
     return name in MEASURED or (name.startswith("probe_") and name.endswith("_C"))
 
 

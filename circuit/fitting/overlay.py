@@ -75,35 +75,7 @@ class Overlay:
 
 
 def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
-    """Lay a log beside a trace.
-
-    Parameters
-    ----------
-    trace
-        The simulation.
-    log
-        What was measured.
-    shift_s
-        What to add to the log's times in s; None: what makes both most alike, by cross-correlation.
-
-    Returns
-    -------
-    Overlay
-        Shift, and measured beside simulated for every column that both have.
-
-    Raises
-    ------
-    LogError
-        Where they have no column or no time in common.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig, simulate
-    >>> from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
-    >>> rig = Rig.load("thenar")
-    >>> overlay(simulate(calibration_icon(), rig), synthetic_log(rig, seed=1, columns=["display_C"]))
-    Overlay('synthetic.csv', shifted by ... s: current_A rms ..., largest ...; display_C rms ..., largest ...)
-    """
+    """Lay a log beside a trace."""
     simulated = {name: getattr(trace, name) for name in SHIFTED_BY} | {f"probe_{n}_C": v for n, v in trace.probes}
     common = [name for name, _ in log.columns if name in simulated and np.isfinite(simulated[name]).any()]
     if not common:
@@ -136,11 +108,6 @@ def best_shift_s(
     """Return what to add to `time_s` so that `values` fit a reference best, and the correlation there.
 
     `most_s` limits the shift. NaN are left out. Where either has no number or no change, shift and correlation are 0.
-
-    >>> time = np.arange(0.0, 30.0, 0.1)
-    >>> shift, alike = best_shift_s(time, np.sin(time / 3), time, np.sin((time + 1.3) / 3), 5.0)
-    >>> round(shift, 2), round(alike, 3)
-    (1.3, 1.0)
     """
     there, other = np.isfinite(reference), np.isfinite(values)
     if not (there.any() and other.any()):

@@ -272,12 +272,7 @@ def _along(runs: Sequence[Run], start_count: int, offset_sd_K: float) -> list[Un
 
 
 def layer_priors(rig: Rig) -> dict[tuple[str, int], float]:
-    """Return the standard deviation of the logarithm of every layer's factors; nothing on a rig without skin.
-
-    >>> priors = layer_priors(Rig.load("thenar"))
-    >>> len(priors), round(priors[THICKNESS, 0], 3)
-    (15, 0.182)
-    """
+    """Return the standard deviation of the logarithm of every layer's factors; nothing on a rig without skin."""
     if rig.bench_load is not None:
         return {}
     known = {record.quantity: math.log1p(record.central) for record in layer_spreads()}

@@ -91,11 +91,7 @@ def reason_of(rig: Rig, sources: Sequence[tuple[str, str]]) -> str:
 
 
 def named(sources: Sequence[tuple[str, str]]) -> str:
-    """Logs with the beginning of their digests.
-
-    >>> named([("rig.csv", "ab" * 32)])
-    'rig.csv (sha256 abababababababab)'
-    """
+    """Logs with the beginning of their digests."""
     few = [f"{name} (sha256 {digest[:DIGEST_DIGITS] or 'not from a file'})" for name, digest in sources]
     more = [f"{len(few) - MOST_LOGS_NAMED} more"] if len(few) > MOST_LOGS_NAMED else []
     return ", ".join([*few[:MOST_LOGS_NAMED], *more])
@@ -149,11 +145,7 @@ def fitted_text(
 
 
 def _rounded_up(value: float) -> float:
-    """Two significant digits, never less than the value.
-
-    >>> _rounded_up(0.02313)
-    0.024
-    """
+    """Two significant digits, never less than the value."""
     digits = 1 - math.floor(math.log10(value)) if value > 0 else 2
     scale = 10.0**digits
     return float(round(math.ceil(value * scale - 1e-9) / scale, digits))

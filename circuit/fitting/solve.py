@@ -113,11 +113,7 @@ def spreads(problem: Problem, theta: Array) -> tuple[float, ...]:
 
 
 def alike(residuals: Array) -> float:
-    """Return how many neighbouring residuals count as one, by their correlation; 1 for white noise.
-
-    >>> alike(np.random.default_rng(0).normal(size=500)), round(alike(np.sin(np.arange(500) / 30)), -1)
-    (1.0, 60.0)
-    """
+    """Return how many neighbouring residuals count as one, by their correlation; 1 for white noise."""
     count = len(residuals)
     clipped = np.clip(residuals - np.median(residuals), -OUTLIER, OUTLIER)
     power = float(clipped @ clipped)

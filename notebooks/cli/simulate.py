@@ -15,7 +15,6 @@ from ..figures.overview import FELT_TAIL_S, draw_overview
 from ..files.outputs import (
     NETLIST_SUFFIXES,
     STDOUT,
-    SUBCIRCUIT_SUFFIXES,
     TRACE_SUFFIXES,
     check_output,
     check_separate,
@@ -90,8 +89,7 @@ def simulate_command(
         out(
             "OUT",
             "Write the trace to .csv or .parquet, or - for stdout; the circuit of one icon to .cir or .net (.sp: "
-            "ngspice then writes the probes); without FILE module and skin as subcircuits to .lib; a session also to "
-            ".json, its order to .txt.",
+            "ngspice then writes the probes); a session also to .json, its order to .txt.",
             "-o",
             "--output",
         ),
@@ -114,7 +112,7 @@ def simulate_command(
     printed.
     """
     session, suffix = order is not None or random is not None, "" if output is None else output.suffix.lower()
-    circuit = suffix in SUBCIRCUIT_SUFFIXES and not session and current is None
+    circuit = suffix in NETLIST_SUFFIXES and not session and current is None
     needs_file = {"--icon": icon, "--tail": tail}
     alone = {"--rate": rate != 100.0, **needs_file}
     in_session = {"--gap": gap is not None, "--seed": seed is not None, "--tracking": tracking}
@@ -124,10 +122,6 @@ def simulate_command(
     _refuse({"--figure": figure.figure}, circuit, "belongs to a trace, not to a circuit")
     _refuse({"--current": current, "--random": random and order, **alone}, session, "does not go with a session")
     _refuse(needs_file, current is not None, "belongs to a cue FILE; a drive has no icons and ends at its last row")
-    if circuit and file is None and output is not None:
-        _refuse(needs_file, True, "belongs to a cue FILE; without one, the circuit of the rig is written alone")
-        subcircuit_file(rig.load(), output)
-        return
     if (file is None) == (current is None):
         raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
     if current is not None:
@@ -249,20 +243,10 @@ def write_traces(traces: Sequence[Trace], output: Path) -> None:
         write_trace(list(traces), draft)
 
 
-def subcircuit_file(rig: Rig, output: Path) -> None:
-    """Write module and skin of a rig as a library of subcircuits."""
-    from thermicon.circuit.delivery.subcircuit import subcircuits
-
-    check_output(output, SUBCIRCUIT_SUFFIXES, "a library of subcircuits")
-    text = subcircuits(rig)
-    more = f": thermicon_module and thermicon_skin; in a schematic, .include {output.name}"
-    write_text(text, output, more, "ascii")
-
-
 def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path) -> None:
     """Write the circuit of a rig that plays an icon; what ends with .sp makes ngspice write all probes."""
     from thermicon.circuit import netlist, simulate
-    from thermicon.circuit.delivery.netlist_landing import lead_s
+    from thermicon.circuit.delivery.netlist import lead_s
     from thermicon.circuit.solver.inverse import design
 
     check_output(output, NETLIST_SUFFIXES, "a netlist")

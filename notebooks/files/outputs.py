@@ -11,7 +11,6 @@ from thermicon.icons.atomic import OutputError, check_inside
 STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
 NETLIST_SUFFIXES = (".cir", ".net", ".sp")
-SUBCIRCUIT_SUFFIXES = (".lib", ".sub", *NETLIST_SUFFIXES)
 FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
 PAGE_FOLDER = "THERMICON_PAGE_FOLDER"
 """Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""

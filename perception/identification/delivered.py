@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from thermicon.circuit.delivery.delivery_deviation import loss_limit
+from thermicon.circuit.delivery.delivered_drive import loss_limit
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, check_norm

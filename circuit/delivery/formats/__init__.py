@@ -10,11 +10,10 @@ from .form import Format, FormatError
 MODULES = {
     "csv": "tables",
     "setpoint-csv": "tables",
-    "tdms": "tdms",
-    "wav": "wav",
+    "tdms": "waveforms",
+    "wav": "waveforms",
     "c-array": "c_array",
-    "tcs2-serial": "tcs2",
-    "tcs2-protocol-ini": "tcs2",
+    "tcs2-serial": "tables",
     "psychopy": "psychopy",
 }
 """Formats by name, each with the module that writes it."""
@@ -26,11 +25,7 @@ def format_names() -> tuple[str, ...]:
 
 
 def load_format(name: str) -> Format:
-    """Return a format by name; raises FormatError with the nearest.
-
-    >>> load_format("csv")
-    Format('csv', *.csv, for volts, amperes, duty)
-    """
+    """Return a format by name; raises FormatError with the nearest."""
     if name not in MODULES:
         raise FormatError(f"{name}: no such format; {did_you_mean(name, MODULES, most=2)}")
     there = vars(import_module(f"{__name__}.{MODULES[name]}")).values()

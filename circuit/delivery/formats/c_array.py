@@ -1,21 +1,31 @@
-"""C array: codes in the flash of a microcontroller, as a header file, with one player for all."""
+"""C array: codes in the flash of a microcontroller, as a header file, with one player for all.
+
+The player is a header too, with cut-off, watchdog, abort and pauses.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
+from importlib import resources
 
 from thermicon.icons.model.context import clean_line
 
 from ..delivered_drive import DeliveredDrive
-from .c_player import PLAYER, c_float, player_files
 from .form import (
     PLAYS_SAMPLES,
     PLAYS_TEMPERATURES,
     Column,
     Format,
     FormatError,
+    MustPrevent,
+    Played,
     samples_of,
 )
+
+PLAYER = "thermicon_player.h"
+
+OUTPUT_UNITS = {"volts": "volts", "amperes": "amperes", "duty": "duty, -1 ... 1", "temperatures": "amperes"}
 
 A_LINE = 16
 CENTI_K = 0.01
@@ -77,11 +87,7 @@ def write(delivery: DeliveredDrive) -> bytes:
 
 
 def period_ns(rate_Hz: float) -> int:
-    """Return the time of one code in whole nanoseconds; FormatError where 32 bits cannot hold it or it is not exact.
-
-    >>> period_ns(100.0)
-    10000000
-    """
+    """Return the time of one code in whole nanoseconds; FormatError where 32 bits cannot hold it or it is not exact."""
     period = round(1e9 / rate_Hz)
     if period > LONGEST_NS:
         raise FormatError(
@@ -97,23 +103,62 @@ def period_ns(rate_Hz: float) -> int:
 
 
 def in_comment(text: str) -> str:
-    r"""Return a text that is safe in a C comment: it cannot end it, nor begin a line, an escape or a trigraph.
-
-    >>> in_comment("d */ #error"), in_comment("a\\b??/c")
-    ('d *_ #error', 'a_b__/c')
-    """
+    """Return a text that is safe in a C comment: it cannot end it, nor begin a line, an escape or a trigraph."""
     plain = "".join(char if " " <= char <= "~" else "?" for char in clean_line(text))
     return plain.replace("*/", "*_").replace("/*", "_*").replace("\\", "_").replace("??", "__")
 
 
 def identifier(name: str) -> str:
-    """Return a name that C takes, for its file too: one called stdint would stand in for the header of that name.
-
-    >>> identifier("cooling-step")
-    'cooling_step'
-    """
+    """Return a name that C takes, for its file too: one called stdint would stand in for the header of that name."""
     plain = re.sub(r"[^A-Za-z0-9_]", "_", name)
     return plain if re.match(r"[A-Za-z]", plain) and plain.casefold() != "stdint" else f"icon_{plain}"
+
+
+def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
+    """Return the player for drives of one device, with the numbers that the hardware must keep to."""
+    first = drives[0].delivery
+    numbers = {
+        "CLOSED_LOOP": str(int(first.device.driven_by == "temperatures")),
+        "WATCHDOG_S": c_float(must.watchdog_s),
+        "LOW_C": c_float(must.low_C),
+        "HIGH_C": c_float(must.high_C),
+        "REACT_S": c_float(max(0.01, must.react_within_s)),
+        "REST_S": c_float(must.rest_s),
+        "PAUSE_S": c_float(must.pause_s),
+        "TEST_POLARITY": str(int(must.test_polarity)),
+        "TEST_COMMAND": c_float(command_for(first, must.test_current_A)),
+        "TEST_UNIT": OUTPUT_UNITS[first.device.driven_by],
+        "TEST_S": c_float(must.test_s),
+        "TEST_FALL_K": c_float(must.test_fall_K),
+        **dict(zip(("KP", "KI", "KD"), map(c_float, must.gains), strict=True)),
+        **dict(zip(("LOWEST_A", "HIGHEST_A"), map(c_float, must.limits_A), strict=True)),
+        "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
+        "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
+    }
+    return {PLAYER: filled(PLAYER, numbers)}
+
+
+def filled(template: str, values: Mapping[str, str]) -> bytes:
+    """Return a template of `circuit/data` with each `@NAME@` replaced."""
+    text = (resources.files("thermicon.circuit") / "data" / template).read_text("utf-8")
+    for name, value in values.items():
+        text = text.replace(f"@{name}@", value)
+    return text.encode("ascii")
+
+
+def command_for(delivery: DeliveredDrive, current_A: float) -> float:
+    """The command of a device for a test current in A, in what it puts out: V, A or mean duty."""
+    device = delivery.device
+    if device.driven_by == "volts":
+        return current_A / delivery.rig.driver.transconductance_A_per_V
+    if device.driven_by == "duty":
+        return min(1.0, current_A / device.bridge_A)
+    return current_A
+
+
+def c_float(value: float) -> str:
+    """A number as a C float literal."""
+    return f"{float(value)!r}f"
 
 
 FORMAT = Format(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
+from typing import Any
 
 from thermicon.icons.model.corners import Corners
 
@@ -13,7 +14,6 @@ from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
-from ..prevent import MustPrevent
 from ..samples import Samples
 from ..setpoints import Setpoints
 
@@ -32,17 +32,7 @@ DEVICES_OF_WINDOWS = frozenset(
 
 
 class FormatError(InputError):
-    """A drive that cannot be written in a format; the text says why and what to use instead.
-
-    Examples
-    --------
-    >>> from thermicon.circuit.delivery.formats import load_format
-    >>> try:
-    ...     load_format("cvs")
-    ... except FormatError as problem:
-    ...     print(problem)
-    cvs: no such format; ...
-    """
+    """A drive that cannot be written in a format; the text says why and what to use instead."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +73,29 @@ class Played:
         back = "not within 10 min" if self.recovery_s is None else f"after {self.recovery_s:g} s"
         pause = "none" if self.shortest_pause_s is None else f"{self.shortest_pause_s:g} s"
         return f"safety {self.safety or 'not judged'}, back at rest {back}, shortest safe pause {pause}"
+
+
+@dataclass(frozen=True, slots=True)
+class MustPrevent:
+    """The numbers of a player: s, °C, A and K. Cut-offs are on the measured display temperature.
+
+    Of a loop they are its gains, kp A/K, ki A/(K·s) and kd A·s/K, and its current limits. The defaults stand where the
+    gate states nothing: a test current that moves a plate of a few J/K by some tenths of a kelvin, a minute of pause,
+    as is usual in thermal studies, a loop so slow that no module makes it swing, and the current of most shipped rigs.
+    """
+
+    watchdog_s: float = 0.5
+    low_C: float = 10.0
+    high_C: float = 43.0
+    react_within_s: float = 0.1
+    test_polarity: bool = True
+    test_current_A: float = 0.1
+    test_s: float = 1.0
+    test_fall_K: float = 0.1
+    rest_s: float = 60.0
+    pause_s: float = 60.0
+    gains: tuple[float, float, float] = (0.1, 0.02, 0.0)
+    limits_A: tuple[float, float] = (-1.5, 1.5)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,11 +141,7 @@ class Format:
 
 
 def check_name(name: str) -> str:
-    """Return a file name that every file system accepts; FormatError for one too long or reserved by Windows.
-
-    >>> check_name("cooling-step.csv")
-    'cooling-step.csv'
-    """
+    """Return a file name that every file system accepts; FormatError for one too long or reserved by Windows."""
     if len(name.encode("utf-8")) > LONGEST_NAME:
         raise FormatError(
             f"{name[:40]}…: a file's name has at most {LONGEST_NAME} bytes, this one {len(name.encode('utf-8'))}; give "
@@ -178,9 +187,6 @@ def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:
     """Return the events of a cue that begins at `lead_s`: start and end of every stretch that rises or falls.
 
     A stretch that ends at the level the cue began with is a return. Times are those that the cue prescribes.
-
-    >>> [(event.name, event.time_s) for event in events_of(Corners((0, 2, 6, 8), (32, 26, 26, 32), "temperature_C"))]
-    [('ramp start', 0.0), ('target reached', 2.0), ('return start', 6.0), ('baseline reached', 8.0), ('end', 8.0)]
     """
     points = list(zip(corners.time_s, corners.value, strict=True))
     rest = corners.value[0]
@@ -199,3 +205,35 @@ def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:
 def _direction(a: tuple[float, float], b: tuple[float, float]) -> int:
     slope = (b[1] - a[1]) / (b[0] - a[0])
     return 0 if abs(slope) < STILL else 1 if slope > 0 else -1
+
+
+LONGEST_REST_S = 1800.0
+"""Held before the first play where the gate finds that 10 min of rest do not suffice."""
+
+
+def must_prevent(demands: Sequence[Mapping[str, Any]]) -> MustPrevent:
+    """The strictest over a set of what the gate demands of each icon (`Gate.demanded`)."""
+    cut_offs = [each["cut_off_display_C"] for each in demands]
+    tests = [check for each in demands if (check := each["polarity_check"]) and check["needed"]]
+    rests = [each["rest_before_first_play_s"] for each in demands]
+    pauses = [pause for each in demands if (pause := each["pause_at_least_s"]) is not None]
+    loop, limits_A = (demands[0].get(key) for key in ("loop", "current_limit_A"))  # alike in all icons of a set
+    plain = MustPrevent()
+
+    def gentlest(key: str, otherwise: float) -> float:
+        return min((float(test[key]) for test in tests), default=otherwise)
+
+    return MustPrevent(
+        watchdog_s=min(float(each["watchdog_s"]) for each in demands),
+        low_C=max(float(cut["low"]) for cut in cut_offs),
+        high_C=min(float(cut["high"]) for cut in cut_offs),
+        react_within_s=min(float(cut["react_within_s"]) for cut in cut_offs),
+        test_polarity=bool(tests),
+        test_current_A=gentlest("test_current_A", plain.test_current_A),
+        test_s=gentlest("test_s", plain.test_s),
+        test_fall_K=gentlest("display_change_at_least_K", plain.test_fall_K),
+        rest_s=max(LONGEST_REST_S if rest is None else float(rest) for rest in rests),
+        pause_s=max(map(float, pauses), default=plain.pause_s),
+        gains=(loop["kp_A_per_K"][1], loop["ki_A_per_Ks"][1], loop["kd_As_per_K"]) if loop else plain.gains,
+        limits_A=limits_A or plain.limits_A,
+    )

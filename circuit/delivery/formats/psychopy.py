@@ -7,11 +7,9 @@ import io
 from collections.abc import Sequence
 
 from ..delivered_drive import DeliveredDrive
-from ..prevent import MustPrevent
-from .c_player import command_for, filled
-from .form import Column, Format, Played, events_in, samples_of
-from .tables import CSV, SETPOINT_CSV, has_voltage, volts_of
-from .tcs2 import SERIAL
+from .c_array import command_for, filled
+from .form import Column, Format, MustPrevent, Played, events_in, samples_of
+from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
 FROZEN_S = 5.0
@@ -106,11 +104,7 @@ def _columns(name: str, count: int) -> list[str]:
 
 
 def _column(name: str, k: int) -> str:
-    """Column of an event that happens for the k-th time, from 0.
-
-    >>> _column("ramp start", 0), _column("ramp start", 1)
-    ('ramp_start_s', 'ramp_start_2_s')
-    """
+    """Column of an event that happens for the k-th time, from 0."""
     return f"{name.replace(' ', '_')}{f'_{k + 1}' if k else ''}_s"
 
 

@@ -23,7 +23,7 @@ WAYS = (
     ("ni-analogue-output", "tdms"), ("ni-analogue-output", "psychopy"), ("dac-16", "csv"), ("dac-12", "c-array"),
     ("dac-16", "tdms"), ("dac-14", "psychopy"),
     ("qst-tcs2", "tcs2-serial"), ("qst-tcs2", "tcs2-serial"),
-    ("qst-tcs2", "tcs2-protocol-ini"), ("qst-tcs2", "psychopy"),
+    ("qst-tcs2", "tcs2-serial"), ("qst-tcs2", "psychopy"),
     ("closed-loop-controller", "setpoint-csv"), ("closed-loop-controller", "psychopy"),
 )  # fmt: skip
 SLOW = (("dc-coupled-audio", "wav"), ("pwm-h-bridge-10", "csv"), ("pwm-h-bridge-10", "c-array"))

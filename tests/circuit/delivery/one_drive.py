@@ -1,17 +1,17 @@
-"""One icon prepared by itself, judged by the gate or by what a test puts in its place."""
+"""One icon prepared or judged by itself, by the gate or by what a test puts in its place."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from thermicon.circuit import Device, Rig
+from thermicon.circuit import Device, Gate, Rig
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import Format
-from thermicon.circuit.delivery.prepare import Prepared, Verdict, prepare_set
+from thermicon.circuit.delivery.prepare import Prepared, prepare_set
 from thermicon.circuit.delivery.worstcase import worst_cases
 from thermicon.icons import Icon
 
-Judge = Callable[[DeliveredDrive], Verdict]
+Judge = Callable[[DeliveredDrive], Gate]
 
 
 def prepare(
@@ -27,3 +27,7 @@ def prepare(
     judge = worst_cases if gate is None else lambda deliveries, pause_s: tuple(map(gate, deliveries))
     (ready,) = prepare_set([icon], rig, device, form, judge=judge, tail_s=tail_s, pause_s=pause_s)
     return ready
+
+
+def worst_case(delivery: DeliveredDrive, pause_s: float | None = None) -> Gate:
+    return worst_cases([delivery], pause_s)[0]

@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.circuit.delivery.one_drive import worst_case
 from thermicon.circuit import Device, Rig, simulate, simulate_current
 from thermicon.circuit.delivery.deliver import deliver, traces_until
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.samples import Samples, rate_of, within
 from thermicon.circuit.delivery.setpoints import Setpoints, closed, setpoints_of
-from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.records import Record
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of

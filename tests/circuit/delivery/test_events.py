@@ -3,7 +3,7 @@
 import pytest
 
 from thermicon.circuit import Drive, Rig, simulate_current
-from thermicon.circuit.delivery.delivery_deviation import (
+from thermicon.circuit.delivery.delivered_drive import (
     DeliveryDeviation,
     Deviation,
     delivery_deviation,
@@ -11,7 +11,7 @@ from thermicon.circuit.delivery.delivery_deviation import (
     loss_table,
 )
 from thermicon.circuit.delivery.formats.form import events_of
-from thermicon.circuit.delivery.refusal import lost_text
+from thermicon.circuit.delivery.prepare import lost_text
 from thermicon.icons import load_library
 from thermicon.icons.model.corners import Corners
 

@@ -15,13 +15,11 @@ import pytest
 from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.surerig import sure_rig
 from tests.circuit.verdicts import GreenVerdict
-from thermicon.circuit import Device, Rig
+from thermicon.circuit import Device, Gate, Rig
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import Prepared, Verdict
-from thermicon.circuit.delivery.refusal import Refusal, needed_A, refusals_of
-from thermicon.circuit.delivery.sidecar import NO_CLEARANCE
+from thermicon.circuit.delivery.pack import NO_CLEARANCE, pack
+from thermicon.circuit.delivery.prepare import Prepared, Refusal, needed_A, refusals_of
 from thermicon.circuit.program import code_digest
 from thermicon.circuit.records import Record
 from thermicon.circuit.safety.checks import Check
@@ -155,7 +153,7 @@ def test_the_gate_is_given_and_its_word_is_final() -> None:
 
     seen: list[str] = []
 
-    def stern(delivery: DeliveredDrive) -> Verdict:
+    def stern(delivery: DeliveredDrive) -> Gate:
         seen.append(delivery.icon.name)
         return Red()
 
@@ -193,11 +191,6 @@ def test_a_bridge_takes_the_place_of_the_driver_whose_limits_then_say_nothing() 
     delivery = passed("warming-step", "pwm-h-bridge-10", rig=RIG.with_(**{"driver.current_limit_A": 1.0})).delivery
     assert delivery.trace.beyond
     assert delivery.warnings == delivery.device_warnings == ()
-
-
-def test_a_format_that_cannot_hold_an_icon_names_it() -> None:
-    with pytest.raises(FormatError, match=r"^double-dip: tcs2-protocol-ini holds one ramp"):
-        pack([passed("double-dip", "qst-tcs2", "tcs2-protocol-ini")], load_format("tcs2-protocol-ini"))
 
 
 class TestSidecar:

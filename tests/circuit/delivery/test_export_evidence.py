@@ -19,20 +19,20 @@ import pytest
 from tests.circuit.delivery.adversarial import some_case
 from tests.circuit.delivery.evidence import PER_PART, Told, run_part
 from tests.circuit.delivery.exported_files import read_file, sidecar_in
+from tests.circuit.delivery.one_drive import worst_case
 from tests.circuit.delivery.replay import AFTER, Held, Player, Worst, judged
 from tests.circuit.delivery.spice_replay import by_ngspice
+from thermicon.circuit import Gate
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prepare import Verdict
-from thermicon.circuit.delivery.worstcase import worst_case
 
 DRIVES = int(os.environ.get("THERMICON_EVIDENCE", "10000"))
 BY_NGSPICE, WITHIN_K = 300, 5e-3
 WIDER_K = 4.0
 
 
-def too_kind(delivery: DeliveredDrive) -> Verdict:
+def too_kind(delivery: DeliveredDrive) -> Gate:
     """A gate whose limits of temperature are wider by 4 K, and whose other limits are twice what they are."""
     limits = delivery.rig.limits
     rules = tuple(

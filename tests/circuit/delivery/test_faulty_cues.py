@@ -5,13 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import prepare, worst_case
 from thermicon.circuit import Device, Drive, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.prepare import Prepared
-from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
 from thermicon.icons import Icon, parse
 

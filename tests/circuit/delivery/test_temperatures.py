@@ -18,7 +18,7 @@ from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.samples import Samples
-from thermicon.circuit.delivery.spread import open_loop_spread
+from thermicon.circuit.delivery.worstcase import open_loop_spread
 from thermicon.circuit.records import Record
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of

@@ -10,17 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import prepare, worst_case
 from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
 from thermicon.circuit.delivery.controlled import samples_of
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
-from thermicon.circuit.delivery.following_module import FollowingModule
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.prepare import Prepared
-from thermicon.circuit.delivery.temperatures import follow_samples
-from thermicon.circuit.delivery.worstcase import worst_case, worst_cases
+from thermicon.circuit.delivery.temperatures import FollowingModule, follow_samples
+from thermicon.circuit.delivery.worstcase import worst_cases
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of

@@ -22,9 +22,6 @@ from .drive_design import CANDIDATES, candidate, mean_deviation
 FREE = [*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
         "heat_sink.temperature_C", "heat_sink.resistance_K_per_W"]  # fmt: skip
 
-ONE_RAMP = "tcs2-protocol-ini"
-"""A format of one ramp, one plateau and one return."""
-
 
 def test_display_and_voltage_identify_what_the_display_alone_does_not() -> None:
     expected = {each.sensors: each for each in plan(Rig.load("thenar"), FREE, fixed_skin=True)}
@@ -75,7 +72,7 @@ def test_the_calibration_drive_is_more_informative_than_what_people_would_try() 
 @pytest.mark.parametrize("device", device_names())
 def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None:
     rig = "tcs2" if Device.load(device).driven_by == "set-points" else "thenar"
-    special = [name for name in format_names() if load_format(name).device == device and name != ONE_RAMP]
+    special = [name for name in format_names() if load_format(name).device == device]
     form = (special or ["csv"])[0]
     result = export(calibration_icon(), rig, device, form)
     assert result.refused == () and len(result.files) >= 2

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit.delivery.refusal import needed_A
+from thermicon.circuit.delivery.prepare import needed_A
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.skin import Layer, Skin, column_of
 from thermicon.circuit.solver.network import network_of

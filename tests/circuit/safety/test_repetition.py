@@ -5,9 +5,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
+from tests.circuit.delivery.one_drive import worst_case
 from thermicon.circuit import Device, Drive, Limits, Rig, gate
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.delivery.worstcase import worst_case
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety import playmap
 from thermicon.circuit.safety.checks import Before

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from tests.circuit.delivery.one_drive import worst_case
 from thermicon.circuit import Device, Limits, Rig
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.delivery.worstcase import ways_of, worst_case, worst_cases
+from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
 from thermicon.circuit.safety.display import DisplayCourse, DisplayPlant
 from thermicon.circuit.safety.gate import Gate, gate_shown
 from thermicon.circuit.safety.plant import left_s, recovery_s

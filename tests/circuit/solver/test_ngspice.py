@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from thermicon.circuit import Drive, InputError, Rig, Trace, netlist, simulate, simulate_current
-from thermicon.circuit.delivery.netlist_landing import EDGE_S
+from thermicon.circuit.delivery.netlist import EDGE_S
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import RECORDED

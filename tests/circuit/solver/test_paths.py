@@ -11,7 +11,6 @@ import pytest
 
 from thermicon.circuit import Device, Drive, Rig, design, gate, play_session, simulate, simulate_current, simulate_many
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.delivery.subcircuit import subcircuits
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
@@ -153,7 +152,6 @@ def refusals(rig: Rig) -> dict[str, Callable[[], object]]:
         "gate of safety": lambda: gate(drive, rig),
         "a session": lambda: play_session([icon], SessionPlan((icon.name,), gap_s=1.0), rig),
         "what a device delivers": lambda: deliver(icon, rig, Device.load("dac-16")),
-        "a subcircuit starts": lambda: subcircuits(rig),
     }
 
 

@@ -131,15 +131,6 @@ class TestNetlist:
         assert "Rcontact" not in text
         assert ".tran 0.01 10.0 0 " in text  # 2 s and the icon's 8 s
 
-    def test_a_library_of_subcircuits_holds_the_rig_alone(self, cli: Cli, tmp_path: Path) -> None:
-        out = tmp_path / "thenar.lib"
-        said = cli("simulate", "--set", "contact.area_cm2=4", "-o", out)
-        assert (said.exit_code, said.stdout) == (0, "")
-        assert said.stderr.startswith(f"wrote {out}: thermicon_module and thermicon_skin; ")
-        text = out.read_text(encoding="ascii")
-        assert "+ area_cm2=4.0\n" in text
-        assert ".tran" not in text
-
     @pytest.mark.slow
     def test_ngspice_plays_what_simulate_writes(
         self, cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tool: Callable[[str], str]

@@ -17,8 +17,7 @@ from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.surerig import SURE, sure_rig
 from thermicon.circuit import Device
 from thermicon.circuit.delivery.formats import format_names, load_format
-from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.sidecar import digest, sealed, sidecar_text
+from thermicon.circuit.delivery.pack import digest, pack, sealed, sidecar_text
 from thermicon.circuit.delivery.verify import verify
 from thermicon.icons import load_library
 

@@ -19,8 +19,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from thermicon.circuit.delivery.claims import claims_of
-from thermicon.circuit.delivery.export_folder import publish
+from thermicon.circuit.delivery.export_folder import claims_of, publish
 from thermicon.icons.atomic import OutputError
 
 EVENTS = ("mkdir", "open", "write", "fsync", "rename", "unlink", "rmdir", "chmod", "close")

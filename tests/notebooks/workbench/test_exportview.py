@@ -109,7 +109,7 @@ def test_what_is_not_reached_is_written_only_on_request_and_not_into_a_file(tmp_
 def test_a_device_offers_the_formats_that_it_takes_and_says_what_it_cannot_play(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
     bench.view.device.value = "qst-tcs2"
-    assert [name for _, name in bench.view.form.options] == ["tcs2-serial", "tcs2-protocol-ini", "psychopy"]
+    assert [name for _, name in bench.view.form.options] == ["tcs2-serial", "psychopy"]
     bench.wait()
     assert bench.view.ready is not None
     assert bench.view.ready.device.name == "qst-tcs2"

@@ -29,7 +29,7 @@ EXPORTS = (
     *((name, "thenar", "csv") for name in (*SETS, "calibration-drive")),
     *(("six-icons", rig, "csv") for rig in ("fingertip", "forearm", "hand-dorsum")),
     *(("six-icons", "thenar", form) for form in ("setpoint-csv", "tdms", "c-array", "psychopy")),
-    *(("six-icons", "tcs2", form) for form in ("tcs2-serial", "tcs2-protocol-ini", "csv")),
+    *(("six-icons", "tcs2", form) for form in ("tcs2-serial", "csv")),
 )
 FITTED = "contact.resistance_m2K_per_W,module.seebeck_V_per_K,module.resistance_ohm"
 TIED_TO_THE_CODE = {"thermicon", "program", "code_sha256", "sidecar_sha256"}

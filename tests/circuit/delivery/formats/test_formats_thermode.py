@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import configparser
 import csv
 import io
 import json
@@ -19,13 +18,10 @@ from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
-from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.formats.tcs2 import stimulus_of
+from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.icons import Icon, load_library, parse
-from thermicon.icons.model.corners import Corners
 
 RIG = Rig.load("thenar")
 THERMODE = Device.load("qst-tcs2")
@@ -81,56 +77,6 @@ class TestSerial:
         _, pairs = read_profile(load_format("tcs2-serial").write(found).decode())
         ramp = sum(duration for duration, _ in pairs[:3])
         assert ramp == pytest.approx(6 / 0.25)
-
-
-class TestProtocol:
-    """The protocol file."""
-
-    def read(self, found: DeliveredDrive) -> configparser.ConfigParser:
-        parser = configparser.ConfigParser()
-        parser.optionxform = str  # type: ignore[assignment,method-assign]
-        parser.read_string(load_format("tcs2-protocol-ini").write(found).decode("ascii"))
-        return parser
-
-    def test_a_cooling_step_lasts_as_long_as_a_warming_one(self) -> None:
-        zones = [self.read(deliver(icon_of(way), RIG, THERMODE))["step3_zone1"] for way in ("cool", "warm")]
-        assert [zone["temperature"] for zone in zones] == ["24.000", "36.000"]
-        for zone in zones:
-            # a signed rise time would have made 0.000 of the cooling one
-            assert (zone["duration"], zone["speed"], zone["return"]) == ("4.000", "3.000", "3.000")
-
-    def test_no_rate_is_truncated(self) -> None:
-        zone = self.read(deliver(icon_of("cool", (0.25, 0.35)), RIG, THERMODE))["step3_zone5"]
-        assert (zone["speed"], zone["return"], zone["duration"]) == ("0.250", "0.350", "26.000")
-
-    def test_its_steps_are_baseline_trigger_and_stimulation(self) -> None:
-        parser = self.read(deliver(icon_of("warm"), RIG, THERMODE))
-        assert int(parser["protocol"]["stepsNumber"]) == 3
-        assert [parser[f"step{k}"]["stepTypeText"] for k in (1, 2, 3)] == ["BASELINE", "WAIT", "STIMULATE"]
-        assert [parser[f"step{k}"]["stepType"] for k in (1, 2, 3)] == ["6", "2", "0"]
-        assert parser["step1"]["baseline"] == parser["step3_stimulation"]["baseline"] == "30.000"
-        assert all(parser[f"step3_zone{zone}"]["enabled"] == "1" for zone in range(1, 6))
-
-    def test_a_rest_at_the_end_and_no_plateau_are_fine(self) -> None:
-        peak = stimulus_of(Corners((0, 2, 3), (30, 32, 30), "temperature_C"), 300.0)
-        assert (peak.rise_K_per_s, peak.return_K_per_s, peak.duration_s) == (1.0, 2.0, 2.0)
-        assert stimulus_of(Corners((0, 2, 3, 9), (30, 32, 30, 30), "temperature_C"), 300.0) == peak
-
-    def test_a_step_is_as_fast_as_the_thermode(self) -> None:
-        step = stimulus_of(Corners((0, 1e-7, 2, 3), (30, 32, 32, 30), "temperature_C", (0,)), 300.0)
-        assert step.rise_K_per_s == 300.0
-
-    def test_another_shape_is_refused(self) -> None:
-        found = deliver(load_library("six-icons")["double-dip"], RIG, THERMODE)
-        with pytest.raises(
-            FormatError, match=r"one ramp, one plateau and one return .* another shape: use tcs2-serial"
-        ):
-            load_format("tcs2-protocol-ini").write(found)
-
-    def test_a_skin_cue_is_refused(self) -> None:
-        found = deliver(icon_of("cool", control="skin"), RIG, THERMODE)
-        with pytest.raises(FormatError, match="needs an icon that prescribes the display; a prescribes the skin"):
-            load_format("tcs2-protocol-ini").write(found)
 
 
 class TestPsychopy:

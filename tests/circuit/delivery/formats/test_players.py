@@ -17,15 +17,14 @@ from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.delivery.formats.form import Played
+from thermicon.circuit.delivery.formats.form import MustPrevent, Played, must_prevent
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.prevent import MustPrevent, must_prevent
 from thermicon.circuit.records import Record
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
 ICON = load_library("six-icons")["double-dip"]
-MUST = must_prevent([{"hardware_must_prevent": MADE_UP}])
+MUST = must_prevent([MADE_UP])
 
 
 class Clock:
@@ -312,14 +311,11 @@ class TestMustPrevent:
             **MADE_UP, "watchdog_s": 1.0, "pause_at_least_s": 90.0, "polarity_check": {"needed": False},
             "cut_off_display_C": {"low": 24.0, "high": 44.0, "react_within_s": 0.5},
         }  # fmt: skip
-        found = must_prevent([{"hardware_must_prevent": MADE_UP}, {"hardware_must_prevent": gentle}])
+        found = must_prevent([MADE_UP, gentle])
         assert found == MustPrevent(0.4, 24.0, 40.0, 0.1, True, 0.2, 0.5, 0.15, 30.0, 90.0)
 
-    def test_what_is_not_stated_is_assumed(self) -> None:
-        assert must_prevent([{}]) == MustPrevent()
-
     def test_a_polarity_that_need_not_be_tested_is_not(self) -> None:
-        found = must_prevent([{"hardware_must_prevent": {"polarity_check": {"needed": False, "test_s": None}}}])
+        found = must_prevent([{**MADE_UP, "polarity_check": {"needed": False, "test_s": None}}])
         assert not found.test_polarity
 
     def test_a_set_has_one_player(self) -> None:
