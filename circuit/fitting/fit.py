@@ -11,17 +11,14 @@ from pathlib import Path
 from ..cores import quiet_blas
 from ..rig.faults import PARAMETERS
 from ..rig.rig import Rig
-from .checks import aligned, check_clocks, check_sensors
+from .forward import runs_of
 from .identify import identified, in_series
 from .keys import FitError, FitKey, free_keys
-from .left_out import beyond_noise, late_column
-from .log import Log, LogError
-from .log_files import read_log
-from .notes import disagreement, far_off, kept, remarks, too_narrow, unsteady
+from .log import Log, LogError, read_log
+from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow, unsteady
+from .overlay import aligned, check_clocks, check_sensors
 from .problem import FREE_START, OFFSET_SD_K, STEADY, STEADY_BEFORE, Problem, changed_layers
-from .rig_file import reason_of, uncertainties
-from .rig_fit import RigFit, channel_fits
-from .runs import runs_of
+from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
 from .solve import Solution, fits_better, solve
 
 LAYER_DIGITS = 5

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number
 
+from ..arrays import Array
 from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM, new_axes, tidy
-from .left_out import milli
+from .notes import milli
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,24 +27,19 @@ MOST_POINTS = 4000
 """More points than a page has dots to the inch show nothing more."""
 
 
-def plot_residuals(fit: RigFit, ax: Axes | None = None, column: str | None = None) -> Axes:
-    """Draw measured minus fitted of all columns or one; K and V share the axis only if both are there."""
+def plot_residuals(channels: Sequence[ChannelFit], ax: Axes | None = None) -> Axes:
+    """Draw measured minus fitted of columns; K and V share the axis only if both are there."""
     ax = new_axes(ax, (7.0, 2.6))
-    shown = [each for each in fit.channels if column in (None, each.column)]
     ax.axhline(0.0, color="#999999", lw=0.8)
-    for each in shown:
-        few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
-        ax.plot(each.time_s[few], each.residual[few], ".", ms=2.0, color=COLORS.get(each.column, PROBE),
-                label=_label(each))  # fmt: skip
-    units = " or ".join(sorted({each.unit for each in shown}))
-    return tidy(ax, shown[0].time_s, f"measured − fitted ({units})")
+    for each in channels:
+        label = f"{_words(each.column)}\nrms {milli(each.rms, each.unit)}\nlargest {milli(each.largest, each.unit)}"
+        ax.plot(*_few(each.time_s, each.difference), ".", ms=2.0, color=COLORS.get(each.column, PROBE), label=label)
+    units = " or ".join(sorted({each.unit for each in channels}))
+    return tidy(ax, channels[0].time_s, f"measured − fitted ({units})")
 
 
 def fit_figure(fit: RigFit, across: int = 2) -> Figure:
-    """Return a figure with two panels per measured column: measured and fitted values, and below them residuals.
-
-    `across` columns stand beside one another at most.
-    """
+    """Two panels per measured column, `across` columns beside one another: both courses, and below them residuals."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
@@ -72,11 +69,10 @@ def fit_figure(fit: RigFit, across: int = 2) -> Figure:
 
 def _pair(above: Axes, below: Axes, each: ChannelFit, named: bool) -> None:
     color = COLORS.get(each.column, PROBE)
-    few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
-    above.plot(each.time_s[few], each.measured[few], ".", ms=2.5, color=POINTS, label="measured")
-    above.plot(each.time_s, each.fitted, color=color, lw=1.3, label="fitted")
+    above.plot(*_few(each.time_s, each.measured), ".", ms=2.5, color=POINTS, label="measured")
+    above.plot(each.time_s, each.simulated, color=color, lw=1.3, label="fitted")
     below.axhline(0.0, color="#999999", lw=0.8)
-    below.plot(each.time_s[few], each.residual[few], ".", ms=2.0, color=color)
+    below.plot(*_few(each.time_s, each.difference), ".", ms=2.0, color=color)
     most = max(4.5 * each.rms, 1e-4)
     below.set_ylim(-most, most)
     words = _words(each.column)
@@ -93,8 +89,9 @@ def _pair(above: Axes, below: Axes, each: ChannelFit, named: bool) -> None:
         ax.spines[["top", "right"]].set_visible(False)
 
 
-def _label(each: ChannelFit) -> str:
-    return f"{_words(each.column)}\nrms {milli(each.rms, each.unit)}\nlargest {milli(each.largest, each.unit)}"
+def _few(*columns: Array) -> list[Array]:
+    """Columns (rows,) with so many points as can be seen."""
+    return [column[:: max(1, len(column) // MOST_POINTS)] for column in columns]
 
 
 def _words(column: str) -> str:
@@ -107,8 +104,7 @@ def draw_measured(beside: Overlay, ax: Axes) -> None:
     for each in beside.columns:
         if not each.column.endswith("_C"):
             continue
-        few = slice(None, None, max(1, len(each.time_s) // MOST_POINTS))
         label = f"{_words(each.column)}, measured\nrms {each.rms:.2g} K, largest {each.largest:+.2g} K"
         color = MEASURED_COLORS.get(each.column, PROBE)
-        ax.plot(each.time_s[few], each.measured[few], ".", ms=3.0, color=color, label=label.replace("-", "−"))
+        ax.plot(*_few(each.time_s, each.measured), ".", ms=3.0, color=color, label=label.replace("-", "−"))
     ax.set_title(f"{beside.name}, shifted by {number(beside.shift_s, 3)} s", fontsize="medium")

@@ -23,24 +23,11 @@ class FitError(InputError):
 
 @dataclass(frozen=True, slots=True)
 class FitKey:
-    """One parameter to fit.
+    """One parameter to fit: its key in a rig file, what people call it, and how to measure it without a fit (`direct`).
 
-    Attributes
-    ----------
-    key
-        Its dotted key in a rig file.
-    words
-        What people call it.
-    log
-        Whether it is a positive scale, fitted as its logarithm, with a relative interval.
-    room
-        How far the fit may move it: a factor either way where `log`, else in the key's unit.
-    usual
-        Half width of an interval that says no more than is assumed anyway: a share where `log`, else in the unit.
-    uncertainty
-        The key of [uncertainty] that its interval belongs to, or nothing.
-    direct
-        How it is measured without a fit.
+    `log`: a positive scale, fitted as its logarithm. `room` is how far the fit may move it, and `usual` the half width
+    of an interval that says no more than is assumed anyway: a factor and a share where `log`, else in the key's unit.
+    `uncertainty` is the key of [uncertainty] that its interval belongs to, or nothing.
     """
 
     key: str
@@ -113,19 +100,16 @@ COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
 def fittable(rig: Rig) -> tuple[str, ...]:
     """Return the keys that can be fitted on a rig, in the order of the circuit."""
     parts = {"load": rig.bench_load, "controller": rig.controller, "thermode": rig.thermode}
-    stated = {table: part is not None for table, part in parts.items()}
+    absent = {table for table, part in parts.items() if part is None}
+    absent |= {"module", "heat_sink", "driver"} if rig.pump is None else set()
     without = () if rig.bench_load is None else WITHOUT_SKIN if rig.bench_load.site == METAL else WITHOUT_CONTACT
-    pumped = {"module", "heat_sink", "driver"}
-    known = []
-    for key in _KEYS:
-        table = key.partition(".")[0]
-        if (table in pumped and rig.pump is None) or not stated.get(table, True):
-            continue
-        if key in GIVEN and value_of(rig, key) is None:
-            continue
-        if key in without:
-            continue
-        known.append(key)
+    known = [
+        key
+        for key in _KEYS
+        if key.partition(".")[0] not in absent
+        and key not in without
+        and not (key in GIVEN and value_of(rig, key) is None)
+    ]
     return (*known, *(f"probe.{probe.name}.lag_s" for probe in rig.probes))
 
 
@@ -134,12 +118,10 @@ def free_keys(keys: Sequence[str], rig: Rig) -> tuple[FitKey, ...]:
     names = [key.strip() for key in keys if key.strip()]
     if not names:
         raise FitError(f"no key to fit; name one or several, such as {COMMON[0]}")
-    twice = [name for place, name in enumerate(names) if name in names[:place]]
-    if twice:
+    if twice := [name for place, name in enumerate(names) if name in names[:place]]:
         raise FitError(f"{twice[0]}: is given twice; name each key once")
     known = fittable(rig)
-    faults = [_fault(name, rig, known) for name in names if name not in known]
-    if faults:
+    if faults := [_fault(name, rig, known) for name in names if name not in known]:
         raise FitError("\n".join(faults))
     return tuple(_KEYS.get(name) or _probe_key(name) for name in names)
 

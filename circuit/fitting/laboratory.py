@@ -13,11 +13,11 @@ from thermicon.icons import Icon, load_library
 
 from ..rig.rig import Rig
 from ..solver.simulate import simulate
+from .forward import runs_of
 from .identify import NOISE_K, NOISE_V, SHORT, expected_sd, half_width, is_identified, with_channels
 from .keys import FitKey, free_keys
 from .log import Log
 from .problem import OFFSET_SD_K, Problem
-from .runs import runs_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -55,7 +55,11 @@ def synthetic_log(
     tail_s: float = 0.0,
     name: str = "synthetic.csv",
 ) -> Log:
-    """Return the log of a cue played on a rig, with noise; the same seed gives the same log."""
+    """Return the log of a cue (None: the calibration drive) played on a rig; the same seed gives the same log.
+
+    `rate_Hz` is that of rows and of the driver's updates, `noise_K` and `noise_V` the SD of a reading, `offset_sd_K`
+    that of each temperature sensor's zero. The log goes on for `tail_s` after the cue.
+    """
     if rig.thermode is None:
         rig = rig.with_(**{"driver.update_Hz": rate_Hz})
     trace = simulate(icon or calibration_icon(), rig, rate_Hz=rate_Hz, tail_s=tail_s)

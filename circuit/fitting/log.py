@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import hashlib
+import io
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from thermicon.icons.files.table import read_table
+from thermicon.icons.near_words import nearest_words
+
 from ..arrays import Array
-from ..inputs import LIKE_MILLISECONDS
+from ..inputs import LIKE_MILLISECONDS, quoted, read_bytes, table_fault, text_of
 from ..rig.module import ZERO_C_IN_K
 from ..solver.trace import Trace
 from .keys import FitError
@@ -50,22 +57,10 @@ class LogError(FitError):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Log:
-    """A log of one clock.
+    """A log of one clock: `time_s` (rows,) in s, increasing, and columns (rows,), NaN where nothing was recorded.
 
-    Attributes
-    ----------
-    name
-        Name of the file.
-    sha256
-        Digest of the file's bytes; empty for a log that came from no file.
-    time_s
-        Times (rows,) in s by its own clock, increasing.
-    columns
-        Name and values (rows,) of every column; NaN where nothing was recorded.
-    notes
-        What was adjusted or left out on reading.
-    unused
-        The file's columns that are not used, as people read them.
+    `sha256` is the digest of its file, empty where it came from none; `notes` say what was adjusted or left out on
+    reading, `unused` names the columns that are not used.
 
     Examples
     --------
@@ -95,10 +90,9 @@ class Log:
         rows: Sequence[str] | None = None,
         unused: str = "",
     ) -> Log:
-        """Return a checked log of columns by name, `time_s` among them.
+        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log.
 
         `rows` are the places of the rows in a file, and `unused` its other columns, for messages.
-        Raises LogError for what cannot be a log.
         """
         values = {key: np.asarray(column, dtype=np.float64) for key, column in columns.items()}
         if "time_s" not in values:
@@ -263,3 +257,129 @@ def _temperature_fault(column: str, there: Array) -> str | None:
             f"shorted; connect it, or remove the column"
         )
     return None
+
+
+MOST_MB, MOST_SIDECAR_MB = 200.0, 1.0
+OTHER_UNIT = {
+    "time_ms": ("time_s", "divide it by 1000"),
+    "time_min": ("time_s", "multiply it by 60"),
+    "current_mA": ("current_A", "divide it by 1000"),
+    "voltage_mV": ("voltage_V", "divide it by 1000"),
+    "command_mV": ("command_V", "divide it by 1000"),
+    **{f"{name.removesuffix('_C')}_K": (name, "subtract 273.15") for name in MEASURED if name.endswith("_C")},
+    **{f"{name.removesuffix('_C')}_F": (name, "convert it to °C") for name in MEASURED if name.endswith("_C")},
+}
+"""Columns in another unit than a log has, the name they should have, and how to convert them."""
+
+MISSPELT = 0.85
+"""A name of a column that is so much alike a known one is taken for a slip of the pen."""
+
+
+def read_log(path: str | Path) -> Log:
+    r"""Read a measured log.
+
+    Parameters
+    ----------
+    path
+        A `.csv` or `.tsv` (commas, semicolons or tabs) or a `.tdms` file with waveform channels.
+
+    Returns
+    -------
+    Log
+        Its columns over one clock.
+
+    Raises
+    ------
+    LogError
+        For a file that is not a log, with its line or column and the cure.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder) / "rig.csv"
+    ...     rows = "".join(f"{k / 10},0.1,32.0\n" for k in range(30))
+    ...     _ = path.write_text("time_s,current_A,display_C\n" + rows)
+    ...     read_log(path)
+    Log('rig.csv', 30 rows, 2.9 s: current_A, display_C)
+    """
+    where = Path(path)
+    data = read_bytes(where, "log", MOST_MB, LogError)
+    digest = hashlib.sha256(data).hexdigest()
+    if where.suffix.lower() == ".tdms":
+        return Log.of(where.name, _read_tdms(data, where.name), sha256=digest)
+    return _from_text(where, text_of(data, where, "log", LogError), digest)
+
+
+def _from_text(where: Path, text: str, digest: str) -> Log:
+    table = read_table(text, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS)
+    wanted = [name for name in dict.fromkeys(table.header) if name == "time_s" or is_known(name)]
+    gaps = {name: Counter[str]() for name in wanted}
+    columns = {name: table.numbers(name, "leave the cell empty", gaps=gaps[name]) for name in wanted}
+    _check_columns(where.name, columns, table.header)
+    notes = [
+        f"{where.name}: {name} is {quoted(cell)} in {count:,} of {len(table.rows):,} rows, which are taken as gaps"
+        for name, counts in gaps.items()
+        for cell, count in counts.items()
+        if cell
+    ]
+    unused = ", ".join([name for name in table.header if name not in columns and name != "icon"][:8])
+    places = [f"{where}:{line}" for line in table.lines]
+    return Log.of(where.name, columns, sha256=digest, notes=notes, rows=places, unused=unused)
+
+
+def _check_columns(name: str, columns: Mapping[str, Array], header: Sequence[str]) -> None:
+    """Every missing column at once, with what was found and what another unit should be converted to."""
+    wrong = [f"{found} should be {right}: {how}" for found, (right, how) in OTHER_UNIT.items() if found in header]
+    missing = [] if "time_s" in columns else ["time_s (time in s)"]
+    if not any(is_known(column) for column in columns):
+        missing.append(f"one of {', '.join(DRIVES)}, or any of {', '.join(MEASURED)}")
+    known = ("time_s", *DRIVES, *MEASURED)
+    misspelt = [(cell, _misspelt(cell, known)) for cell in header if cell not in columns and cell not in OTHER_UNIT]
+    wrong += [f"{cell}: did you mean {name}? Rename it" for cell, name in misspelt if name and name not in columns]
+    if not missing and not wrong:
+        return
+    parts = [f"missing: {', and '.join(missing)}"] if missing else []
+    parts += [*wrong, f"found {', '.join(header[:12])}"]
+    raise LogError(f"{name}: {'; '.join(parts)}")
+
+
+def _misspelt(cell: str, known: Sequence[str]) -> str | None:
+    """The known column that a name is but for case or a letter."""
+    close = nearest_words(cell.lower(), [name.lower() for name in known], 1, MISSPELT)
+    return next((name for name in known if close and name.lower() == close[0]), None)
+
+
+def _read_tdms(data: bytes, name: str) -> dict[str, Array]:
+    """Columns of a TDMS file by channel name; times come from a channel `time_s` or from `wf_increment`."""
+    try:
+        from nptdms import TdmsFile
+    except ImportError:
+        raise LogError(
+            f'{name}: TDMS needs npTDMS, which is not installed: pip install "thermicon[hardware]"'
+        ) from None
+    try:
+        groups = TdmsFile.read(io.BytesIO(data)).groups()
+        channels = [channel for group in groups for channel in group.channels()]
+        numbers = [channel for channel in channels if np.issubdtype(channel.dtype, np.number)]
+        columns = {channel.name: np.asarray(channel[:], dtype=np.float64) for channel in numbers}
+    except Exception as problem:  # npTDMS raises whatever a broken file leads it to
+        raise LogError(f"{name}: cannot be read as TDMS ({str(problem) or type(problem).__name__})") from None
+    if not columns:
+        found = ", ".join(channel.name for channel in channels) or "no channel"
+        raise LogError(f"{name}: cannot be read as TDMS: no channel with numbers; found {found}")
+    if "time_s" in columns:
+        return columns
+    clocks = {}
+    for channel in numbers:
+        try:
+            clocks[channel.name] = channel.time_track()
+        except KeyError:
+            raise LogError(
+                f"{name}: channel {channel.name} has neither wf_increment nor a channel time_s beside it"
+            ) from None
+    time_s = next(iter(clocks.values()))
+    if any(len(clock) != len(time_s) or not np.allclose(clock, time_s, rtol=0, atol=1e-9) for clock in clocks.values()):
+        listed = ", ".join(f"{key} {len(clock)} samples" for key, clock in clocks.items())
+        raise LogError(f"{name}: channels with different clocks ({listed}); save each clock as a file of its own")
+    return {"time_s": time_s, **columns}

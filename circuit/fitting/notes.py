@@ -6,19 +6,18 @@ column that is late, and only then keys that are held fixed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from ..arrays import Array
 from ..rig.parts import Uncertainty
+from .forward import MAD_TO_SD, Channel
 from .identify import Parameter
-from .left_out import beyond_noise, explaining
-from .problem import FREE_START, STEADY_BEFORE, Problem
-from .rig_file import LARGEST
-from .rig_fit import channel_fits
-from .runs import Channel
-from .solve import Solution
+from .problem import FREE_START, STEADY_BEFORE, Problem, Unknown
+from .rig_fit import LARGEST, channel_fits
+from .solve import Solution, covariance_of, huber, solve
 
 MOST_UPDATES = 1.5
 """Rows farther apart than 1.5 updates of the driver miss some of them."""
@@ -50,17 +49,16 @@ def disagreement(
         return tuple(missed), "the rig leaves something out of the logs"
     if unsteady(problem, solution.theta):
         return tuple(missed), NO_MATCH
-    keys = explaining(problem, solution)
-    cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
-    return (*missed, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"), NO_MATCH
+    doubt = "intervals may be too narrow, since what is held fixed is taken as right: free another key as well"
+    return (*missed, f"{doubt}, or something that is not a key of the rig is wrong"), NO_MATCH
 
 
 def _combined(problem: Problem, theta: Array, unknown: Sequence[Parameter]) -> tuple[str, ...]:
     """A sentence where keys that are not identified matter together, so that the rig that keeps them misses the log."""
-    kept, names = theta.copy(), {item.key for item in unknown}
-    for k, key in enumerate(problem.keys):
-        if key.key in names:
-            kept[k] = problem.first[k]
+    names = {item.key for item in unknown}
+    places = [k for k, key in enumerate(problem.keys) if key.key in names]
+    kept = theta.copy()
+    kept[places] = problem.first[places]
     if problem.predictions(kept) is not None and not beyond_noise(problem, kept):
         return ()
     return (
@@ -128,7 +126,10 @@ def unsteady(problem: Problem, theta: Array) -> list[str]:
         return []
     names = []
     for each, (_, _, channel) in zip(channel_fits(problem, theta), problem.channels(), strict=True):
-        residual, noise = np.abs(each.residual), float(np.median(np.abs(np.diff(channel.values)))) + channel.resolution
+        residual, noise = (
+            np.abs(each.difference),
+            float(np.median(np.abs(np.diff(channel.values)))) + channel.resolution,
+        )
         early = residual[each.time_s < EARLY_S]
         most = max(EARLY_TIMES * float(np.median(residual)), EARLY_NOISE * noise, 1e-3)
         if channel.temperature and early.size and np.median(early) > most:
@@ -154,3 +155,76 @@ def too_narrow(fitted: Uncertainty, before: Uncertainty) -> tuple[str, ...]:
     if not most:
         return ()
     return (f"{', '.join(most)} is the most that a rig file may state, and too narrow here; do not export from it",)
+
+
+BEYOND = 2.0
+"""Residuals that scatter by so many times the noise are more than noise."""
+ALIKE = 3.0
+"""From so many alike neighbours on, a note says that the rig leaves something out."""
+LATE_EVALUATIONS = 10
+LATE_SD_S, MOST_LATE_S, LEAST_LATE_S, LATE_SDS = 1.0, 5.0, 0.01, 5.0
+"""How late a column may be against others of its file (standard deviation), at most, and to be named: at least, and in
+standard deviations of the delay itself."""
+
+
+def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()) -> tuple[str, ...]:
+    """A sentence on each channel whose residuals at a point exceed the noise of the log; few wild rows do not count.
+
+    With the `inflation` of a solution, also on those whose residuals are within the noise, but have a structure.
+    """
+    sentences = []
+    for place, (each, (_, _, channel)) in enumerate(zip(channel_fits(problem, theta), problem.channels(), strict=True)):
+        noise, factor = noise_of(channel), inflation[place] if inflation else 1.0
+        structure = "neighbouring residuals are alike, so that the rig leaves something out"
+        if each.difference.size and MAD_TO_SD * float(np.median(np.abs(each.difference))) > BEYOND * noise:
+            sentences.append(
+                f"{each.file}: {each.column}: residuals of {milli(each.rms, each.unit)} rms exceed the log's own noise "
+                f"of {milli(noise, each.unit)}{f'; {structure}' if factor > ALIKE else ''}"
+            )
+        elif factor > ALIKE:
+            sentences.append(
+                f"{each.file}: {each.column}: {structure}; intervals are {math.sqrt(factor):.1f} times as wide "
+                f"as its noise alone would make them"
+            )
+    return tuple(sentences)
+
+
+def late_column(problem: Problem, solution: Solution) -> str:
+    """A sentence on the column whose delay against the others of its file explains the residuals best; or nothing.
+
+    Other keys may make up for a delay within the noise: one step of Gauss and Newton tells whether a fit is worth it.
+    """
+    best, sentence = np.inf, ""
+    for r, c, channel in problem.channels():
+        if channel.clock or len(problem.runs[r].channels) == 1:
+            continue
+        wide = problem.with_unknown(Unknown("late", r, c, LATE_SD_S, low=-MOST_LATE_S, high=MOST_LATE_S))
+        begin = np.append(solution.theta, 0.0)
+        residuals, jacobian = wide.residuals(begin, solution.sigma), wide.jacobian(begin, solution.sigma)
+        step = float(np.linalg.lstsq(jacobian, -residuals)[0][-1])
+        if abs(step) < LATE_SDS * float(np.sqrt(covariance_of(wide, jacobian, solution.inflation)[-1, -1])):
+            continue
+        found = solve(wide, begin, LATE_EVALUATIONS)
+        late, sd = float(found.theta[-1]), float(np.sqrt(found.covariance[-1, -1]))
+        left = huber(wide.residuals(found.theta, solution.sigma))
+        explained = not beyond_noise(wide, found.theta, found.inflation)
+        if explained and abs(late) > max(LEAST_LATE_S, LATE_SDS * sd) and left < best:
+            best, word = left, "late" if late > 0 else "early"
+            sentence = (
+                f"{channel.column} of {channel.file} is {abs(late):.2g} s {word} against the other columns, which "
+                f"makes values and intervals wrong: save it with time_s as a file of its own; its clock is then fitted"
+            )
+    return sentence
+
+
+def noise_of(channel: Channel) -> float:
+    """SD of what changes from row to row, by second differences, which leave slow changes out."""
+    bends = np.diff(channel.values, 2)
+    own = MAD_TO_SD * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
+    return float(max(own, channel.resolution / np.sqrt(12.0)))
+
+
+def milli(value: float, unit: str) -> str:
+    """A difference in K or V in thousandths, from 1 on in the unit itself."""
+    text = f"{1e3 * value:.3g} m{unit}" if abs(value) < 0.9995 else f"{value:.3g} {unit}"
+    return text.replace("-", "−")

@@ -21,9 +21,8 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..rig.skin import layer_spreads
-from .forward import Prediction, Start, predict
+from .forward import Channel, Prediction, Run, Start, predict
 from .keys import FitError, FitKey, value_of
-from .runs import Channel, Run
 
 OFFSET_SD_K = 0.1
 """Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""

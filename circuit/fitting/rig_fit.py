@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
 
 from ..arrays import Array
 from ..inputs import LONGEST_NAME
+from ..program import own_version
+from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
+from ..rig.rigfile import UncertaintyTable
+from ..rig.settings import toml_text
+from ..rig.uncertainty import uncertainty_of
 from .identify import Parameter
+from .keys import FitKey
 from .overlay import Beside
 from .problem import Problem
-from .rig_file import fitted_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,23 +34,13 @@ class ChannelFit(Beside):
     """A measured column beside the fitted rig, on the clock of its run's drive.
 
     `run` and `file` are the log with the drive and that of the column, `unit` that of a difference: K or V. `offset_K`
-    of the sensor was fitted along, and is contained in `fitted`.
+    of the sensor was fitted along, and is contained in `simulated`.
     """
 
     run: str
     file: str
     unit: str
     offset_K: float
-
-    @property
-    def fitted(self) -> Array:
-        """What the fitted rig gives (rows,)."""
-        return self.simulated
-
-    @property
-    def residual(self) -> Array:
-        """Measured minus fitted (rows,)."""
-        return self.difference
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,10 +52,8 @@ class RigFit:
     rig
         The fitted rig, with the intervals in its uncertainty, and the layers of the skin that was logged, at the
         thickness that they had. What was not identified stays as it was before.
-    parameters
-        The free keys in the order in which they were named.
-    correlation
-        Correlations (keys, keys) of the fitted numbers.
+    parameters, correlation
+        The free keys in the order in which they were named, and the correlations (keys, keys) of the fitted numbers.
     channels
         Every measured column beside the simulation.
     sources
@@ -74,14 +69,6 @@ class RigFit:
         Names of the layers of the skin that were fitted along.
     series
         Contact and outermost layer in series, which a log of the display knows about; None where either is not fitted.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig, fit
-    >>> from thermicon.circuit.fitting.laboratory import synthetic_log
-    >>> log = synthetic_log(Rig.load("thenar").with_(**{"contact.resistance_m2K_per_W": 7e-4}), seed=1)
-    >>> fit(log, Rig.load("thenar"), free=["contact.resistance_m2K_per_W"])
-    RigFit(thenar: contact.resistance_m2K_per_W = 0.000... m²·K/W ±... %)
     """
 
     rig: Rig
@@ -101,15 +88,10 @@ class RigFit:
 
     def __getitem__(self, key: str) -> Parameter:
         """The parameter of a key; raises KeyError with the keys there are."""
-        for item in self.parameters:
-            if item.key == key:
-                return item
-        raise KeyError(f"{key} was not fitted; fitted were {', '.join(item.key for item in self.parameters)}")
-
-    @property
-    def values(self) -> Mapping[str, float]:
-        """Fitted values by key, in the units of the rig file; those that were not identified are not in `rig`."""
-        return {item.key: item.value for item in self.parameters}
+        fitted = {item.key: item for item in self.parameters}
+        if key not in fitted:
+            raise KeyError(f"{key} was not fitted; fitted were {', '.join(fitted)}")
+        return fitted[key]
 
     @property
     def unidentified(self) -> tuple[Parameter, ...]:
@@ -123,37 +105,42 @@ class RigFit:
         names = ("key", "unit", "start", "value", "low", "high", "identified", "cure")
         return pd.DataFrame([{name: getattr(item, name) for name in names} for item in self.parameters])
 
-    def correlations(self) -> pd.DataFrame:
-        """Return the correlations of the parameters, by key."""
-        import pandas as pd
-
-        keys = [item.key for item in self.parameters]
-        return pd.DataFrame(self.correlation, index=keys, columns=keys)
-
     def plot(self, ax: Axes | None = None, column: str | None = None) -> Axes:
         """Draw the residuals of every column, or of one, in K (voltages in V) against time; returns the Axes."""
         from .fit_figure import plot_residuals
 
-        return plot_residuals(self, ax, column)
+        return plot_residuals([each for each in self.channels if column in (None, each.column)], ax)
 
     def rig_text(self, name: str | None = None) -> str:
-        """Return the rig file of the fitted rig, with where its numbers come from; None keeps the name of the rig."""
-        return fitted_text(self.rig, self.parameters, self.sources, name, layers=self.fitted_layers, misfit=self.misfit)
+        """Return the rig file of the fitted rig, every fitted value with interval and logs; None keeps its name."""
+        document: dict[str, Any] = json.loads(self.rig.document)
+        if name:
+            document["name"] = name
+        origin, by, logs = document.setdefault("source", {}), f"thermicon {own_version()}", named(self.sources)
+        for item in self.parameters:
+            text = (
+                f"fitted by {by}: {item.value:.6g} {item.unit}, 95 % {item.low:.6g} to {item.high:.6g}, before "
+                f"{item.start:.6g}; log {logs}"
+            )
+            if not item.identified:
+                earlier = f"{origin[item.key]}; " if item.key in origin else ""
+                kept = f"kept at {item.start:.6g} {item.unit}: not identified by these logs, {by}; log {logs}"
+                text = earlier + kept
+            origin[item.key] = text
+        for layer in self.fitted_layers:
+            place, how = f"skin.layer.{layer}", "fitted along at this thickness, within the spread between people"
+            origin[place] = f"{origin.get(place, '')}; {how}, by {by}; log {logs}".lstrip("; ")
+        free = ", ".join(item.key for item in self.parameters if item.identified) or "nothing"
+        digests = "; ".join(f"{log} sha256 {digest}" for log, digest in self.sources)
+        note = f"fitted: {free}; logs {digests}; {by}. {MISFIT if self.misfit else HOLDS}"
+        earlier_notes = [each for each in document.get("notes", []) if not each.startswith("fitted:")]
+        document["notes"] = [*earlier_notes, note]
+        return toml_text(document)
 
     def save(self, path: str | Path, name: str | None = None) -> None:
-        """Write the fitted rig as a rig file with its provenance.
+        """Write the fitted rig with its provenance to a `.toml` file, by that file's name unless another is given.
 
-        Parameters
-        ----------
-        path
-            A file whose name ends in `.toml`; an existing file is replaced.
-        name
-            Name of the fitted rig; None: that of the file.
-
-        Raises
-        ------
-        FitError
-            For another ending, and a path that cannot be written.
+        Raises FitError for another ending, and a path that cannot be written.
         """
         from .keys import FitError
 
@@ -179,3 +166,92 @@ def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
         unit, run = "K" if channel.temperature else "V", problem.runs[r].name
         fits.append(ChannelFit(channel.column, time, measured, fitted, run, channel.file, unit, offset))
     return tuple(fits)
+
+
+DIGEST_DIGITS = 16
+MOST_LOGS_NAMED = 5
+PLATES = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
+MISFIT = (
+    "Rig and logs do not agree, so that the intervals cannot be trusted: [uncertainty] is as wide as before the fit, "
+    "or wider."
+)
+HOLDS = "The intervals hold for the person, the contact and the room of these logs."
+LEAST_SHARE = 0.5
+"""Share of the shipped uncertainty that is written at least: what a fit holds fixed, the heat sink above all, may bias
+it by more than its interval says, and the safety gate relies on it."""
+
+_SHIPPED = uncertainty_of({})
+LARGEST = {
+    name: float(schema["anyOf"][0]["maximum"])
+    for name, schema in UncertaintyTable.model_json_schema()["properties"].items()
+    if name != "reason"
+}
+"""The largest uncertainty that a rig file may state."""
+
+
+def uncertainties(
+    keys: Sequence[FitKey],
+    parameters: Sequence[Parameter],
+    *,
+    before: Uncertainty,
+    skin: bool = True,
+    misfit: bool = False,
+) -> dict[str, float]:
+    """Return the keys of [uncertainty] with half widths of intervals, for what was identified.
+
+    Both plates share one key: it is the wider of both, and nothing where only one was fitted. Contact with a load
+    (`skin` is False) says nothing of contact with skin. After a `misfit`, and for what was not identified, only what
+    must be wider is returned, so that what the rig held `before` still is.
+    """
+    stated: dict[str, float] = {}
+    identified = {item.key for item in parameters if item.identified}
+    for key, item in zip(keys, parameters, strict=True):
+        if not key.uncertainty:
+            continue
+        if not skin and key.uncertainty == "contact_resistance_relative":
+            continue
+        held = getattr(before, key.uncertainty)
+        if misfit or not item.identified:
+            width = min(_rounded_up(_covering(item, held)), LARGEST[key.uncertainty])
+            if width > held:
+                stated[key.uncertainty] = max(width, stated.get(key.uncertainty, 0.0))
+            continue
+        if key.key in PLATES and not set(PLATES) <= identified:
+            continue
+        least = LEAST_SHARE * getattr(_SHIPPED, key.uncertainty)
+        width = min(max(least, _rounded_up(item.half_width)), LARGEST[key.uncertainty])
+        stated[key.uncertainty] = max(width, stated.get(key.uncertainty, 0.0))
+    return stated
+
+
+def _covering(item: Parameter, before: float) -> float:
+    """Half width about a rig's value that holds the fitted interval and all that the rig before held, ±`before`.
+
+    A rig keeps its value where the interval says nothing: of the fit, only the value need be held then.
+    """
+    if not item.identified:
+        return abs(item.value - item.start) / (item.start if item.log else 1.0)
+    ends = before * item.start if item.log else before
+    low, high = min(item.low, item.start - ends), max(item.high, item.start + ends)
+    most = max(high - item.value, item.value - low)
+    return most / item.value if item.log else most
+
+
+def reason_of(rig: Rig, sources: Sequence[tuple[str, str]]) -> str:
+    """Return the reason why a fitted rig's uncertainty is smaller than the shipped one."""
+    before = f"{rig.uncertainty.reason}; " if rig.uncertainty.reason else ""
+    return f"{before}95 % intervals of a fit by thermicon {own_version()} to {named(sources)}"
+
+
+def named(sources: Sequence[tuple[str, str]]) -> str:
+    """Logs with the beginning of their digests."""
+    few = [f"{name} (sha256 {digest[:DIGEST_DIGITS] or 'not from a file'})" for name, digest in sources]
+    more = [f"{len(few) - MOST_LOGS_NAMED} more"] if len(few) > MOST_LOGS_NAMED else []
+    return ", ".join([*few[:MOST_LOGS_NAMED], *more])
+
+
+def _rounded_up(value: float) -> float:
+    """Two significant digits, never less than the value."""
+    digits = 1 - math.floor(math.log10(value)) if value > 0 else 2
+    scale = 10.0**digits
+    return float(round(math.ceil(value * scale - 1e-9) / scale, digits))

@@ -10,9 +10,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..rig.rigfile import RigError
+from .forward import MAD_TO_SD
 from .keys import FitError
 from .problem import Problem
-from .runs import MAD_TO_SD
 
 ROUNDS: tuple[tuple[float, Literal["linear", "huber"]], ...] = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
 """Relative change of the sum of squares at which each round ends, and its loss; the first finds the noise alone."""
@@ -35,8 +35,7 @@ FEWEST_INDEPENDENT = 8.0
 class Solution:
     """Where the fit ended: the point, its covariance, and of each channel the SD and the spread of its residuals.
 
-    `inflation` is how many rows of a channel count as one, since neighbouring residuals are alike; `converged`:
-    whether the fit came to rest.
+    `inflation`: how many alike neighbouring rows of a channel count as one.
     """
 
     theta: Array

@@ -56,7 +56,7 @@ def parameter_table(fitted: RigFit) -> Grid:
 
 def residual_table(fitted: RigFit) -> Grid:
     """Every measured column: rms, largest residual and its time, and the sensor's offset."""
-    from thermicon.circuit.fitting.left_out import milli
+    from thermicon.circuit.fitting.notes import milli
 
     rows = []
     for each in fitted.channels:
@@ -88,7 +88,7 @@ def doubts(fitted: RigFit) -> list[str]:
 
 def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     """What the safety gate and virtual people vary from now on, where it is not what it was before."""
-    from thermicon.circuit.fitting.rig_file import LARGEST
+    from thermicon.circuit.fitting.rig_fit import LARGEST
     from thermicon.circuit.rig.uncertainty import WORDS
 
     changed = [

@@ -43,8 +43,7 @@ class Measured:
 
 def read_measured(path: Path) -> Log:
     """Read a log as ``thermicon fit`` does, thinned where it is long; raises LogError, with place and cure."""
-    from thermicon.circuit.fitting.log import Log
-    from thermicon.circuit.fitting.log_files import read_log
+    from thermicon.circuit.fitting.log import Log, read_log
 
     log = read_log(path)
     every = -(-len(log.time_s) // MOST_ROWS)

@@ -102,7 +102,7 @@ def test_the_table_says_what_becomes_of_everyday_steps(rig: str, device: str) ->
     assert row_of(rig, device, cases) in ROWS
     for case in cases:
         assert (case.why == "") == (case.mark == "yes")
-        assert {name for name, why in case.forms if why} <= {"wav", "tcs2-protocol-ini"}, case.forms
+        assert {name for name, why in case.forms if why} <= {"wav"}, case.forms
 
 
 @pytest.mark.parametrize(("rig", "device"), QUICK[:3])

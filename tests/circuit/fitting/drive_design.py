@@ -12,11 +12,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from thermicon.circuit import Rig
+from thermicon.circuit.fitting.forward import runs_of
 from thermicon.circuit.fitting.identify import NOISE_K, NOISE_V, with_channels
 from thermicon.circuit.fitting.keys import free_keys
 from thermicon.circuit.fitting.laboratory import COLUMNS, synthetic_log
 from thermicon.circuit.fitting.problem import Problem
-from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import covariance_of
 from thermicon.icons import Icon, parse
 

@@ -49,8 +49,7 @@ def test_the_fit_is_a_table(fitted: RigFit) -> None:
     frame = fitted.to_frame()
     assert list(frame["key"]) == KEYS
     assert (frame["low"] < frame["value"]).all() and (frame["value"] < frame["high"]).all()
-    assert np.allclose(np.diag(fitted.correlations()), 1.0)
-    assert fitted.values == {item.key: item.value for item in fitted.parameters}
+    assert np.allclose(np.diag(fitted.correlation), 1.0)
     with pytest.raises(KeyError, match=r"colour was not fitted; fitted were contact\.resistance_m2K_per_W, module"):
         fitted["colour"]
     assert len(fitted.plot().lines) == 3

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.circuit.fitting.checks import check_sensors
 from thermicon.circuit.fitting.fit import fit
+from thermicon.circuit.fitting.forward import runs_of
 from thermicon.circuit.fitting.keys import FitError, free_keys
 from thermicon.circuit.fitting.log import Log, LogError
+from thermicon.circuit.fitting.overlay import check_sensors
 from thermicon.circuit.fitting.problem import Problem
-from thermicon.circuit.fitting.runs import runs_of
 
 CONTACT = ["contact.resistance_m2K_per_W"]
 TIME = np.arange(100) / 10

@@ -1,9 +1,8 @@
-"""Logs from CSV, from the TSV of a thermode session and from TDMS."""
+"""Logs from CSV and from TDMS."""
 
 from __future__ import annotations
 
 import io
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,7 @@ import pytest
 from nptdms import ChannelObject, RootObject, TdmsFile, TdmsWriter
 
 from thermicon.circuit.fitting.keys import FitError
-from thermicon.circuit.fitting.log import Log, LogError
-from thermicon.circuit.fitting.log_files import read_log
+from thermicon.circuit.fitting.log import Log, LogError, read_log
 
 ROWS = [(k / 10, 0.1, 32.0 + k / 100) for k in range(40)]
 HEAD = ("time_s", "current_A", "display_C")
@@ -78,34 +76,11 @@ def test_gaps_are_empty_cells_or_nan_or_missing_cells(saved: Callable[..., Path]
 
 
 def test_a_file_that_is_too_large_is_refused(saved: Callable[..., Path], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("thermicon.circuit.fitting.log_files.MOST_MB", 1e-4)
+    monkeypatch.setattr("thermicon.circuit.fitting.log.MOST_MB", 1e-4)
     with pytest.raises(LogError, match=r"0 MB is too large for a log; the limit is 0.0001 MB"):
         read_log(saved(text_of()))
     with pytest.raises(LogError, match=r"nothing.csv: no such log"):
         read_log("nothing.csv")
-
-
-SESSION = [f"{k / 10:g}\t-1\tn/a\t32.0\t34.0\t{32 + k / 50:g}\t{33 + k / 50:g}" for k in range(40)]
-NAMES = ["onset", "volume", "delta", "z1_set", "z2_set", "z1_act", "z2_act"]
-
-
-def test_a_session_of_a_thermode_is_the_mean_of_its_zones(saved: Callable[..., Path]) -> None:
-    path = saved("\n".join(SESSION), "sub-01_thermode.tsv")
-    with pytest.raises(LogError, match=r"no line names the columns, and there is no sub-01_thermode.json with them"):
-        read_log(path)
-    beside = path.with_suffix(".json")
-    beside.write_text(json.dumps({"Columns": NAMES}))
-    log = read_log(path)
-    assert (log.column("setpoint_C")[0], log.column("display_C")[10]) == (33.0, 32.7)
-    assert "sub-01_thermode.tsv: display_C and setpoint_C are means over the zones" in log.notes
-    beside.write_text(json.dumps({"Columns": NAMES[:3]}))
-    with pytest.raises(LogError, match=r"json: names 3 columns; sub-01_thermode.tsv has 7"):
-        read_log(path)
-    beside.write_text("[]")
-    with pytest.raises(LogError, match='has no list "Columns" with the names of the columns; add it'):
-        read_log(path)
-    with_header = saved("\t".join(NAMES) + "\n" + "\n".join(SESSION), "named.tsv")
-    assert read_log(with_header).drive == "setpoint_C"
 
 
 def tdms(**channels: Any) -> bytes:
@@ -136,7 +111,7 @@ def test_waveforms_of_tdms_share_a_clock(saved: Callable[..., Path]) -> None:
     log = read_log(saved(tdms(current_A=current, display_C=display), "rig.tdms"))
     assert (round(float(log.time_s[0]), 9), round(float(log.time_s[-1]), 9)) == (2.0, 5.9)
     for content, message in (
-        (tdms(current_A=current, display_C=display[:30]), r"unequal lengths \(current_A 40, display_C 30 samples\)"),
+        (tdms(current_A=current, display_C=display[:30]), r"different clocks \(current_A 40 samples, display_C 30 samples\)"),
         (tdms(bare=current), "channel bare has neither wf_increment nor a channel time_s beside it"),
         (b"TDSm and then nothing that TDMS would have", "cannot be read as TDMS"),
         (tdms(pressure=current), "no column of a log"),

@@ -13,8 +13,7 @@ from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.circuit.fitting.keys import COMMON
 from thermicon.circuit.fitting.laboratory import calibration_icon, plan, plan_frame, synthetic_log
-from thermicon.circuit.fitting.log import Log
-from thermicon.circuit.fitting.log_files import read_log
+from thermicon.circuit.fitting.log import Log, read_log
 from thermicon.circuit.rig.rig import rig_names
 
 from .drive_design import CANDIDATES, candidate, mean_deviation

@@ -9,12 +9,12 @@ import pytest
 
 from thermicon.circuit import Drive, Rig, fit, simulate_current
 from thermicon.circuit.cores import quiet_blas
+from thermicon.circuit.fitting.forward import runs_of
 from thermicon.circuit.fitting.keys import CONTACT, free_keys, value_of
 from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
 from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
 from thermicon.circuit.fitting.rig_fit import RigFit
-from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import spreads
 
 from .conftest import TRUTH

@@ -170,7 +170,7 @@ STEPPED = {
 CONSIDERED = {
     "fitting": {"forward"},
     "delivery": {
-        "any_loop", "controlled", "deliver", "formats/form", "netlist", "regulated", "spread", "temperatures",
+        "any_loop", "controlled", "deliver", "formats/form", "netlist", "temperatures", "worstcase",
     },
     "safety": {"corners", "display", "endings", "ensemble", "sessiondrive"},
     "solver": {

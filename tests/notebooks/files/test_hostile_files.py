@@ -18,7 +18,7 @@ from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, c_array, load_format
 from thermicon.circuit.delivery.formats.form import check_name
 from thermicon.circuit.delivery.samples import rate_of
-from thermicon.circuit.fitting.log_files import read_log
+from thermicon.circuit.fitting.log import read_log
 from thermicon.circuit.safety.session import read_order
 from thermicon.circuit.solver.drive import DriveError, read_drive
 from thermicon.icons import CueErrors, load_library, parse, read_cue
