@@ -36,28 +36,11 @@ class Narrowed:
 class DeliveredDrive:
     """A cue as designed and as a device delivers it, on one clock.
 
-    Attributes
-    ----------
-    icon, rig, device
-        The cue, the rig that it is designed for, and the device that plays it.
-    requested_Hz, rate_Hz
-        Requested and actual rows of the traces per second.
-    lead_s
-        Time in s at which the cue begins.
-    played
-        What goes into files: the best design within the range of the device.
-    drives
-        The currents designed and delivered; None for a thermode.
-    designed_trace, trace
-        The simulation without the device, and with it.
-    outcome
-        Whether the design reaches the target.
-    device_warnings
-        Sentences about limits of the device.
-    prompt_trace
-        The delivery of a thermode without its lag: a constant lag is a delay and not a loss.
-    narrowed
-        What was changed where the range of the device is too small; None where it is not.
+    `rate_Hz` and `requested_Hz` are the actual and requested rows per second, `lead_s` the time when the cue begins.
+    `played` goes into files: the best design within the range of the device. `drives` are the currents designed and
+    delivered, None for a thermode; `designed_trace` and `trace` the simulation without the device, and with it;
+    `outcome` whether the design reaches the target. `prompt_trace` is the delivery of a thermode without its lag: a
+    constant lag is a delay and not a loss. `narrowed` says what was changed where the device's range is too small.
     """
 
     icon: Icon

@@ -138,13 +138,7 @@ def read_device_table(text: str, where: str) -> DeviceTable:
 
 def records_of(table: DeviceTable) -> tuple[Record, ...]:
     """Return the numbers of a checked table as records."""
-    return tuple(
-        Record(
-            record.quantity, record.unit, record.source, value=record.value, low=record.low, high=record.high,
-            conditions=record.conditions, confidence=record.confidence,
-        )
-        for record in table.record
-    )  # fmt: skip
+    return tuple(Record(**record.model_dump()) for record in table.record)
 
 
 def _faults(table: DeviceTable) -> list[str]:

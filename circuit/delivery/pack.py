@@ -12,14 +12,13 @@ from typing import Any
 from ..program import own_version, this_program
 from ..records import Record
 from ..safety.verdict import summarise
-from .delivered_drive import DeliveredDrive, DeliveryDeviation, loss_table
+from .delivered_drive import DeliveredDrive, loss_table
 from .device import Device
 from .formats import Format, FormatError
 from .formats.form import Played, events_in, must_prevent
 from .prepare import Prepared, Refusal
 from .samples import Samples
 from .setpoints import Setpoints, lag_of
-from .worstcase import OpenLoopSpread
 
 
 def check_names(names: Sequence[str], form: Format) -> None:
@@ -52,51 +51,43 @@ def pack(
     losses: Mapping[str, Sequence[str]] | None = None,
 ) -> dict[str, bytes]:
     """Return the files of an export: a sidecar and a drive for each cue, then what belongs to the set."""
-    check_names([cue.delivery.icon.name for cue in ready], form)
-    drives = {}
-    for cue in ready:
-        name = cue.delivery.icon.name
-        if unsafe := [str(refusal) for refusal in cue.refusals if not refusal.forcible]:
-            raise FormatError(f"{name}: {unsafe[0]}")
-        drive = form.file_name(cue.delivery)
-        if drive.casefold() in form.set_files:
-            raise FormatError(
-                f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it"
-            )
-        try:
-            drives[name] = drive, form.write(cue.delivery)
-        except FormatError as problem:
-            raise FormatError(f"{name}: {problem}") from None
+    names = [cue.delivery.icon.name for cue in ready]
+    check_names(names, form)
+    drives = [(form.file_name(cue.delivery), _written(cue, form)) for cue in ready]
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
-        names = [cue.delivery.icon.name for cue in ready]
-        played = [_played(cue, drives[name][0], form) for cue, name in zip(ready, names, strict=True)]
+        played = [_played(cue, drive, form) for cue, (drive, _) in zip(ready, drives, strict=True)]
         shared = form.player(played, must_prevent([cue.verdict.demanded for cue in ready]))
     files: dict[str, bytes] = {}
-    for cue in ready:
-        name = cue.delivery.icon.name
-        drive, content = drives[name]
+    for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
         over = [str(refusal) for refusal in cue.refusals]
         over += [str(Refusal("lossy", text)) for text in (losses or {}).get(name, ())]
-        about = sidecar(
-            cue.delivery, form, cue.deviation, cue.verdict.to_dict(), (felt or {}).get(name), over,
-            demanded=cue.verdict.demanded, drive=content, set_files=shared, spread=cue.spread,
-        )  # fmt: skip
-        files[sidecar_name(name, form)] = sidecar_text(sealed(about))
-        files[drive] = content
+        about = sidecar(cue, form, (felt or {}).get(name), over, content, shared)
+        files |= {sidecar_name(name, form): sidecar_text(sealed(about)), drive: content}
     return {**files, **shared}
+
+
+def _written(cue: Prepared, form: Format) -> bytes:
+    """The drive of a cue; raises FormatError with its name where it cannot be written."""
+    name, drive = cue.delivery.icon.name, form.file_name(cue.delivery)
+    if unsafe := [str(refusal) for refusal in cue.refusals if not refusal.forcible]:
+        raise FormatError(f"{name}: {unsafe[0]}")
+    if drive.casefold() in form.set_files:
+        raise FormatError(f"{name}: its drive {drive} would be taken for the set's own {drive.casefold()}; rename it")
+    try:
+        return form.write(cue.delivery)
+    except FormatError as problem:
+        raise FormatError(f"{name}: {problem}") from None
 
 
 def _played(cue: Prepared, file: str, form: Format) -> Played:
     """A drive with its verdict, for the player of a set."""
-    known = cue.verdict.to_dict()
+    known, sidecar_file = cue.verdict.to_dict(), sidecar_name(cue.delivery.icon.name, form)
     recovery, shortest = (
         float(value) if isinstance(value := known.get(key), (int, float)) else None
         for key in ("recovery_s", "shortest_pause_s")
     )
-    return Played(
-        cue.delivery, file, sidecar_name(cue.delivery.icon.name, form), cue.verdict.colour, recovery, shortest
-    )
+    return Played(cue.delivery, file, sidecar_file, cue.verdict.colour, recovery, shortest)
 
 
 def sidecar_name(name: str, form: Format) -> str:
@@ -114,26 +105,22 @@ OF_THE_TARGET = ("reached", "largest_miss_K", "largest_miss_s", "rms_miss_K")
 
 
 def sidecar(
-    delivery: DeliveredDrive,
+    cue: Prepared,
     form: Format,
-    deviation: DeliveryDeviation,
-    safety: Mapping[str, object],
     felt: Mapping[str, object] | None,
     forced: Sequence[str],
-    *,
-    demanded: Mapping[str, object],
     drive: bytes,
     set_files: Mapping[str, bytes],
-    spread: OpenLoopSpread | None = None,
 ) -> dict[str, Any]:
-    """Return everything known about one exported drive; units are in the names.
+    """Everything known about one exported drive; units are in the names.
 
-    `safety` and `felt` are the reports of gate and perception, `forced` the reasons why the drive would have been
-    refused (empty where it was not), `demanded` what the hardware must prevent. `drive` and `set_files` are the bytes
-    of its files, recorded by their digests. `spread` is the effect of an unmeasured module under an open loop.
+    `felt` is the report of perception, `forced` the reasons why the drive would have been refused (empty where it was
+    not). `drive` and `set_files` are the bytes of its files, recorded by their digests.
     """
+    delivery = cue.delivery
     icon, rig, outcome, device = delivery.icon, delivery.rig, delivery.outcome, _device(delivery.device)
-    text, warnings = str(icon), [*rig.warnings, *delivery.warnings]
+    unit = "level_A" if icon.context.control == "current" else "level_C"
+    warnings = [*rig.warnings, *delivery.warnings]
     if not delivery.device.played:
         warnings.append(f"{delivery.device.name}: no such device was ever driven by thermicon")
     return {
@@ -148,7 +135,12 @@ def sidecar(
         "drive_sha256": digest(drive),
         "set_files": {name: digest(content) for name, content in set_files.items()},
         "columns": [asdict(column) for column in form.columns(delivery)],
-        "icon": {"name": icon.name, "text": text, "content_hash": icon.content_hash, "control": icon.context.control},
+        "icon": {
+            "name": icon.name,
+            "text": str(icon),
+            "content_hash": icon.content_hash,
+            "control": icon.context.control,
+        },
         "rig_sha256": digest(rig.document.encode("utf-8")),
         "rig": {
             "name": rig.name,
@@ -160,16 +152,22 @@ def sidecar(
         "device": device,
         "update_rate_Hz": {"requested": delivery.requested_Hz, "realised": delivery.rate_Hz},
         "played": _played_facts(delivery),
-        "events": [_event(event, icon.context.control) for event in events_in(delivery)],
+        "events": [
+            {"name": event.name, "time_s": event.time_s, unit: event.level, "level_of": icon.context.control}
+            for event in events_in(delivery)
+        ],
         "reached": None if outcome is None else outcome.reached,
         "reason": None if outcome is None else outcome.reason,
         "predicted": _predicted(delivery),
-        "delivered_minus_designed": {place.place: _without(asdict(place), "place") for place in deviation.places},
-        "open_loop_spread": None if spread is None else spread.to_dict(),
+        "delivered_minus_designed": {
+            place.place: {"largest_K": place.largest_K, "at_s": place.at_s, "rms_K": place.rms_K}
+            for place in cue.deviation.places
+        },
+        "open_loop_spread": None if cue.spread is None else cue.spread.to_dict(),
         "perception": None if felt is None else dict(felt),
         "stated_losses": [_record(record) for record in loss_table()],
-        "safety": dict(safety),
-        "hardware_must_prevent": dict(demanded),
+        "safety": cue.verdict.to_dict(),
+        "hardware_must_prevent": cue.verdict.demanded,
         "warnings": warnings,
         "forced": bool(forced),
         "forced_over": list(forced),
@@ -186,11 +184,6 @@ def sealed(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return a sidecar with the SHA-256 of its own text, which is that of the file without this key."""
     bare = {key: value for key, value in content.items() if key != "sidecar_sha256"}
     return {**bare, "sidecar_sha256": digest(sidecar_text(bare))}
-
-
-def _event(event: Any, control: str) -> dict[str, object]:
-    unit = "level_A" if control == "current" else "level_C"
-    return {"name": event.name, "time_s": event.time_s, unit: event.level, "level_of": control}
 
 
 def _played_facts(delivery: DeliveredDrive) -> dict[str, object]:
@@ -217,10 +210,8 @@ def _played_facts(delivery: DeliveredDrive) -> dict[str, object]:
 
 def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
     numbers: dict[str, object] = dict(summarise(delivery.trace).to_dict())
-    predicted = {key: value for key, value in numbers.items() if key not in OF_THE_TARGET}
-    if not isinstance(delivery.played, Setpoints):
-        return predicted
-    return {**predicted, "duration_s": delivery.file_s}
+    numbers |= {"duration_s": delivery.file_s} if isinstance(delivery.played, Setpoints) else {}
+    return {key: value for key, value in numbers.items() if key not in OF_THE_TARGET}
 
 
 def _samples(samples: Samples, lead_s: float) -> dict[str, object]:
@@ -249,15 +240,8 @@ def _device(device: Device) -> dict[str, object]:
 
 
 def _record(record: Record) -> dict[str, object]:
-    known = {
-        key: getattr(record, key)
-        for key in ("quantity", "unit", "value", "low", "high", "source", "conditions", "confidence")
-    }
-    return {key: value for key, value in known.items() if value not in (None, "")}
-
-
-def _without(content: dict[str, Any], key: str) -> dict[str, Any]:
-    return {name: value for name, value in content.items() if name != key}
+    keys = ("quantity", "unit", "value", "low", "high", "source", "conditions", "confidence")
+    return {key: value for key in keys if (value := getattr(record, key)) not in (None, "")}
 
 
 def digest(content: bytes) -> str:

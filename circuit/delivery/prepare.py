@@ -29,20 +29,9 @@ Judge = Callable[[Sequence[DeliveredDrive], float | None], Sequence[Gate]]
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """One cue that is ready to be written, or to be refused.
+    """One cue that is ready to be written, or to be refused: what the device delivers, and whether that is safe.
 
-    Attributes
-    ----------
-    delivery
-        What the device delivers.
-    verdict
-        Whether that is safe.
-    deviation
-        How far it deviates from the design.
-    refusals
-        Why it is not written; empty where it is.
-    spread
-        How far an open-loop delivery varies with the uncertainty of the rig; None where it was not calculated.
+    `deviation` is how far it is from the design, `spread` how far an open loop varies with the uncertainty of the rig.
     """
 
     delivery: DeliveredDrive
@@ -85,13 +74,10 @@ def prepare_set(
         if step is not None:
             step(done, len(icons))
     verdicts = judge(deliveries, pause_s) if deliveries else ()
-    return tuple(_judged(delivery, verdict) for delivery, verdict in zip(deliveries, verdicts, strict=True))
-
-
-def _judged(delivery: DeliveredDrive, verdict: Gate) -> Prepared:
-    deviation = delivery.deviation
-    refusals = refusals_of(delivery, verdict, deviation)
-    return Prepared(delivery, verdict, deviation, refusals, open_loop_spread(delivery))
+    return tuple(
+        Prepared(one, verdict, one.deviation, refusals_of(one, verdict, one.deviation), open_loop_spread(one))
+        for one, verdict in zip(deliveries, verdicts, strict=True)
+    )
 
 
 _HEADS = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}

@@ -36,22 +36,10 @@ SHORT = {"display_C": "display", "voltage_V": "voltage", "hot_plate_C": "hot pla
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One fitted parameter.
+    """One fitted parameter: what the rig had (`start`), what was fitted, and the ends of its 95 % interval.
 
-    Attributes
-    ----------
-    key, words, unit
-        Its key in a rig file, what people call it, and its unit.
-    start, value
-        What the rig had, and what was fitted.
-    low, high
-        The 95 % interval.
-    log
-        Whether it is a scale, with a relative interval.
-    identified
-        Whether the interval is narrower than what is assumed anyway.
-    cure
-        Where it is not: which measurement would identify it.
+    `log`: a scale, with a relative interval. `identified`: the interval is narrower than what is assumed anyway;
+    otherwise `cure` says which measurement would identify it.
     """
 
     key: str

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections import Counter
 from collections.abc import Sequence
 
 from ..delivered_drive import DeliveredDrive
@@ -38,26 +39,28 @@ def write(delivery: DeliveredDrive) -> bytes:
 
 def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     """Return conditions file and player for drives of one device, with what the hardware must prevent."""
-    marks = [_marks(each.delivery) for each in drives]
-    most = max(len(times) for each in marks for times in each.values())
+    found = [_row(each) for each in drives]
+    most = max(map(len, found))
     later = [_column(name, k) for k in range(most) for name in MARKED]
-    used = {column for each in marks for name, times in each.items() for column in _columns(name, len(times))}
-    header = [*HEADER, *(name for name in later if name in used and name not in HEADER), *JUDGED]
+    used = {column for row in found for column in row}
+    header = [*HEADER, *(column for column in later if column in used and column not in HEADER), *JUDGED]
     text = io.StringIO()
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
-    for played, times_by_name in zip(drives, marks, strict=True):
-        row = {"icon": played.delivery.icon.name, "drive_file": played.file, "sidecar_file": played.sidecar}
-        row |= {"safety": played.safety}
-        row |= {
-            name: f"{value:.9g}"
-            for name, value in zip(JUDGED[1:], (played.recovery_s, played.shortest_pause_s), strict=True)
-            if value is not None
-        }
-        for name, times in times_by_name.items():
-            row |= {column: f"{time:.9g}" for column, time in zip(_columns(name, len(times)), times, strict=True)}
-        rows.writerow(row)
+    rows.writerows(found)
     return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives[0].delivery, must)}
+
+
+def _row(played: Played) -> dict[str, str]:
+    """The condition of one icon: its files, the times in s of its events by their columns, and the verdict."""
+    row = {"icon": played.delivery.icon.name, "drive_file": played.file, "sidecar_file": played.sidecar}
+    row["safety"] = played.safety
+    times: dict[str, float | None] = dict(zip(JUDGED[1:], (played.recovery_s, played.shortest_pause_s), strict=True))
+    seen = Counter[str]()
+    for event in events_in(played.delivery):
+        times["duration_s" if event.name == "end" else _column(event.name, seen[event.name])] = event.time_s
+        seen[event.name] += 1
+    return row | {column: f"{time:.9g}" for column, time in times.items() if time is not None}
 
 
 def _player(delivery: DeliveredDrive, must: MustPrevent) -> bytes:
@@ -89,18 +92,6 @@ def _player(delivery: DeliveredDrive, must: MustPrevent) -> bytes:
         "OFF_V": off_V,
     }
     return b"".join(filled(f"player-{part}.py.txt", values) for part in parts)
-
-
-def _marks(delivery: DeliveredDrive) -> dict[str, list[float]]:
-    """Times in s of every event, by its name."""
-    columns: dict[str, list[float]] = {}
-    for event in events_in(delivery):
-        columns.setdefault(event.name, []).append(event.time_s)
-    return columns
-
-
-def _columns(name: str, count: int) -> list[str]:
-    return ["duration_s"] if name == "end" else [_column(name, k) for k in range(count)]
 
 
 def _column(name: str, k: int) -> str:
