@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import configparser
 import csv
 import io
 import json
@@ -39,7 +38,7 @@ def read_file(files: Mapping[str, bytes], stem: str) -> Held | Course:
     told = sidecar_in(files, stem)
     data, kind, driver = files[told["file"]], told["device"]["driven_by"], told["rig"]["document"].get("driver")
     if kind == "set-points":
-        return protocol(data) if told["file"].endswith(".ini") else serial(data)
+        return serial(data)
     if kind == "temperatures":
         times, levels = table(data, "display_C") if data[:4] != b"TDSm" else channel(data, "display_C")
         return Course(levels, float(times[1] - times[0]), held=True)
@@ -105,15 +104,3 @@ def serial(data: bytes) -> Course:
         ticks.append(ticks[-1] + int(body[6 * k : 6 * k + 3]))
         levels.append(int(body[6 * k + 3 : 6 * k + 6]))
     return Course(np.interp(np.arange(ticks[-1] + 1), ticks, levels) / 10, TICK_S, held=False)
-
-
-def protocol(data: bytes) -> Course:
-    """A protocol of a TCS II: ramp and plateau last the duration, then the return at its own rate."""
-    file = configparser.ConfigParser()
-    file.read_string(data.decode("ascii"))
-    zone = {key: float(value) for key, value in file["step3_zone1"].items()}
-    base = float(file["step3_stimulation"]["baseline"])
-    size = abs(zone["temperature"] - base)
-    corners = [0.0, size / zone["speed"], zone["duration"], zone["duration"] + size / zone["return"]]
-    rows = np.arange(int(np.ceil(corners[-1] / TICK_S)) + 1) * TICK_S
-    return Course(np.interp(rows, corners, [base, zone["temperature"], zone["temperature"], base]), TICK_S, held=False)

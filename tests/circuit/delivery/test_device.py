@@ -158,15 +158,6 @@ def test_units_are_those_of_what_drives_it(tmp_path: Path, driven_by: str, unit:
         Device.load(path)
 
 
-@pytest.mark.parametrize(("driven_by", "unit"), [("amperes", "A"), ("volts", "V")])
-def test_units_that_belong_together_are_taken(tmp_path: Path, driven_by: str, unit: str) -> None:
-    path = tmp_path / "mine.toml"
-    text = GOOD.replace('"amperes"', f'"{driven_by}"').replace('unit = "A"', f'unit = "{unit}"')
-    path.write_text(text + SLEW.format(f"{unit}/s"))
-    device = Device.load(path)
-    assert (device.unit, device.most("slew rate")) == (unit, 5.0)
-
-
 def test_only_what_is_said_to_be_dc_coupled_is() -> None:
     """A claim needs a source: a record of the profile says so in words."""
     coupled = [device for device in map(Device.load, device_names()) if device.dc_coupled]
@@ -179,11 +170,6 @@ def test_only_what_is_said_to_be_dc_coupled_is() -> None:
 def test_an_unknown_device_is_named_with_the_nearest() -> None:
     with pytest.raises(DeviceError, match=r"dac-61: no such device; did you mean dac-16"):
         Device.load("dac-61")
-
-
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
-    with pytest.raises(DeviceError, match="no such device file"):
-        Device.load(tmp_path / "absent.toml")
 
 
 def test_a_folder_does_not_hide_a_shipped_device(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -291,14 +291,6 @@ class TestSidecar:
         assert volts["energy_J"] > 0
         assert volts["duration_s"] == 8.01
 
-    def test_levels_and_rate_to_set_by_hand_are_there(self) -> None:
-        generator = replace(Device.load("dac-14"), codes="from zero", levels="waveform")
-        ready = prepare(SIX["warming-step"], RIG, generator, CSV, gate=GreenVerdict)
-        told, one = sidecar_of(ready), ready.delivery
-        assert told["played"]["high_level_V"] == pytest.approx(-told["played"]["low_level_V"])
-        assert told["played"]["samples"] == len(one.trace.time_s)
-        assert told["played"]["icon_begins_at_s"] == 0.01
-
     def test_prediction_differences_limits_and_verdict_are_there(self) -> None:
         told = sidecar_of(ready(), felt={"cooling-step": {"observer": "nominal"}})
         assert told["predicted"]["skin_min_C"] == pytest.approx(26.92, abs=0.01)

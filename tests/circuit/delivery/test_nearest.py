@@ -24,16 +24,6 @@ def test_the_nearest_is_reached_and_a_little_more_is_not() -> None:
     assert nearest.sentence == "it is reached with its changes 0.8 times as large, in the same time"
 
 
-def test_a_cue_with_a_steep_corner_is_reached_slower() -> None:
-    text = "cue 1\nset s { control display }\nicon dip { cool by 6 °C at 6.5 °C/s; hold for 2 s; return over 4 s }"
-    icon = parse(text).icons[0]
-    nearest = nearest_reachable(icon, THENAR)
-    assert nearest is not None
-    assert simulate(nearest.icon, THENAR).reachable
-    assert max(nearest.slower, 1 / nearest.smaller) < 1.5
-    assert "times as" in nearest.sentence
-
-
 def test_changes_keep_their_durations_and_levels() -> None:
     text = "cue 1\nicon x { repeat 2 { cool to 28 °C at 2 °C/s; hold for 1 s; return over 3 s } }"
     icon = parse(text).icons[0]

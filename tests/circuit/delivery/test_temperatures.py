@@ -13,7 +13,7 @@ import pytest
 from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Rig, simulate_current
-from thermicon.circuit.delivery.deliver import deliver, traces_until
+from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
@@ -82,10 +82,6 @@ class TestDeliveredDrive:
         assert (found.rate_Hz, found.requested_Hz, found.lead_s) == (10.0, 100.0, 0.1)
         assert found.deviation.places[1].rms_K < 0.1
 
-    def test_it_goes_on_at_rest(self) -> None:
-        designed, delivered = traces_until(deliver(STEP, RIG, LOOP), 20.0)
-        assert designed.time_s[-1] == delivered.time_s[-1] == 20.0
-
     def test_what_it_cannot_be_told(self) -> None:
         icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
         with pytest.raises(DeviceError, match=r"controller takes temperatures, and ramp prescribes a current"):
@@ -149,16 +145,6 @@ class TestSpread:
             steps.append((display - display[0]).min())
         assert spread.baseline_C == pytest.approx((min(rests), max(rests)), abs=1e-6)
         assert spread.step_K == pytest.approx((min(steps), max(steps)), abs=0.05)
-
-    def test_a_sure_rig_has_none(self) -> None:
-        sure = {"contact_resistance_relative": 0.0, "ambient_K": 0.0, "gain_relative": 0.0}
-        rig = RIG.with_(
-            **{f"uncertainty.{key}": value for key, value in sure.items()},
-            **{"uncertainty.reason": "all of it was measured"},
-        )
-        spread = open_loop_spread(deliver(STEP, rig, Device.load("dac-16")))
-        assert spread is not None
-        assert len(corners_of(rig)) > 1 or spread.baseline_C[0] == spread.baseline_C[1]
 
     @pytest.mark.parametrize("name", ["qst-tcs2", "closed-loop-controller"])
     def test_a_loop_leaves_none_open(self, name: str) -> None:

@@ -15,8 +15,7 @@ from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
 from thermicon.circuit.delivery.controlled import samples_of
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
-from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.prepare import Prepared
 from thermicon.circuit.delivery.temperatures import FollowingModule, follow_samples
 from thermicon.circuit.delivery.worstcase import worst_cases
@@ -43,21 +42,6 @@ def ready(name: str = "cooling-step", device: str = "dac-16", form: str = "csv",
 
 class TestWorstCase:
     """What every kind of device meets."""
-
-    @pytest.mark.slow
-    def test_it_is_the_default_and_in_it_more_is_red_than_on_the_rig_as_given(self) -> None:
-        icon = parse(
-            "cue 1\nset s { control skin\n baseline 32 °C }\n"
-            "icon hot { warm by 9.2 °C at 2 °C/s\n hold for 3 s\n return at 2 °C/s }\n"
-        )
-        one = prepare(icon["hot"], RIG, Device.load("dac-16"), CSV)
-        assert judge_safety(one.delivery.trace).colour == "amber"
-        assert one.verdict == worst_case(one.delivery)
-        assert one.verdict.colour == "red"
-        (refusal,) = (refusal for refusal in one.refusals if refusal.kind == "unsafe")
-        assert "with contact −30 %, ambient −3 K, gain +10 %, heat sink +1 K, " in str(refusal)
-        with pytest.raises(FormatError, match="hot: NOT SAFE: skin surface reaches "):
-            pack([one], CSV)
 
     def test_open_loop_it_is_the_gate_on_what_flows(self) -> None:
         found = ready().delivery
@@ -110,15 +94,6 @@ class TestWorstCase:
         assert judge_safety(found.trace).colour == "red", "the thermode follows its set-points, whatever the rig can"
         assert worst_case(found).reason is not None
         assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
-
-    @pytest.mark.slow
-    def test_the_rigs_driver_does_not_hold_a_thermode_back(self) -> None:
-        weak = RIG.with_(**{"driver.current_limit_A": 0.4})
-        (refusal,) = ready(rig=weak).refusals
-        assert refusal.kind == "unreachable"
-        one = ready(device="qst-tcs2", form="tcs2-serial", rig=weak)
-        assert (one.refusals, one.warnings) == ((), ())
-        assert one.delivery.trace.display_C.min() == pytest.approx(26.0, abs=0.01)
 
     def test_a_set_point_that_the_module_cannot_reach_is_judged_all_the_same(self) -> None:
         text = (

@@ -111,7 +111,10 @@ def test_waveforms_of_tdms_share_a_clock(saved: Callable[..., Path]) -> None:
     log = read_log(saved(tdms(current_A=current, display_C=display), "rig.tdms"))
     assert (round(float(log.time_s[0]), 9), round(float(log.time_s[-1]), 9)) == (2.0, 5.9)
     for content, message in (
-        (tdms(current_A=current, display_C=display[:30]), r"different clocks \(current_A 40 samples, display_C 30 samples\)"),
+        (
+            tdms(current_A=current, display_C=display[:30]),
+            r"different clocks \(current_A 40 samples, display_C 30 samples\)",
+        ),
         (tdms(bare=current), "channel bare has neither wf_increment nor a channel time_s beside it"),
         (b"TDSm and then nothing that TDMS would have", "cannot be read as TDMS"),
         (tdms(pressure=current), "no column of a log"),

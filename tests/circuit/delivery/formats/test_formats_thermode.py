@@ -20,7 +20,6 @@ from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.delivery.setpoints import Setpoints
 from thermicon.icons import Icon, load_library, parse
 
 RIG = Rig.load("thenar")
@@ -133,9 +132,3 @@ class TestPsychopy:
             tree = ast.parse(self.packed(device)["play_icons.py"])
             imported = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
             assert all(name.name in sys.stdlib_module_names for node in imported for name in node.names)
-
-
-def test_set_points_of_a_thermode_are_segments() -> None:
-    found = deliver(icon_of("cool"), RIG, THERMODE)
-    assert isinstance(found.played, Setpoints)
-    assert found.played.level_C.tolist() == pytest.approx([30.0, 24.0, 24.0, 30.0])
