@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -281,7 +280,7 @@ def read_log(path: str | Path) -> Log:
     Parameters
     ----------
     path
-        A `.csv` or `.tsv` (commas, semicolons or tabs) or a `.tdms` file with waveform channels.
+        A table with a line of names, its cells separated by commas, semicolons or tabs.
 
     Returns
     -------
@@ -306,12 +305,7 @@ def read_log(path: str | Path) -> Log:
     where = Path(path)
     data = read_bytes(where, "log", MOST_MB, LogError)
     digest = hashlib.sha256(data).hexdigest()
-    if where.suffix.lower() == ".tdms":
-        return Log.of(where.name, _read_tdms(data, where.name), sha256=digest)
-    return _from_text(where, text_of(data, where, "log", LogError), digest)
-
-
-def _from_text(where: Path, text: str, digest: str) -> Log:
+    text = text_of(data, where, "log", LogError)
     table = read_table(text, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS)
     wanted = [name for name in dict.fromkeys(table.header) if name == "time_s" or is_known(name)]
     gaps = {name: Counter[str]() for name in wanted}
@@ -348,38 +342,3 @@ def _misspelt(cell: str, known: Sequence[str]) -> str | None:
     """The known column that a name is but for case or a letter."""
     close = nearest_words(cell.lower(), [name.lower() for name in known], 1, MISSPELT)
     return next((name for name in known if close and name.lower() == close[0]), None)
-
-
-def _read_tdms(data: bytes, name: str) -> dict[str, Array]:
-    """Columns of a TDMS file by channel name; times come from a channel `time_s` or from `wf_increment`."""
-    try:
-        from nptdms import TdmsFile
-    except ImportError:
-        raise LogError(
-            f'{name}: TDMS needs npTDMS, which is not installed: pip install "thermicon[hardware]"'
-        ) from None
-    try:
-        groups = TdmsFile.read(io.BytesIO(data)).groups()
-        channels = [channel for group in groups for channel in group.channels()]
-        numbers = [channel for channel in channels if np.issubdtype(channel.dtype, np.number)]
-        columns = {channel.name: np.asarray(channel[:], dtype=np.float64) for channel in numbers}
-    except Exception as problem:  # npTDMS raises whatever a broken file leads it to
-        raise LogError(f"{name}: cannot be read as TDMS ({str(problem) or type(problem).__name__})") from None
-    if not columns:
-        found = ", ".join(channel.name for channel in channels) or "no channel"
-        raise LogError(f"{name}: cannot be read as TDMS: no channel with numbers; found {found}")
-    if "time_s" in columns:
-        return columns
-    clocks = {}
-    for channel in numbers:
-        try:
-            clocks[channel.name] = channel.time_track()
-        except KeyError:
-            raise LogError(
-                f"{name}: channel {channel.name} has neither wf_increment nor a channel time_s beside it"
-            ) from None
-    time_s = next(iter(clocks.values()))
-    if any(len(clock) != len(time_s) or not np.allclose(clock, time_s, rtol=0, atol=1e-9) for clock in clocks.values()):
-        listed = ", ".join(f"{key} {len(clock)} samples" for key, clock in clocks.items())
-        raise LogError(f"{name}: channels with different clocks ({listed}); save each clock as a file of its own")
-    return {"time_s": time_s, **columns}

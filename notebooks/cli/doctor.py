@@ -26,7 +26,7 @@ REPORTED = ("numpy", "scipy", "pandas", "matplotlib", "numba", "pydantic", "type
 """Packages whose versions a report of a fault should state."""
 EXTRAS = {
     "page": ("voila", "the workbench as a web page (lab --page)"),
-    "hardware": ("npTDMS", "drives and logs in TDMS, the format of National Instruments"),
+    "hardware": ("npTDMS", "drives in TDMS, the format of National Instruments"),
     "parquet": ("pyarrow", "traces in Parquet (simulate -o OUT.parquet)"),
     "cluster": ("distributed", "ranking on a dask cluster (rank --workers ADDRESS)"),
     "calibrate": ("emcee", "sampling the constants of the observer again (python -m thermicon.perception.evidence)"),

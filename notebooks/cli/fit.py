@@ -28,7 +28,7 @@ def fit_command(
         list[str] | None,
         typer.Argument(
             metavar="LOG",
-            help="Measured logs: .csv, .tsv or .tdms. A file without a drive has a clock of its own and belongs to the "
+            help="Measured logs: .csv or .tsv. A file without a drive has a clock of its own and belongs to the "
             "file before it.",
         ),
     ] = None,

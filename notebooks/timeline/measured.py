@@ -55,17 +55,17 @@ def read_measured(path: Path) -> Log:
 
 
 def read_uploaded(files: Mapping[str, bytes]) -> Log:
-    """Read a log that came through the page, with the JSON of a session beside it; raises LogError."""
+    """Read a log that came through the page; raises LogError."""
     from thermicon.circuit.fitting.log import LogError
 
-    names = [name for name in files if not name.lower().endswith(".json")]
-    if len(names) != 1:
-        raise LogError(f"one log at a time, with its .json if it has one; got {', '.join(files) or 'nothing'}")
+    if len(files) != 1:
+        raise LogError(f"one log at a time; got {', '.join(files) or 'nothing'}")
+    ((name, data),) = files.items()
     with TemporaryDirectory(prefix="thermicon-") as folder:
-        for name, data in files.items():
-            (Path(folder) / Path(name).name).write_bytes(data)
+        path = Path(folder) / Path(name).name
+        path.write_bytes(data)
         try:
-            return read_measured(Path(folder) / Path(names[0]).name)
+            return read_measured(path)
         except LogError as wrong:
             raise LogError(str(wrong).replace(f"{folder}{os.sep}", "")) from None
 

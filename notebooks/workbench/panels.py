@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from .design_view import DesignView
 
 FIRST = "six-icons"
-FORMATS = ".csv,.tsv,.tdms,.json"
+FORMATS = ".csv,.tsv"
 ABOUT = (
-    "A log with time_s and display_C, skin_C, voltage_V or current_A, as thermicon fit reads it: CSV, the TSV of a "
-    "session (with its .json), or TDMS. It is aligned with the icon that is shown."
+    "A log with time_s and display_C, skin_C, voltage_V or current_A, as thermicon fit reads it: CSV or TSV. It is "
+    "aligned with the icon that is shown."
 )
 SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
     (

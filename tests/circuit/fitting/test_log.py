@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from nptdms import ChannelObject, RootObject, TdmsFile, TdmsWriter
 
 from thermicon.circuit import Rig
 from thermicon.circuit.fitting.fit import fit
@@ -211,46 +208,6 @@ def test_a_file_that_is_too_large_is_refused(saved: Callable[..., Path], monkeyp
         read_log(saved(text_of()))
     with pytest.raises(LogError, match=r"nothing.csv: no such log"):
         read_log("nothing.csv")
-
-
-def tdms(**channels: Any) -> bytes:
-    file = io.BytesIO()
-    clock = {"wf_increment": 0.1, "wf_start_offset": 2.0}
-    objects = [
-        ChannelObject("log", name, np.asarray(values, dtype=float), {} if name == "bare" else clock)
-        for name, values in channels.items()
-    ]
-    with TdmsWriter(file) as writer:
-        writer.write_segment([RootObject(), *objects])
-    return file.getvalue()
-
-
-def test_a_reader_that_fails_without_a_word_is_named(
-    saved: Callable[..., Path], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fails(_: io.BytesIO) -> TdmsFile:
-        raise IndexError
-
-    monkeypatch.setattr(TdmsFile, "read", fails)
-    with pytest.raises(FitError, match=r"rig\.tdms: cannot be read as TDMS \(IndexError\)"):
-        read_log(saved(tdms(current_A=np.zeros(40)), "rig.tdms"))
-
-
-def test_waveforms_of_tdms_share_a_clock(saved: Callable[..., Path]) -> None:
-    current, display = np.full(40, 0.1), np.linspace(30, 32, 40)
-    log = read_log(saved(tdms(current_A=current, display_C=display), "rig.tdms"))
-    assert (round(float(log.time_s[0]), 9), round(float(log.time_s[-1]), 9)) == (2.0, 5.9)
-    for content, message in (
-        (
-            tdms(current_A=current, display_C=display[:30]),
-            r"different clocks \(current_A 40 samples, display_C 30 samples\)",
-        ),
-        (tdms(bare=current), "channel bare has neither wf_increment nor a channel time_s beside it"),
-        (b"TDSm and then nothing that TDMS would have", "cannot be read as TDMS"),
-        (tdms(pressure=current), "no column of a log"),
-    ):
-        with pytest.raises(FitError, match=f"rig.tdms: .*{message}"):
-            read_log(saved(content, "rig.tdms"))
 
 
 def test_a_written_log_is_read_back(log: Log, tmp_path: Path) -> None:

@@ -85,12 +85,13 @@ def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None
 @pytest.mark.slow
 def test_an_exported_drive_and_a_thermometer_of_its_own_clock_make_a_log(tmp_path: Path) -> None:
     rig, icon = Rig.load("thenar"), calibration_icon()
-    played = deliver(icon, rig, Device.load("ni-analogue-output"))
-    (tmp_path / "drive.tdms").write_bytes(load_format("tdms").write(played))
-    drive = read_log(tmp_path / "drive.tdms")
-    current = rig.driver.transconductance_A_per_V * drive.column("command_V")
+    played = deliver(icon, rig, Device.load("dac-16"))
+    (tmp_path / "drive.csv").write_bytes(load_format("csv").write(played))
+    drive = read_log(tmp_path / "drive.csv")
     bench = rig.with_(**{"contact.resistance_m2K_per_W": 7e-4})
-    trace = simulate_current(Drive(drive.time_s - drive.time_s[0], current, held=True), bench, rate_Hz=20)
+    trace = simulate_current(
+        Drive(drive.time_s - drive.time_s[0], drive.column("current_A"), held=True), bench, rate_Hz=20
+    )
     noise = np.random.default_rng(0).normal(0.0, 0.02, len(trace.time_s))
     meter = Log.of("meter.csv", {"time_s": trace.time_s + 100.0, "display_C": trace.display_C + noise})
     found = fit([drive, meter], rig, free=["contact.resistance_m2K_per_W"], fixed_skin=True)

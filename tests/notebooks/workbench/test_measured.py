@@ -114,7 +114,7 @@ def test_a_bad_log_says_where_what_and_the_cure_and_changes_nothing(log: Path, s
 
 def test_what_is_no_single_log_or_outside_the_page_is_refused(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _, bar, panel = opened()
-    with pytest.raises(LogError, match=r"one log at a time, with its \.json if it has one; got a\.csv, b\.csv"):
+    with pytest.raises(LogError, match=r"one log at a time; got a\.csv, b\.csv"):
         read_uploaded({"a.csv": b"", "b.csv": b""})
     panel.load.click()
     assert said(bar) == "give the path of a log, or upload one"
