@@ -102,12 +102,10 @@ def as_number(cell: str, mark: str = ",") -> float:
         return math.nan
 
 
-def read_table(
-    text: str, fault: Fault, example: str, most_rows: int, names: Callable[[list[str]], list[str]] | None = None
-) -> Table:
+def read_table(text: str, fault: Fault, example: str, most_rows: int) -> Table:
     """Return the table in a text; raises a fault for rows that do not fit the line of names, and for too many.
 
-    ``example`` is such a line, for messages. ``names`` gives the names of a table without that line, from its cells.
+    ``example`` is such a line, for messages.
 
     >>> table = read_table("a;b\\n1,5;2\\n", lambda *about: ValueError(about), "a,b", 10)
     >>> table.numbers("a", "").tolist(), list(table.records(["b"]))
@@ -124,12 +122,10 @@ def read_table(
                 continue
             if not header:
                 header, line = [cell.strip() for cell in row], lines.line_num
-                if not all(map(NO_NAME.fullmatch, header)):
-                    continue
-                if names is None:
+                if all(map(NO_NAME.fullmatch, header)):
                     what = "this line holds numbers, not the names of columns"
                     raise fault("table", line, what, f"put {example} above it")
-                header = names(header)
+                continue
             if len(row) > len(header) and any(cell.strip() for cell in row[len(header) :]):
                 what = f"{len(row)} cells, where the first line names {len(header)}"
                 help = "write decimal points, put names with commas in quotes, or put semicolons between the cells"
