@@ -18,7 +18,7 @@ from tests.circuit.verdicts import GreenVerdict
 from thermicon.circuit import Device, Gate, Rig
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.pack import NO_CLEARANCE, pack
+from thermicon.circuit.delivery.pack import NO_CLEARANCE, pack, sidecar_text
 from thermicon.circuit.delivery.prepare import Prepared, Refusal, needed_A, refusals_of
 from thermicon.circuit.program import code_digest
 from thermicon.circuit.records import Record
@@ -165,16 +165,8 @@ def test_the_gate_is_given_and_its_word_is_final() -> None:
 @pytest.mark.parametrize(
     ("form_name", "names", "words"),
     [
-        (
-            "csv",
-            ("a-b", "A-B"),
-            "a-b and A-B: differ only in capitals, so that one's files would",
-        ),
-        (
-            "c-array",
-            ("ab", "Ab"),
-            "ab and Ab: differ only in capitals, so that one's files would",
-        ),
+        ("csv", ("a-b", "A-B"), "a-b and A-B: differ only in capitals, so that one's files would"),
+        ("c-array", ("ab", "Ab"), "ab and Ab: differ only in capitals, so that one's files would"),
         ("c-array", ("é", "è"), "é and è: the files of both would be called icon__ in the format c-array; rename one"),
         ("psychopy", ("a", "Conditions"), "Conditions: its drive Conditions.csv would be taken for the set's own"),
     ],
@@ -232,6 +224,12 @@ class TestSidecar:
         known = told.pop("sidecar_sha256")
         bare = json.dumps(told, ensure_ascii=False, indent=2) + "\n"
         assert known == hashlib.sha256(bare.encode()).hexdigest()
+
+    def test_a_missing_number_is_null(self) -> None:
+        assert (
+            sidecar_text({1: (float("nan"), float("inf"), 2.5)})
+            == b'{\n  "1": [\n    null,\n    null,\n    2.5\n  ]\n}\n'
+        )
 
     def test_every_column_has_a_unit_and_a_meaning(self) -> None:
         columns = {column["name"]: column["unit"] for column in sidecar_of(ready())["columns"]}

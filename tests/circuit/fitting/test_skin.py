@@ -56,6 +56,8 @@ def test_fixed_skin_is_what_the_rig_has(true_rig: Rig, thenar: Rig) -> None:
 
 
 def test_metal_and_air_have_no_layers(thenar: Rig) -> None:
+    priors = layer_priors(thenar)
+    assert (len(priors), round(priors["thickness", 0], 3)) == (15, 0.182)
     assert layer_priors(thenar.with_(load={"capacity_J_per_K": 25.0, "conductance_W_per_K": 0.1})) == {}
 
 
