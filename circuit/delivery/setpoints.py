@@ -89,9 +89,9 @@ def setpoints_of(device: Device, time_s: Array, level_C: Array, curve: bool) -> 
     where that needs too many. Raises DeviceError where baseline, level or number of segments is beyond the device.
     """
     step, tick = device.most("set-point step"), device.most("tick")
-    _check("baseline", float(level_C[0]), device.interval("baseline range"), device)
+    check_level("baseline", float(level_C[0]), device.interval("baseline range"), device)
     for level in (float(level_C.min()), float(level_C.max())):
-        _check("set-point", level, device.interval("set-point range"), device)
+        check_level("set-point", level, device.interval("set-point range"), device)
     most, tolerance = int(device.most("segments")), 0.5 * step
     while True:
         rows = _thinned(time_s, level_C, tolerance) if curve else range(len(time_s))
@@ -152,7 +152,8 @@ def _segments(device: Device, times: list[float], levels: list[float]) -> tuple[
     return tuple((length, level) for length, (_, level) in zip(ticks, segments, strict=True))
 
 
-def _check(what: str, level: float, limits: tuple[float, float], device: Device) -> None:
+def check_level(what: str, level: float, limits: tuple[float, float], device: Device) -> None:
+    """Raise DeviceError for a level in °C beyond limits of a device."""
     if not limits[0] - 1e-9 <= level <= limits[1] + 1e-9:
         raise DeviceError(
             f"{device.name}: a {what} of {level:.4g} °C is beyond {limits[0]:g} … {limits[1]:g} °C; change the icon, "

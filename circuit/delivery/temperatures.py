@@ -36,6 +36,7 @@ from .delivered_drive import DeliveredDrive
 from .device import Device
 from .devicefile import DeviceError
 from .samples import Samples, led, rate_of
+from .setpoints import check_level
 
 
 def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
@@ -122,13 +123,8 @@ def designed_until(drive: Drive, end_s: float) -> Drive:
 def _sampled(icon: Icon, rig: Rig, device: Device, end_s: float, rate_Hz: float) -> Samples:
     """Means of the designed display over each period, preceded by one period of rest and followed by rest."""
     times, levels = _course(icon, rig, end_s)
-    low, high = device.interval("set-point range")
     for level in (float(levels.min()), float(levels.max())):
-        if not low - 1e-9 <= level <= high + 1e-9:
-            raise DeviceError(
-                f"{device.name}: a set-point of {level:.4g} °C is beyond {low:g} … {high:g} °C; change the icon, or "
-                f"use another device"
-            )
+        check_level("set-point", level, device.interval("set-point range"), device)
     edges: Array = np.arange(math.ceil(end_s * rate_Hz - 1e-9) + 1, dtype=np.float64) / rate_Hz
     grid = np.union1d(edges, times)
     values = np.interp(grid, times, levels)
