@@ -15,6 +15,7 @@ from ..arrays import Array
 from ..rig.parts import Uncertainty
 from .forward import MAD_TO_SD, Channel
 from .identify import Parameter
+from .keys import fittable, free_keys, value_of
 from .problem import FREE_START, STEADY_BEFORE, Problem, Unknown
 from .rig_fit import LARGEST, channel_fits
 from .solve import Solution, covariance_of, huber, solve
@@ -49,8 +50,9 @@ def disagreement(
         return tuple(missed), "the rig leaves something out of the logs"
     if unsteady(problem, solution.theta):
         return tuple(missed), NO_MATCH
-    doubt = "intervals may be too narrow, since what is held fixed is taken as right: free another key as well"
-    return (*missed, f"{doubt}, or something that is not a key of the rig is wrong"), NO_MATCH
+    keys = explaining(problem, solution)
+    cure = f"free {' or '.join(keys)} as well" if keys else "something that is not a key of the rig may be wrong"
+    return (*missed, f"intervals may be too narrow, since what is held fixed is taken as right: {cure}"), NO_MATCH
 
 
 def _combined(problem: Problem, theta: Array, unknown: Sequence[Parameter]) -> tuple[str, ...]:
@@ -159,6 +161,8 @@ def too_narrow(fitted: Uncertainty, before: Uncertainty) -> tuple[str, ...]:
 
 BEYOND = 2.0
 """Residuals that scatter by so many times the noise are more than noise."""
+WORTH, MOST_NAMED = 0.3, 2
+"""Share of the sum of squares that a freed key must take away to be named; freeing several at once identifies none."""
 ALIKE = 3.0
 """From so many alike neighbours on, a note says that the rig leaves something out."""
 LATE_EVALUATIONS = 10
@@ -222,6 +226,31 @@ def noise_of(channel: Channel) -> float:
     bends = np.diff(channel.values, 2)
     own = MAD_TO_SD * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
     return float(max(own, channel.resolution / np.sqrt(12.0)))
+
+
+def explaining(problem: Problem, solution: Solution) -> list[str]:
+    """Keys that are held fixed, and would take away most of the residuals if they were free, the best first.
+
+    Judged by the sum of squares after one step of Gauss and Newton, with far outliers cut.
+    """
+    rig = problem.rig.with_(**problem.values(solution.theta))
+    own = [key.key for key in problem.keys]
+    others = [key for key in fittable(rig) if key not in own and value_of(rig, key)]  # a lag of 0 has a bound there
+    wide = problem.again(rig, free_keys([*own, *others], rig), problem.runs)
+    theta = np.concatenate([wide.first[: len(wide.keys)], solution.theta[len(own) :]])
+    residuals = wide.residuals(theta, solution.sigma)
+    if wide.predictions(theta) is None:
+        return []
+    jacobian, clipped = wide.jacobian(theta, solution.sigma), np.clip(residuals, -10.0, 10.0)
+    usual = [*range(len(own)), *range(len(wide.keys), len(theta))]
+
+    def left(columns: list[int]) -> float:
+        step = np.linalg.lstsq(jacobian[:, columns], -clipped, rcond=None)[0]
+        return float(np.square(clipped + jacobian[:, columns] @ step).sum())
+
+    before = left(usual)
+    gains = {key: 1.0 - left([*usual, len(own) + k]) / before for k, key in enumerate(others)}
+    return sorted((key for key in others if gains[key] >= WORTH), key=lambda key: -gains[key])[:MOST_NAMED]
 
 
 def milli(value: float, unit: str) -> str:
