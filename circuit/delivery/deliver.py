@@ -7,7 +7,6 @@ the baseline, from the steady state. It ends at rest again, in a row that marks 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -57,12 +56,12 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_H
         warnings = (narrowed.text, *warnings)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    delivery = DeliveredDrive(
-        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, current_of(device, rig, samples)), model,
-        model, plan.outcome, warnings, None, narrowed,
+    delivered, start = current_of(device, rig, samples), _start_of(device, rig, samples)
+    trace = simulate_current(delivered, rig, rate_Hz=rate_Hz, start_C=start)
+    return DeliveredDrive(
+        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome,
+        warnings, None, narrowed,
     )  # fmt: skip
-    trace = simulate_current(delivery.delivered, rig, rate_Hz=rate_Hz, start_C=start_of(delivery))
-    return replace(delivery, trace=trace)
 
 
 def _sampled(
@@ -81,15 +80,11 @@ def _sampled(
     return samples, warnings
 
 
-def start_of(delivery: DeliveredDrive) -> Array | None:
+def _start_of(device: Device, rig: Rig, samples: Samples) -> Array | None:
     """State in °C from which a delivered drive starts; None: the steady state of its first current."""
-    return _start_of(delivery.device, delivery.rig, delivery.played)
-
-
-def _start_of(device: Device, rig: Rig, played: Samples | Setpoints) -> Array | None:
-    if device.driven_by != "duty" or isinstance(played, Setpoints):
+    if device.driven_by != "duty":
         return None
-    return steady_of(rig, float(played.command[0]), device.bridge_A)
+    return steady_of(rig, float(samples.command[0]), device.bridge_A)
 
 
 def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
@@ -102,19 +97,15 @@ def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0)
     until = played.until(end_s)
     by_loop = delivery.device.driven_by == "temperatures"
     drive = _cut(follow_samples(rig, until) if by_loop else current_of(delivery.device, rig, until), end_s)
-    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=start_of(delivery))
+    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=_start_of(delivery.device, rig, played))
 
 
 def _cut(drive: Drive, end_s: float) -> Drive:
     """A held drive cut at a time in s: its last sample may end slightly later than what it is compared with."""
     if drive.time_s[-1] <= end_s + 1e-9:
         return drive
-    before_end = drive.time_s < end_s - 1e-9
-    return Drive(
-        np.append(drive.time_s[before_end], end_s),
-        np.append(drive.current_A[before_end], drive.current_A[-1]),
-        held=True,
-    )
+    times, currents = (column[drive.time_s < end_s - 1e-9] for column in (drive.time_s, drive.current_A))
+    return Drive(np.append(times, end_s), np.append(currents, drive.current_A[-1]), held=True)
 
 
 def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design) -> Narrowed | None:
