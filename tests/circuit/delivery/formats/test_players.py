@@ -314,9 +314,10 @@ class TestMustPrevent:
         found = must_prevent([MADE_UP, gentle])
         assert found == MustPrevent(0.4, 24.0, 40.0, 0.1, True, 0.2, 0.5, 0.15, 30.0, 90.0)
 
-    def test_a_polarity_that_need_not_be_tested_is_not(self) -> None:
-        found = must_prevent([{**MADE_UP, "polarity_check": {"needed": False, "test_s": None}}])
-        assert not found.test_polarity
+    def test_what_the_gate_does_not_find_is_assumed(self) -> None:
+        unknown = {"polarity_check": None, "rest_before_first_play_s": None, "pause_at_least_s": None}
+        found = must_prevent([{**MADE_UP, **unknown}])
+        assert (found.test_polarity, found.rest_s, found.pause_s) == (False, 1800.0, 60.0)
 
     def test_a_set_has_one_player(self) -> None:
         form = load_format("c-array")
