@@ -110,27 +110,28 @@ def scene(
     from thermicon.circuit import InputError
     from thermicon.perception import Observer
 
-    person = Observer.load() if observer is None else observer
     wanted = icon if icon is not None or before is None else before.icon
     reading = read_text(text)
+    names, count, drawing = ((), 0, None) if before is None else (before.names, before.count, before.drawing)
+    person = Observer.load() if observer is None else observer
+    made = Scene(text, rig, person, wanted, names, count, reading.troubles, _once(notes), True, drawing)
     if reading.icons is None:
-        return _kept(text, rig, person, wanted, before, reading.troubles, tuple(notes), reading.more)
-    chosen, moved = _chosen(reading, wanted, before)
-    remarks = [*notes, *moved]
+        return _counted(made, reading.more)
+    chosen, remarks = _chosen(reading, wanted, before)
     count, names = len(reading.icons), reading.names
     if count > MOST_NAMES:
         remarks.append(f"{count:,} icons; the first {MOST_NAMES} are listed, Workbench(…, icon=NAME) shows any other")
         names = names if chosen.name in names else (*names, chosen.name)
+    made = replace(made, icon=chosen.name, names=names, count=count, notes=_once([*notes, *remarks]))
     try:
         drawing = draw(chosen, rig, person, reading)
     except CueErrors as wrong:  # with the rest of this rig a target lies on the wrong side
-        troubles = tuple(map(trouble_of, wrong.errors))
-        return _kept(text, rig, person, chosen.name, before, troubles, tuple(remarks), wrong.more, names, count)
+        return _counted(replace(made, troubles=tuple(map(trouble_of, wrong.errors))), wrong.more)
     except (InputError, ValueError, ArithmeticError) as wrong:
-        told = (*remarks, *(f"not drawn: {line}" for line in str(wrong).splitlines()[:3]))
-        return _kept(text, rig, person, chosen.name, before, (), told, 0, names, count)
-    remarks += _notes_on(drawing, reading, rig)
-    return Scene(text, rig, person, chosen.name, names, count, (), _once(remarks), False, drawing)
+        told = (f"not drawn: {line}" for line in str(wrong).splitlines()[:3])
+        return replace(made, notes=_once([*made.notes, *told]))
+    told_on = _notes_on(drawing, reading, rig)
+    return replace(made, notes=_once([*made.notes, *told_on]), stale=False, drawing=drawing)
 
 
 def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
@@ -186,24 +187,10 @@ def _chosen(reading: Reading, wanted: str | None, before: Scene | None) -> tuple
     return first, [f"no icon is called {wanted}; {first.name} is shown"]
 
 
-def _kept(
-    text: str,
-    rig: Rig,
-    observer: Observer,
-    icon: str | None,
-    before: Scene | None,
-    troubles: tuple[Trouble, ...],
-    notes: tuple[str, ...],
-    more: int,
-    names: tuple[str, ...] = (),
-    count: int = 0,
-) -> Scene:
-    """The scene where nothing new can be drawn: the last drawing stays."""
-    drawing = None if before is None else before.drawing
-    if before is not None and not names:
-        names, count = before.names, before.count
-    said = [*notes, f"and {more} more {'error' if more == 1 else 'errors'}"] if more else list(notes)
-    return Scene(text, rig, observer, icon, names, count, troubles, _once(said), True, drawing)
+def _counted(made: Scene, more: int) -> Scene:
+    """The scene with how many more errors there are than are listed."""
+    said = [f"and {more} more {'error' if more == 1 else 'errors'}"] if more else []
+    return replace(made, notes=_once([*made.notes, *said]))
 
 
 def _notes_on(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:

@@ -18,7 +18,7 @@ from ..timeline.scene import Scene, scene, with_notes
 from .knobs import apply, knobs_of
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
+    from thermicon.circuit import Rig
     from thermicon.circuit.fitting.log import Log
     from thermicon.perception import Observer
     from thermicon.perception.observer.observer_model import ObserverModel
@@ -57,7 +57,7 @@ class DesignModel:
         self.model = model
         self.values: dict[str, float | str] = {}
         self.measured: Measured | None = None
-        self._applied = apply(rig, {}, self._young)
+        self._applied = apply(rig, {}, None if model is None else model.nominal)
         self._drag: _Drag | None = None
         self._moving = False
         self.scene: Scene = scene(self.text, rig, icon, self._applied.observer)
@@ -79,11 +79,6 @@ class DesignModel:
         """The nominal person, of the age that is set."""
         return self._applied.observer
 
-    @property
-    def _young(self) -> Observer | None:
-        """The nominal person of the observer that predicts; None: the shipped one."""
-        return None if self.model is None else self.model.nominal
-
     def on_change(self, tell: Callable[[], None]) -> None:
         """Call a function after each message that changed the text, the rig or the icon that is shown."""
         self._tell.append(tell)
@@ -95,15 +90,22 @@ class DesignModel:
 
     def turn(self, values: Mapping[str, float | str]) -> CanvasFrame:
         """Set knobs, by key; the others stay where they are."""
-        return self._answer(lambda: self._turned(values))
+        return self._answer(lambda: self._set({**self.values, **values}))
 
     def reset(self) -> CanvasFrame:
         """Bring all knobs back to the rig's own values."""
         return self._answer(lambda: self._set({}))
 
     def show_text(self, text: str, icon: str | None = None) -> CanvasFrame:
-        """Put another text in the editor, as one step that can be undone."""
-        return self._answer(lambda: self._replace(text, icon))
+        """Put another text in the editor, as one step that can be undone, and show an icon of it."""
+
+        def act() -> str:
+            self._drag = None
+            self.document.history = self.document.history.changed(text)
+            self._draw(icon)
+            return text
+
+        return self._answer(act)
 
     def open(self, document: Document) -> CanvasFrame:
         """Put another document in the editor, with a history of its own."""
@@ -131,7 +133,9 @@ class DesignModel:
 
         Raises LogError where it has nothing in common with the icon, and ValueError where nothing is drawn.
         """
-        self.measured = None if log is None else aligned(log, self._trace())
+        if log is not None and self.scene.drawing is None:
+            raise ValueError("no icon is drawn that a log could be laid over: mend the text first")
+        self.measured = None if log is None or self.scene.drawing is None else aligned(log, self.scene.drawing.trace)
         return self.frame()
 
     def shift_log(self, shift_s: float | None) -> CanvasFrame:
@@ -142,11 +146,6 @@ class DesignModel:
             return self.take_log(self.measured.log)
         self.measured = Measured(self.measured.log, shift_s, by_hand=True)
         return self.frame()
-
-    def _trace(self) -> Trace:
-        if self.scene.drawing is None:
-            raise ValueError("no icon is drawn that a log could be laid over: mend the text first")
-        return self.scene.drawing.trace
 
     def frame(self) -> CanvasFrame:
         """The frame as it is now, with the text."""
@@ -243,25 +242,10 @@ class DesignModel:
         self._draw()
         return new
 
-    def _replace(self, text: str, icon: str | None) -> str:
-        self._drag = None
-        self.document.history = self.document.history.changed(text)
-        self._draw(icon)
-        return text
-
-    def _turned(self, values: Mapping[str, float | str]) -> None:
-        """Set knobs; nothing is simulated again where the page was ahead of its own slider."""
-        wanted = {**self.values, **values}
-        if self._unlike_rig(wanted) != self.values:
-            self._set(wanted)
-
-    def _unlike_rig(self, values: Mapping[str, float | str]) -> dict[str, float | str]:
-        own = {knob.key: knob.value for knob in knobs_of(self.nominal)}
-        return {key: value for key, value in values.items() if own.get(key) != value}
-
     def _set(self, values: Mapping[str, float | str]) -> None:
-        self.values = self._unlike_rig(values)
-        self._applied = apply(self.nominal, self.values, self._young)
+        own = {knob.key: knob.value for knob in knobs_of(self.nominal)}
+        self.values = {key: value for key, value in values.items() if own.get(key) != value}
+        self._applied = apply(self.nominal, self.values, None if self.model is None else self.model.nominal)
         self._draw()
 
     def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:

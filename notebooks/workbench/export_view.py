@@ -12,7 +12,7 @@ import ipywidgets as widgets
 from thermicon.icons.atomic import OutputError
 
 from ..editing.cue_check import read_text
-from ..files.exporting import felt_beside
+from ..files.exporting import felt_beside, others
 from ..files.outputs import below_start
 from ..report.blocks import fragment
 from .live_view import Job, LiveView
@@ -150,21 +150,20 @@ class ExportView(LiveView[ExportRequest]):
         text, rig, name, device, form, typed = request
         icons = read_text(text).icons
         assert icons is not None
-        chosen = [icon for icon in icons if name in (None, icon.name)] if len(icons) <= MOST_RANKED else []
         found = None if name is None else icons.find(name)
-        chosen = chosen or ([found] if found is not None else [])
-        rest = [icon for icon in icons if icon not in chosen] if len(icons) <= MOST_RANKED else []
+        chosen = list(icons) if found is None else [found]
 
         def step(done: int, total: int) -> None:
             job.on_page(lambda: self._say(f"working … {done} of {total}"))
 
         remarks: list[str] = []
-        felt = felt_beside(rest, remarks.append)
+        felt = felt_beside(others(icons, chosen), remarks.append)
         made = export(chosen, rig, device, form, pause_s=pause_of(typed), felt=felt, step=step)
         shown = self.design.scene.icon
-        red = (k for k, one in enumerate(made.prepared) if one.verdict.colour == "red")
-        named = (k for k, one in enumerate(made.prepared) if one.delivery.icon.name == shown)
-        place = next(red, next(named, 0))  # the icon that stops the export is shown first
+        colours = [one.verdict.colour for one in made.prepared]
+        names = [one.delivery.icon.name for one in made.prepared]
+        # The icon that stops the export is shown first.
+        place = colours.index("red") if "red" in colours else names.index(shown) if shown in names else 0
         picture = export_svg(made, place)
         told = delivered_html(made, remarks)
         job.on_page(lambda: self._show(made, place, told, picture, request))

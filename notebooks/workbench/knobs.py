@@ -91,15 +91,16 @@ def knobs_of(rig: Rig) -> tuple[Knob, ...]:
         Knob("age", "age", "years", YOUNGEST_YEARS, OLDEST_YEARS, 1.0, YOUNG_YEARS,
              "thresholds of both channels, each by its own loss per decade",
              f"{lost.quantity}: {lost.source}"),
-        *([_limit_knob(rig)] if rig.thermode is None else []),
+        *([] if rig.thermode is not None else [_limit_knob(rig)]),  # a thermode has no current
     )  # fmt: skip
 
 
 def _limit_knob(rig: Rig) -> Knob:
-    """The current limit; a thermode has none."""
-    limit, greatest = rig.driver.current_max_A, math.floor(10 * _greatest_cooling_A(rig)) / 10
+    module, limit = rig.module, rig.driver.current_max_A
+    # Greatest cooling, with the cold plate at rest temperature, is at αT/R.
+    greatest_A = module.seebeck_V_per_K * (rig.skin.rest_C + ZERO_C_IN_K) / module.resistance_ohm
     return Knob(
-        "limit", "current limit", "A", min(LEAST_A, limit), max(greatest, limit), 0.05, limit,
+        "limit", "current limit", "A", min(LEAST_A, limit), max(math.floor(10 * greatest_A) / 10, limit), 0.05, limit,
         "largest current: limits how fast and how far temperature changes",
         "up to the current of greatest cooling of the rig's module",
     )  # fmt: skip
@@ -231,9 +232,3 @@ def _skin_of(site: str) -> dict[str, object]:
     own = {key: skin.get(key) for key in _OF_SITE}
     own["depth_from"] = skin.get("depth_from", "surface")
     return {f"skin.{key}": value for key, value in own.items()}
-
-
-def _greatest_cooling_A(rig: Rig) -> float:
-    """Current of greatest cooling with the cold plate at rest temperature: αT/R."""
-    module = rig.module
-    return module.seebeck_V_per_K * (rig.skin.rest_C + ZERO_C_IN_K) / module.resistance_ohm

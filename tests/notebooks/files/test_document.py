@@ -1,4 +1,4 @@
-"""Documents: cue files that are edited, and versions and unsaved text beside them."""
+"""Documents: cue files that are edited, undo and redo, and versions and unsaved text beside them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from thermicon.icons.atomic import OutputError
-from thermicon.notebooks.files.document import Document
+from thermicon.notebooks.files.document import MOST_STEPS, Document, Edited, History
 from thermicon.notebooks.files.versions import EVERY_S, MOST, MOST_LETTERS, Version, Versions
 
 
@@ -167,3 +167,45 @@ def test_what_is_not_kept_on_disk_is_kept_in_memory(tmp_path: Path) -> None:
     document.save_as(tmp_path / "a.cue")
     assert document.versions.others == (made,)
     assert [each.name for each in tmp_path.iterdir()] == ["a.cue"]
+
+
+SIX = History(Edited("6", "dip"))
+DRAGGED = SIX.dragged("5", end=False).dragged("4", end=False).dragged("3", end=True)
+
+
+@pytest.mark.parametrize(
+    ("history", "undone"),
+    [
+        (SIX.typed("a", 0.0).typed("ab", 0.7).typed("abc", 1.4), ["6"]),  # without a pause, one step
+        (SIX.typed("a", 0.0).typed("ab", 0.7).typed("abc", 1.6), ["ab", "6"]),
+        (DRAGGED, ["6"]),  # one step, however many places it passes
+        (DRAGGED.dragged("2", end=True), ["3", "6"]),
+        (SIX.typed("66", 0.0).dragged("5", end=False).typed("55", 0.1), ["5", "66", "6"]),
+        (SIX.typed("6", 0.0), []),
+        (SIX.changed("7").undo().typed("6", 0.0), []),
+    ],
+)
+def test_steps_of_typing_and_drags(history: History, undone: list[str]) -> None:
+    texts = []
+    while history.past:
+        history = history.undo()
+        texts.append(history.now.text)
+    assert texts == undone
+    assert history.undo() is history
+
+
+def test_redo_is_cleared_by_a_new_edit_alone_and_the_icon_comes_with_its_step() -> None:
+    history = SIX.changed("7").undo()
+    assert history.redo().now.text == "7"
+    assert history.typed("6", 0.0).future
+    assert not history.changed("8").future
+    assert SIX.redo() is SIX
+    risen = SIX.changed("7").chosen("rise").changed("8")
+    assert (risen.undo().now, risen.undo().undo().now) == (Edited("7", "rise"), Edited("6", "dip"))
+
+
+def test_the_oldest_steps_are_forgotten() -> None:
+    history = SIX
+    for step in range(1, MOST_STEPS + 51):
+        history = history.changed(str(step))
+    assert (len(history.past), history.past[0].text) == (MOST_STEPS, "50")

@@ -17,7 +17,7 @@ import pytest
 from tests.circuit.surerig import SURE
 from tests.notebooks.files.dying import CASES, NEW, OLD, drive
 from thermicon.circuit.delivery.export_folder import check_export_folder, publish
-from thermicon.icons.atomic import OutputError
+from thermicon.icons.atomic import OutputError, stopped_cleanly
 
 DYING = Path(__file__).with_name("dying.py")
 STAGE = ".drives.thermicon-part"
@@ -179,7 +179,7 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from dying import drive
 from thermicon.circuit.delivery.export_folder import publish
-from thermicon.icons.atomic import OutputError
+from thermicon.icons.atomic import OutputError, stopped_cleanly
 folder, mine, rounds = Path(sys.argv[2]), sys.argv[3], int(sys.argv[4])
 for turn in range(rounds):
     print("ready", flush=True)
@@ -224,14 +224,18 @@ class TestTwoAtOnce:
             publish(drive("a", b"1"), tmp_path / "out")
         assert names(tmp_path) == [".out.thermicon-part"]
 
-    @posix
-    @pytest.mark.slow
-    def test_two_commands(self, tmp_path: Path) -> None:
-        command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "export", "six-icons", "-o", "out"]
-        command += ["--icon", "warming-step", "--to", "csv", *SURE]
-        runs = [subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) for _ in range(2)]
-        said = [run.communicate()[1] for run in runs]
-        assert sorted(run.returncode for run in runs) == [0, 1]
-        loser = next(text for run, text in zip(runs, said, strict=True) if run.returncode)
-        assert "kept; --force replaces" in loser or "another export is writing into out" in loser
-        assert len(names(tmp_path / "out")) == 2
+
+@posix
+def test_a_request_to_end_is_an_interrupt() -> None:
+    with pytest.raises(KeyboardInterrupt), stopped_cleanly():
+        os.kill(os.getpid(), signal.SIGTERM)
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
+@posix
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="needs a folder where nobody may write")
+def test_a_folder_that_takes_no_files_is_one_clear_error(process: Callable[..., Any]) -> None:
+    said = process("export", "six-icons", "--icon", "double-dip", "--to", "csv", "-o", "/proc/self", *SURE)
+    assert said.exit_code == 1
+    assert said.stderr.splitlines()[-1].startswith("cannot write ")
+    assert "Traceback" not in said.stderr

@@ -145,7 +145,6 @@ def test_every_file_is_read_alike_whatever_ends_its_lines(tmp_path: Path, kind: 
 
 
 BOUNDS = [
-    ({"bits": 2**31}, r"value = 2\.14748e\+09 bit: must be 2 to 32 bit"),
     ({"bits": 12.5}, "must be a whole number of bits"),
     ({"low": 5e-324}, r"low = 4\.94066e−324 Hz: must be 0\.001 to 1e\+12 Hz"),
     ({"high": 1e308}, r"high = 1e\+308 Hz: must be"),
@@ -189,14 +188,6 @@ def test_commands_of_a_thermode_count_in_its_own_ticks(tmp_path: Path) -> None:
     played = deliver(load_library("six-icons")["cooling-step"], Rig.load("thenar"), thermode)
     with pytest.raises(FormatError, match=r"counts ticks of 10 ms .* has 20 ms"):
         load_format("tcs2-serial").write(played)
-
-
-def test_many_errors_are_told_soon() -> None:
-    text = "cue True\n\n" + "rue\n\n" * 50
-    begin = time.process_time()
-    with pytest.raises(CueErrors, match="E101"):
-        parse(text)
-    assert time.process_time() - begin < 2.0
 
 
 @pytest.mark.skipif(not POSIX, reason="links work differently there")

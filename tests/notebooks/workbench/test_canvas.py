@@ -1,18 +1,29 @@
-"""The canvas widget without a browser: what it sends, what it keeps, what it hands on."""
+"""The canvas widget without a browser: what it sends, what it keeps, what it hands on; and JupyterLab's extension."""
 
 import base64
 import gzip
 import json
 import re
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy
 import pytest
 
-from thermicon.notebooks.workbench.canvas import PARTS, STYLES, Canvas, codemirror_text, module_text, style_text
+from thermicon.notebooks.workbench.canvas import (
+    LAB_ENTRY,
+    PARTS,
+    STYLES,
+    Canvas,
+    codemirror_text,
+    lab_entry_text,
+    module_text,
+    style_text,
+)
 
-FOLDER = Path(__file__).parents[3] / "notebooks" / "canvas_parts"
+ROOT = Path(__file__).parents[3]
+FOLDER = ROOT / "notebooks" / "canvas_parts"
 
 
 @pytest.fixture
@@ -33,24 +44,18 @@ def test_a_frame_goes_out_with_its_view_and_float32_buffers(sent):
     assert numpy.isnan(values[1])
 
 
-def test_a_page_that_greets_gets_the_newest_frame(sent):
+def test_a_page_that_greets_gets_the_newest_frame_or_hears_that_the_kernel_is_there(sent):
     canvas = Canvas("traces")
+    handed: list[dict[str, Any]] = []
+    canvas.on_message(handed.append)
+    canvas._receive(canvas, {"type": "hello"}, [])
+    assert (handed, sent) == ([], [({"type": "alive"}, [])])
     canvas.frame({"seq": 1})
     canvas.frame({"seq": 2}, [numpy.arange(3.0)])
     sent.clear()
     canvas._receive(canvas, {"type": "hello"}, [])
     ((meta, buffers),) = sent
-    assert meta["seq"] == 2
-    assert len(buffers[0]) == 12
-
-
-def test_a_greeting_before_the_first_frame_is_answered_too(sent):
-    canvas = Canvas()
-    handed: list[dict[str, Any]] = []
-    canvas.on_message(handed.append)
-    canvas._receive(canvas, {"type": "hello"}, [])
-    assert handed == []
-    assert sent == [({"type": "alive"}, [])]
+    assert (meta["seq"], len(buffers[0])) == (2, 12)
 
 
 def test_no_data_is_kept_in_traits_and_the_module_is_small():
@@ -91,14 +96,21 @@ def test_codemirror_is_packed_whole_with_its_licences():
     }  # fmt: skip
 
 
-def test_an_impossible_view_is_refused():
-    with pytest.raises(Exception, match="'design', 'traces', 'heat'"):
-        Canvas(view="desing")
-
-
 def test_the_dark_colours_are_the_same_with_and_without_jupyterlab():
     text = (FOLDER / "theme.css").read_text(encoding="utf-8")
     blocks = [dict(re.findall(r"(--tm-[a-z-]+): ([^;]+);", block)) for block in text.split(".tm-root {")[1:]]
     light, jupyter, system = blocks
     assert {"--tm-paper", "--tm-raised"} == {name for name in jupyter if jupyter[name] != system[name]}
     assert light.keys() == jupyter.keys() == system.keys()
+
+
+def test_the_extension_for_jupyterlab_knows_the_words_and_is_installed_where_it_looks() -> None:
+    folder = ROOT / "notebooks" / "labextension"
+    assert (folder / LAB_ENTRY).read_text(encoding="utf-8") == lab_entry_text()
+    assert '"sawtooth"' in lab_entry_text()
+    placed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["data-files"]
+    named = json.loads((folder / "package.json").read_text(encoding="utf-8"))
+    place = f"share/jupyter/labextensions/{named['name']}"
+    assert f"notebooks/labextension/{named['jupyterlab']['_build']['load']}" in placed[f"{place}/static"]
+    assert "notebooks/labextension/package.json" in placed[place]
+    assert all((ROOT / file).is_file() for files in placed.values() for file in files)

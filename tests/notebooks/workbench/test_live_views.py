@@ -14,6 +14,7 @@ from thermicon.circuit import Rig
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import Job, LiveView
+from thermicon.notebooks.workbench.set_view import SetView
 from thermicon.perception.observer.observer import DATA
 
 TEXT = (
@@ -75,41 +76,35 @@ class Lengths(LiveView[str]):
         return re.sub("<[^>]*>", "", self.said["status"].value)
 
 
-def test_a_request_that_failed_says_so_again_after_an_obstacle() -> None:
+def test_a_request_that_failed_says_so_again_and_ends_the_work_on_the_one_after_it() -> None:
     design = DesignModel(TEXT, Rig.load("thenar"))
     view = Lengths(design)
-    design.show_text(TEXT + "# fail")
-    assert view.worker.wait()
-    assert view.words == "it failed"
-    design.show_text(TEXT + "# refuse")
-    assert view.words == "refused"
-    design.receive({"type": "undo"})
-    assert view.words == "it failed"
-
-
-def test_undo_to_a_request_that_failed_ends_the_work_on_the_one_after_it() -> None:
-    design = DesignModel(TEXT, Rig.load("thenar"))
-    view = Lengths(design)
-    design.show_text(TEXT + "# fail")
-    assert view.worker.wait()
-    design.show_text(TEXT + "# slow")
-    assert view.words == "working"
-    design.receive({"type": "undo"})
+    for after, words in (("# refuse", "refused"), ("# slow", "working")):
+        design.show_text(TEXT + "# fail")
+        assert view.worker.wait()
+        assert view.words == "it failed"
+        design.show_text(TEXT + after)
+        assert view.words == words
+        design.receive({"type": "undo"})
+        assert view.words == "it failed"
     view.go.set()
     assert view.worker.wait()
-    assert view.words == "it failed"
-    assert view.shown_text is None
+    assert (view.words, view.shown_text) == ("it failed", None)
+
+
+def shown_set(bench: Workbench) -> SetView:
+    """The set view of a bench, shown and ranked."""
+    assert bench.page is not None
+    assert bench.set_view is not None
+    bench.tabs.selected_index = 1
+    assert bench.set_view.worker.wait()
+    return bench.set_view
 
 
 def test_a_goal_that_an_observer_cannot_judge_says_what_it_needs(tmp_path: Path) -> None:
     file = tmp_path / "lab.toml"
     file.write_bytes((DATA / "observer.toml").read_bytes())
-    bench = Workbench(TEXT, observer=file, goal="correct >= 50 % for 95 % of people")
-    assert bench.page is not None
-    view = bench.set_view
-    assert view is not None
-    bench.tabs.selected_index = 1
-    assert view.worker.wait()
+    view = shown_set(Workbench(TEXT, observer=file, goal="correct >= 50 % for 95 % of people"))
     assert "not judged: a share of people takes draws of the model too" in view.goal.verdict.value
     assert "pilot --keep" in view.goal.verdict.value
     view.goal.text.value = "time <= 60 s"
@@ -119,11 +114,7 @@ def test_a_goal_that_an_observer_cannot_judge_says_what_it_needs(tmp_path: Path)
 
 def test_chosen_icons_that_cannot_be_kept_can_still_be_kept_after_a_mend() -> None:
     bench = Workbench(TEXT + "icon third { warm by 2 °C at 2 °C/s; return at 2 °C/s }\n")
-    assert bench.page is not None
-    view = bench.set_view
-    assert view is not None
-    bench.tabs.selected_index = 1
-    assert view.worker.wait()
+    view = shown_set(bench)
     view.count.value = 2
     assert view.worker.wait()
     assert view.take.layout.display == ""

@@ -3,8 +3,6 @@
 import subprocess
 import sys
 from collections.abc import Iterator
-from importlib import resources
-from pathlib import Path
 
 import nbformat
 import pytest
@@ -14,7 +12,7 @@ from nbclient.exceptions import CellExecutionError
 
 from tests.builders import missing
 from tests.notebooks.workbench.openbench import SAID
-from thermicon.icons import IconSet, parse
+from thermicon.icons import parse
 
 GOOD = "icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }\n"
 BAD = "\nicon dip { cool by 6 at 3 °C/s }\nicon dap { hold for 4 }\n"
@@ -49,21 +47,8 @@ def test_mistakes_are_told_at_the_lines_of_the_cell_and_change_nothing(
     assert shell.user_ns["cues"] == "as it was"
 
 
-def test_a_rig_tells_what_it_cannot_do_and_may_be_a_file_with_blanks_in_its_name(
-    shell: InteractiveShell, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    path = tmp_path / "my rig.toml"
-    path.write_text(resources.files("thermicon.circuit").joinpath("rigs/thenar.toml").read_text(encoding="utf-8"))
-    assert shell.run_cell(f'%%cue dips --rig "{path}"\n{GOOD}').success
-    assert "thenar can hold every level of dips (static check)" in capsys.readouterr().out
-    hot = "set { control current }\nicon hot { to 5 A at 1 A/s; return over 1 s }"
-    assert shell.run_cell(f"%%cue hot --rig thenar\n{hot}").success
-    assert isinstance(shell.user_ns["hot"], IconSet)
-    assert capsys.readouterr().out.startswith("cell: icon hot: 5 A is outside the driver's")
-
-
 def test_it_says_what_it_does_and_can_be_taken_away(shell: InteractiveShell) -> None:
-    assert "%%cue [NAME] [--rig RIG]" in shell.magics_manager.magics["cell"]["cue"].__doc__
+    assert "%%cue [NAME]" in shell.magics_manager.magics["cell"]["cue"].__doc__
     shell.extension_manager.unload_extension("thermicon.notebooks")
     assert "cue" not in shell.magics_manager.magics["cell"]
 
