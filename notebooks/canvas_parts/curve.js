@@ -1,73 +1,24 @@
-// One curve on a canvas, thinned to what the pixels can show.
+// Curves, hatches and bitmaps of a canvas.
 
-/** Strokes rows as a line; NaN leaves a gap. `x` and `y` map to pixels, `ratio` is device pixels per pixel. */
-function strokeSeries(context, values, time, x, y, step, ratio) {
+/** Strokes rows as a line; NaN leaves a gap. `x` and `y` map to pixels. The kernel thins what has more rows than pixels. */
+function strokeSeries(context, values, time, x, y, step) {
   const count = Math.min(values.length, time.n);
-  const start = x(time.t0);
-  const pace = x.slope * time.dt;
-  const pen = penOf(context, values, start, pace, y, step);
-  context.beginPath();
-  if (count <= 2 * Math.abs(x.end - x.start) * ratio) everyRow(values, count, pen);
-  else fewestRows(values, count, pen, (row) => Math.floor((start + pace * row) * ratio));
-  context.stroke();
-}
-
-/** Draws row after row of a curve: `to(row)` goes there, `lift()` leaves a gap. */
-function penOf(context, values, start, pace, y, step) {
+  const [start, pace] = [x(time.t0), x.slope * time.dt];
   let before = NaN;
-  return {
-    to(row) {
-      const across = start + pace * row;
-      if (before !== before) context.moveTo(across, y(values[row]));
-      else {
-        if (step) context.lineTo(across, y(before));
-        context.lineTo(across, y(values[row]));
-      }
-      before = values[row];
-    },
-    lift() {
-      before = NaN;
-    },
-  };
-}
-
-function everyRow(values, count, pen) {
-  for (let row = 0; row < count; row += 1) {
-    if (values[row] !== values[row]) pen.lift();
-    else pen.to(row);
-  }
-}
-
-/** Of each column of device pixels the lowest and the highest row, in their order: no peak is lost. */
-function fewestRows(values, count, pen, columnOf) {
-  let column = NaN;
-  let low = -1;
-  let high = -1;
-  const flush = () => {
-    if (low < 0) return;
-    pen.to(Math.min(low, high));
-    if (low !== high) pen.to(Math.max(low, high));
-    low = high = -1;
-  };
+  context.beginPath();
   for (let row = 0; row < count; row += 1) {
     const value = values[row];
-    if (value !== value) {
-      flush();
-      pen.lift();
-      column = NaN;
-      continue;
+    if (value === value) {
+      const across = start + pace * row;
+      if (before !== before) context.moveTo(across, y(value));
+      else {
+        if (step) context.lineTo(across, y(before));
+        context.lineTo(across, y(value));
+      }
     }
-    const at = columnOf(row);
-    if (at !== column) {
-      flush();
-      column = at;
-      low = high = row;
-    } else {
-      if (value < values[low]) low = row;
-      if (value > values[high]) high = row;
-    }
+    before = value;
   }
-  flush();
+  context.stroke();
 }
 
 /** Hatches a rectangle by slanting lines, which survive a grey printer. */

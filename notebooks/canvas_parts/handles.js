@@ -149,30 +149,6 @@ class Handles {
     return { index, text: this.hint && index === this.chosen ? `${text} · ${this.hint}` : text };
   }
 
-  // The target through the pulled corner, as far as it is known before the kernel answers: from the corner before to
-  // the one after, which moves on by as much. `from` is where the target begins.
-  guide(from) {
-    const { index, t, y, done } = this.pulled ?? {};
-    const here = this.list[index];
-    if (!here || done) return [];
-    const near = (other) => (other?.panel === here.panel && other.straight !== false ? other : null);
-    const before = index > 0 ? near(this.list[index - 1]) : here.straight !== false ? from : null;
-    const after = near(this.list[index + 1]);
-    const line = here.straight !== false && before ? [[before.t, before.y], [t, y]] : [[t, y]];
-    if (after) line.push([after.t + t - here.t, after.y === here.y ? y : after.y]);
-    return line.length > 1 ? line : [];
-  }
-
-  drawGuide(context, panel, from, lay, palette) {
-    if (this.list[this.pulled?.index]?.panel !== panel) return;
-    context.setLineDash([4, 3]);
-    context.lineWidth = 1.5;
-    context.strokeStyle = palette.focus;
-    context.beginPath();
-    this.guide(from).forEach(([t, y], k) => context[k ? "lineTo" : "moveTo"](lay.x(t), lay.y(y)));
-    context.stroke();
-  }
-
   draw(context, panel, lay, palette) {
     this.list.forEach((handle, index) => {
       if (handle.panel === panel) this.drawOne(context, handle, index, lay, palette);

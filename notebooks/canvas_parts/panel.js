@@ -77,7 +77,7 @@ function layPanel(context, panel, view, range, width, height) {
 
 /** Draws the whole of a panel but its cursor and handles; returns the layout. */
 function drawPanel(surface, frame, panel, view, range, palette) {
-  const { context, width, height, ratio } = surface;
+  const { context, width, height } = surface;
   context.font = `${FONT_PX}px ${palette.font}`;
   context.textBaseline = "middle";
   const lay = layPanel(context, panel, view, range, width, height);
@@ -94,7 +94,7 @@ function drawPanel(surface, frame, panel, view, range, palette) {
   drawGrid(context, lay, view, palette);
   inPlot(context, lay, () => {
     for (const level of panel.levels) drawLevel(context, level, lay, palette);
-    for (const series of panel.series) drawSeries(context, series, frame, lay, palette, ratio);
+    for (const series of panel.series) drawSeries(context, series, frame, lay, palette);
   });
   drawMarks(context, lay, palette);
   drawLabels(context, panel, lay, labels, palette);
@@ -177,14 +177,14 @@ function drawLevel(context, level, lay, palette) {
   ruler(context, lay.left, lay.y(level.at), lay.right, lay.y(level.at), palette[level.role] ?? palette.limit);
 }
 
-function drawSeries(context, series, frame, lay, palette, ratio) {
+function drawSeries(context, series, frame, lay, palette) {
   const values = frame.arrays[series.buffer];
   if (!values) return;
   context.strokeStyle = palette[series.role] ?? palette.ink;
   context.lineWidth = series.width;
   context.lineJoin = "round";
   context.setLineDash(series.dash ?? []);
-  strokeSeries(context, values, frame.time, lay.x, lay.y, series.step, ratio);
+  strokeSeries(context, values, frame.time, lay.x, lay.y, series.step);
 }
 
 function drawMarks(context, lay, palette) {

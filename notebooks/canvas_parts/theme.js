@@ -24,15 +24,16 @@ function luminance(colour) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }
 
-/** On Voila's page, which is light for everybody, the system's wish decides; JupyterLab has a setting of its own. */
+/** Where JupyterLab, which has a setting of its own, gives no theme, the system's wish decides: on Voila's page too. */
 function followSystem() {
   const { body } = document;
-  if (body.dataset.voila === undefined || body.dataset.thermiconTheme) return;
+  const voila = body.dataset.voila !== undefined;
+  if (body.dataset.thermiconTheme || (body.dataset.jpThemeLight !== undefined && !voila)) return;
   body.dataset.thermiconTheme = "system";
   const system = matchMedia("(prefers-color-scheme: dark)");
   const follow = () => {
     body.dataset.jpThemeLight = String(!system.matches);
-    body.classList.toggle("thermicon-dark", system.matches);
+    body.classList.toggle("thermicon-dark", voila && system.matches);
   };
   system.addEventListener("change", follow);
   follow();
@@ -48,34 +49,12 @@ function nameControls(root) {
   }
 }
 
-/** Calls `act` when JupyterLab's theme or the system's theme changes; returns how to stop. */
+/** Calls `act` when the theme of the page changes; returns how to stop. */
 function watchTheme(act) {
   const observer = new MutationObserver(act);
   const attributes = ["data-jp-theme-light", "data-jp-theme-name", "class", "style", "data-theme"];
   for (const place of [document.body, document.documentElement]) {
     observer.observe(place, { attributes: true, attributeFilter: attributes });
   }
-  const system = matchMedia("(prefers-color-scheme: dark)");
-  system.addEventListener("change", act);
-  return () => {
-    observer.disconnect();
-    system.removeEventListener("change", act);
-  };
-}
-
-/** Calls `act` when a pixel of the page is made of more or fewer of the screen: other zoom, other screen; returns how to stop. */
-function watchRatio(act) {
-  let now = null;
-  const stop = () => now?.removeEventListener("change", changed);
-  const watch = () => {
-    stop();
-    now = matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`);
-    now.addEventListener("change", changed);
-  };
-  function changed() {
-    watch();
-    act();
-  }
-  watch();
-  return stop;
+  return () => observer.disconnect();
 }

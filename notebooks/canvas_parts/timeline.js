@@ -25,7 +25,6 @@ class Timeline {
       this.palette = null;
       this.redraw();
     });
-    this.unwatchRatio = watchRatio(() => this.redraw());
   }
 
   build() {
@@ -164,20 +163,12 @@ class Timeline {
       const surface = parts.lay && fitted(parts.over, this.boxes.plots[k]);
       if (!surface) return;
       this.drawCursor(surface.context, this.frame.panels[k], parts);
-      this.handles.drawGuide(surface.context, parts.key, this.targetStart(this.frame.panels[k]), parts.lay, this.palette);
       this.handles.draw(surface.context, parts.key, parts.lay, this.palette);
     });
     const axis = fitted(this.axis, this.boxes.axis);
     if (axis) drawTimeAxis(axis, this.view, this.cursor, this.palette);
     this.panels.forEach((parts, k) => this.readOut(this.frame.panels[k], parts)); // texts last: they undo the layout
     this.showTip();
-  }
-
-  /** Where the target of a panel begins, or null. */
-  targetStart(panel) {
-    const target = panel.series.find(({ role, key }) => role === "target" || key === "current");
-    const y = target ? this.frame.arrays[target.buffer]?.[0] : NaN;
-    return Number.isFinite(y) ? { t: this.frame.time.t0, y } : null;
   }
 
   drawCursor(context, panel, { lay }) {
@@ -316,7 +307,6 @@ class Timeline {
   stop() {
     this.observer.disconnect();
     this.unwatch();
-    this.unwatchRatio();
     this.sayReading.cancel();
     cancelAnimationFrame(this.whole);
     cancelAnimationFrame(this.part);

@@ -49,8 +49,7 @@ class Corner:
 class Handle:
     """A draggable corner: time in s, level in °C (A under control current), and the directions in which it moves.
 
-    ``why`` is the reason why a direction does not move; None if both do. ``line`` counts from 1. ``straight``: the
-    target comes to it on a straight line.
+    ``why`` is the reason why a direction does not move; None if both do. ``line`` counts from 1.
     """
 
     time_s: float
@@ -59,7 +58,6 @@ class Handle:
     moves_level: bool
     why: str | None
     line: int
-    straight: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +86,7 @@ def handles_of(icon: Icon, family: Family | None = None, start: float | None = N
     for corner in corners_of(icon, start):
         grip = grip_of(corner, written)
         place = float(corner.time_s), float(corner.level)
-        moves, straight = (grip.time is not None, grip.level is not None), not isinstance(corner.leaf, Wave)
-        found.append(Handle(*place, *moves, grip.why, corner.line, straight))
+        found.append(Handle(*place, grip.time is not None, grip.level is not None, grip.why, corner.line))
     return tuple(found)
 
 

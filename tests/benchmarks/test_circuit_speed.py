@@ -13,7 +13,8 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from tests.benchmarks.peers import CORNERS, ngspice_command, plain, run_ngspice, scipy_run
-from thermicon.circuit import Drive, Rig, netlist, simulate, simulate_current
+from thermicon.circuit import Drive, Rig, fit, netlist, simulate_current
+from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
@@ -24,6 +25,8 @@ pytestmark = pytest.mark.benchmark
 Tool = Callable[[str], str]
 ROWS = np.arange(3001) / 100
 PROBES = ("skin_C", "cold_receptor_C", "warm_receptor_C")
+FITTED = {"contact.resistance_m2K_per_W": 7e-4, "module.seebeck_V_per_K": 0.0505, "module.resistance_ohm": 6.6}
+MOST_FIT_S = 2.0
 RIGS = {"shani2021": Rig.load("shani2021"), "thenar": Rig.load("thenar")}
 
 
@@ -140,21 +143,8 @@ def test_inverse_beside_forward(control: str, benchmark: BenchmarkFixture) -> No
     print(f"\n{control}: inverse over forward in a batch of 64: {ratio:.2f}")
 
 
-@pytest.mark.parametrize("seconds", [10, 20, 40, 80])
-def test_cost_is_linear_in_steps(seconds: int, benchmark: BenchmarkFixture) -> None:
-    rig = RIGS["thenar"]
-    drive = Drive([0, seconds / 2, seconds], [0.1, 0.6, 0.1])
-    benchmark(simulate_current, drive, rig)
-    print(f"\n{seconds} s: {float(benchmark.stats.stats.min) / seconds * 1e3:.3f} ms for each simulated second")
-
-
-@pytest.mark.parametrize("per_layer", [5, 10, 20, 40])
-def test_cost_is_linear_in_nodes(per_layer: int, benchmark: BenchmarkFixture) -> None:
-    rig = RIGS["thenar"].with_(**{"skin.elements": [per_layer] * 5})
-    benchmark(simulate_current, CORNERS, rig)
-    lumps = len(network_of(rig).capacity_J_per_K)
-    print(f"\n{lumps} lumps: {float(benchmark.stats.stats.min) / lumps * 1e6:.1f} µs for each lump")
-
-
-def test_one_cue_to_trace(benchmark: BenchmarkFixture) -> None:
-    benchmark(simulate, load_library("six-icons")["cooling-step"], RIGS["thenar"])
+def test_a_fit_of_three_parameters_takes_less_than_two_seconds(benchmark: BenchmarkFixture) -> None:
+    log, rig = synthetic_log(RIGS["thenar"].with_(**FITTED), seed=1), RIGS["thenar"]
+    found = benchmark.pedantic(lambda: fit(log, rig, free=list(FITTED)), rounds=3, warmup_rounds=1, iterations=1)
+    assert all(abs(found[key].value / value - 1) < 0.02 for key, value in FITTED.items())
+    assert benchmark.stats.stats.min < MOST_FIT_S

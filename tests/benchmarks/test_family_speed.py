@@ -5,12 +5,11 @@ Run with `pytest -m benchmark tests/benchmarks/test_family_speed.py -s`.
 
 import time
 from collections.abc import Callable
-from itertools import islice
 
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from thermicon.icons import Family, Icon, back, format_text, hold, parse, ramp
+from thermicon.icons import Icon, back, format_text, hold, parse, ramp
 from thermicon.icons.language.source import MOST_BYTES
 
 pytestmark = pytest.mark.benchmark
@@ -69,19 +68,6 @@ def test_a_check_follows_every_member_once(benchmark: BenchmarkFixture) -> None:
     took = benchmark.pedantic(check, rounds=1)
     print(f"\n50,601 members checked and summarised in {took:.1f} s of processor time")
     assert took < 4.0
-
-
-def test_members_are_made_fast(benchmark: BenchmarkFixture) -> None:
-    family = parse(FAMILY).families[0]
-    assert isinstance(family, Family)
-
-    def make() -> int:
-        return sum(1 for _ in islice(family, 10_000))
-
-    assert benchmark.pedantic(make, rounds=3) == 10_000
-    rate, alone = 10_000 / benchmark.stats["min"], 5_000 / best_of(lambda: one_by_one(5_000))
-    print(f"\n{rate:,.0f} icons a second out of a family, {alone:,.0f} one by one: {rate / alone:.1f} times")
-    assert rate > 0.8 * alone
 
 
 def test_reading_and_layout(benchmark: BenchmarkFixture) -> None:

@@ -1,9 +1,7 @@
-"""Speed of percepts: 10,000 traces of 30 s at 100 Hz, beside the same filters by scipy.
+"""Speed of percepts: 10,000 traces of 30 s at 100 Hz.
 
 Run with `pytest -m benchmark tests/benchmarks -s`. What is asked for is under 5 s on two cores.
 """
-
-import time
 
 import numpy as np
 import pytest
@@ -43,21 +41,3 @@ def test_ten_thousand_percepts(benchmark: BenchmarkFixture, courses: tuple[Array
     least = benchmark.stats.stats.min
     print(f"\n{TRACES} percepts of 30 s from {variable}: {least:.2f} s, {least / TRACES * 1e6:.0f} µs each")
     assert least < LIMIT_S
-
-
-def test_scipy_needs_longer_for_the_filters_alone(courses: tuple[Array, Array]) -> None:
-    """Three first-order filters a channel by scipy, without zone, gain control and sensation."""
-    from scipy.signal import lfilter
-
-    person, part = Observer.load(), courses[0][:1000]
-    start = time.perf_counter()
-    for tau in (person.integration_s, person.cold.slow_s, person.cold.fast_s):
-        decay = np.exp(-STEP_S / tau)
-        lfilter([1.0 - decay], [1.0, -decay], part, axis=-1)
-    filters = (time.perf_counter() - start) * TRACES / 1000 * 2
-    perceive_many(part, part, STEP_S, person)
-    start = time.perf_counter()
-    perceive_many(part, part, STEP_S, person)
-    ours = (time.perf_counter() - start) * TRACES / 1000
-    print(f"\nfilters by scipy {filters:.2f} s, whole percepts {ours:.2f} s for {TRACES}")
-    assert ours < 4.0 * filters

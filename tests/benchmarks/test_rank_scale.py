@@ -49,15 +49,6 @@ def test_cost_is_linear_in_icons_times_people() -> None:
     assert slope < 1.1
 
 
-def test_icons_cost_as_much_as_people() -> None:
-    rank(pool(4), RIG, people=2, parameters=0)
-    shapes = {(icons, 6400 // icons): 0.0 for icons in (8, 16, 32, 64)}
-    for icons, people in shapes:
-        shapes[icons, people] = cost_s(pool(icons), people)
-    print("\n" + "\n".join(f"{i} icons × {p} people: {cost:.2f} s" for (i, p), cost in shapes.items()))
-    assert shapes[64, 100] < 3.0 * shapes[8, 800]
-
-
 @pytest.mark.parametrize(
     "what",
     [{}, {"parameters": 0}],

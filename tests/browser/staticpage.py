@@ -10,8 +10,6 @@ import numpy
 from thermicon.notebooks.workbench.canvas import module_text, style_text
 
 URL = "http://thermicon.test/"
-OWN_URL = "http://127.0.0.1/"
-"""Pages of another machine, and of this one, to which alone a kernel offers its direct line."""
 PAGE = """<!doctype html><html><head><meta charset="utf-8"><style>%s</style></head><body><div id="app"></div>
 <script type="module">
 import widget from "./module.mjs";
@@ -28,7 +26,6 @@ window.show = async (view, key) => {
   const model = {
     get: (name) => ({ view, key })[name], send: (message) => window.sent.push(message),
     on: (_, tell) => listeners.add(tell), off: (_, tell) => listeners.delete(tell),
-    widget_manager: window.manager,
   };
   window.leave = await widget.render({ model, el });
 };
@@ -167,17 +164,17 @@ class Bench:
         return box["x"] + across, box["y"] + down
 
 
-def open_bench(page: Any, url: str = URL) -> Bench:
+def open_bench(page: Any) -> Bench:
     """A page with the module, which shows nothing yet."""
     bench = Bench(page)
     page.on("pageerror", lambda problem: bench.wrong.append(str(problem)))
     parts = {"": (PAGE % style_text(), "text/html"), "module.mjs": (module_text(), "text/javascript")}
 
     def serve(route: Any) -> None:
-        body, kind = parts.get(route.request.url.removeprefix(url), ("", "text/plain"))
+        body, kind = parts.get(route.request.url.removeprefix(URL), ("", "text/plain"))
         route.fulfill(body=body, content_type=f"{kind}; charset=utf-8")
 
     page.route("**/*", serve)
-    page.goto(url)
+    page.goto(URL)
     page.wait_for_function("window.ready === true")
     return bench

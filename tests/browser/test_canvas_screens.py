@@ -80,22 +80,3 @@ def test_the_list_of_errors_can_be_read_in_the_dark(page: Any) -> None:
     chosen = page.locator(".cm-panel-lint [aria-selected]")
     assert chosen.evaluate("e => getComputedStyle(e).backgroundColor") == "rgba(79, 209, 191, 0.14)"
     assert chosen.evaluate("e => getComputedStyle(e).color") == "rgb(232, 235, 238)"
-
-
-def test_a_finer_screen_is_drawn_finely_at_once(page: Any) -> None:
-    made = open_bench(page)
-    page.evaluate(
-        """() => { // another screen, which Chromium's emulation says nothing of
-      const usual = matchMedia.bind(window);
-      window.screens = new EventTarget();
-      window.matchMedia = (query) => (query.includes("resolution") ? window.screens : usual(query));
-    }"""
-    )
-    made.show()
-    made.frame(design())
-    wide = page.locator(".tm-base").evaluate("canvas => canvas.width")
-    page.evaluate(
-        "() => { Object.defineProperty(window, 'devicePixelRatio', { value: 2 });"
-        " screens.dispatchEvent(new Event('change')); }"
-    )
-    page.wait_for_function("wide => document.querySelector('.tm-base').width === 2 * wide", arg=wide, timeout=3_000)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy
 import pytest
 
-from tests.browser.staticpage import OWN_URL, SHADES, TEXT, Bench, design, open_bench
+from tests.browser.staticpage import SHADES, TEXT, Bench, design, open_bench
 
 
 @pytest.fixture
@@ -45,13 +45,6 @@ def test_a_view_without_a_drawing_waits_without_a_banner_while_the_kernel_lives(
     page.wait_for_timeout(3_500)
     assert page.locator(".tm-banner").is_hidden()
     assert page.locator(".tm-waiting").is_visible()
-
-
-def test_a_page_of_another_machine_never_opens_the_direct_line(page: Any, made: Bench) -> None:
-    page.evaluate("() => { window.WebSocket = class { constructor() { window.opened = true; } }; }")
-    made.show()
-    page.evaluate("deliver({ type: 'line', port: 9, token: 'secret', sliders: {} }, [])")
-    assert page.evaluate("window.opened ?? false") is False
 
 
 def test_themes_change_the_colours_that_are_drawn(page: Any, made: Bench) -> None:
@@ -101,23 +94,6 @@ def test_the_number_under_the_focus_follows_the_ranking(page: Any, made: Bench) 
     assert page.locator(".tm-reading").inner_text() == "warm → cool: confusion 10%"
     made.frame(meta, [0.8, 0.2, 0.2, 0.8])
     assert page.locator(".tm-reading").inner_text() == "warm → cool: confusion 20%"
-
-
-def test_a_slider_that_the_page_does_not_know_keeps_no_other_from_being_followed(page: Any) -> None:
-    made = open_bench(page, OWN_URL)
-    page.evaluate(
-        """() => { window.followed = [];
-      const slider = { on: (name) => followed.push(name), off: () => {} };
-      window.manager = { get_model(id) {
-        if (id === "gone") throw new Error("widget model not found"); // as ipywidgets does
-        return Promise.resolve(slider);
-      } };
-    }"""
-    )
-    made.show()
-    page.evaluate("deliver({ type: 'line', port: 1, token: 'x', sliders: { area: 'gone', age: 'here' } }, [])")
-    page.wait_for_function("followed.length === 1", timeout=3_000)
-    assert made.wrong == []
 
 
 def test_two_icons_over_each_other_offer_no_corner(page: Any, made: Bench) -> None:

@@ -64,7 +64,6 @@ def test_a_frame_has_all_that_the_canvas_draws(rig: Rig) -> None:
     assert [handle["t"] for handle in meta["handles"]] == [2.0, 6.0, 8.0]
     assert meta["handles"][0] == {
         "t": 2.0, "y": 26.0, "panel": "temperature", "moves_time": True, "moves_level": True, "why": None, "line": 3,
-            "straight": True,
     }  # fmt: skip
     assert [band["role"] for band in panels["temperature"]["bands"]] == ["cool", "warm"]
     assert [level["at"] for level in panels["current"]["levels"]] == [1.5, -1.5]

@@ -96,14 +96,6 @@ def test_codemirror_is_packed_whole_with_its_licences():
     }  # fmt: skip
 
 
-def test_the_dark_colours_are_the_same_with_and_without_jupyterlab():
-    text = (FOLDER / "theme.css").read_text(encoding="utf-8")
-    blocks = [dict(re.findall(r"(--tm-[a-z-]+): ([^;]+);", block)) for block in text.split(".tm-root {")[1:]]
-    light, jupyter, system = blocks
-    assert {"--tm-paper", "--tm-raised"} == {name for name in jupyter if jupyter[name] != system[name]}
-    assert light.keys() == jupyter.keys() == system.keys()
-
-
 def test_the_extension_for_jupyterlab_knows_the_words_and_is_installed_where_it_looks() -> None:
     folder = ROOT / "notebooks" / "labextension"
     assert (folder / LAB_ENTRY).read_text(encoding="utf-8") == lab_entry_text()
