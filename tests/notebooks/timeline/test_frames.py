@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.timeline.frames import MOST_POINTS, CanvasFrame, frame_of, traces_of
-from thermicon.notebooks.timeline.scene import Scene, scene
+from thermicon.notebooks.timeline.frames import LIMITS, MOST_POINTS, TERMS, CanvasFrame, frame_of
+from thermicon.notebooks.timeline.scene import scene
+from thermicon.notebooks.workbench.panels import help_html
 
+GLOSSARY = Path(__file__).parents[3] / "docs" / "reference" / "glossary.md"
 ROLES = {"ink", "grey", "cool", "warm", "target", "limit"}
 DIP = "cue 1\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4 s\n  return at 3 °C/s\n}\n"
 CURRENT = "cue 1\nset { control current }\nicon push { to 2 A over 1 s; hold for 1 s; return over 1 s }\n"
@@ -100,6 +103,8 @@ def test_a_long_run_is_thinned_on_a_uniform_clock(rig: Rig) -> None:
     keep_promises(frame)
     time = frame.meta["time"]
     assert MOST_POINTS / 2 < time["n"] <= MOST_POINTS
+    calm = frame_of(scene("cue 1\nicon calm { rest for 20 s }\n", rig))
+    assert calm.meta["time"] == {"t0": 0.0, "dt": pytest.approx(0.01), "n": MOST_POINTS + 1}, "row by row"
     assert made.drawing is not None
     assert time["t0"] + time["dt"] * (time["n"] - 1) == pytest.approx(made.drawing.trace.time_s[-1], abs=time["dt"])
     assert frame.buffers[2][100] == pytest.approx(np.interp(100 * time["dt"], made.drawing.trace.time_s,
@@ -131,14 +136,17 @@ def test_nothing_to_draw_is_a_frame_as_well(rig: Rig) -> None:
     assert frame.meta["icon"] is None
 
 
-def test_two_drawings_can_be_laid_over_one_another(rig: Rig) -> None:
-    made: Scene = scene(DIP, rig)
-    assert made.drawing is not None
-    frame = traces_of(made.drawing)
-    assert set(frame.meta) == {"time", "panels"}
-    assert "handles" not in frame.meta
+def test_words_mean_what_the_glossary_says() -> None:
+    rows = GLOSSARY.read_text(encoding="utf-8").splitlines()
+    for word, meaning in TERMS.items():
+        assert f"| **{word}** | {meaning} |" in rows, word
 
 
-def test_thirty_seconds_are_drawn_row_by_row(rig: Rig) -> None:
-    frame = frame_of(scene("cue 1\nicon calm { rest for 20 s }\n", rig))
-    assert frame.meta["time"] == {"t0": 0.0, "dt": pytest.approx(0.01), "n": MOST_POINTS + 1}
+def test_the_sheet_and_the_panel_of_sensation_explain_d_prime_and_clocks(rig: Rig) -> None:
+    html = help_html()
+    assert "F8" in html
+    assert "d′: distance in units of noise" in html
+    assert f"limits of this simulation: {LIMITS}" in html
+    panel = frame_of(scene(DIP, rig)).meta["panels"][-1]
+    assert {"d′", "clock"} <= {word for word, _ in panel["terms"]}
+    assert panel["digits"] == 1

@@ -130,6 +130,9 @@ def test_a_workbench_is_made_with_a_log(log: Path) -> None:
     assert bench._design.measured.shift_s == pytest.approx(LATE_S, abs=0.02)
     with pytest.raises(LogError, match=r"missing\.csv"):
         Workbench(TEXT, measured="missing.csv")
+    long = log.with_name("long.csv")
+    long.write_text("time_s,display_C\n" + "".join(f"{k / 100:.2f},32\n" for k in range(40_001)), encoding="utf-8")
+    assert read_measured(long).notes[-1] == "long.csv: one row in 3 of 40,001 is shown"
 
 
 def test_another_file_aligns_the_log_anew_and_one_that_does_not_fit_is_said(log: Path) -> None:
@@ -145,11 +148,3 @@ def test_another_file_aligns_the_log_anew_and_one_that_does_not_fit_is_said(log:
     frame = bench._design.receive({"type": "icon", "name": "none"})
     assert not any("failed" in note for note in frame.meta["notes"])
     assert "current.csv: " in frame.meta["measured"]
-
-
-def test_a_long_log_says_that_it_is_thinned(tmp_path: Path) -> None:
-    rows = np.arange(40_001) / 100
-    path = tmp_path / "long.csv"
-    text = "time_s,display_C\n" + "".join(f"{time:.2f},32\n" for time in rows)
-    path.write_text(text, encoding="utf-8")
-    assert read_measured(path).notes[-1] == "long.csv: one row in 3 of 40,001 is shown"

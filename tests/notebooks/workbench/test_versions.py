@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 from html import unescape
-from pathlib import Path
 
 from tests.notebooks.workbench.openbench import TEXT, TYPED
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.workbench.versions_view import MOST_LINES, VersionsView, changed_lines
 
 
-def opened(source: str | Path = TEXT) -> tuple[Workbench, VersionsView]:
+def opened(source: str = TEXT) -> tuple[Workbench, VersionsView]:
     bench = Workbench(source)
     assert bench.page is not None
     view = bench.versions_view
@@ -68,17 +67,6 @@ def test_the_newest_of_several_is_selected_and_a_choice_stays() -> None:
     view.discard.click()
     assert view.list.options == ()
     assert said(view, "about").startswith("Keep the set")
-
-
-def test_versions_outlive_the_kernel_and_unsaved_text_is_named(path: Path) -> None:
-    first, view = opened(path)
-    view.keep.click()
-    first.text = TYPED
-    first.document.leave()
-    again, view = opened(path)
-    assert [title.split(", ")[1:] for title, _ in view.list.options] == [["unsaved text", "a"], ["a"]]
-    view.back.click()
-    assert again.text == TYPED
 
 
 def test_long_differences_are_cut_and_parts_are_set_apart() -> None:

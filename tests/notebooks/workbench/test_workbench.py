@@ -73,13 +73,6 @@ def turned(bench: Workbench, key: str, value: float | str) -> dict[str, Any]:
     return dict(bench.design_view.canvas._newest[0])
 
 
-@pytest.mark.slow
-def test_too_many_icons_are_not_ranked() -> None:
-    text = "cue 1; icon ramp(a in 1..6 step 0.01 °C, b in 1..3 step 0.2 °C/s) { cool by a at b; return at b }"
-    with pytest.raises(ValueError, match=r"icons are more than the 2,000 that are compared at once: narrow the family"):
-        Workbench(text).ranking()
-
-
 def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send) -> None:
     answer = send(type="text", text=DIP.replace("4 °C", "5 °C"))
     assert answer["text"] is None
@@ -154,28 +147,6 @@ def test_a_message_that_makes_no_sense_is_a_note_and_the_page_goes_on(send: Send
     assert send(type="text", text=DIP)["troubles"] == []
 
 
-def test_a_mistake_of_the_program_is_a_note_and_the_page_goes_on(send: Send, monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(*given: object) -> None:
-        raise RuntimeError("the kernel hiccuped")
-
-    with monkeypatch.context() as patched:
-        patched.setattr("thermicon.notebooks.workbench.design_model.drag", broken)
-        assert send(type="drag", handle=0, t=1.0, y=30.0)["notes"][0].endswith("the kernel hiccuped")
-    assert send(type="text", text=DIP)["notes"] == []
-
-
-def test_a_burst_of_a_slider_answers_each_value_quickly(bench: Workbench) -> None:
-    spent = []
-    for step in range(40):
-        began = time.process_time()
-        turned(bench, "contact", 1.0 + 0.05 * step)
-        spent.append(1e3 * (time.process_time() - began))
-    assert bench.rig.contact.resistance_m2K_per_W == pytest.approx(
-        2.95 * Rig.load("thenar").contact.resistance_m2K_per_W
-    )
-    assert sorted(spent)[len(spent) // 2] < MOST_MS
-
-
 def test_an_impossible_value_is_told_and_reset_brings_all_back(bench: Workbench, send: Send) -> None:
     turned(bench, "rest", 30.0)
     answer = turned(bench, "limit", 0.1)
@@ -197,21 +168,22 @@ def test_a_site_and_an_age_change_what_is_felt(bench: Workbench) -> None:
     assert bench.percept.psi_cold.max() < before
 
 
-def test_a_cue_that_is_not_reached_says_so(send: Send) -> None:
-    answer = send(type="text", text=DIP.replace("cool by 4 °C at 2", "cool by 14 °C at 9"))
-    assert any("not reached" in note for note in answer["notes"])
-    assert any(panel["spans"] for panel in answer["panels"])
-
-
-def test_nothing_in_the_kernel_takes_long_for_a_frame() -> None:
+def test_nothing_in_the_kernel_takes_long_for_a_frame_of_text_or_slider() -> None:
     design = DesignModel(document_of(None).text, Rig.load("thenar"))
-    spent = []
-    for step in range(60):
+    spent: dict[str, list[float]] = {"text": [], "slider": []}
+    for step in range(40):
         text = design.text.replace("cool by 6 °C at 1", f"cool by {5 + step / 60:.3f} °C at 1")
-        began = time.process_time()
-        assert design.receive({"type": "text", "seq": step, "text": text}).meta["seq"] == step
-        spent.append(1e3 * (time.process_time() - began))
-    assert sorted(spent)[len(spent) // 2] < MOST_MS
+        for name, act in (
+            ("text", lambda text=text: design.receive({"type": "text", "text": text})),
+            ("slider", lambda step=step: design.turn({"contact": 1.0 + 0.05 * step})),
+        ):
+            began = time.process_time()
+            act()
+            spent[name].append(1e3 * (time.process_time() - began))
+    assert design.rig.contact.resistance_m2K_per_W == pytest.approx(
+        2.95 * Rig.load("thenar").contact.resistance_m2K_per_W
+    )
+    assert max(sorted(each)[len(each) // 2] for each in spent.values()) < MOST_MS
 
 
 @pytest.mark.slow
