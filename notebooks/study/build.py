@@ -125,7 +125,7 @@ def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
     gap = find_gap(icons, rig, study.timing, held)
     check_session_time(plays, mean_s, gap.gap_s)
     landing = find_landing(icons[0], rig, study.timing, held)
-    courses = _courses(materials)
+    courses = courses_of(study, tuple(icon.name for icon in icons), materials.seed)
     rig = _whole_session(rig, plays, mean_s, gap.gap_s)
     with bar("drives") as progress:
         ready, gap = judge_drives(icons, rig, study, gap, materials.device, progress)
@@ -136,22 +136,11 @@ def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
 
 
 def plays_of(study: Study, icons: int) -> int:
-    """Number of plays of one participant.
-
-    >>> plays_of(parse_study(study_text("example"), "example"), 6)
-    18
-    """
+    """Number of plays of one participant."""
     if study.threshold is not None:
         return study.threshold.trials
     assert study.trials is not None
     return icons * (study.trials.repetitions * study.trials.blocks + study.trials.practice)
-
-
-def _courses(materials: Materials) -> tuple[Course, ...]:
-    """Trials of all participants; none for a threshold, whose trials depend on the answers."""
-    if materials.study.threshold is not None:
-        return ()
-    return courses_of(materials.study, tuple(icon.name for icon in materials.chosen), materials.seed)
 
 
 def _judged_courses(materials: Materials, courses: tuple[Course, ...]) -> tuple[Course, ...]:
@@ -173,22 +162,13 @@ def _whole_session(rig: Rig, plays: int, mean_s: float, gap_s: float) -> Rig:
 
 
 def levels_K(threshold: Threshold) -> tuple[float, ...]:
-    """Changes in K, from the smallest to the greatest, rounded to 1 mK.
-
-    >>> levels_K(Threshold(direction="cool", least_K=0.1, most_K=1.0, levels=3))
-    (0.1, 0.316, 1.0)
-    """
+    """Changes in K, from the smallest to the greatest, rounded to 1 mK."""
     spaced = np.geomspace(threshold.least_K, threshold.most_K, threshold.levels)
     return tuple(round(float(change), 3) for change in spaced)
 
 
 def level_icons(threshold: Threshold, rig: Rig) -> IconSet:
-    """Return the steps as a set of icons for the display, from the skin's rest, named after their place.
-
-    >>> from thermicon.circuit import Rig
-    >>> [icon.name for icon in level_icons(Threshold(direction="cool", levels=3), Rig.load("thenar"))]
-    ['cool-01', 'cool-02', 'cool-03']
-    """
+    """Return the steps as a set of icons for the display, from the skin's rest, named after their place."""
     verb, rate = threshold.direction, threshold.rate_K_per_s
     context, icons = Context("display", rig.skin.rest_C, rig.site), []
     for place, change_K in enumerate(levels_K(threshold), 1):

@@ -62,9 +62,9 @@ def files_of(plan: Plan) -> dict[str, bytes]:
     files = {
         "study.toml": materials.text.encode("utf-8"),
         "icons.cue": _icons(plan).encode("utf-8"),
-        "rig.toml": toml_text(_document(materials.rig.document)).encode("utf-8"),
+        "rig.toml": toml_text(json.loads(materials.rig.document)).encode("utf-8"),
         **ready.files,
-        **{name: _shipped(name) for name in SCRIPTS if study.threshold or name != SCRIPTS[-1]},
+        **{name: _shipped(f"{name}.txt") for name in SCRIPTS if study.threshold or name != SCRIPTS[-1]},
         "participants.tsv": participants_table(labels_of(study)),
         "dataset_description.json": dataset_description(title, version("thermicon")),
         f"task-{study.name}_events.json": events_description(title, markers, _texts(plan)),
@@ -199,7 +199,7 @@ def _levels(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) 
 
 
 def _shipped(name: str) -> bytes:
-    return resources.files("thermicon.notebooks").joinpath("templates", f"{name}.txt").read_bytes()
+    return resources.files("thermicon.notebooks").joinpath("templates", name).read_bytes()
 
 
 def _icons(plan: Plan) -> str:
@@ -212,22 +212,15 @@ def _icons(plan: Plan) -> str:
     return str(played).rstrip("\n") + "\n"
 
 
-def _document(text: str) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads(text)
-    return document
-
-
 def _timeline(plan: Plan) -> bytes:
     from ..figures.study_figure import study_figure, threshold_figure
 
     study = plan.materials.study
-    sessions = plan.judged.sessions
-    first = next(iter(sessions.values()), None)
+    label, first = next(iter(plan.judged.sessions.items()), ("", None))
     if study.threshold is not None:
         figure = threshold_figure(levels_K(study.threshold), study.threshold, first)
     else:
-        label = next((label for label in sessions), plan.courses[0].label)
-        course = next(course for course in plan.courses if course.label == label)
+        course = next((course for course in plan.courses if course.label == label), plan.courses[0])
         plays = planned_plays(course, plan.durations_s, pace_of(plan))
         figure = study_figure(plan.courses, course, plays, pace_of(plan), first)
     content = io.BytesIO()
@@ -237,23 +230,12 @@ def _timeline(plan: Plan) -> bytes:
 
 def _readme(plan: Plan) -> str:
     """How to run the study, in a few lines of plain text."""
-    study, label = plan.materials.study, labels_of(plan.materials.study)[0]
-    lines = [
-        study.title or study.name,
-        "",
-        f"Made by thermicon {version('thermicon')} from study.toml; SHA-256 of the study {plan.materials.sha256}.",
-        "Safety was calculated. That is not a medical or ethical clearance, and hardware on skin needs a temperature",
-        "cut-off that works without software. No device was ever driven by these files.",
-        "",
-        f"Try it without hardware:   python run_study.py --participant {label} --simulate",
-        f"Run a participant:         python run_study.py --participant {label} --bench bench.py",
-        "Join all answers:          python run_study.py --collect",
-    ]
-    if study.threshold is None:
-        lines.append("Compare with predictions:  thermicon pilot icons.cue --answers data/answers.csv --rig rig.toml")
-    lines += [
-        "",
-        "bench.py is a file of yours with the function measured_C(), which returns the temperature of the display in",
-        "degrees C. Without it play_icons.py cannot switch off at the cut-off temperatures or test the polarity.",
-    ]
-    return "\n".join(lines) + "\n"
+    study = plan.materials.study
+    compare = "thermicon pilot icons.cue --answers data/answers.csv --rig rig.toml"
+    return string.Template(_shipped("study_readme.txt").decode("utf-8")).substitute(
+        title=study.title or study.name,
+        version=version("thermicon"),
+        sha256=plan.materials.sha256,
+        label=labels_of(study)[0],
+        compare="" if study.threshold else f"Compare with predictions:  {compare}\n",
+    )

@@ -186,17 +186,8 @@ def _nominal(
 
 
 def _extreme(values: Mapping[str, tuple[float, ...]]) -> set[str]:
-    """Labels of the participants whose sessions are judged in all corners.
-
-    >>> sorted(_extreme({str(k): (30.0 - k, 33.0 + k, 0.0, 0.1 * k) for k in range(9)}))
-    ['0', '8']
-    """
+    """Labels of the participants whose sessions are judged in all corners."""
     if len(values) <= ALL_JUDGED:
         return set(values)
-    labels = list(values)
-    return {
-        min(labels, key=lambda label: values[label][0]),
-        max(labels, key=lambda label: values[label][1]),
-        max(labels, key=lambda label: values[label][2]),
-        max(labels, key=lambda label: abs(values[label][3])),
-    }
+    outermost = (lambda run: -run[0], lambda run: run[1], lambda run: run[2], lambda run: abs(run[3]))
+    return {max(values, key=lambda label: far(values[label])) for far in outermost}

@@ -25,18 +25,6 @@ def williams_rows(count: int) -> tuple[Block, ...]:
 
     `count` rows for an even number of icons and twice as many for an odd one (Williams 1949).
 
-    Parameters
-    ----------
-    count
-        Number of icons, 2 or more.
-
-    Returns
-    -------
-    tuple of tuple of int
-        Rows of places 0 … count − 1.
-
-    Examples
-    --------
     >>> williams_rows(4)
     ((0, 3, 1, 2), (1, 0, 2, 3), (2, 1, 3, 0), (3, 2, 0, 1))
     """
@@ -54,28 +42,9 @@ def williams_rows(count: int) -> tuple[Block, ...]:
 def orders_of(
     rule: str, icons: int, repetitions: int, blocks: int, participants: int, seed: int
 ) -> tuple[tuple[Block, ...], ...]:
-    """Return the blocks of every participant, each icon `repetitions` times in a block.
+    """Return the blocks of every participant, each of two icons or more `repetitions` times in a block.
 
-    With every rule but `shuffled` no icon follows itself, across blocks neither.
-
-    Parameters
-    ----------
-    rule
-        `balanced`, `williams`, `random` or `shuffled`.
-    icons, repetitions, blocks, participants
-        Counts, 1 or more; 2 icons or more.
-    seed
-        Seed of all of them; equal seeds give equal orders.
-
-    Returns
-    -------
-    tuple
-        For every participant a tuple of blocks.
-
-    Examples
-    --------
-    >>> orders_of("williams", 4, 1, 1, 4, seed=1)
-    (((2, 0, 1, 3),), ((3, 1, 0, 2),), ((1, 2, 3, 0),), ((0, 3, 2, 1),))
+    With every rule but `shuffled` no icon follows itself, across blocks neither. Equal seeds give equal orders.
     """
     rng = Random(seed)
     if rule == "williams":
@@ -88,11 +57,7 @@ def orders_of(
 
 
 def first_order_counts(blocks: Sequence[Block]) -> Counter[tuple[int, int]]:
-    """How often each icon follows each other within blocks.
-
-    >>> first_order_counts([(0, 1, 0)])[0, 1]
-    1
-    """
+    """How often each icon follows each other within blocks."""
     return Counter(pair for block in blocks for pair in pairwise(block))
 
 

@@ -10,14 +10,15 @@ import io
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
+from importlib import resources
+from typing import Any
 
 from thermicon.circuit.safety.session import LONGEST_S, MOST_PLAYS
 
 from .keys import Study
 from .orders import orders_of
 from .study_file import StudyError, labels_of
-
-BIDS_VERSION = "1.10.0"
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +42,6 @@ class Course:
     label: str
     trials: tuple[Trial, ...]
 
-    def __repr__(self) -> str:
-        return f"Course({self.label}: {len(self.trials)} plays in {len(self.blocks)} blocks)"
-
     @property
     def order(self) -> tuple[str, ...]:
         """Names of the icons in the order of play."""
@@ -61,30 +59,18 @@ class Course:
 
     @property
     def sittings(self) -> tuple[tuple[str, ...], ...]:
-        """Orders of play between breaks: practice goes over into the first block, every other block is one.
-
-        >>> Course("A", (Trial(1, 0, 0, "a"), Trial(2, 1, 1, "b"), Trial(3, 2, 2, "a"))).sittings
-        (('a', 'b'), ('a',))
-        """
+        """Orders of play between breaks: practice goes over into the first block, every other block is one."""
         numbers = dict.fromkeys(max(trial.block, 1) for trial in self.trials)
         return tuple(tuple(trial.icon for trial in self.trials if max(trial.block, 1) == number) for number in numbers)
 
 
 def seed_of(study_hash: str) -> int:
-    """The seed of all orders of a study, from its hash; 52 bits, which every reader of JSON keeps.
-
-    >>> seed_of("ff" * 32)
-    4503599627370495
-    """
+    """The seed of all orders of a study, from its hash; 52 bits, which every reader of JSON keeps."""
     return int(study_hash[:13], 16)
 
 
 def check_counts(study: Study, icons: int) -> None:
-    """Raise StudyError for fewer icons than two, and for more plays than a session may have.
-
-    >>> from .study_file import parse_study, study_text
-    >>> check_counts(parse_study(study_text("example"), "example"), 6)
-    """
+    """Raise StudyError for fewer icons than two, and for more plays than a session may have."""
     trials = study.trials
     if trials is None:
         return
@@ -111,15 +97,10 @@ def check_session_time(plays: int, mean_s: float, gap_s: float) -> None:
 
 
 def courses_of(study: Study, icons: tuple[str, ...], seed: int) -> tuple[Course, ...]:
-    """Return the trials of every participant; equal seeds give equal trials.
-
-    >>> from .study_file import parse_study, study_text
-    >>> courses_of(parse_study(study_text("example"), "example"), ("dip", "glow"), 1)[0]
-    Course(01: 6 plays in 3 blocks)
-    """
+    """Return the trials of every participant, none for a threshold; equal seeds give equal trials."""
     trials, labels = study.trials, labels_of(study)
     if trials is None:
-        raise ValueError("a threshold has no trials in a given order")
+        return ()
     count = len(icons)
     main = orders_of(trials.order, count, trials.repetitions, trials.blocks, len(labels), seed)
     first = orders_of("random", count, trials.practice, 1, len(labels), seed + 1) if trials.practice else None
@@ -148,7 +129,6 @@ class Pace:
 class PlannedPlay:
     """When a play begins and ends in s from the start of the session, with answers that take no longer than the gap."""
 
-    place: int
     onset_s: float
     end_s: float
 
@@ -157,10 +137,6 @@ def planned_plays(course: Course, durations_s: Mapping[str, float], pace: Pace) 
     """Return the planned times of a participant's plays; a block begins with the landing of the hand.
 
     Practice goes over into the first block, the hand on the display.
-
-    >>> course = Course("01", (Trial(1, 1, 1, "dip"), Trial(2, 2, 2, "dip")))
-    >>> [play.onset_s for play in planned_plays(course, {"dip": 8.0}, Pace(60.0, 30.0, 100.0))]
-    [60.0, 228.0]
     """
     now, last, plays = 0.0, None, []
     for trial in course.trials:
@@ -170,7 +146,7 @@ def planned_plays(course: Course, durations_s: Mapping[str, float], pace: Pace) 
             now += pace.break_s + pace.landing_s
         else:
             now += pace.gap_s
-        plays.append(PlannedPlay(trial.place, now, now + durations_s[trial.icon]))
+        plays.append(PlannedPlay(now, now + durations_s[trial.icon]))
         now, last = plays[-1].end_s, trial.block
     return tuple(plays)
 
@@ -187,15 +163,11 @@ def planned_events(
         }
         for trial, play in zip(course.trials, plays, strict=True)
     ]  # fmt: skip
-    return table(list(EVENT_COLUMNS), rows, "\t")
+    return table(list(event_columns()), rows, "\t")
 
 
 def table(columns: Sequence[str], rows: Iterable[Mapping[str, str]], delimiter: str = ",") -> bytes:
-    r"""A table as UTF-8 text with a header.
-
-    >>> table(["a"], [{"a": "1"}])
-    b'a\n1\n'
-    """
+    """A table as UTF-8 text with a header."""
     text = io.StringIO()
     writer = csv.DictWriter(text, list(columns), delimiter=delimiter, lineterminator="\n")
     writer.writeheader()
@@ -208,43 +180,26 @@ def json_bytes(content: object) -> bytes:
     return (json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n").encode("utf-8")
 
 
-EVENT_COLUMNS = {
-    "onset": {"Description": "Start of the play, from the start of the session", "Units": "s"},
-    "duration": {"Description": "Duration of the drive, or of the silence of a catch trial", "Units": "s"},
-    "trial_type": {"Description": "Name of the icon that was played"},
-    "stim_file": {"Description": "Drive that was played, in the folder stimuli; its sidecar has the name of the icon"},
-    "block": {"Description": "Number of the block; 0 is practice, which does not count"},
-    "trial": {"Description": "Number of the trial in the file of answers; 0 in practice"},
-    "response": {"Description": "Name of the icon that was answered; n/a where no answer came"},
-    "response_time": {"Description": "Time of the answer, from the start of the play", "Units": "s"},
-    "marker": {"Description": "Code that was put on the marker line at the onset"},
-}
+@lru_cache(maxsize=1)
+def event_columns() -> dict[str, dict[str, Any]]:
+    """What each column of a table of events holds, as BIDS describes it."""
+    text = resources.files("thermicon.notebooks").joinpath("data", "study-events.json").read_text(encoding="utf-8")
+    columns: dict[str, dict[str, Any]] = json.loads(text)
+    return columns
 
 
 def events_description(title: str, markers: Mapping[str, int], choices: Mapping[str, str]) -> bytes:
     """The description of the columns of events, and of the markers."""
-    levels = {name: choices.get(name, name) for name in markers}
-    columns: dict[str, dict[str, object]] = {name: {**about} for name, about in EVENT_COLUMNS.items()}
-    columns["trial_type"]["Levels"] = levels
-    columns["marker"]["Levels"] = {str(code): name for name, code in markers.items()} | {
-        "100 + code": "answer with that code",
-        "240": "start of a block",
-        "241": "start of practice",
-        "255": "aborted",
-    }
+    columns = {name: {**about} for name, about in event_columns().items()}
+    columns["trial_type"]["Levels"] = {name: choices.get(name, name) for name in markers}
+    columns["marker"]["Levels"] = {str(code): name for name, code in markers.items()} | columns["marker"]["Levels"]
     return json_bytes({"TaskName": title, **columns})
 
 
 def dataset_description(title: str, version: str) -> bytes:
     """What BIDS wants to know of a data set."""
-    return json_bytes(
-        {
-            "Name": title,
-            "BIDSVersion": BIDS_VERSION,
-            "DatasetType": "raw",
-            "GeneratedBy": [{"Name": "thermicon", "Version": version}],
-        }
-    )
+    made_by = [{"Name": "thermicon", "Version": version}]
+    return json_bytes({"Name": title, "BIDSVersion": "1.10.0", "DatasetType": "raw", "GeneratedBy": made_by})
 
 
 def participants_table(labels: Sequence[str]) -> bytes:

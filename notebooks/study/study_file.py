@@ -25,25 +25,13 @@ UNITS = {"_s": "s", "_K": "K", "_K_per_s": "K/s"}
 
 
 class StudyError(InputError):
-    """A study that cannot be made; the text says what, where, the value, the limit and the cure.
-
-    Examples
-    --------
-    >>> try:
-    ...     parse_study("format = 1", "mine.toml")
-    ... except StudyError as problem:
-    ...     print(str(problem).splitlines()[0])
-    mine.toml: name is missing; add it
-    """
+    """A study that cannot be made; the text says what, where, the value, the limit and the cure."""
 
 
 def study_text(source: str | Path) -> str:
     """Return the text of a study file, or of the shipped example, which answers to `example`.
 
     Raises StudyError for a file that is missing or is not UTF-8 text.
-
-    >>> "six-icons" in study_text("example")
-    True
     """
     path = Path(source)
     if not path.exists() and str(source) in SHIPPED_NAMES:
@@ -70,11 +58,7 @@ def parse_study(text: str, where: str) -> Study:
 
 
 def labels_of(study: Study) -> tuple[str, ...]:
-    """Labels of the participants, in order.
-
-    >>> labels_of(parse_study(study_text("example"), "example"))[:2]
-    ('01', '02')
-    """
+    """Labels of the participants, in order."""
     people = study.participants
     if people.labels is not None:
         return tuple(people.labels)
@@ -84,12 +68,7 @@ def labels_of(study: Study) -> tuple[str, ...]:
 
 
 def study_hash(study: Study, contents: Mapping[str, str]) -> str:
-    """SHA-256 of everything that decides a study: its keys, with defaults, and the content of what it names.
-
-    >>> one = parse_study(study_text("example"), "example")
-    >>> study_hash(one, {}) == study_hash(one, {"rig": "another"})
-    False
-    """
+    """SHA-256 of everything that decides a study: its keys, with defaults, and the content of what it names."""
     whole = {"study": study.model_dump(mode="json"), "contents": dict(contents)}
     text = json.dumps(whole, sort_keys=True, ensure_ascii=False, allow_nan=False)
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
@@ -97,40 +76,34 @@ def study_hash(study: Study, contents: Mapping[str, str]) -> str:
 
 def _faults(study: Study) -> list[str]:
     """What is wrong between keys, a sentence each with the cure."""
-    faults, people = [], study.participants
-    if (people.count is None) == (people.labels is None):
-        faults.append("participants: give either count or labels")
-    folded = Counter(label.casefold() for label in people.labels or ())
-    for label, times in folded.items():
-        if times > 1:
-            faults.append(f"participants.labels: {label} appears {times} times; each participant has one label")
-    for icon, times in Counter(study.stimuli.icons).items():
-        if times > 1:
-            faults.append(
-                f"stimuli.icons: {icon} appears {times} times; trials.repetitions says how often it is played"
-            )
-    if (study.trials is None) == (study.threshold is None):
-        faults.append("give either [trials], for naming icons, or [threshold]")
-    if study.trials is not None and study.stimuli.set is None:
-        faults.append('stimuli.set is missing; add a cue file or the name of a shipped set, as in set = "six-icons"')
-    if study.threshold is not None:
-        faults += _threshold_faults(study)
-    keys = study.run
-    used = Counter((keys.start_key, keys.stop_key, keys.abort_key))
-    faults += [f"run: {key} is the key for two things; give each its own" for key, times in used.items() if times > 1]
-    return faults
-
-
-def _threshold_faults(study: Study) -> list[str]:
-    threshold, faults = study.threshold, []
-    assert threshold is not None
-    if not threshold.least_K < threshold.most_K:
-        faults.append(
-            f"threshold.least_K = {threshold.least_K:g} K is not below threshold.most_K = {threshold.most_K:g} K"
-        )
-    if study.stimuli.set is not None or study.stimuli.icons:
-        faults.append("stimuli: a threshold is measured with steps of its own; leave out set and icons")
-    return faults
+    people, stimuli, threshold, run = study.participants, study.stimuli, study.threshold, study.run
+    labels = Counter(label.casefold() for label in people.labels or ())
+    keys = Counter((run.start_key, run.stop_key, run.abort_key))
+    found = [
+        ((people.count is None) == (people.labels is None), "participants: give either count or labels"),
+        *(
+            (times > 1, f"participants.labels: {label} appears {times} times; each participant has one label")
+            for label, times in labels.items()
+        ),
+        *(
+            (times > 1, f"stimuli.icons: {icon} appears {times} times; trials.repetitions says how often it is played")
+            for icon, times in Counter(stimuli.icons).items()
+        ),
+        ((study.trials is None) == (threshold is None), "give either [trials], for naming icons, or [threshold]"),
+        (
+            study.trials is not None and stimuli.set is None,
+            'stimuli.set is missing; add a cue file or the name of a shipped set, as in set = "six-icons"',
+        ),
+        (
+            threshold is not None and bool(stimuli.set is not None or stimuli.icons),
+            "stimuli: a threshold is measured with steps of its own; leave out set and icons",
+        ),
+        *((times > 1, f"run: {key} is the key for two things; give each its own") for key, times in keys.items()),
+    ]
+    if threshold is not None and not threshold.least_K < threshold.most_K:
+        least, most = f"threshold.least_K = {threshold.least_K:g} K", f"threshold.most_K = {threshold.most_K:g} K"
+        found.append((True, f"{least} is not below {most}"))
+    return [sentence for wrong, sentence in found if wrong]
 
 
 def _unit_of(key: str) -> str:
