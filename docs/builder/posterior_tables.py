@@ -1,7 +1,7 @@
 """Tables of the sampled posterior as Markdown: what it says of each constant, left-out predictions, variants.
 
-Log scores of the variants and of forms of memory are finished comparisons: tables whose first line says by which
-version and from what they were made.
+Left-out predictions by draws, log scores of the variants and of forms of memory are finished comparisons: tables whose
+first line says by which version and from what they were made.
 """
 
 from __future__ import annotations
@@ -16,9 +16,8 @@ from evidence_tables import TABLES as INFERRED
 from table_text import UNITS, markdown, number, signed, span
 
 from thermicon.perception.arrays import Array
-from thermicon.perception.evidence.left_out import FROM_WEIGHTS
 from thermicon.perception.evidence.posterior import UNMOVED_SHIFT, Summary, summarise
-from thermicon.perception.evidence.results import UNMOVED_SD, LeftOutRow, load_constants, load_left_out, read_rows
+from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
 from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
@@ -48,7 +47,45 @@ class FormScore:
     log_score: float
 
 
-SCORES, FORMS = "variant-scores.csv", "memory_forms.csv"
+@dataclass(frozen=True, slots=True)
+class LeftOutRow:
+    """One row predicted by draws of a posterior that never saw its experiment; numbers in the row's own unit.
+
+    `low` to `high` is the 95 % interval, `lower` to `upper` that of 50 %. `probability` is that of a smaller number
+    than the published one; `naive` is the log score of the naive baseline, NaN where there is none; `k_hat` the shape
+    of the weights' tail, good below 0.7.
+    """
+
+    experiment: str
+    statistic: str
+    channel: str
+    label: str
+    unit: str
+    published: float
+    low: float
+    lower: float
+    median: float
+    upper: float
+    high: float
+    probability: float
+    log_score: float
+    naive: float
+    k_hat: float
+    method: str
+
+    def covered(self, share: float) -> bool:
+        """Whether the central interval of a share contains the published number."""
+        return abs(self.probability - 0.5) <= 0.5 * share
+
+
+SCORES, FORMS, LEFT_OUT = "variant-scores.csv", "memory_forms.csv", "left-out.csv"
+FROM_WEIGHTS = "weights"
+
+
+@lru_cache(maxsize=1)
+def load_left_out() -> tuple[LeftOutRow, ...]:
+    """Left-out predictions of every row by draws."""
+    return tuple(read_rows(LEFT_OUT, LeftOutRow))
 
 
 @lru_cache(maxsize=1)

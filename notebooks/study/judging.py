@@ -189,5 +189,6 @@ def _extreme(values: Mapping[str, tuple[float, ...]]) -> set[str]:
     """Labels of the participants whose sessions are judged in all corners."""
     if len(values) <= ALL_JUDGED:
         return set(values)
+    outermost: tuple[Callable[[tuple[float, ...]], float], ...]
     outermost = (lambda run: -run[0], lambda run: run[1], lambda run: run[2], lambda run: abs(run[3]))
     return {max(values, key=lambda label: far(values[label])) for far in outermost}

@@ -1,10 +1,9 @@
 """``python -m thermicon.perception.evidence``: make the shipped results of the inference again, step by step.
 
-``fit`` infers the constants of every variant at the maximum of the posterior. ``sample`` writes 1,000 draws of the
-posterior; chains that have not converged are refused. ``leave-out`` infers all constants again without each experiment
-in turn and predicts it, from the chains that ``sample`` kept. ``observer`` writes the parameter file of the observer.
-On one computer the same seed gives the same draws, however many workers there are; ``leave-out`` goes on where it was
-interrupted.
+``fit`` infers the constants of every variant at the maximum of the posterior, and again without each experiment in turn
+to predict it. ``sample`` writes 1,000 draws of the posterior; chains that have not converged are refused. ``observer``
+writes the parameter file of the observer. On one computer the same seed gives the same draws, however many workers
+there are.
 """
 
 from __future__ import annotations
@@ -20,17 +19,15 @@ from thermicon.icons.atomic import complete_or_absent
 
 from ..observer.channels import VARIABLES, Variable
 from ..observer.draws_file import shipped_file, to_text
+from ..observer.priors import WITHIN_95
 from .calibrate import write_observer
 from .chains import CHAINS, require_extra
-from .left_out import leave_each_out
-from .posterior import Maximum, Posterior, maximise, summarise
-from .results import CONSTANTS, LEFT_OUT, Constant, write_rows
+from .posterior import LeftOut, Maximum, Posterior, leave_each_out, maximise, summarise
+from .results import CONSTANTS, PREDICTIONS, Constant, PredictedRow, write_rows
 from .sampling import LEAST_STEPS, Sampled, approximate_draws, sample
 
 REFUSED = 3
 LEAST_STEPS_ASKED, MOST_STEPS, USUAL_STEPS = 100, 100_000, 20_000
-KEPT = "sampled.npz"
-"""What `sample` keeps and `leave-out` goes on from."""
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -38,17 +35,10 @@ def main(words: Sequence[str] | None = None) -> int:
     asked = parser().parse_args(words)
     if not LEAST_STEPS_ASKED <= asked.steps <= MOST_STEPS:
         parser().error(f"--steps {asked.steps} is outside {LEAST_STEPS_ASKED} to {MOST_STEPS:,}")
-    if asked.what == "leave-out" and asked.keep is None:
-        parser().error("leave-out needs --keep DIR, with the chains that sample kept there")
-    if asked.what == "fit":
-        write_fit()
-    elif asked.what == "observer":
-        write_observer()
-    else:
+    if asked.what == "sample":
         require_extra()
-        if asked.keep is not None:
-            asked.keep.mkdir(exist_ok=True)
-        return leave_out(asked) if asked.what == "leave-out" else sample_posterior(asked)
+        return sample_posterior(asked)
+    write_fit() if asked.what == "fit" else write_observer()
     return 0
 
 
@@ -57,10 +47,9 @@ def parser() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(
         "python -m thermicon.perception.evidence", description=(__doc__ or "").split("\n")[0]
     )
-    made.add_argument("what", choices=("fit", "sample", "leave-out", "observer"))
-    made.add_argument("-o", "--output", type=Path, help="the file of draws, or the folder of left-out predictions")
+    made.add_argument("what", choices=("fit", "sample", "observer"))
+    made.add_argument("-o", "--output", type=Path, help="the file of draws")
     made.add_argument("--seed", type=int, default=0)
-    made.add_argument("--keep", type=Path, metavar="DIR", help="folder of what sample found; needed by leave-out")
     made.add_argument("--steps", type=int, default=USUAL_STEPS, help=f"most steps of each chain, 100 to {MOST_STEPS:,}")
     made.add_argument("--workers", type=int, default=min(cores(), CHAINS))
     return made
@@ -81,7 +70,8 @@ def write_fit() -> None:
         return maximise(Posterior(variable), progress=lambda done: tell(done, 0, f"rounds, {variable}"))
 
     maxima = [fitted(variable) for variable in VARIABLES]
-    write_rows([row for found in maxima for row in constants_of(found)], CONSTANTS, "fit")
+    write_rows([row for found in maxima for row in constants_of(found)], CONSTANTS)
+    write_rows(predictions_of(maxima, leave_each_out(maxima[0], tell)), PREDICTIONS)
     for found in maxima[1:]:
         drawn = approximate_draws(found)
         text = to_text(drawn.header, drawn.names, drawn.draws)
@@ -96,6 +86,19 @@ def constants_of(whole: Maximum) -> list[Constant]:
         value = whole.values[prior.name]
         rows.append(Constant(variant, prior.name, prior.unit, value, *ends, sd, prior.mechanism, prior.source))
     return rows
+
+
+def predictions_of(maxima: Sequence[Maximum], left_out: Sequence[LeftOut]) -> list[PredictedRow]:
+    """The table of rows: published, fitted by each variant, predicted when left out."""
+    table = []
+    for out in left_out:
+        row = out.row
+        published, low, high = (row.shown(row.value + side * WITHIN_95 * row.sd) for side in (0.0, -1.0, 1.0))
+        fitted, heat_flow = (row.shown(found.predictions[row.key]) for found in maxima)
+        middle, least, most = map(row.shown, (out.predicted, *out.interval))
+        numbers = (low, high, fitted, heat_flow, middle, least, most, out.score, out.log_score)
+        table.append(PredictedRow(*row.key, row.label, row.unit, published, *numbers))
+    return table
 
 
 def sample_posterior(asked: argparse.Namespace) -> int:
@@ -118,8 +121,6 @@ def sample_posterior(asked: argparse.Namespace) -> int:
     if not sampled.diagnostics.converged:
         sys.stderr.write("nothing was written: give more --steps\n")
         return REFUSED
-    if asked.keep is not None:
-        sampled.save(asked.keep / KEPT)
     if asked.output is not None:
         with complete_or_absent(asked.output) as draft:
             draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
@@ -131,19 +132,6 @@ def worst_text(sampled: Sampled) -> str:
     found = sampled.diagnostics
     place = found.names.index(found.worst)
     return f"{found.worst}, R-hat {found.r_hat[place]:.3f}, effective sample size {found.ess[place]:.0f}"
-
-
-def leave_out(asked: argparse.Namespace) -> int:
-    """Leave every experiment out; what is done already is not done again."""
-    if not (asked.keep / KEPT).exists():
-        raise RecordError(f"there are no chains in {asked.keep}: run sample --keep {asked.keep} first")
-    rows = leave_each_out(asked.keep / KEPT, asked.seed, asked.workers, tell)
-    if asked.output is not None:
-        asked.output.mkdir(exist_ok=True)
-        write_rows(rows, LEFT_OUT, "leave-out", asked.output)
-    inside = sum(each.covered(0.95) for each in rows)
-    sys.stdout.write(f"\n{inside} of {len(rows)} rows lie inside their 95 % interval\n")
-    return 0
 
 
 if __name__ == "__main__":

@@ -129,8 +129,6 @@ def extend(chain: Chain, posterior: HasResiduals, reference: Reference, surrogat
 R_HAT, ESS = 1.01, 400.0
 """Chains have converged where every constant has an R-hat below and a bulk effective sample size above (Vehtari et
 al. 2021)."""
-K_HAT = 0.7
-"""Pareto-smoothed weights with a larger shape of tail are not to be trusted (Vehtari et al. 2024)."""
 EXTRA = 'sampling needs emcee and arviz-stats, which are not installed: pip install "thermicon[calibrate]"'
 
 
@@ -175,14 +173,6 @@ def diagnose(names: tuple[str, ...], chains: Array) -> Diagnostics:
     r_hat = np.array([float(stats.rhat(chains[:, :, k])) for k in columns])
     ess = np.array([float(stats.ess(chains[:, :, k], method="bulk")) for k in columns])
     return Diagnostics(names, np.nan_to_num(r_hat, nan=np.inf), np.nan_to_num(ess))
-
-
-def smoothed_weights(log_weights: Array) -> tuple[Array, float]:
-    """Pareto-smoothed weights (draws,) that sum to 1, and the shape k-hat of their tail (Vehtari et al. 2024)."""
-    # ArviZ takes log likelihoods, whose weights are one over them.
-    smoothed, k_hat = _array_stats().psislw(-log_weights)
-    weights = np.exp(smoothed - np.max(smoothed))
-    return weights / weights.sum(), float(k_hat)
 
 
 def _array_stats() -> Any:

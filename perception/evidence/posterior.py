@@ -11,6 +11,7 @@ What sampled draws say of each constant is a `Summary`: median, interval, and ho
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -108,6 +109,7 @@ class Maximum:
     vector: Array
     covariance: Array
     log_evidence: float
+    predictions: Predictions
     rounds: int
 
     @property
@@ -155,7 +157,64 @@ def maximise(
     slopes: Array = np.asarray(found.jac)
     curvature: Array = slopes.T @ slopes
     log_evidence = -float(found.cost) - 0.5 * float(np.linalg.slogdet(curvature)[1])
-    return Maximum(posterior, found.x, np.linalg.inv(curvature).astype(np.float64), log_evidence, rounds)
+    covariance = np.linalg.inv(curvature).astype(np.float64)
+    return Maximum(posterior, found.x, covariance, log_evidence, posterior.predictions(found.x), rounds)
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """One row beside its prediction, on the row's scale: `sd` is of what would be measured, with the row's error."""
+
+    row: Row
+    predicted: float
+    sd: float
+
+    @property
+    def score(self) -> float:
+        """How far the row lies from its prediction, in SDs."""
+        return (self.row.value - self.predicted) / self.sd
+
+    @property
+    def log_score(self) -> float:
+        """Log density of the published value under the prediction."""
+        return -0.5 * self.score**2 - math.log(self.sd * math.sqrt(2.0 * math.pi))
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The 95 % interval of what would be measured, on the row's scale."""
+        return self.predicted - WITHIN_95 * self.sd, self.predicted + WITHIN_95 * self.sd
+
+
+def leave_each_out(whole: Maximum, progress: Callable[[int, int, str], None] | None = None) -> tuple[LeftOut, ...]:
+    """Refit without each experiment in turn, from the maximum of all; rows in the order of the likelihood.
+
+    What the constants leave open is in the covariance of the refitted maximum. Laboratory offsets of an experiment
+    whose rows are gone stay at their prior, so that what a new laboratory may differ by is in it too.
+    """
+    experiments = tuple(dict.fromkeys(row.experiment for row in load_rows()))
+    results = []
+    for done, experiment in enumerate(experiments):
+        if progress is not None:
+            progress(done, len(experiments), experiment)
+        refitted = maximise(Posterior(whole.posterior.variable, frozenset({experiment})), whole.vector)
+        rows = [row for row in load_rows() if row.experiment == experiment]
+        for row, sd in zip(rows, prediction_sd(refitted, rows).tolist(), strict=True):
+            results.append(LeftOut(row, refitted.predictions[row.key], math.hypot(sd, row.sd)))
+    return tuple(results)
+
+
+def prediction_sd(maximum: Maximum, rows: list[Row]) -> Array:
+    """SD (rows,) of predictions by the normal approximation: their gradient through the constants' covariance."""
+
+    def at(vector: Array) -> Array:
+        predictions = maximum.posterior.predictions(vector)
+        return np.array([predictions[row.key] for row in rows])
+
+    steps = STEP * np.eye(maximum.vector.size)
+    slopes = [(at(maximum.vector + step) - at(maximum.vector - step)) / (2.0 * STEP) for step in steps]
+    gradient = np.stack(slopes, axis=1)
+    variance: Array = np.einsum("ri,ij,rj->r", gradient, maximum.covariance, gradient)
+    return np.sqrt(np.maximum(variance, 0.0))
 
 
 UNMOVED_SHIFT = 0.3

@@ -1,8 +1,7 @@
 """The shipped results of the inference: CSV tables, so that a spreadsheet opens them.
 
-`python -m thermicon.perception.evidence` writes constants and left-out predictions by draws; a test checks that they
-belong to the shipped evidence and priors. Predictions by the maximum and the ablation are finished comparisons, whose
-first line says which version made them.
+Constants and predictions are written by `python -m thermicon.perception.evidence fit`; a test checks that they belong
+to the shipped evidence and priors. The ablation is a finished comparison: its first line says which version made it.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
 EDGE = 0.1
 """A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
-CONSTANTS, PREDICTIONS, ABLATION, LEFT_OUT = "constants.csv", "predictions.csv", "ablation.csv", "left-out.csv"
+CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,37 +107,6 @@ class PredictedRow:
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOutRow:
-    """One row predicted by draws of a posterior that never saw its experiment; numbers in the row's own unit.
-
-    `low` to `high` is the 95 % interval, `lower` to `upper` that of 50 %. `probability` is that of a smaller number
-    than the published one; `naive` is the log score of the naive baseline, NaN where there is none; `k_hat` the shape
-    of the weights' tail, good below 0.7.
-    """
-
-    experiment: str
-    statistic: str
-    channel: str
-    label: str
-    unit: str
-    published: float
-    low: float
-    lower: float
-    median: float
-    upper: float
-    high: float
-    probability: float
-    log_score: float
-    naive: float
-    k_hat: float
-    method: str
-
-    def covered(self, share: float) -> bool:
-        """Whether the central interval of a share contains the published number."""
-        return abs(self.probability - 0.5) <= 0.5 * share
-
-
-@dataclass(frozen=True, slots=True)
 class AblatedRow:
     """A variant without a mechanism: `difference` is its log evidence minus that of the variant with every mechanism.
 
@@ -165,14 +133,8 @@ def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
 
 @lru_cache(maxsize=1)
 def load_predictions() -> tuple[PredictedRow, ...]:
-    """Predictions of every row by the maximum, in the fit and out of it."""
+    """Predictions of every row, in the fit and out of it."""
     return tuple(read_rows(PREDICTIONS, PredictedRow))
-
-
-@lru_cache(maxsize=1)
-def load_left_out() -> tuple[LeftOutRow, ...]:
-    """Left-out predictions of every row by draws."""
-    return tuple(read_rows(LEFT_OUT, LeftOutRow))
 
 
 @lru_cache(maxsize=1)
@@ -181,17 +143,14 @@ def load_ablation() -> tuple[AblatedRow, ...]:
     return tuple(read_rows(ABLATION, AblatedRow))
 
 
-def write_rows(rows: Sequence[Any], name: str, verb: str, folder: Path = DATA) -> None:
-    """Write frozen rows of one kind as a table, numbers to six figures, below what it was made from.
-
-    `verb` is the command of this room that made them.
-    """
+def write_rows(rows: Sequence[Any], name: str, folder: Path = DATA) -> None:
+    """Write frozen rows of one kind as a table, numbers to six figures, below what it was made from."""
     text = StringIO()
     writer = csv.DictWriter(text, [field.name for field in fields(rows[0])], lineterminator="\n")
     writer.writeheader()
     for row in rows:
         writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in asdict(row).items()})
-    head = f"# written by python -m thermicon.perception.evidence {verb} from inputs {inputs_digest()}\n"
+    head = f"# written by python -m thermicon.perception.evidence fit from inputs {inputs_digest()}\n"
     (folder / name).write_text(head + text.getvalue(), encoding="utf-8")
 
 

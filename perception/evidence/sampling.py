@@ -7,20 +7,17 @@ not on the number of processes.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib.metadata import version
 from multiprocessing import get_context
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from thermicon.circuit.cores import quiet_blas
-from thermicon.circuit.records import RecordError
-from thermicon.icons.atomic import complete_or_absent
 
 from ..arrays import Array
 from ..observer.draws import PosteriorDraws
@@ -33,7 +30,6 @@ from .chains import (
     R_HAT,
     Chain,
     Diagnostics,
-    Evaluate,
     Points,
     Recorder,
     Reference,
@@ -58,20 +54,14 @@ ENOUGH_ESS = 600.0
 PART = 50
 """Vectors that a worker gets at once."""
 Progress = Callable[[int, int, str], None]
-Run = Callable[..., Iterable[Any]]
 
 
 @dataclass(frozen=True, slots=True)
 class Sampled:
-    """A sampled posterior: `chains` (chains, steps, n) in SDs of the prior after burn-in, and their diagnostics.
-
-    `points` are what the surrogate was fitted to, in the coordinates of `reference`.
-    """
+    """A sampled posterior: `chains` (chains, steps, n) in SDs of the prior after burn-in, and their diagnostics."""
 
     posterior: Posterior
     chains: Array
-    reference: Reference
-    points: Points
     likelihoods: int
     diagnostics: Diagnostics
     seed: int
@@ -91,55 +81,6 @@ class Sampled:
             self.posterior, emcee, self.seed, self.likelihoods, float(found.r_hat.max()), float(found.ess.min())
         )
         return draws_of(self.posterior, self.vectors, header)
-
-    def save(self, path: Path) -> None:
-        """Write what leaving experiments out goes on from, completely or not at all."""
-        middle, factor, points = self.reference.middle, self.reference.factor, self.points
-        with complete_or_absent(path) as draft:
-            np.savez(
-                draft,
-                made_from=made_from(self.seed),
-                middle=middle,
-                factor=factor,
-                vectors=points.vectors,
-                misses=points.misses,
-                drawn=self.vectors,
-            )
-
-
-def made_from(seed: int) -> str:
-    """What kept chains must have been made from to go on from them."""
-    return f"inputs {inputs_digest()}, seed {seed}"
-
-
-def load_sampled(path: Path, seed: int) -> tuple[Reference, Points, Array]:
-    """Coordinates, points and draws (DRAWS, n) of a run; a RecordError where they are of other evidence or seed."""
-    with np.load(path) as held:
-        if (found := str(held["made_from"])) != made_from(seed):
-            raise RecordError(
-                f"{path}: this was made from {found}, not {made_from(seed)}: give another folder, or remove this one"
-            )
-        return Reference(held["middle"], held["factor"]), Points(held["vectors"], held["misses"]), held["drawn"]
-
-
-@contextmanager
-def workers_of(count: int) -> Iterator[Run]:
-    """A map over so many processes; the usual one for a single process."""
-    if count <= 1:
-        yield map
-        return
-    with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
-        yield pool.map
-
-
-def evaluation(posterior: Posterior, run: Run, part: int = PART) -> Evaluate:
-    """Misses (points, rows) at vectors (points, n), by workers."""
-
-    def evaluate(vectors: Array) -> Array:
-        parts = np.array_split(vectors, max(1, len(vectors) // part))
-        return np.concatenate(list(run(misses_at, [(posterior, each) for each in parts])))
-
-    return evaluate
 
 
 def sample(
@@ -162,7 +103,13 @@ def sample(
             progress(done, most, words)
 
     start = maximise(posterior, shipped_vector(posterior))
-    with workers_of(workers) as run:
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn")) if workers > 1 else nullcontext(None)
+    with pool as shared:
+        run: Callable[..., Iterable[Any]] = map if shared is None else shared.map
+
+        def evaluate(vectors: Array) -> Array:
+            parts = np.array_split(vectors, max(1, len(vectors) // PART))
+            return np.concatenate(list(run(misses_at, [(posterior, part) for part in parts])))
 
         def visit(chains: Sequence[Chain], at: Reference, by: Surrogate) -> list[tuple[Chain, Points]]:
             return list(run(_visited, [(chain, posterior, at, by) for chain in chains]))
@@ -171,7 +118,7 @@ def sample(
             posterior,
             Reference.at(start.vector, start.covariance),
             seed,
-            evaluation(posterior, run),
+            evaluate,
             visit,
             lambda count: told(count, count + CHAINS * most_steps, "learning the surrogate"),
         )
@@ -184,8 +131,7 @@ def sample(
             enough = found.converged and float(found.ess.min()) > ENOUGH_ESS
             words = f"R-hat {found.r_hat.max():.3f}, ESS {found.ess.min():.0f}"
             told(len(points) + CHAINS * steps, len(points) + CHAINS * most_steps, words)
-    kept = _kept(chains, reference)
-    return Sampled(posterior, kept, reference, points, len(points) + CHAINS * steps, found, seed)
+    return Sampled(posterior, _kept(chains, reference), len(points) + CHAINS * steps, found, seed)
 
 
 def _extended(part: tuple[Chain, Posterior, Reference, Surrogate, int]) -> Chain:

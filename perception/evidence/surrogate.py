@@ -69,19 +69,9 @@ class Surrogate:
         slopes: Array = self.weights @ self.features.slopes(vector) @ self.factor[list(self.features.places)]
         return slopes
 
-    def precision(self, white: Array) -> Array:
-        """Gauss–Newton precision (n, n) of the surrogate's posterior, the wall left out."""
-        slopes = self.slope + 2.0 * (self.curvature @ white)
-        if self.features is not None:
-            slopes = slopes + self._feature_slopes(self.middle + self.factor @ white)
-        return slopes.T @ slopes + self.factor.T @ self.factor
-
+    @np.errstate(over="ignore", invalid="ignore", divide="ignore")
     def walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
         """Where some Hamiltonian trajectories end, each accepted or not by the surrogate."""
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            return self._walk(white, random, trajectories)
-
-    def _walk(self, white: Array, random: np.random.RandomState, trajectories: int) -> Array:
         density, gradient = self.log_density(white)
         for _ in range(trajectories):
             momentum = random.standard_normal(white.size)

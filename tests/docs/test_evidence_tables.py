@@ -13,7 +13,7 @@ from thermicon.perception.evidence.rows import load_rows
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "builder"))
 
 import evidence_tables as tables
-from posterior_tables import TABLES, stacking_weights, variant_weights
+from posterior_tables import TABLES, load_left_out, stacking_weights, variant_weights
 
 
 def body(table: str) -> list[list[str]]:
@@ -53,6 +53,17 @@ def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
     assert 0.5 < weights[0] < 0.9
     shipped = variant_weights()
     assert max(shipped, key=lambda each: shipped[each]) == "temperature"
+
+
+def test_left_out_predictions_by_draws_cover_and_beat_the_naive_baseline() -> None:
+    rows = load_left_out()
+    assert all(row.low < row.lower < row.median < row.upper < row.high for row in rows)
+    assert all(row.covered(0.95) == (row.low <= row.published <= row.high) for row in rows)
+    assert 0.85 <= np.mean([row.covered(0.95) for row in rows]) <= 0.99
+    assert 0.35 <= np.mean([row.covered(0.5) for row in rows]) <= 0.75
+    compared = [row for row in rows if not np.isnan(row.naive)]
+    assert len(compared) > 15
+    assert sum(row.log_score - row.naive for row in compared) > 0.0
 
 
 @pytest.mark.parametrize("name", TABLES)

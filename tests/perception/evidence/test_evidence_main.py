@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from thermicon.circuit.records import RecordError
 from thermicon.perception.evidence import __main__ as main_module
 from thermicon.perception.evidence import sampling
-from thermicon.perception.evidence.__main__ import KEPT, main
-from thermicon.perception.evidence.chains import Diagnostics, Points, Reference
+from thermicon.perception.evidence.__main__ import main
+from thermicon.perception.evidence.chains import Diagnostics
 from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.results import load_left_out
 from thermicon.perception.evidence.sampling import Sampled, shipped_vector
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.observer.observer import DATA
 
 
 @pytest.fixture(autouse=True)
@@ -32,8 +28,7 @@ def sampled(r_hat: float) -> Sampled:
     size = len(posterior.priors)
     chains = shipped_vector(posterior) + 0.3 * np.random.default_rng(0).standard_normal((4, 300, size))
     found = Diagnostics(posterior.priors.names, np.full(size, r_hat), np.full(size, 900.0))
-    reference, points = Reference(np.zeros(size), np.eye(size)), Points(np.zeros((2, size)), np.zeros((2, 54)))
-    return Sampled(posterior, chains, reference, points, 5000, found, 0)
+    return Sampled(posterior, chains, 5000, found, 0)
 
 
 def test_draws_of_converged_chains_are_written_and_others_refused(
@@ -41,40 +36,24 @@ def test_draws_of_converged_chains_are_written_and_others_refused(
 ) -> None:
     monkeypatch.setattr(main_module, "sample", lambda *_, **__: sampled(1.07))
     out = tmp_path / "mine.csv"
-    assert main(["sample", "-o", str(out), "--keep", str(tmp_path)]) == 3
+    assert main(["sample", "-o", str(out)]) == 3
     said = capsys.readouterr()
     assert "worst: cold conduction velocity, R-hat 1.070" in said.out
     assert "nothing was written" in said.err
     assert not list(tmp_path.iterdir())
     monkeypatch.setattr(main_module, "sample", lambda *_, **__: sampled(1.003))
-    assert main(["sample", "-o", str(out), "--keep", str(tmp_path)]) == 0
+    assert main(["sample", "-o", str(out)]) == 0
     assert "R-hat up to 1.003, ESS from 900" in capsys.readouterr().out
     draws = PosteriorDraws.load(out)
     assert len(draws) == 1000
     assert draws.header.converged
 
 
-@pytest.mark.parametrize("words", [("sample", "--steps", "5"), ("guess",), (), ("leave-out",)])
+@pytest.mark.parametrize("words", [("sample", "--steps", "5"), ("guess",), ()])
 def test_bad_options_are_refused_before_any_work(words: tuple[str, ...]) -> None:
     with pytest.raises(SystemExit) as stopped:
         main(words)
     assert stopped.value.code == 2
-
-
-def test_finished_parts_are_summed_up_and_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(RecordError, match=r"there are no chains in .*: run sample --keep .* first"):
-        main(["leave-out", "--keep", str(tmp_path)])
-    sampled(1.0).save(tmp_path / KEPT)
-    for experiment in dict.fromkeys(row.experiment for row in load_left_out()):
-        own = [asdict(row) for row in load_left_out() if row.experiment == experiment]
-        (tmp_path / f"left-out-{experiment}.json").write_text(json.dumps(own), encoding="utf-8")
-    out = tmp_path / "tables"
-    assert main(["leave-out", "--keep", str(tmp_path), "-o", str(out), "--workers", "1"]) == 0
-    assert "of 54 rows lie inside their 95 % interval" in capsys.readouterr().out
-    head, *rows = (out / "left-out.csv").read_text(encoding="utf-8").splitlines()
-    old, *shipped = (DATA / "left-out.csv").read_text(encoding="utf-8").splitlines()
-    assert rows == shipped
-    assert head.rpartition(" inputs ")[2] == old.rpartition(" inputs ")[2]
 
 
 def test_draws_without_an_experiment_say_so() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -9,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.posterior import Posterior, maximise
-from thermicon.perception.evidence.results import load_ablation, load_constants
-from thermicon.perception.evidence.rows import load_rows
+from thermicon.perception.evidence.posterior import LeftOut, Posterior, maximise, prediction_sd
+from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.evidence.rows import Row, load_rows
 from thermicon.perception.evidence.sampling import shipped_vector
 
 
@@ -24,6 +25,9 @@ class Line:
     def residuals(self, vector: np.ndarray) -> np.ndarray:
         return np.concatenate([[(vector.sum() - 2.0) / 0.5], vector])
 
+    def predictions(self, vector: np.ndarray) -> dict[tuple[str, str, str], float]:
+        return {("a", "b", "cold"): float(vector.sum())}
+
 
 def test_maximum_and_evidence_of_a_line_are_those_of_algebra() -> None:
     found = maximise(Line())  # type: ignore[arg-type]
@@ -34,6 +38,18 @@ def test_maximum_and_evidence_of_a_line_are_those_of_algebra() -> None:
     assert found.log_evidence == pytest.approx(-cost - 0.5 * np.log(np.linalg.det(curvature)))
 
 
+def test_a_left_out_row_is_judged_with_both_errors() -> None:
+    row = Row(("a", "b", "cold"), 1.0, 0.3, False, "s", "a row")
+    found = maximise(Line())  # type: ignore[arg-type]
+    # The sum has the variance of its gradient (1, 1) through the covariance: 2/9 of the prior's 2.
+    (sd,) = prediction_sd(found, [row])
+    assert sd == pytest.approx(math.sqrt(2.0 / 9.0), rel=1e-3)
+    out = LeftOut(row, 0.0, 0.5)
+    assert out.score == pytest.approx(2.0)
+    assert out.interval == pytest.approx((-0.98, 0.98), abs=1e-3)
+    assert out.log_score == pytest.approx(-2.0 - np.log(0.5 * np.sqrt(2.0 * np.pi)))
+
+
 @pytest.mark.slow
 def test_the_search_finds_the_shipped_maximum_again() -> None:
     found = maximise(Posterior())
@@ -41,6 +57,19 @@ def test_the_search_finds_the_shipped_maximum_again() -> None:
     for each in load_constants():
         low, high = found.interval(each.name, 1.0)
         assert min(low, high) <= each.value <= max(low, high)
+
+
+@pytest.mark.slow
+def test_a_row_is_predicted_again_without_its_experiment() -> None:
+    refitted = maximise(Posterior(left_out=frozenset({"steps"})), shipped_vector(Posterior()))
+    (row,) = (each for each in load_rows() if each.experiment == "steps")
+    (shipped,) = (each for each in load_predictions() if each.experiment == "steps")
+    (sd,) = prediction_sd(refitted, [row]).tolist()
+    out = LeftOut(row, refitted.predictions[row.key], math.hypot(sd, row.sd))
+    assert row.shown(out.predicted) == pytest.approx(shipped.left_out, rel=0.01)
+    assert [row.shown(end) for end in out.interval] == pytest.approx(
+        [shipped.left_out_low, shipped.left_out_high], rel=0.02
+    )
 
 
 FEW = (
@@ -82,6 +111,9 @@ class Some:
         full = self.truth.copy()
         full[self.places] = vector
         return np.concatenate([self.whole.misses(full), vector])
+
+    def predictions(self, vector: np.ndarray) -> dict[tuple[str, str, str], float]:
+        return {}
 
 
 @pytest.mark.slow
