@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, Variable, sign_of
 from ..observer.observer import load_thresholds
-from ..observer.parts import Conduction, Transducer
+from ..observer.parts import Transducer, conduction_s
 from ..observer.people import YOUNG_YEARS
 from ..sensation.detection import quarters
 from ..sensation.sensation import NO_LIMIT_C, area_factor
@@ -216,7 +216,7 @@ class Laboratory:
 
     def delay_s(self, channel: Channel, site: str) -> float:
         """Conduction from a site to the brain, s."""
-        return Conduction(channel, self.values[f"{channel} conduction velocity"], _published().path_m[site]).delay_s
+        return float(conduction_s(channel, self.values[f"{channel} conduction velocity"], _published().path_m[site]))
 
     def passages(
         self, drive: Array, samples: Samples, channel: Channel, gain: float, criterion: float

@@ -227,7 +227,7 @@ def _responses(
         warm,
         played.dt_s,
         observer,
-        conduction_s=(observer.delays_s("cold", path), observer.delays_s("warm", path)),
+        conduction_s=(observer.delay_s("cold", path), observer.delay_s("warm", path)),
         decision_s=who.decision_s + choice_s,
         criterion=(who.criterion_cold, who.criterion_warm),
     )

@@ -40,11 +40,7 @@ VARIABLES: tuple[Variable, ...] = get_args(Variable)
 
 
 def check_variable(variable: str) -> Variable:
-    """The variable itself, or an error that says what there is.
-
-    >>> check_variable("heat flow")
-    'heat flow'
-    """
+    """The variable itself, or an error that says what there is."""
     for known in VARIABLES:
         if variable == known:
             return known
@@ -57,20 +53,12 @@ def drive_unit(variable: Variable) -> str:
 
 
 def source_of(variable: Variable) -> str:
-    """How the parameter file ends the name of a number that depends on the variant; nothing for the default.
-
-    >>> source_of("temperature"), source_of("heat flow")
-    ('', ' from heat flow')
-    """
+    """How the parameter file ends the name of a number that depends on the variant; nothing for the default."""
     return "" if variable == "temperature" else " from heat flow"
 
 
 def receptor_column(variable: Variable, channel: Channel) -> str:
-    """Column of a trace, or probe of a batch, that the receptors of a channel go by.
-
-    >>> receptor_column("heat flow", "cold")
-    'heat_flow_cold_receptor_W_per_m2'
-    """
+    """Column of a trace, or probe of a batch, that the receptors of a channel go by."""
     return f"{channel}_receptor_C" if variable == "temperature" else f"heat_flow_{channel}_receptor_W_per_m2"
 
 

@@ -42,10 +42,7 @@ class PosteriorDraws:
     first draw is the nominal one: its constants, and what they predict of the evidence, are nearest to their medians.
 
     >>> posterior = PosteriorDraws.load()
-    >>> posterior.values("cold limit").shape == (len(posterior),)
-    True
-    >>> observer = posterior.observer(0)
-    >>> bool(observer.cold.limit_C == posterior.values("cold limit")[0])
+    >>> bool(posterior.observer(0).cold.limit_C == posterior.values("cold limit")[0])
     True
     """
 
@@ -68,25 +65,10 @@ class PosteriorDraws:
 
     @classmethod
     def load(cls, path: Path | str | None = None, *, variable: Variable = "temperature") -> PosteriorDraws:
-        """The shipped draws of a variant, or those of another file.
+        """The shipped draws of a variant, or those of another file, which has its own variant.
 
-        Parameters
-        ----------
-        path
-            A table of sampled draws, or one kept by ``thermicon pilot``; None for the shipped one.
-        variable
-            The variant of the shipped table; a file has its own.
-
-        Raises
-        ------
-        RecordError
-            For a file that is no such table, was made from other evidence or priors, or lacks a constant.
-
-        Warns
-        -----
-        UserWarning
-            For draws of a sampler that did not converge.
-
+        Raises `RecordError` for a file that is no such table, was made from other evidence or priors, or lacks a
+        constant; warns of draws of a sampler that did not converge.
         """
         file = shipped_file(check_variable(variable)) if path is None else Path(path)
         draws = _read(file, file.stat().st_mtime_ns if file.exists() else 0)
@@ -106,13 +88,12 @@ class PosteriorDraws:
         """One constant in every draw (n,), in its own unit; a ValueError names the nearest."""
         if name not in self.names:
             raise ValueError(f"the posterior has no constant {name!r}: {did_you_mean(name, set(self.names))}")
-        column: Array = self.draws[:, self.names.index(name)]
-        return column
+        return np.asarray(self.draws[:, self.names.index(name)])
 
     def draw(self, k: int) -> Mapping[str, float]:
         """All constants of one draw by name, offsets of the laboratories of the evidence and own memory included."""
-        remembered = zip(self.memory_names, self.memory[k].tolist(), strict=True)
-        return {**dict(zip(self.names, self.draws[k].tolist(), strict=True)), **dict(remembered)}
+        names, values = (*self.names, *self.memory_names), (*self.draws[k].tolist(), *self.memory[k].tolist())
+        return dict(zip(names, values, strict=True))
 
     @property
     def one_laboratory(self) -> bool:
@@ -163,8 +144,7 @@ class PosteriorDraws:
         same seed gives the same laboratory in standard units.
         """
         standard = np.random.default_rng(seed).standard_normal((len(self), len(CHANNELS)))
-        offsets: Array = self.values(BETWEEN_LABORATORIES)[:, None] * standard
-        return offsets
+        return np.asarray(self.values(BETWEEN_LABORATORIES)[:, None] * standard)
 
     def __repr__(self) -> str:
         size = f"{len(self)} draws of {len(self.names)} constants"
@@ -178,14 +158,7 @@ def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
 
 
 def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
-    """The observer whose constants, those of memory among them, have these values; all else is that of `base`.
-
-    >>> base = Observer.load()
-    >>> values = {"criterion of speeded answers": 3.0, "cold limit": 33.0}
-    >>> moved = observer_with(base, values)
-    >>> moved.criterion, moved.cold.limit_C, moved.warm == base.warm
-    (3.0, 33.0, True)
-    """
+    """The observer whose constants, those of memory among them, have these values; all else is that of `base`."""
 
     def given(fields: Mapping[str, str], channel: str = "") -> dict[str, Any]:
         names = {field: f"{channel} {name}".strip() for field, name in fields.items()}

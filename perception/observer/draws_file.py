@@ -13,6 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass, fields
 from io import StringIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from thermicon.circuit.records import RecordError
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
-from .channels import Variable, check_variable
+from .channels import VARIABLES, Variable, check_variable
 from .observer import DATA
 from .parts import LIMITS, MEMORY_NAMES, objection_to
 
@@ -37,10 +38,7 @@ LABORATORY_LINE = "# written by thermicon observed from inputs "
 """How the draws of one laboratory begin."""
 CURE = "write it again with python -m thermicon.perception.evidence sample -o FILE"
 CONSTANTS = DATA / "constants.csv"
-VARIANT_NAMES: Mapping[str, Variable] = {
-    "temperature": "temperature",
-    "heat-flow": "heat flow",
-}
+VARIANT_NAMES: Mapping[str, Variable] = {variable.replace(" ", "-"): variable for variable in VARIABLES}
 """Variants by the names of the command line and of files."""
 APPROXIMATE = "normal approximation"
 RECEPTOR_MODEL = "adapting"
@@ -112,24 +110,15 @@ OF_LABORATORY: Mapping[str, str] = {"resampled": "resampled", "rig": "rig"}
 
 
 def variant_named(name: str) -> Variable:
-    """The variant by the name that the command line gives it; a ValueError lists the names.
-
-    >>> variant_named("heat-flow")
-    'heat flow'
-    """
+    """The variant by the name that the command line gives it; a ValueError lists the names."""
     if name not in VARIANT_NAMES:
         raise ValueError(f"there is no variant {name!r}: choose one of {', '.join(VARIANT_NAMES)}")
     return VARIANT_NAMES[name]
 
 
 def shipped_file(variable: Variable) -> Path:
-    """Where the shipped draws of a variant lie.
-
-    >>> shipped_file("heat flow").name
-    'posterior-heat-flow.csv'
-    """
-    name = next(name for name, variant in VARIANT_NAMES.items() if variant == variable)
-    return DATA / ("posterior.csv" if name == "temperature" else f"posterior-{name}.csv")
+    """Where the shipped draws of a variant lie."""
+    return DATA / ("posterior.csv" if variable == VARIABLES[0] else f"posterior-{variable.replace(' ', '-')}.csv")
 
 
 def to_text(header: DrawsHeader, names: Sequence[str], draws: Array) -> str:
@@ -148,11 +137,7 @@ def to_text(header: DrawsHeader, names: Sequence[str], draws: Array) -> str:
 
 
 def as_written(values: Array) -> Array:
-    """Numbers as a table has them, to six figures.
-
-    >>> as_written(np.array([0.12345678])).tolist()
-    [0.123457]
-    """
+    """Numbers as a table has them, to six figures."""
     return np.array([float(_figures(value)) for value in values.ravel().tolist()]).reshape(values.shape)
 
 
@@ -244,33 +229,21 @@ def _header(name: str, head: Sequence[str]) -> DrawsHeader:
     current = current_inputs()
     if inputs != current:
         raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {CURE}")
-    text = {field: known[label] for field, label in LABELS.items()}
+    labels = {**LABELS, **OF_LABORATORY}
+    if known["receptor model"] != RECEPTOR_MODEL:
+        model = quoted(known["receptor model"])
+        raise RecordError(f"{name}: draws of the receptor model {model}, not {RECEPTOR_MODEL}: {CURE}")
+    read: dict[str, Any] = {"inputs": inputs, **{field: known.get(label, "") for field, label in labels.items()}}
+    for field in ("seed", "likelihoods", "r_hat", "ess"):
+        read[field] = _number(read[field], f"{name}, {labels[field]}")
+    for field in ("seed", "likelihoods"):
+        read[field] = int(read[field])
+    for field in ("left_out", "offsets"):
+        read[field] = () if read[field] == "nothing" else tuple(read[field].split(", "))
     try:
-        variable = check_variable(text["variable"])
+        return DrawsHeader(**{**read, "converged": read["converged"] == "yes"})
     except ValueError as error:
         raise RecordError(f"{name}: {error}") from error
-    if text["model"] != RECEPTOR_MODEL:
-        raise RecordError(f"{name}: draws of the receptor model {quoted(text['model'])}, not {RECEPTOR_MODEL}: {CURE}")
-    return DrawsHeader(
-        inputs,
-        text["evidence"],
-        text["priors"],
-        text["program"],
-        variable,
-        _words(text["left_out"]),
-        text["sampler"],
-        int(_number(text["seed"], f"{name}, seed")),
-        int(_number(text["likelihoods"], f"{name}, likelihoods computed")),
-        _number(text["r_hat"], f"{name}, largest R-hat"),
-        _number(text["ess"], f"{name}, least bulk ESS"),
-        text["converged"] == "yes",
-        _words(text["offsets"]),
-        **{field: known.get(label, "") for field, label in OF_LABORATORY.items()},
-    )
-
-
-def _words(text: str) -> tuple[str, ...]:
-    return () if text == "nothing" else tuple(text.split(", "))
 
 
 def _number(text: str, where: str) -> float:

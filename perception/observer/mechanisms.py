@@ -95,11 +95,7 @@ MECHANISMS = (
 
 
 def find_mechanism(name: str) -> Mechanism:
-    """A mechanism by name; a ValueError names the nearest.
-
-    >>> find_mechanism("choice time").replaced_by
-    'a choice takes as long as a simple reaction'
-    """
+    """A mechanism by name; a ValueError names the nearest."""
     for mechanism in MECHANISMS:
         if mechanism.name == name:
             return mechanism
@@ -110,9 +106,6 @@ def check_without(names: Iterable[str], carrier: Carrier) -> Without:
     """Names of mechanisms that act on a carrier, as a set.
 
     A ValueError names the nearest to one that does not exist, and says how one that acts elsewhere is turned off.
-
-    >>> sorted(check_without(["gain noise", "cold limit"], "observer"))
-    ['cold limit', 'gain noise']
     """
     if isinstance(names, str):
         raise ValueError(f"mechanisms are given as a list of names, such as without=[{names!r}]")

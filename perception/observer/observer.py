@@ -14,8 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from thermicon.circuit.records import RecordError, Table, load_records
+from thermicon.circuit.records import Table, load_records
 
 from ..arrays import Array
 from .channels import (
@@ -31,8 +32,8 @@ from .channels import (
     source_of,
 )
 from .mechanisms import check_without, find_mechanism
-from .observer_file import check_complete, read_observer_file
-from .parts import Conduction, EpisodeMemory, Ratings, Receptor, Transducer
+from .observer_file import check_complete, read_records
+from .parts import EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
@@ -78,34 +79,26 @@ class Observer:
     ----------
     cold, warm
         Constants of each channel.
-    integration_s
-        Time constant of integration at the receptors, s.
+    integration_s, noise_correlation_s
+        Time constant of integration at the receptors, and correlation time of the sensory noise, s.
     neutral_low_C, neutral_high_C
         Range of complete adaptation, °C.
-    a
-        Slope of sensation, d′.
+    a, p
+        Slope (d′), and exponent near threshold, of sensation.
     reference_area_m2
         Area of contact that thresholds are given for, m².
     criterion
         Change of sensation that is answered with yes, d′.
-    noise_correlation_s
-        Correlation time of the sensory noise, s.
     path_hand_m, path_forearm_m
         Length of the nerve to the cord, m.
-    decision_s
-        Time from the brain's signal to the answer, s.
+    decision_s, choice_s
+        Time from the brain's signal to the answer, and what a choice adds to it, s.
     lapse
         Share of trials in which any name is given, 0–1.
     memory
         How well episodes are remembered.
-    p
-        Exponent of sensation near threshold.
-    gain_noise
-        SD (ln) of the gain from presentation to presentation.
-    choice_s
-        What a choice adds to `decision_s`, s.
-    decision_noise
-        SD (ln) of decision times from trial to trial.
+    gain_noise, decision_noise
+        SD (ln) of the gain from presentation to presentation, and of decision times from trial to trial.
     variable
         What the receptors go by: `temperature` or `heat flow`.
     without
@@ -172,26 +165,10 @@ class Observer:
     ) -> Observer:
         """The shipped observer, or one from another parameter file, in one of its variants.
 
-        Parameters
-        ----------
-        path
-            A parameter file, or a .csv table of posterior draws, whose draw nearest to the median it is then; None
-            for the shipped parameters.
-        variable
-            The variant; a table of draws has its own.
-        without
-            Mechanisms that are turned off, by the names of `MECHANISMS`; other constants stay what they are.
-
-        Raises
-        ------
-        RecordError
-            For a file without what is needed.
-        ValueError
-            For a variant or a mechanism that does not exist.
-
+        `without` names mechanisms that are turned off, out of `MECHANISMS`; other constants stay what they are. Raises
+        `RecordError` for a file without what is needed, `ValueError` for a variant or mechanism that does not exist.
         """
-        table = None if path is None else read_observer_file(Path(path), variable)
-        whole = _shipped(variable) if table is None else cls.from_table(table, variable=variable)
+        whole = _shipped(variable) if path is None else cls.from_table(read_records(Path(path)), variable=variable)
         off = check_without(without, "observer")
         return whole.with_mechanisms_off(off) if off else whole
 
@@ -264,20 +241,17 @@ class Observer:
         """How drive in multiples of threshold becomes sensation."""
         return Transducer(self.a, self.p)
 
-    def delay_s(self, channel: Channel, path_m: float) -> float:
-        """Conduction over a path to the cord, and from there to the brain, s."""
+    def delay_s(self, channel: Channel, path_m: ArrayLike) -> Array:
+        """Conduction over paths to the cord, and from there to the brain, s, of the same shape."""
         velocity = self.receptor(channel).velocity_m_per_s
-        return path_m / velocity if "delays" in self.without else Conduction(channel, velocity, path_m).delay_s
+        if "delays" in self.without:
+            return np.asarray(path_m, dtype=np.float64) / velocity
+        return conduction_s(channel, velocity, path_m)
 
     @property
     def drive_unit(self) -> str:
         """Unit of receptor drive and of `threshold_drive`: K or W/m²."""
         return drive_unit(self.variable)
-
-    def delays_s(self, channel: Channel, path_m: Array) -> Array:
-        """The same for many paths."""
-        delays = [self.delay_s(channel, path) for path in np.asarray(path_m, dtype=np.float64).reshape(-1).tolist()]
-        return np.array(delays).reshape(np.shape(path_m))
 
     def receptor(self, channel: Channel) -> Receptor:
         """Constants of one channel."""
@@ -299,41 +273,29 @@ class Observer:
         return self.receptor(channel).forearm_factor if site is not None and on_forearm(site) else 1.0
 
     def __repr__(self) -> str:
-        variant = "" if self.variable == VARIABLES[0] else f"{self.variable}; "
+        variant, unit = "" if self.variable == VARIABLES[0] else f"{self.variable}; ", self.drive_unit
         return (
             f"Observer({variant}a {self.a:.3g}, p {self.p:.3g}, criterion {self.criterion:.3g} d′, "
-            f"memory noise {self.memory.timing:.3g} log units, "
-            f"threshold drive cold {self.cold.threshold_drive:.3g} {self.drive_unit}, "
-            f"warm {self.warm.threshold_drive:.3g} {self.drive_unit})"
+            f"memory noise {self.memory.timing:.3g} log units, threshold drive cold "
+            f"{self.cold.threshold_drive:.3g} {unit}, warm {self.warm.threshold_drive:.3g} {unit})"
         )
 
 
 def on_forearm(site: str) -> bool:
-    """Whether a site is one of the forearm's.
-
-    >>> on_forearm("left wrist"), on_forearm("thenar")
-    (True, False)
-    """
+    """Whether a site is one of the forearm's, such as `left wrist`."""
     return any(name in site.lower() for name in FOREARM_SITES)
 
 
 @lru_cache(maxsize=1)
 def load_thresholds() -> Table:
-    """The shipped table of published numbers.
-
-    >>> load_thresholds().one("detection threshold", channel="cold", site="thenar").central
-    0.11
-    """
+    """The shipped table of published numbers."""
     return load_records(DATA / "thresholds.toml")
 
 
 @lru_cache(maxsize=1)
 def observer_records() -> Table:
     """The records of the shipped observer and of how people differ."""
-    path = DATA / "observer.toml"
-    if not path.exists():
-        raise RecordError("observer.toml: not there: write it with python -m thermicon.perception.evidence observer")
-    return load_records(path)
+    return load_records(DATA / "observer.toml")
 
 
 @lru_cache(maxsize=4)
@@ -345,6 +307,6 @@ def variant_records(variable: Variable = "temperature") -> Table:
     return Table(shipped.name, tuple(record for record in shipped if not record.quantity.endswith(others)))
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=2)
 def _shipped(variable: Variable) -> Observer:
     return Observer.from_table(observer_records(), variable=variable)

@@ -28,17 +28,12 @@ CURE = (
 MOST_NAMED = 6
 
 
-def read_observer_file(path: Path, variable: str) -> Table:
-    """Records of a file for a sensory variable; a RecordError names the file, what is wrong, and a cure."""
-    if path.suffix.lower() == ".csv":
-        return _nominal_draw(path, variable)
+def read_records(path: Path) -> Table:
+    """Records of an observer's file; a RecordError where a quantity has another unit than the shipped one.
+
+    Values are not converted.
+    """
     table = load_records(path)
-    check_units(table)
-    return table
-
-
-def check_units(table: Table) -> None:
-    """Raise a RecordError where a quantity has another unit than the shipped one, since values are not converted."""
     shipped = {record.quantity: record.unit for record in load_records(SHIPPED)}
     for record in table:
         unit = shipped.get(record.quantity, record.unit)
@@ -47,25 +42,7 @@ def check_units(table: Table) -> None:
                 f"{table.name}: {record.quantity}: unit {record.unit!r}, but this quantity is in {unit!r}: convert the "
                 "value and its interval, and write that unit"
             )
-
-
-def _nominal_draw(path: Path, variable: str) -> Table:
-    """Records of the nominal draw of a table of posterior draws."""
-    from .channels import VARIABLES
-    from .draws import PosteriorDraws
-
-    drawn = PosteriorDraws.load(path)
-    if drawn.variable != variable:
-        raise RecordError(
-            f"{path.name}: draws of the variant {drawn.variable}, not of {variable}, which was "
-            "asked for: ask for the variant of the file"
-        )
-    if drawn.variable != VARIABLES[0]:
-        raise RecordError(
-            f"{path.name}: draws of {drawn.variable}, which is not the default variant: "
-            "use PosteriorDraws.load(path).nominal()"
-        )
-    return drawn.table(0)
+    return table
 
 
 def check_complete(table: Table, variable: str, variant: str) -> None:
@@ -79,9 +56,6 @@ def check_complete(table: Table, variable: str, variant: str) -> None:
     meant = [f"{close[0]!r} may be meant for {name!r}" for name, close in near.items() if close]
     hint = f" ({'; '.join(meant[:MOST_NAMED])})" if meant else ""
     count = "a number that an observer needs is" if len(missing) == 1 else "numbers that an observer needs are"
-    raise RecordError(f"{table.name}: {count} missing: {_named(missing)}{hint}. Cure: {CURE}")
-
-
-def _named(names: list[str]) -> str:
-    more = [f"and {len(names) - MOST_NAMED} more"] if len(names) > MOST_NAMED else []
-    return ", ".join([*(repr(name) for name in names[:MOST_NAMED]), *more])
+    more = [f"and {len(missing) - MOST_NAMED} more"] if len(missing) > MOST_NAMED else []
+    named = ", ".join([*(repr(name) for name in missing[:MOST_NAMED]), *more])
+    raise RecordError(f"{table.name}: {count} missing: {named}{hint}. Cure: {CURE}")

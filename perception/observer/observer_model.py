@@ -16,10 +16,10 @@ from typing import Self
 
 from thermicon.circuit.records import RecordError, Table
 
-from .channels import CHANNELS
+from .channels import CHANNELS, VARIABLES
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, variant_records
-from .observer_file import read_observer_file
+from .observer_file import read_records
 from .people import SPREADS, People, age_factor, draw_people
 
 SHIPPED = "shipped"
@@ -36,25 +36,12 @@ OF_PEOPLE = (
 class ObserverModel:
     """The observer of a file with its people and its posterior.
 
-    Attributes
-    ----------
-    name
-        Name of the file, or `shipped`.
-    digest
-        SHA-256 of its text, in hexadecimal.
-    nominal
-        The nominal observer: the most probable one of the shipped posterior, the first draw of another.
-    spreads
-        Constants of how people differ, by name; None: the shipped ones.
-    records
-        Records of the observer, from which intervals of memory noise are read.
-    posterior
-        Draws of the constants; None where the file has none.
-    age_years
-        Age of all people; None: 20 to 30 years, as in the evidence.
+    `name` is that of the file, or `shipped`, and `digest` the SHA-256 of its text in hexadecimal. `nominal` is the most
+    probable observer of the shipped posterior, the first draw of another. `spreads` are constants of how people differ
+    (None: the shipped ones), `records` those of the observer, from which intervals of memory are read, `posterior` the
+    draws of the constants (None: the file has none), `age_years` the age of all people (None: 20 to 30 years, as in the
+    evidence).
 
-    Examples
-    --------
     >>> ObserverModel.load().people(3, seed=1).memory.shape
     (3,)
     """
@@ -74,47 +61,35 @@ class ObserverModel:
 
     @classmethod
     def load(cls, path: Path | str | None = None) -> Self:
-        """The shipped model, or that of a file.
+        """The shipped model, or that of a file: draws kept by ``thermicon pilot`` (.csv), or one observer's records.
 
-        Parameters
-        ----------
-        path
-            Draws kept by ``thermicon pilot`` (.csv), or records of one
-            observer (.toml).
-
-        Raises
-        ------
-        RecordError
-            For a file that cannot be read, is incomplete, or was made from other evidence or by another version.
-
+        Raises `RecordError` for a file that cannot be read, is incomplete, or was made from other evidence or by
+        another version.
         """
         if path is None:
-            return cls(SHIPPED, _shipped_digest(), Observer.load(), None, variant_records(), _shipped_draws())
-        file = Path(path)
-        records = read_observer_file(file, "temperature")
-        draws = PosteriorDraws.load(file) if file.suffix.lower() == ".csv" else None
+            return cls(SHIPPED, _shipped_digest(), Observer.load(), None, variant_records(), PosteriorDraws.load())
+        file, draws = Path(path), None
         try:
-            nominal = Observer.from_table(records) if draws is None else draws.nominal()
+            if file.suffix.lower() == ".csv":
+                draws = PosteriorDraws.load(file)
+                if draws.variable != VARIABLES[0]:
+                    raise RecordError(f"{file.name}: draws of {draws.variable}, not of {VARIABLES[0]}, the default")
+                records, nominal, spreads = draws.table(0), draws.nominal(), dict(draws.draw(0))
+            else:
+                records = read_records(file)
+                nominal, spreads = Observer.from_table(records), _spreads(records)
         except ValueError as wrong:  # a RecordError says in which file
             raise wrong if isinstance(wrong, RecordError) else RecordError(f"{file.name}: {wrong}") from None
-        spreads = _spreads(records) if draws is None else draws.draw(0)
         return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, spreads, records, draws)
 
     def most_draws(self, wanted: int) -> int:
-        """As many draws as are wanted, or as many as there are.
-
-        >>> ObserverModel.load().most_draws(128)
-        128
-        """
+        """As many draws as are wanted, or as many as there are."""
         return 0 if self.posterior is None else min(wanted, len(self.posterior))
 
     def draw_count(self, asked: int | None, usual: int) -> int:
         """How many draws an interval is made of: those asked for, or the usual number, or as many as there are.
 
         None are made where there are none. A ValueError for one draw, and for more than there are.
-
-        >>> ObserverModel.load().draw_count(None, 128), ObserverModel.load().draw_count(0, 128)
-        (128, 0)
         """
         if asked is not None and (asked < 0 or asked == 1):
             raise ValueError(f"an interval needs at least two draws of the parameters, or 0 for none, not {asked}")
@@ -162,11 +137,6 @@ class ObserverModel:
 @lru_cache(maxsize=1)
 def _shipped_digest() -> str:
     return hashlib.sha256((DATA / "observer.toml").read_bytes()).hexdigest()
-
-
-@lru_cache(maxsize=1)
-def _shipped_draws() -> PosteriorDraws:
-    return PosteriorDraws.load()
 
 
 def _spreads(records: Table) -> dict[str, float]:

@@ -56,9 +56,8 @@ class Receptor:
             if not getattr(self, name) > 0.0:
                 raise ValueError(f"{name} = {getattr(self, name):g} must be above 0")
         if self.neutral_flux is not None and not self.neutral_flux[0] < self.neutral_flux[1]:
-            raise ValueError(
-                f"the neutral heat flow {self.neutral_flux[0]:g} to {self.neutral_flux[1]:g} W/m² is empty"
-            )
+            low, high = self.neutral_flux
+            raise ValueError(f"the neutral heat flow {low:g} to {high:g} W/m² is empty")
 
 
 SPINE_M = 0.225
@@ -71,46 +70,22 @@ LEG_M_PER_S: dict[Channel, float] = {"cold": 2.1, "warm": 0.5}
 """Conduction at the leg (Fowler et al. 1988): what is used where the mechanism of delays is turned off."""
 
 
-@dataclass(frozen=True, slots=True)
-class Conduction:
-    """Velocity in the nerve in m/s and path to the cord in m; `delay_s` adds the way from the cord to the brain.
+def conduction_s(channel: Channel, velocity_m_per_s: float, path_m: ArrayLike) -> Array:
+    """Time (s) from the receptor over a nerve path to the cord (m), and from there to the brain.
 
-    >>> round(Conduction("warm", 1.0, 0.55).delay_s, 4)
+    >>> float(conduction_s("warm", 1.0, 0.55).round(4))
     0.6625
     """
-
-    channel: Channel
-    velocity_m_per_s: float
-    path_m: float
-
-    def __post_init__(self) -> None:
-        if not self.velocity_m_per_s > 0.0 or not self.path_m > 0.0:
-            raise ValueError(
-                "conduction needs a velocity and a path above 0, "
-                f"not {self.velocity_m_per_s:g} m/s over {self.path_m:g} m"
-            )
-
-    @property
-    def delay_s(self) -> float:
-        """Time from receptor to brain, s."""
-        return self.path_m / self.velocity_m_per_s + SPINE_M / SPINAL_M_PER_S[self.channel]
+    found: Array = np.asarray(path_m, dtype=np.float64) / velocity_m_per_s + SPINE_M / SPINAL_M_PER_S[channel]
+    return found
 
 
 @dataclass(frozen=True, slots=True)
 class Transducer:
-    """Slope `a` (d′) and exponent `p` of sensation.
-
-    >>> Transducer(12.0, 2.0).psi(1.0).round(12)
-    np.float64(1.0)
-    """
+    """Slope `a` (d′) and exponent `p` of sensation, both above 0."""
 
     a: float
     p: float
-
-    def __post_init__(self) -> None:
-        for name in ("a", "p"):
-            if not getattr(self, name) > 0.0:
-                raise ValueError(f"the transducer needs {name} above 0, not {getattr(self, name):g}")
 
     @property
     def b(self) -> float:
@@ -119,8 +94,7 @@ class Transducer:
 
     def psi(self, multiple: ArrayLike) -> Array:
         """Sensation in d′ of drives in multiples of threshold (0 or more), of the same shape."""
-        sensation: Array = self.a * np.log1p(np.asarray(multiple, dtype=np.float64) ** self.p / self.b)
-        return sensation
+        return np.asarray(self.a * np.log1p(np.asarray(multiple, dtype=np.float64) ** self.p / self.b))
 
     def multiple(self, psi: ArrayLike) -> Array:
         """Drive in multiples of threshold whose sensation is `psi` in d′.
@@ -128,8 +102,7 @@ class Transducer:
         >>> Transducer(12.0, 1.5).multiple(Transducer(12.0, 1.5).psi(3.0)).round(9)
         np.float64(3.0)
         """
-        drive: Array = (self.b * np.expm1(np.asarray(psi, dtype=np.float64) / self.a)) ** (1.0 / self.p)
-        return drive
+        return np.asarray((self.b * np.expm1(np.asarray(psi, dtype=np.float64) / self.a)) ** (1.0 / self.p))
 
     def difference_threshold(self, pedestal: ArrayLike) -> Array:
         """Increment that adds d′ = 1 to a pedestal when nothing but sensory noise counts, in multiples of threshold."""
@@ -179,10 +152,6 @@ class EpisodeMemory:
     `bar` is the sensation in d′ that a stretch must reach, and by which a valley must part two, to be remembered.
     `missing` is the cost of a felt episode that a name lacks, beyond its size, when names are given directly: the
     number of features whose noise it would have cost to match it.
-
-    >>> memory = EpisodeMemory(0.3, 0.5, 3.0, 1.0, Ratings(6.0, 0.5, 40.0, 12.0), Ratings(2.3, 0.7, 30.0, 12.0))
-    >>> round(memory.intensity("cold"), 3)
-    0.424
     """
 
     timing: float
@@ -193,14 +162,9 @@ class EpisodeMemory:
     warm: Ratings
 
     def __post_init__(self) -> None:
-        if not self.bar > 0.0:
-            raise ValueError(f"the bar of an episode must be above 0 d′, not {self.bar:g}")
-        if not self.timing > 0.0:
-            raise ValueError(f"memory noise of episodes must be above 0, not {self.timing:g}")
-        if not 0.0 <= self.share <= 1.0:
-            raise ValueError(f"the share of the scatter of ratings must lie in 0 to 1, not {self.share:g}")
-        if not self.missing >= 0.0:
-            raise ValueError(f"the cost of a missing episode must be 0 or more, not {self.missing:g}")
+        for name, value in ((BAR, self.bar), (NOISE, self.timing), (SHARE, self.share), (MISSING, self.missing)):
+            if why := objection_to(name, value):
+                raise ValueError(f"{name} = {value:g} {why}")
 
     def ratings(self, channel: Channel) -> Ratings:
         """Ratings of one channel."""
@@ -208,16 +172,11 @@ class EpisodeMemory:
 
     def intensity(self, channel: Channel) -> float:
         """σ_I of a channel in log units of drive."""
-        noise: float = self.timing ** (1.0 - self.share) * self.ratings(channel).log_scatter ** self.share
-        return noise
+        return float(self.timing ** (1.0 - self.share) * self.ratings(channel).log_scatter ** self.share)
 
 
 def objection_to(name: str, value: float) -> str | None:
-    """Why a constant of memory, or one that is positive, cannot have this value; None where it can.
-
-    >>> objection_to("share of the scatter of ratings", 1.5)
-    'must lie in 0 to 1'
-    """
+    """Why a constant of memory, or one that is positive, cannot have this value; None where it can."""
     if name in LIMITS:
         low, high = LIMITS[name]
         if low <= value <= high:

@@ -72,11 +72,8 @@ class People:
 
     def less_sensitive(self, cold: float, warm: float) -> People:
         """The same persons with thresholds raised by so much (ln): those of another laboratory, or of another age."""
-        return replace(
-            self,
-            threshold_cold=math.exp(cold) * self.threshold_cold,
-            threshold_warm=math.exp(warm) * self.threshold_warm,
-        )
+        thresholds = {"threshold_cold": math.exp(cold) * self.threshold_cold}
+        return replace(self, **thresholds, threshold_warm=math.exp(warm) * self.threshold_warm)
 
     def rigs(self, rig: Rig) -> list[Rig]:
         """The rig as each person meets it: own contact resistance and own outermost layer."""
@@ -95,12 +92,11 @@ class People:
 @lru_cache(maxsize=1024)
 def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
     """The rig with contact resistance and outermost layer multiplied; kept, since a ranking asks for it twice."""
-    return rig.with_(
-        **{
-            "contact.resistance_m2K_per_W": contact * rig.contact.resistance_m2K_per_W,
-            "skin.layer.0.thickness_mm": layer * rig.skin.layers[0].thickness_m * 1e3,
-        }
-    )
+    keys = {
+        "contact.resistance_m2K_per_W": contact * rig.contact.resistance_m2K_per_W,
+        "skin.layer.0.thickness_mm": layer * rig.skin.layers[0].thickness_m * 1e3,
+    }
+    return rig.with_(**keys)
 
 
 def draw_people(
@@ -153,10 +149,8 @@ def draw_people(
     off = check_without(without, "people")
     record = people_records()
     column, normal = _columns(n, seed)
-    constants = {} if spreads is None else spreads
-    shared = constants.get(
-        "correlation of cold and warm", observer_records().one("correlation of cold and warm").central
-    )
+    constants, inferred = {} if spreads is None else spreads, observer_records()
+    shared = constants.get("correlation of cold and warm", inferred.one("correlation of cold and warm").central)
 
     def lognormal(name: str, sd: float) -> Array:
         return np.exp(sd * normal[name])
@@ -164,34 +158,31 @@ def draw_people(
     def both(what: str) -> tuple[Array, Array]:
         cold, own = (normal[f"{what}_{channel}"] for channel in CHANNELS)
         warm = shared * cold + math.sqrt(1.0 - shared**2) * own
-        own_names = [SPREADS[what].format(channel) for channel in CHANNELS]
-        sd = [
-            constants.get(name, record[f"{what}_{channel}"].central)
-            for name, channel in zip(own_names, CHANNELS, strict=True)
-        ]
-        return np.exp(sd[0] * cold), np.exp(sd[1] * warm)
+        sd_cold, sd_warm = (
+            constants.get(SPREADS[what].format(channel), record[f"{what}_{channel}"].central) for channel in CHANNELS
+        )
+        return np.exp(sd_cold * cold), np.exp(sd_warm * warm)
 
     def triangular(name: str) -> Array:
         low, high = record[name].interval
         return _triangular(column[name], low, record[name].central, high)
 
-    aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
-    if "age" in off:
-        aged = [1.0, 1.0]
+    aged = [1.0 if age_years is None or "age" in off else age_factor(age_years, channel) for channel in CHANNELS]
     threshold_cold, threshold_warm = both("threshold")
     criterion_cold, criterion_warm = both("criterion")
     if "criterion between people" in off:
         criterion_cold, criterion_warm = np.ones(n), np.ones(n)
+    least, most = record["memory"].interval
     return People(
         threshold_cold=aged[0] * threshold_cold,
         threshold_warm=aged[1] * threshold_warm,
         criterion_cold=criterion_cold,
         criterion_warm=criterion_warm,
-        memory=_uniform(column["memory"], *record["memory"].interval) / record["memory"].central,
+        memory=(least + (most - least) * column["memory"]) / record["memory"].central,
         contact_resistance=lognormal("contact_resistance", math.log1p(record["contact_resistance"].central)),
         outer_layer=lognormal("outer_layer", math.log1p(record["outer_layer"].central)),
         path=triangular("path") / record["path"].central,
-        decision_s=constants.get("decision time", observer_records().one("decision time").central)
+        decision_s=constants.get("decision time", inferred.one("decision time").central)
         * lognormal("decision_s", constants.get("decision time between people", record["decision_s"].central)),
         lapse=triangular("lapse"),
     )
@@ -220,11 +211,7 @@ SPREADS = {"threshold": "{} sensitivity between people", "criterion": "criterion
 
 @lru_cache(maxsize=1)
 def people_records() -> Mapping[str, Record]:
-    """The record behind every field of `People`; `use` says whether it is data or assumed.
-
-    >>> people_records()["memory"].use
-    'assumed'
-    """
+    """The record behind every field of `People`; `use` says whether it is data or assumed."""
     table, inferred = load_thresholds(), observer_records()
     criterion = inferred.one("criterion between people")
     records = {
@@ -243,11 +230,7 @@ def people_records() -> Mapping[str, Record]:
 
 
 def age_factor(age_years: float, channel: Channel) -> float:
-    """Threshold of a channel at an age over that at 25 years.
-
-    >>> age_factor(25.0, "cold"), 1.3 < age_factor(65.0, "cold") < 4.0
-    (1.0, True)
-    """
+    """Threshold of a channel at an age over that at 25 years."""
     if not 18.0 <= age_years <= 100.0:
         raise ValueError(f"an age of {age_years:g} years is not covered: give 18 to 100")
     lost = observer_records().one("sensitivity lost per decade", channel=channel).central
@@ -257,10 +240,6 @@ def age_factor(age_years: float, channel: Channel) -> float:
 def _normal(uniform: Array) -> Array:
     within = np.clip(uniform, 1e-12, 1.0 - 1e-12)
     return np.array([STANDARD.inv_cdf(p) for p in within.tolist()], dtype=np.float64)
-
-
-def _uniform(uniform: Array, low: float, high: float) -> Array:
-    return low + (high - low) * uniform
 
 
 def _triangular(uniform: Array, low: float, mode: float, high: float) -> Array:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Literal
@@ -28,11 +28,7 @@ WIDTH_95 = 2.0 * WITHIN_95
 
 @dataclass(frozen=True, slots=True)
 class Prior:
-    """One parameter: `middle` and `sd` on its scale, `mechanism` that it belongs to, and the source of the interval.
-
-    >>> Prior.normal("cold limit", "degC", 33.0, 1.0, "quality", "Campero et al. 2001").interval[0].__round__(2)
-    31.04
-    """
+    """One parameter: `middle` and `sd` on its scale, `mechanism` that it belongs to, and the source of the interval."""
 
     name: str
     unit: str
@@ -45,21 +41,6 @@ class Prior:
     def __post_init__(self) -> None:
         if not self.sd > 0.0 or not math.isfinite(self.middle):
             raise ValueError(f"{self.name}: a prior needs a finite middle and an SD above 0, not {self.sd:g}")
-
-    @classmethod
-    def log(cls, name: str, unit: str, median: float, low: float, high: float, mechanism: str, source: str) -> Prior:
-        """A lognormal prior by its median and the ratio of the ends of its 95 % interval."""
-        return cls(name, unit, "log", math.log(median), math.log(high / low) / WIDTH_95, mechanism, source)
-
-    @classmethod
-    def normal(cls, name: str, unit: str, mean: float, sd: float, mechanism: str, source: str) -> Prior:
-        """A normal prior."""
-        return cls(name, unit, "linear", mean, sd, mechanism, source)
-
-    @classmethod
-    def share(cls, name: str, median: float, sd_logit: float, mechanism: str, source: str) -> Prior:
-        """A logit-normal prior of a number between 0 and 1."""
-        return cls(name, "1", "logit", math.log(median / (1.0 - median)), sd_logit, mechanism, source)
 
     def to_value(self, place: float) -> float:
         """The parameter in its own unit, from its place on the scale."""
@@ -156,8 +137,9 @@ def priors_of(variable: Variable) -> Priors:
     """Priors of a variant of the observer: the shipped ones, and an offset for each laboratory and channel."""
     log_scale = math.log(DRIVE_SCALE[variable])
     shipped = tuple(_moved(prior, log_scale) for prior in load_priors().each)
+    source = "the spread between laboratories"
     offsets = tuple(
-        Prior.normal(f"{place} {channel}", "SD", 0.0, 1.0, "laboratories", "the spread between laboratories")
+        Prior(f"{place} {channel}", "SD", "linear", 0.0, 1.0, "laboratories", source)
         for place in LABORATORIES
         for channel in CHANNELS
     )
@@ -167,13 +149,16 @@ def priors_of(variable: Variable) -> Priors:
 def _moved(prior: Prior, log_scale: float) -> Prior:
     if not prior.name.endswith("threshold drive") or log_scale == 0.0:
         return prior
-    return Prior(prior.name, "own", prior.scale, prior.middle + log_scale, prior.sd, prior.mechanism, prior.source)
+    return replace(prior, unit="own", middle=prior.middle + log_scale)
 
 
 def _prior(row: _Row) -> Prior:
-    if row.scale == "log":
-        return Prior.log(row.name, row.unit, row.median, row.low, row.high, row.mechanism, row.source)
-    if row.scale == "linear":
-        return Prior.normal(row.name, row.unit, row.median, (row.high - row.low) / WIDTH_95, row.mechanism, row.source)
-    ends = [math.log(end / (1.0 - end)) for end in (row.low, row.high)]
-    return Prior.share(row.name, row.median, (ends[1] - ends[0]) / WIDTH_95, row.mechanism, row.source)
+    scale: Scale = "logit" if row.scale == "share" else row.scale
+    if scale == "log":
+        middle, width = math.log(row.median), math.log(row.high / row.low)
+    elif scale == "linear":
+        middle, width = row.median, row.high - row.low
+    else:
+        middle, low, high = (math.log(share / (1.0 - share)) for share in (row.median, row.low, row.high))
+        width = high - low
+    return Prior(row.name, row.unit, scale, middle, width / WIDTH_95, row.mechanism, row.source)

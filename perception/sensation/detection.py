@@ -244,7 +244,7 @@ def detect(
     four keywords are one number or one for each leading index.
     """
     path = np.asarray(observer.path_hand_m if path_m is None else path_m, dtype=np.float64)
-    conduction = observer.delays_s("cold", path), observer.delays_s("warm", path)
+    conduction = observer.delay_s("cold", path), observer.delay_s("warm", path)
     decision = observer.decision_s if decision_s is None else decision_s
     step = report_step(dt_s)
     every = round(step / dt_s)

@@ -199,7 +199,7 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
         channel=channel_name(int(found.channel)),
         detected_probability=float(found.probability),
         icon=trace.icon,
-        conduction_s=(person.delay_s("cold", path), person.delay_s("warm", path)),
+        conduction_s=(float(person.delay_s("cold", path)), float(person.delay_s("warm", path))),
         outside_data=outside_data(trace),
     )
 

@@ -26,6 +26,7 @@ from thermicon.icons.recordings.recorded import read_readings
 from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.files.trace_files import read_curves
 from thermicon.notebooks.study.study_file import study_text
+from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.pilot.measurements_file import read_measurements
 from thermicon.perception.pilot.trials_file import read_trials
@@ -130,7 +131,11 @@ READERS: dict[str, tuple[str, str, Callable[[Path], object]]] = {
     "answers": ("a.csv", ANSWERS, lambda path: read_trials(path, ["cooling-step", "warming-step"]).counts.tolist()),
     "measurements": ("a.csv", VALUES, lambda path: repr(read_measurements(path, Rig.load("thenar")))),
     "order": ("a.txt", "cooling-step\nwarming-step # last\n", lambda path: read_order(path, load_library("six-icons"))),
-    "draws": ("a.csv", shipped("thermicon.perception", "data/posterior.csv"), lambda path: Observer.load(path).cold),
+    "draws": (
+        "a.csv",
+        shipped("thermicon.perception", "data/posterior.csv"),
+        lambda path: PosteriorDraws.load(path).nominal().cold,
+    ),
 }
 
 

@@ -10,7 +10,7 @@ from thermicon.perception.evidence.results import EDGE, load_constants, load_pre
 from thermicon.perception.evidence.validate import ValidationReport
 from thermicon.perception.evidence.validate_file import conditioning_file, report_file
 from thermicon.perception.observer.mechanisms import MECHANISMS
-from thermicon.perception.observer.priors import Prior
+from thermicon.perception.observer.priors import WIDTH_95
 
 
 def test_every_row_is_there_and_every_miss_has_a_suspect() -> None:
@@ -47,8 +47,7 @@ def test_an_edge_is_an_outer_tenth_of_the_prior() -> None:
         constant = each
         if constant.prior_low > 0.0 and constant.name.endswith(("time", "between people")):
             middle = math.sqrt(constant.prior_low * constant.prior_high)
-            prior = Prior.log("x", "1", middle, constant.prior_low, constant.prior_high, "m", "s")
-            z = (math.log(constant.value) - prior.middle) / prior.sd
+            z = math.log(constant.value / middle) / (math.log(constant.prior_high / constant.prior_low) / WIDTH_95)
             assert each.at_edge == (abs(z) > 1.2815516)
             assert each.at_edge == (min(each.quantile, 1.0 - each.quantile) < EDGE)
 

@@ -29,4 +29,4 @@ def test_two_parameters_of_one_name_are_refused() -> None:
 
 def test_a_prior_without_width_is_refused() -> None:
     with pytest.raises(ValueError, match="cold limit: a prior needs"):
-        Prior.normal("cold limit", "degC", 33.0, 0.0, "quality", "none")
+        Prior("cold limit", "degC", "linear", 33.0, 0.0, "quality", "none")

@@ -111,7 +111,7 @@ def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], tm
     assert draws.header.rig == "thenar" and draws.one_laboratory and not PosteriorDraws.load().one_laboratory
     assert "# effective draws: " in table and "# participants: 3\n" in table
     person = Observer.load(tmp_path / "lab.toml")
-    assert Observer.load(tmp_path / "lab.csv") == draws.nominal() == person
+    assert PosteriorDraws.load(tmp_path / "lab.csv").nominal() == draws.nominal() == person
     model = ObserverModel.load(tmp_path / "lab.csv")
     whole = ObserverModel.load(tmp_path / "lab.toml")
     assert model.nominal == whole.nominal == person
