@@ -118,7 +118,7 @@ def _sensation(percept: Percept, ax: Axes) -> None:
         ax.axvline(percept.onset_s, color=INK, lw=1.0, ls=":", label=said)
     else:
         ax.plot([], [], " ", label=f"not felt by the\nnominal person\n(p {percept.detected_probability:.2f})")
-    ax.set_ylabel(f"sensation (d′)\n{percept.clock} clock")
+    ax.set_ylabel("sensation (d′)\nreceptor clock")
 
 
 def draw_overview(

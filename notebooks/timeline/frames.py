@@ -227,7 +227,7 @@ def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
         for moment in drawing.moments
     ]
     # A label that changed with the icon would have the page build its panels anew.
-    label = f"sensation (d′) of the nominal person, {percept.clock} clock"
+    label = "sensation (d′) of the nominal person, receptor clock"
     terms = terms_of("d′", "sensation ψ", "onset", "clock", "nominal person")
     return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False, digits=1, terms=terms)
 

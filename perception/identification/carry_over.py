@@ -15,9 +15,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import NORMS, USUAL_NORM, Norm
+from ..observer.channels import CHANNELS, NORMS, Norm
 from ..observer.observer import Observer
 from ..observer.people import draw_people
+from ..sensation.features import receptor_C
 from ..sensation.percept import perceive_many, uniform_clock
 from .episodes import Episodes, episode_distances
 from .task import Task
@@ -41,15 +42,9 @@ class CarryOver:
     gap_s: float
     apart: Array
 
-    def __repr__(self) -> str:
-        icons = "1 icon" if len(self.names) == 1 else f"{len(self.names)} icons"
-        most = f"up to {self.apart[NORMS.index(USUAL_NORM)].max():.3g} d′ from memory"
-        return f"CarryOver({icons}, {self.gap_s:g} s apart: {most})"
-
     def over(self, places: Sequence[int]) -> Array:
         """Root mean square (norms, icons) over some icons before, each of them as likely as the next."""
-        found: Array = np.sqrt((self.apart[:, list(places)] ** 2).mean(axis=1))
-        return found
+        return np.asarray(np.sqrt((self.apart[:, list(places)] ** 2).mean(axis=1)))
 
     def worst_of(self, place: int, norm: Norm, places: Sequence[int] = ()) -> dict[str, Any]:
         """After which icon (of some) one feels least like itself, and by how many d′ from memory, for `rank --json`."""
@@ -72,13 +67,6 @@ def carry_over(
     What an icon leaves behind depends on who holds the gap: the driver brings the skin or the display back to its
     baseline, or, with `tracking` `replay`, the resting current flows and nothing corrects what it leaves.
     Raises `ValueError` for a gap below 0, without icons, and for an end before that of the longest icon.
-
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.icons import read_cue
-    >>> icons, rig = list(read_cue("six-icons")), Rig.load("thenar")
-    >>> near, far = (carry_over(icons, rig, 18.0, gap_s).apart[0].max() for gap_s in (1.0, 150.0))
-    >>> bool(near > 3 * far)
-    True
     """
     from thermicon.circuit.solver.simulate import duration_s, simulate_all
 
@@ -96,8 +84,9 @@ def carry_over(
     traces = simulate_all(list(icons), rig, end_s=last, rate_Hz=RATE_HZ)
     leaving = [_replayed(icon, rig, last) for icon in icons] if tracking == "replay" else traces
     dt, _ = uniform_clock(traces[0].time_s)
-    cold, warm = (_at_receptors(traces, channel) for channel in ("cold", "warm"))
-    sources = [(_at_receptors(leaving, channel), alone) for channel, alone in (("cold", cold), ("warm", warm))]
+    met, left = (
+        [np.array([receptor_C(trace, channel) for trace in each]) for channel in CHANNELS] for each in (traces, leaving)
+    )
 
     def for_one(thresholds: tuple[float, float]) -> Array:
         def felt(at_cold: Array, at_warm: Array) -> Array:
@@ -107,10 +96,11 @@ def carry_over(
             )  # fmt: skip
             return np.stack(psi)
 
-        alone = felt(cold[:, :rows], warm[:, :rows])
+        alone = felt(*(received[:, :rows] for received in met))
         apart = np.empty((len(NORMS), len(icons), len(icons)))
         for before, wait in enumerate(waits):
-            after = felt(*(_after(left[before], received, wait, rows) for left, received in sources))[..., wait:]
+            parts = zip(left, met, strict=True)
+            after = felt(*(_after(own[before], received, wait, rows) for own, received in parts))[..., wait:]
             pairs = np.stack([alone, after], axis=2)
             episodes = Episodes.of(pairs[0], pairs[1], dt, person, [[icon.name] for icon in icons])
             for k, norm in enumerate(NORMS):
@@ -148,7 +138,7 @@ def task_among(task: Task, left: CarryOver | None, places: Sequence[int]) -> Tas
 
 
 def _rows(values: Array) -> tuple[tuple[float, ...], ...]:
-    return tuple(tuple(float(value) for value in row) for row in values)
+    return tuple(tuple(row) for row in values.tolist())
 
 
 def _replayed(icon: Icon, rig: Rig, end_s: float) -> Trace:
@@ -163,10 +153,6 @@ def _replayed(icon: Icon, rig: Rig, end_s: float) -> Trace:
     else:
         drive = Drive([*times, times[-1] + 1e-3, end_s], [*currents, plan.rest_A, plan.rest_A])
     return simulate_current(drive, rig, rate_Hz=RATE_HZ, start_C=plan.start_C)
-
-
-def _at_receptors(traces: Sequence[Trace], channel: str) -> Array:
-    return np.array([getattr(trace, f"{channel}_receptor_C") for trace in traces])
 
 
 def _after(left: Array, received: Array, wait: int, rows: int) -> Array:

@@ -47,13 +47,8 @@ class Confusion:
     ----------
     probability
         Probabilities (people, icons, icons) of each answer (last axis) to each presented icon; rows sum to 1.
-    stress
-        How far the embedding bends the distances of each person (people,), as a share of their root mean square; 0: not
-        at all.
-    standard_error
-        Largest sampling error of a cell of the pooled matrix, at most; 0 where cells are exact.
-    person_standard_error
-        The same of one person's matrix.
+    standard_error, person_standard_error
+        Largest sampling error of a cell of the pooled matrix, at most, and of one person's; 0 where cells are exact.
 
     See Also
     --------
@@ -61,7 +56,6 @@ class Confusion:
     """
 
     probability: Array
-    stress: Array
     standard_error: float
     person_standard_error: float
 
@@ -133,36 +127,26 @@ def confuse(
     if not np.isfinite(favour).all():
         raise ValueError("bias must be finite: give the log of how much likelier a name is")
 
-    points, stress = embed(distances)
     if icons == 1:
         named = np.ones((people, 1, 1))
     elif icons == 2:
         named = _two(distances[:, 0, 1], favour[:, 0] - favour[:, 1])
     else:
-        named = _sampled(points, distances, favour, seed, samples, first)
+        named = _sampled(embed(distances), distances, favour, seed, samples, first)
     probability = normalised((1.0 - lapses) * named + lapses / icons)
     mean = probability.mean(axis=0)
     one = sampling_error(probability, samples) if icons > 2 else 0.0
-    return Confusion(probability, stress, sampling_error(mean, samples * people) if icons > 2 else 0.0, one)
+    return Confusion(probability, sampling_error(mean, samples * people) if icons > 2 else 0.0, one)
 
 
 def sampling_error(probability: ArrayLike, samples: int) -> float:
-    """Largest standard error of a cell that was sampled so often: no more than this, since draws are stratified.
-
-    >>> round(sampling_error(0.5, 10_240), 5)
-    0.00494
-    """
+    """Largest standard error of a cell that was sampled so often: no more than this, since draws are stratified."""
     p = np.asarray(probability, dtype=np.float64)
     return float(np.sqrt((p * (1.0 - p)).max() / samples))
 
 
-def embed(distances: Array) -> tuple[Array, Array]:
-    """Points (people, icons, axes) whose distances come nearest the given ones, and the stress (people,).
-
-    Axes are in order of their length, the longest first.
-    """
-    from ..kernels import kernels
-
+def embed(distances: Array) -> Array:
+    """Points (people, icons, axes) whose distances come nearest the given ones; axes in order of their length."""
     squares = distances**2
     rows, columns = squares.mean(axis=-1, keepdims=True), squares.mean(axis=-2, keepdims=True)
     gram = -0.5 * (squares - rows - columns + squares.mean(axis=(-2, -1), keepdims=True))
@@ -170,17 +154,12 @@ def embed(distances: Array) -> tuple[Array, Array]:
     axes = max(distances.shape[-1] - 1, 1)
     values, vectors = values[:, : -axes - 1 : -1], vectors[:, :, : -axes - 1 : -1]
     largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1, keepdims=True), axis=1)
-    points = np.ascontiguousarray(vectors * np.where(largest < 0, -1.0, 1.0) * np.sqrt(np.maximum(values, 0))[:, None])
-    bent = np.zeros(len(points))
-    kernels.bend(points, np.ascontiguousarray(distances), bent)
-    size = np.sqrt(squares.sum(axis=(1, 2)))
-    return points, np.divide(bent, size, out=np.zeros_like(bent), where=size > 0)
+    return np.ascontiguousarray(vectors * np.where(largest < 0, -1.0, 1.0) * np.sqrt(np.maximum(values, 0))[:, None])
 
 
 def normalised(rows: Array) -> Array:
     """Rows divided by their sums, so that they add to 1 to the last bit that counts."""
-    scaled: Array = rows / rows.sum(axis=-1, keepdims=True)
-    return scaled
+    return np.asarray(rows / rows.sum(axis=-1, keepdims=True))
 
 
 def _cumulative(x: Array) -> Array:
@@ -282,23 +261,12 @@ def name_directly(
     samples: int = NAMED_SAMPLES,
     first: int = 0,
 ) -> Confusion:
-    """Confusions (people, icons, icons) of icons that are named episode by episode.
+    """Confusions (people, icons, icons) of icons that are named episode by episode from the memory of an observer.
 
-    Parameters
-    ----------
-    felt
-        Episodes of every person and icon.
-    observer
-        The observer whose memory it is.
-    memory, lapse
-        Multiples of memory noise, and shares of guessed trials: one for each person, or for all.
-    louder
-        Multiples (people, icons) of the noise of an icon, for what the icon before leaves behind.
-    bias
-        Log likelihoods (icons,) or (people, icons) that favour names.
-    seed, samples, first
-        Noise is drawn from the seed and the person's number, which counts from `first`; trials of an icon.
-
+    `memory` and `lapse` are multiples of memory noise and shares of guessed trials, one for each person or for all;
+    `louder` (people, icons) multiplies the noise of an icon, for what the icon before leaves behind; `bias` are log
+    likelihoods, (icons,) or (people, icons), that favour names. Noise is drawn from the seed and the person's number,
+    which counts from `first`; `samples` are trials of an icon.
     """
     from ..kernels import alignment
 
@@ -324,7 +292,6 @@ def name_directly(
     over_rows(work, people, people * icons * icons * samples)
     apart = episode_distances(felt, felt, observer, "naming", own)
     named = shared_among_identical(counts / samples, apart, favour)
-    probability: Array = normalised((1.0 - lapses) * named + lapses / icons)
-    error = sampling_error(probability.mean(axis=0), samples * people) if icons > 1 else 0.0
-    person_error = sampling_error(probability, samples) if icons > 1 else 0.0
-    return Confusion(probability, np.zeros(people), error, person_error)
+    probability = normalised((1.0 - lapses) * named + lapses / icons)
+    mean = probability.mean(axis=0)
+    return Confusion(probability, sampling_error(mean, samples * people), sampling_error(probability, samples))

@@ -8,7 +8,7 @@ and wrong by about a tenth of the change otherwise, since skins differ in lag.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,20 +49,8 @@ class DeliveredChange:
 class PerceivedChange:
     """Effect of a device on one icon: probability of detection, and d′ to each other icon for a nominal person.
 
-    Attributes
-    ----------
-    icon
-        Name of the icon.
-    detection
-        Probability of a report, designed and delivered.
-    d_prime
-        d′ from memory to each other icon, by its name, designed and delivered.
-    people
-        Number of virtual people whose mean the detection is; 0 where it is the nominal person's.
-
-    See Also
-    --------
-    judge_delivered : Compares a set.
+    `detection` is the mean of as many virtual `people`, or where there are none the nominal person's; `d_prime` is from
+    memory, to each other icon by its name.
     """
 
     icon: str
@@ -105,8 +93,8 @@ class PerceivedChange:
         return {
             "observer": "nominal",
             "detected_by": self.detected_by,
-            "detected_probability": _pair(self.detection),
-            "d_prime": {other: _pair(change) for other, change in self.d_prime},
+            "detected_probability": asdict(self.detection),
+            "d_prime": {other: asdict(change) for other, change in self.d_prime},
             "losses": list(self.losses()),
         }
 
@@ -118,33 +106,11 @@ def judge_delivered(
     observer: Observer | None = None,
     norm: str = USUAL_NORM,
 ) -> tuple[PerceivedChange, ...]:
-    """Compare designed and delivered icons of a set for a nominal person.
+    """Compare designed and delivered icons of a set for a nominal person, or another observer.
 
-    Each icon is compared with the others as they were designed, and, delivered, with the others as they are delivered.
+    Each icon is compared with the others as they were designed, and, delivered, with the others as they are delivered;
+    all traces have the same rows.
 
-    Parameters
-    ----------
-    names
-        Names of the icons.
-    designed, delivered
-        Their traces, all with the same rows.
-    observer
-        The person (None: the nominal one).
-    norm
-        How episodes are remembered: `episodes` or `naming`.
-
-    Returns
-    -------
-    tuple of PerceivedChange
-        For each icon, detection by this person and d′ to every other icon, designed and delivered.
-
-    Raises
-    ------
-    ValueError
-        For an unknown norm, and for traces without a uniform clock.
-
-    Examples
-    --------
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import read_cue
     >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
@@ -182,13 +148,6 @@ def detected_as_delivered(
     `designed` and `delivered` are its traces on the nominal rig, on the clock of the file. `end_s` is when the run of
     the set ends (None: 10 s after this icon). Raises `RigError` where the skin of a person cannot be held at the
     icon's baseline.
-
-    >>> from thermicon.circuit import Device, Rig
-    >>> from thermicon.circuit.delivery.deliver import deliver
-    >>> from thermicon.icons import read_cue
-    >>> made = deliver(read_cue("six-icons")["cooling-step"], Rig.load("thenar"), Device.load("dac-12"))
-    >>> detected_as_delivered(made, made.designed_trace, made.trace, people=4).delivered > 0.9
-    True
     """
     from thermicon.circuit.solver.simulate import duration_s
 
@@ -216,14 +175,9 @@ def _change(met_K: Array, channel: Channel, designed: Trace, delivered: Trace, a
     icon = before - before[0]
     size = float(icon @ icon)
     gain = (met_K @ icon)[..., None] / size if size > 0.0 else 1.0
-    change: Array = gain * (after - before)
-    return change
+    return np.asarray(gain * (after - before))
 
 
 def _d_primes(percepts: Sequence[Percept], names: Sequence[str], person: Observer, norm: Norm) -> Array:
     felt = np.array([p.psi_cold for p in percepts]), np.array([p.psi_warm for p in percepts])
     return dprimes_from_memory(felt, felt, percepts[0].dt_s, person, norm, (names, names))
-
-
-def _pair(change: DeliveredChange) -> dict[str, float]:
-    return {"designed": change.designed, "delivered": change.delivered}

@@ -33,15 +33,7 @@ class Doubt:
 
 
 def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
-    """Constants that act on the set and carry at least 2 % of the variance of the proportion correct, largest first.
-
-    >>> import numpy as np
-    >>> x = np.random.default_rng(0).standard_normal((200, 2))
-    >>> none = np.zeros((200, 1))
-    >>> drawn = LaboratoryDraws(("a", "b"), x, x[0] < 9, 0.8 + 0.05 * x[:, 0], *[none] * 7)
-    >>> [(doubt.name, round(doubt.share, 2)) for doubt in doubts(drawn)]
-    [('a', 0.99)]
-    """
+    """Constants that act on the set and carry at least 2 % of the variance of the proportion correct, largest first."""
     shares = explained(each.values, each.proportion_correct)
     found = [
         Doubt(name, float(share))

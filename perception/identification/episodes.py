@@ -138,8 +138,7 @@ def intensity_noise(norm: Norm, observer: Observer, memory: Array) -> Array:
     if norm == "naming":
         ratings = [observer.memory.ratings(channel) for channel in CHANNELS]
         noise = noise * np.array([each.exponent * each.rated for each in ratings])
-    found: Array = memory[:, None] * noise[None, :]
-    return found
+    return np.asarray(memory[:, None] * noise[None, :])
 
 
 def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: Norm, memory: ArrayLike = 1.0) -> Array:
@@ -187,15 +186,7 @@ def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Ob
 
 
 def remembered(percepts: Sequence[Percept], observer: Observer | None = None) -> Episodes:
-    """Episodes of percepts on one clock for a nominal person (or `observer`); shorter ones are held at their end.
-
-    >>> from thermicon.circuit import Rig, simulate
-    >>> from thermicon.icons import load_library
-    >>> from thermicon.perception import perceive
-    >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=10)
-    >>> [episode.channel for episode in remembered([perceive(trace)]).listed(0, 0)]
-    ['cold']
-    """
+    """Episodes of percepts on one clock for a nominal person (or `observer`); shorter ones are held at their end."""
     person = Observer.load() if observer is None else observer
     cold, warm, dt = on_one_clock(percepts)
     return Episodes.of(cold[None], warm[None], dt, person, [percept.icon or "" for percept in percepts])
@@ -217,8 +208,7 @@ def dprimes_from_memory(
         Episodes.of(cold[None], warm[None], dt_s, observer, called)
         for (cold, warm), called in zip((one, other), names, strict=True)
     )
-    found: Array = episode_distances(first, second, observer, norm)[0]
-    return found
+    return np.asarray(episode_distances(first, second, observer, norm)[0])
 
 
 def dprime_from_memory(a: Percept, b: Percept, observer: Observer | None = None, norm: str = USUAL_NORM) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -98,30 +98,11 @@ def new_laboratory(
     task: Task = USUAL,
     step: Callable[[], None] | None = None,
 ) -> NewLaboratory:
-    """Intervals about `predicted`, from `draws` sets of constants; `step` is called after each.
+    """Intervals about `predicted`, from `draws` sets of constants, evenly spaced; `step` is called after each.
 
-    Parameters
-    ----------
-    thin
-        Temperatures of the first PEOPLE of the crowd at every EVERY-th instant.
-    crowd
-        The people of the prediction.
-    predicted
-        The prediction; each draw adds what it changes against the nominal observer on the same people and noise.
-    norm, task, seed
-        As in `rank`.
-    model
-        The observer with its draws of the constants (None: the shipped one).
-    draws
-        How many of them, evenly spaced.
-    step
-        Called after each draw.
-
-    Raises
-    ------
-    ValueError
-        For fewer than two draws, which have no interval, and for an observer without draws.
-
+    `thin` are temperatures of the first PEOPLE of the crowd at every EVERY-th instant; each draw adds to the prediction
+    what it changes against the nominal observer on the same people and noise. Norm, task and seed are as in `rank`.
+    Raises `ValueError` for fewer than two draws, which have no interval, and for an observer without draws.
     """
     if draws < 2:
         raise ValueError(f"an interval needs at least two draws of the constants, not {draws}")
@@ -136,13 +117,7 @@ def new_laboratory(
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))
-    about: tuple[float | Array, ...] = (
-        predicted.proportion_correct,
-        predicted.information_bits,
-        predicted.detected,
-        predicted.d_prime,
-        predicted.onset_s,
-    )
+    about: tuple[Any, ...] = astuple(predicted)
     most = (1.0, math.log2(icons), 1.0, math.inf, math.inf)
     raw = (each.proportion_correct, each.information_bits, each.detected, each.d_prime, each.onset_s)
     correct, bits, detected, apart, onset = (

@@ -70,17 +70,10 @@ class Uncertain:
 
 
 def latin(parameters: int, draws: int, seed: int) -> Array:
-    """Shares of shape (draws, parameters) in 0–1, one in each of `draws` equal strata of every parameter.
-
-    >>> bool((np.sort((latin(2, 4, seed=0) * 4).astype(int), axis=0) == np.arange(4)[:, None]).all())
-    True
-    """
+    """Shares of shape (draws, parameters) in 0–1, one in each of `draws` equal strata of every parameter."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 3]))
-    strata = (
-        np.stack([rng.permutation(draws) for _ in range(parameters)], axis=-1) if parameters else np.empty((draws, 0))
-    )
-    shares: Array = (strata + rng.random(strata.shape)) / draws
-    return shares
+    strata = np.array([rng.permutation(draws) for _ in range(parameters)]).reshape(parameters, draws).T
+    return np.asarray((strata + rng.random(strata.shape)) / draws)
 
 
 def memory_parameters(norm: Norm, records: Table | None = None) -> tuple[Uncertain, ...]:
@@ -205,28 +198,9 @@ def laboratory_draws(
 ) -> LaboratoryDraws:
     """Predictions by `draws` draws, evenly spaced; the same arguments give the same numbers.
 
-    Parameters
-    ----------
-    played
-        What the receptors of the persons go through in a draw, by its number.
-    persons
-        The people, of whom every draw has its own with the same seed.
-    norm, task, seed
-        As in `rank`.
-    model
-        The observer, which needs draws.
-    draws
-        How many.
-    resampled
-        Whether each draw invites a random sample of the persons, and not all of them once.
-    step
-        Called after each draw.
-
-    Raises
-    ------
-    ValueError
-        For an observer without draws.
-
+    `played` says what the receptors of the persons go through in a draw, by its number. Every draw has its own people
+    with the same seed, and invites a random sample of them (`resampled`), or all of them once. Norm, task and seed are
+    as in `rank`; `step` is called after each draw. Raises `ValueError` for an observer without draws.
     """
     laboratories, count = DrawnLaboratories.of(model, norm, draws, seed), len(persons)
     invited = laboratories.invited(count) if resampled else np.tile(np.arange(count), (draws, 1))
@@ -302,9 +276,5 @@ def scored(
 
 
 def people_for_intervals(icons: int) -> int:
-    """Largest number of people who judge a set of this size with every draw.
-
-    >>> people_for_intervals(6), people_for_intervals(64)
-    (24, 12)
-    """
+    """Largest number of people who judge a set of this size with every draw."""
     return min(PEOPLE, max(FEWEST, PRESENTED // icons))

@@ -27,30 +27,10 @@ ALIKE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class PerceptualMap(Drawn):
-    """Icons as points of a plane, in d′, and how far the plane bends the distances.
+    """Icons as points (icons, 2) of a plane, in d′, and how far the plane bends the distances.
 
-    Attributes
-    ----------
-    labels
-        Names of the icons.
-    points
-        Points (icons, 2), d′.
-    stress
-        Kruskal's stress-1; 0: the distances are exact.
-    covariance
-        Scatter (icons, 2, 2) over the maps of single people, each turned and shifted onto this one, d′²; None for one
-        person.
-    people
-        Number of people behind it.
-
-    Raises
-    ------
-    ValueError
-        For points or covariances of another shape than the labels.
-
-    See Also
-    --------
-    perceptual_map, map_of : Compute a map.
+    `stress` is Kruskal's stress-1 (0: the distances are exact), `covariance` (icons, 2, 2) the scatter in d′² over the
+    maps of single `people`, each turned and shifted onto this one; None for one person.
     """
 
     labels: tuple[str, ...]
@@ -81,38 +61,15 @@ def perceptual_map(
     people: ArrayLike | None = None,
     reference: PerceptualMap | None = None,
 ) -> PerceptualMap:
-    """Lay icons out in a plane whose distances are as near as possible to pairwise d′.
+    """Lay icons out in a plane whose distances are as near as possible to pairwise d′ (icons, icons).
 
-    With a reference the map is turned, mirrored and shifted onto it as well as the icons of the same name allow
-    (two or more), and never stretched.
+    `people` are d′ (n, icons, icons) of single people, for the ellipses. With a reference the map is turned, mirrored
+    and shifted onto it as well as the icons of the same name allow (two or more), and never stretched. Raises
+    `ValueError` for distances that are not symmetric, finite and 0 between an icon and itself.
 
-    Parameters
-    ----------
-    d_prime
-        Pairwise d′ (icons, icons).
-    labels
-        Names of the icons.
-    people
-        Pairwise d′ (n, icons, icons) of single people, for the ellipses.
-    reference
-        Another map.
-
-    Returns
-    -------
-    PerceptualMap
-        Points in d′, with stress and scatter.
-
-    Raises
-    ------
-    ValueError
-        For distances that are not symmetric, finite and 0 between an icon and itself.
-
-    Examples
-    --------
-    >>> import numpy as np
     >>> found = perceptual_map([[0, 3, 4], [3, 0, 5], [4, 5, 0]], ["a", "b", "c"])
-    >>> round(found.stress, 6), np.linalg.norm(found.points[1] - found.points[2]).round(3)
-    (0.0, np.float64(5.0))
+    >>> round(found.stress, 6), float(np.linalg.norm(found.points[1] - found.points[2]).round(3))
+    (0.0, 5.0)
     """
     wanted = np.asarray(d_prime, dtype=np.float64)
     icons = len(labels)
@@ -141,25 +98,7 @@ def perceptual_map(
 def map_of(ranking: Ranking, reference: PerceptualMap | None = None) -> PerceptualMap:
     """Lay out the icons of a ranking by their median d′, with the spread over the people it kept.
 
-    Parameters
-    ----------
-    ranking
-        The ranking.
-    reference
-        Another map, onto which this one is laid.
-
-    Returns
-    -------
-    PerceptualMap
-        Points in d′, with stress and scatter.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.icons import read_cue
-    >>> from thermicon.perception import rank
-    >>> map_of(rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)).points.shape
-    (6, 2)
+    With a reference, another map, it is laid onto that.
     """
     people = None if ranking.spread is None else ranking.spread.d_prime
     return perceptual_map(ranking.d_prime, ranking.labels, people, reference)
@@ -200,22 +139,19 @@ def stress(distances: Array, points: Array) -> Array:
     """Kruskal's stress-1 of maps (..., icons, 2): root of the summed squared errors over the summed squared d′."""
     size = (distances**2).sum(axis=(-2, -1))
     bent = ((between(points) - distances) ** 2).sum(axis=(-2, -1))
-    found: Array = np.sqrt(np.divide(bent, size, out=np.zeros_like(bent), where=size > 0))
-    return found
+    return np.asarray(np.sqrt(np.divide(bent, size, out=np.zeros_like(bent), where=size > 0)))
 
 
 def between(points: Array) -> Array:
     """Distances (..., icons, icons) between points (..., icons, 2)."""
-    found: Array = np.linalg.norm(points[..., :, None, :] - points[..., None, :, :], axis=-1)
-    return found
+    return np.asarray(np.linalg.norm(points[..., :, None, :] - points[..., None, :, :], axis=-1))
 
 
 def laid_onto(points: Array, some: Array, target: Array) -> Array:
     """Points (n, 2) turned, mirrored and shifted as brings `some` (k, 2) nearest to `target` (k, 2): Procrustes."""
     off, to = some.mean(axis=0), target.mean(axis=0)
     left, _, right = np.linalg.svd((some - off).T @ (target - to))
-    laid: Array = (points - off) @ (left @ right) + to
-    return laid
+    return np.asarray((points - off) @ (left @ right) + to)
 
 
 def settled(points: Array) -> Array:
@@ -239,8 +175,7 @@ def settled(points: Array) -> Array:
         off = turned[:, axis]
         first_off = off[int((np.abs(off) > ALIKE * size).argmax())]
         turned[:, axis] *= side if first_off > 0 else -side
-    made: Array = turned
-    return made
+    return np.asarray(turned)
 
 
 MOST_PEOPLE, MOST_CELLS = 64, 200_000
@@ -270,11 +205,7 @@ def spread_over_people(d_prime: Array, correct: Array) -> PersonSpread:
 
 
 def place_probability(correct: Array) -> Array:
-    """Probability (icons, places) over people that an icon is at a place, from proportions correct (people, icons).
-
-    >>> place_probability(np.array([[0.9, 0.7], [0.8, 0.8]])).tolist()
-    [[0.75, 0.25], [0.25, 0.75]]
-    """
+    """Probability (icons, places) over people that an icon is at a place, from proportions correct (people, icons)."""
     whole = np.rint(100.0 * np.asarray(correct, dtype=np.float64))
     people, icons = whole.shape
     found, places = np.zeros((icons, icons)), np.arange(icons)

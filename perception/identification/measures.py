@@ -13,20 +13,8 @@ from ..arrays import Array
 
 
 def proportion_correct(confusion: ArrayLike) -> Array:
-    """Compute the proportion correct with every icon presented equally often.
+    """Proportion correct (...,) of confusions (..., m, m) whose rows sum to 1, every icon presented equally often.
 
-    Parameters
-    ----------
-    confusion
-        Probabilities (..., m, m) of each answer (last axis) to each presented icon; rows sum to 1.
-
-    Returns
-    -------
-    ndarray
-        Proportion (...,), 0–1.
-
-    Examples
-    --------
     >>> float(proportion_correct([[0.9, 0.1], [0.3, 0.7]]))
     0.8
     """

@@ -27,11 +27,7 @@ TAIL_S, RATE_HZ = 10.0, 100.0
 
 
 def run_end_s(durations_s: Iterable[float], rate_Hz: float = RATE_HZ) -> float:
-    """End of a run of icons that last so long: `TAIL_S` after the longest, on a whole row, s.
-
-    >>> run_end_s([4.0, 2.5])
-    14.0
-    """
+    """End of a run of icons that last so long: `TAIL_S` after the longest, on a whole row, s."""
     return math.ceil((max(durations_s) + TAIL_S) * rate_Hz - 1e-6) / rate_Hz
 
 

@@ -200,34 +200,28 @@ class Task:
             return own
         cold, warm = (peak[:, list(self.counted)] if self.counted else peak for peak in peaks)
         reach = np.maximum(range_of(cold, warm, observer) / reference_range(), NARROWEST)
-        found: Array = own * reach**self.context
-        return found
+        return np.asarray(own * reach**self.context)
 
     def between(self, noise: Array, norm: Norm) -> Array:
         """Noise (people, icons, icons) between icons that also vary with what was felt before them."""
         if not self.carried:
             return noise
         own = np.array(self.carried[NORMS.index(norm)])
-        found: Array = np.sqrt(noise**2 + 0.5 * (own[:, None] ** 2 + own[None, :] ** 2))
-        return found
+        return np.asarray(np.sqrt(noise**2 + 0.5 * (own[:, None] ** 2 + own[None, :] ** 2)))
 
     def louder(self, memory: Array, norm: Norm) -> Array | float:
         """Multiples (people, icons) of the noise of icons that also vary with what was felt before them."""
         if not self.carried:
             return 1.0
         own = np.array(self.carried[NORMS.index(norm)])
-        found: Array = np.hypot(1.0, own[None, :] / memory[:, None])
-        return found
+        return np.asarray(np.hypot(1.0, own[None, :] / memory[:, None]))
 
     def favour(self, first: int, people: int, icons: int, seed: int) -> Array | float:
         """Log likelihoods (people, icons) that favour names; those of a person do not depend on the other people."""
         if self.bias == 0.0:
             return 0.0
         streams = (np.random.SeedSequence([seed, 7], spawn_key=(first + person,)) for person in range(people))
-        drawn: Array = self.bias * np.array(
-            [np.random.default_rng(stream).standard_normal(icons) for stream in streams]
-        )
-        return drawn
+        return self.bias * np.array([np.random.default_rng(stream).standard_normal(icons) for stream in streams])
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""
@@ -249,8 +243,7 @@ def range_of(psi_cold: Array, psi_warm: Array, observer: Observer) -> Array:
         low = np.where(felt, psi, math.inf).min(axis=1)
         high = np.where(felt, psi, -math.inf).max(axis=1)
         spans.append(np.where(high > low, high - low, 0.0))
-    widest: Array = np.maximum(*spans) / (observer.a * observer.p)
-    return widest
+    return np.asarray(np.maximum(*spans) / (observer.a * observer.p))
 
 
 @lru_cache(maxsize=1)

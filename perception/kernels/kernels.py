@@ -173,26 +173,11 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
                 counts[i, j] += tally[k, i, j]
 
 
-def _bend(points: Any, distances: Any, bent: Any) -> None:
-    """Root of the summed squares of what the distances between points (person, icon, axis) miss the given ones by."""
-    people, icons, axes = points.shape
-    for p in range(people):
-        total = 0.0
-        for i in range(icons):
-            for j in range(i):
-                square = 0.0
-                for k in range(axes):
-                    square += (points[p, i, k] - points[p, j, k]) ** 2
-                total += 2.0 * (math.sqrt(square) - distances[p, i, j]) ** 2
-        bent[p] = math.sqrt(total)
-
-
 Loop = Callable[..., None]
 _compile: Any = kernel(nogil=True)
 _contracted: Any = kernel(nogil=True, fastmath={"reassoc", "nsz", "contract"})
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
 sensation: Loop = vectorised(_sensation)
 nearest: Loop = _vector(_nearest)
-bend: Loop = _compile(_bend)
 ramp_response: Loop = _contracted(_ramp_response)
 superpose: Loop = _compile(_superpose)

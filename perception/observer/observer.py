@@ -79,30 +79,26 @@ class Observer:
     ----------
     cold, warm
         Constants of each channel.
-    integration_s, noise_correlation_s
-        Time constant of integration at the receptors, and correlation time of the sensory noise, s.
+    integration_s
+        Time constant of integration at the receptors, s.
     neutral_low_C, neutral_high_C
         Range of complete adaptation, °C.
-    a, p
-        Slope (d′), and exponent near threshold, of sensation.
-    reference_area_m2
-        Area of contact that thresholds are given for, m².
-    criterion
-        Change of sensation that is answered with yes, d′.
+    a, reference_area_m2
+        Slope of sensation, d′, and the area of contact that thresholds are given for, m².
+    criterion, noise_correlation_s
+        Change of sensation that is answered with yes, d′, and the correlation time of the sensory noise, s.
     path_hand_m, path_forearm_m
         Length of the nerve to the cord, m.
-    decision_s, choice_s
-        Time from the brain's signal to the answer, and what a choice adds to it, s.
-    lapse
-        Share of trials in which any name is given, 0–1.
-    memory
-        How well episodes are remembered.
-    gain_noise, decision_noise
-        SD (ln) of the gain from presentation to presentation, and of decision times from trial to trial.
-    variable
-        What the receptors go by: `temperature` or `heat flow`.
-    without
-        Mechanisms that are turned off.
+    decision_s
+        Time from the brain's signal to the answer, s.
+    lapse, memory
+        Share of trials in which any name is given, 0–1, and how well episodes are remembered.
+    p, gain_noise
+        Exponent of sensation near threshold, and the SD (ln) of the gain from presentation to presentation.
+    choice_s, decision_noise
+        What a choice adds to `decision_s`, s, and the SD (ln) of decision times from trial to trial.
+    variable, without
+        What the receptors go by, `temperature` or `heat flow`, and mechanisms that are turned off.
 
     Raises
     ------

@@ -71,7 +71,7 @@ def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
         axes.axvline(percept.onset_s, color="0.35", linewidth=1.0, linestyle=":", label=said)
     else:
         axes.plot([], [], " ", label=f"not felt {NOMINAL} (p {percept.detected_probability:.2f})")
-    axes.set_xlabel(f"time (s), {percept.clock} clock")
+    axes.set_xlabel("time (s), receptor clock")
     axes.set_ylabel("sensation (d′)")
     axes.set_title(percept.icon or "percept")
     axes.set_xlim(0.0, float(percept.time_s[-1]))

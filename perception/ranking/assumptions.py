@@ -8,7 +8,7 @@ what another contact would do to all of them. The area of contact acts on thresh
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -95,25 +95,10 @@ class Assumptions:
 def assumptions_of(
     correct: Array, crowd: People, rig: Rig, observer: Observer, draws: LaboratoryDraws | None
 ) -> Assumptions:
-    """Find what moves the proportion correct of a set most.
+    """Find what moves the proportion correct of a set most, at most three things; none where all are within chance.
 
-    Parameters
-    ----------
-    correct
-        Proportion correct of every person, (people,).
-    crowd
-        The people.
-    rig
-        The rig, with its uncertainty of contact.
-    observer
-        The nominal observer, whose summation over area is used.
-    draws
-        Predictions by draws of the posterior; None: there are none.
-
-    Returns
-    -------
-    Assumptions
-        At most three, the largest first; none where all effects are within chance.
+    `correct` (people,) is that of the people of the crowd, on a rig with its uncertainty of contact. Summation over
+    area is the nominal observer's; `draws` are predictions by draws of the posterior (None: there are none).
     """
     found = [] if draws is None else _of_draws(draws)
     fitted = PeopleFit.of(correct, crowd)
@@ -149,8 +134,7 @@ class PeopleFit:
     def shifted(self, **shifts: float) -> Array:
         """Change of the mean terms where everyone's logarithms are moved so far, (terms,)."""
         moved = self.columns + np.array([shifts.get(name, 0.0) for name in COLUMNS])
-        mean: Array = (_design(moved) - _design(self.columns)).mean(axis=0)
-        return mean
+        return np.asarray((_design(moved) - _design(self.columns)).mean(axis=0))
 
     def at(self, terms: Array) -> float:
         """Proportion correct to be expected there, 0–1."""
@@ -179,16 +163,14 @@ def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumpti
         moved = {f"threshold_{c}": math.log(a / b) for c, a, b in zip(CHANNELS, own, other, strict=True)}
         return fitted.shifted(**moved)
 
+    def of(column: str) -> Callable[[float], Array]:
+        return lambda factor: fitted.shifted(**{column: math.log(factor)})
+
+    thickness = f"thickness of the {layer.name}"
     each = (
         ("area of contact", "contact.area_cm2", "cm²", area_cm2, TWICE, of_area),
-        (
-            *("contact resistance", "contact.resistance_m2K_per_W", "m²K/W", resistance, by),
-            lambda factor: fitted.shifted(contact_resistance=math.log(factor)),
-        ),
-        (
-            *(f"thickness of the {layer.name}", "skin.layer.0.thickness_mm", "mm", mm, thicker),
-            lambda factor: fitted.shifted(outer_layer=math.log(factor)),
-        ),
+        ("contact resistance", "contact.resistance_m2K_per_W", "m²K/W", resistance, by, of("contact_resistance")),
+        (thickness, "skin.layer.0.thickness_mm", "mm", mm, thicker, of("outer_layer")),
     )
     found = []
     for name, key, unit, value, factor, terms_of in each:

@@ -156,9 +156,8 @@ def rank(
 def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None = None) -> Ranking:
     """A ranking with what a new laboratory will find, from draws of the posterior; `step` is called after each."""
     job, felt, model = ranking.job, ranking.felt, ranking.model
-    whole = Nominal(
-        ranking.proportion_correct, ranking.information_bits, felt.detected, felt.middle, felt.detection.onset_s
-    )
+    onsets = felt.detection.onset_s
+    whole = Nominal(ranking.proportion_correct, ranking.information_bits, felt.detected, felt.middle, onsets)
     crowd = model.people(job.people, job.seed)
     found = new_laboratory(
         felt.thin, crowd, whole, job.norm, model=model, draws=draws, seed=job.seed, task=job.task, step=step

@@ -20,6 +20,14 @@ if TYPE_CHECKING:
     from .scores import IconScore, PairScore
 
 
+ICON_KEYS = (
+    *("name", "detected_probability", "onset_s", "channel", "peak_change_K", "attack_K_per_s", "delay_s"),
+    *("proportion_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "rules_margin"),
+    "outside_data",
+)
+OF_MODEL = ("detected_probability", "onset_s", "channel", "proportion_correct")
+TWO_NUMBERS = ("peak_change_K", "attack_K_per_s", "delay_s")
+AT_RECEPTORS = ("cold_receptor", "warm_receptor")
 NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_laboratory_s")
 
 
@@ -68,17 +76,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
 
 
 def as_text(made: dict[str, Any]) -> str:
-    """JSON text of plain data: a key a line, and a thing a line where a key holds a list of things.
-
-    >>> print(as_text({"seed": 0, "pairs": [{"a": "x"}, {"a": "y"}]}))
-    {
-     "seed": 0,
-     "pairs": [
-      {"a": "x"},
-      {"a": "y"}
-     ]
-    }
-    """
+    """JSON text of plain data: a key a line, and a thing a line where a key holds a list of things."""
     lines = []
     for key, value in made.items():
         if isinstance(value, list) and any(isinstance(thing, dict) for thing in value):
@@ -142,27 +140,10 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
 
 
 def _icon(icon: IconScore, model: bool) -> dict[str, Any]:
-    def both(values: tuple[float | None, float | None]) -> dict[str, float | None]:
-        return {"cold_receptor": values[0], "warm_receptor": values[1]}
-
-    return {
-        "name": icon.name,
-        "detected_probability": icon.detected_probability if model else None,
-        "onset_s": icon.onset_s if model else None,
-        "channel": icon.channel if model else None,
-        "peak_change_K": both(icon.peak_change_K),
-        "attack_K_per_s": both(icon.attack_K_per_s),
-        "delay_s": both(icon.delay_s),
-        "proportion_correct": icon.proportion_correct if model else None,
-        "reachable": icon.reachable,
-        "safe": icon.safe,
-        "reason": icon.reason,
-        "cautions": list(icon.cautions),
-        "rules": [r.to_dict() for r in icon.rules],
-        "rules_score": icon.rules_score,
-        "rules_margin": icon.rules_margin,
-        "outside_data": list(icon.outside_data),
-    }
+    held: dict[str, Any] = {key: getattr(icon, key) for key in ICON_KEYS}
+    held |= {} if model else dict.fromkeys(OF_MODEL)
+    held |= {key: dict(zip(AT_RECEPTORS, held[key], strict=True)) for key in TWO_NUMBERS}
+    return {**held, "rules": [rule.to_dict() for rule in icon.rules]}
 
 
 def _carried(ranking: Ranking, place: int) -> dict[str, Any] | None:
@@ -187,7 +168,6 @@ def _map(ranking: Ranking) -> dict[str, Any]:
 
 
 def _pairs(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> list[dict[str, Any]]:
-    """Every pair, with the interval of its d′ for a new laboratory."""
     place = {name: k for k, name in enumerate(ranking.labels)}
     return [
         _pair(pair, model, None if asked is None else asked.pair(place[pair.a], place[pair.b]))

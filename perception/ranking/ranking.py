@@ -212,12 +212,7 @@ class Ranking(Drawn):
     @property
     def d_prime(self) -> Array:
         """Median d′ of every pair as a matrix (icons, icons), zero on the diagonal."""
-        place = {name: k for k, name in enumerate(self.labels)}
-        matrix = np.zeros((len(place), len(place)))
-        for pair in self.pairs:
-            i, j = place[pair.a], place[pair.b]
-            matrix[i, j] = matrix[j, i] = pair.d_prime
-        return matrix
+        return self.felt.middle
 
     @property
     def norm_sensitivity(self) -> dict[str, float]:
@@ -291,21 +286,17 @@ class Ranking(Drawn):
 
     def __repr__(self) -> str:
         low, high = self.proportion_correct_interval
-        icons = count_of(len(self.icons), "icon")
-        where = with_changes(self.rig, self.rig_changes)
+        where = f"{count_of(len(self.icons), 'icon')} on {with_changes(self.rig, self.rig_changes)}"
+        worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
         if self.by == "rules":
-            worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
             apart = sum(pair.rules_pass for pair in self.pairs)
             pairs = f", {apart} of {len(self.pairs)} pairs distinguishable" if self.pairs else ""
-            return f"Ranking(by rules: {icons} on {where}{pairs}{worst})"
+            return f"Ranking(by rules: {where}{pairs}{worst})"
         crowd = count_of(self.people, "person", "people")
         spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
         bits = f", {self.information_bits:.2f} bits" if len(self.icons) > 1 else ""
-        worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
-        return (
-            f"Ranking(predicted: {icons} on {where}, {crowd}, "
-            f"{100 * self.proportion_correct:.1f} % correct{spread}{bits}{worst})"
-        )
+        correct = f"{100 * self.proportion_correct:.1f} % correct"
+        return f"Ranking(predicted: {where}, {crowd}, {correct}{spread}{bits}{worst})"
 
     def _order(self, icon: IconScore) -> tuple[bool, float, float, str]:
         if self.by == "rules":
@@ -315,11 +306,7 @@ class Ranking(Drawn):
 
 
 def with_changes(rig: str, changes: Sequence[str]) -> str:
-    """Name of a rig with its changed keys.
-
-    >>> with_changes("thenar", ["contact.area_cm2=4"]), with_changes("thenar", [])
-    ('thenar with contact.area_cm2=4', 'thenar')
-    """
+    """Name of a rig with its changed keys, as in `thenar with contact.area_cm2=4`."""
     return f"{rig} with {', '.join(changes)}" if changes else rig
 
 

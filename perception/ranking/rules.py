@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.circuit.records import Record, Table, load_records
 from thermicon.circuit.rig.skin import STRATUM_CORNEUM
@@ -34,7 +34,8 @@ if TYPE_CHECKING:
 DISTINGUISHABLE = "distinguishable"
 OURS = ("direction", "peak", "rate ratio", "onset")
 """Rules of this project on a pair; one that passes makes it distinguishable."""
-Plain = str | float | bool | None
+KEYS = ("rule", "passed", "value", "margin", "threshold", "threshold_low", "unit", "source", "text", "from_model")
+"""Fields of a result in the order of the ranking file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +59,7 @@ class RuleResult:
 
     @property
     def quantity(self) -> str:
-        """Name of the rule without its channel.
-
-        >>> RuleResult("peak (cold)", True, 0.1, 0.03, 0.07, "K", "this project", "").quantity
-        'peak'
-        """
+        """Name of the rule without its channel, as in `peak (cold)`."""
         return self.rule.split(" (")[0]
 
     @property
@@ -71,20 +68,9 @@ class RuleResult:
         size = self.threshold if self.threshold_low is None else 0.5 * (self.threshold - self.threshold_low)
         return None if self.margin is None or size == 0.0 else self.margin / size
 
-    def to_dict(self) -> dict[str, Plain]:
+    def to_dict(self) -> dict[str, Any]:
         """The keys of the ranking file."""
-        return {
-            "rule": self.rule,
-            "pass": self.passed,
-            "value": self.value,
-            "margin": self.margin,
-            "threshold": self.threshold,
-            "threshold_low": self.threshold_low,
-            "unit": self.unit,
-            "source": self.source,
-            "text": self.text,
-            "from_model": self.from_model,
-        }
+        return {"pass" if key == "passed" else key: getattr(self, key) for key in KEYS}
 
 
 @lru_cache(maxsize=1)

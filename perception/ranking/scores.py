@@ -38,36 +38,23 @@ class IconScore:
 
     Attributes
     ----------
-    name
-        Name of the icon.
     detected_probability
         Probability that a person drawn at random reports the icon, beyond reports of nothing, 0–1.
-    onset_s
-        Median response time of the trials that end in a report, s; None where fewer than half of them do.
-    channel
-        Channel that most reports go by; None where fewer than half of the trials end in one.
+    onset_s, channel
+        Median response time (s) of the trials that end in a report, and the channel that most reports go by; None where
+        fewer than half of them do.
     peak_change_K, attack_K_per_s, delay_s
         Largest change in K, steepest rate in K/s, and delay behind the skin in s, at the cold and the warm receptor.
     proportion_correct
         Share of trials with the right name, 0–1.
-    reachable, safe
-        Whether the rig reaches the icon, and whether no hard safety limit is exceeded.
-    reason
-        Why it is not safe, cannot be reached, or both; None where it can be played.
-    rules
-        Results of the rules of thumb.
-    rules_score, rules_margin
-        Share that is passed of its rules and its pairs, and the smallest normalised margin among them.
-    cautions
-        Soft safety limits that it exceeds.
-    outside_data
-        Where no data support the prediction.
+    reachable, safe, reason
+        Whether the rig reaches the icon, whether no hard safety limit is exceeded, and why not; None where it is fine.
+    rules, rules_score, rules_margin
+        Rules of thumb, the share passed of them and of its pairs, and the smallest normalised margin among them.
+    cautions, outside_data
+        Soft safety limits that it exceeds, and where no data support the prediction.
     duration_s, energy_J
         How long it lasts, s, and what the driver puts into the module until then, J; NaN on a thermode.
-
-    See Also
-    --------
-    rank : Returns a ranking, whose `icons` these are.
     """
 
     name: str
@@ -97,28 +84,12 @@ class IconScore:
 
 @dataclass(frozen=True, slots=True)
 class PairScore:
-    """One pair of icons: how far apart they are, how often they are confused, and why.
+    """One pair of icons, `a` and `b`: how far apart they are, how often they are confused, and why.
 
-    Attributes
-    ----------
-    a, b
-        Names of the icons.
-    d_prime
-        Median d′ from memory over people.
-    confused_probability
-        Share of trials in which one is named as the other, the mean of both directions, 0–1.
-    why
-        Reasons in words, for a nominal person.
-    rules
-        Results of the rules of thumb.
-    rules_margin
-        Margin by which rules separate the pair, in shares of a threshold; None: by direction alone.
-    parts
-        Components of the distance for a nominal person.
-
-    See Also
-    --------
-    rank : Returns a ranking, whose `pairs` these are.
+    `d_prime` is the median from memory over people, `confused_probability` the share of trials in which one is named as
+    the other, the mean of both directions (0–1). `why` are reasons in words and `parts` components of the distance, for
+    a nominal person. `rules_margin` is that by which `rules` separate the pair, in shares of a threshold; None: by
+    direction alone.
     """
 
     a: str
@@ -229,7 +200,8 @@ def assemble(
     pairs = []
     episodes = remembered(percepts, observer)
     for i, j in combinations(range(len(icons)), 2):
-        why = pair_reasons(traces[i], traces[j], percepts[i], percepts[j], observer, norm, episodes, (i, j))
+        felt = percepts[i], percepts[j]
+        why = pair_reasons(traces[i], traces[j], felt, observer, norm, episodes, (i, j))
         rules = pair_rules(traces[i], traces[j])
         pairs.append(
             PairScore(
@@ -237,7 +209,7 @@ def assemble(
                 b=icons[j].name,
                 d_prime=float(middle[i, j]),
                 confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
-                why=tuple(reason.text for reason in why),
+                why=why,
                 rules=rules,
                 rules_margin=pair_margin(rules),
                 parts=components_of(episodes, i, j, observer),
@@ -303,12 +275,6 @@ def energy_J(trace: Trace, until_s: float) -> float:
     """Energy (J) that the driver puts into the module until a time: ∫ V·I dt, with the current held between rows.
 
     NaN on a thermode, which states none.
-
-    >>> from thermicon.circuit import Rig, simulate
-    >>> from thermicon.icons import read_cue
-    >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"))
-    >>> energy_J(trace, 4.0) < energy_J(trace, 8.0)
-    True
     """
     if not trace.has_current:
         return math.nan

@@ -39,11 +39,7 @@ REACHED = 0.05
 
 
 def sites() -> tuple[str, ...]:
-    """Sites of the shipped rigs that stand for them.
-
-    >>> sites()
-    ('fingertip', 'forearm', 'hand-dorsum', 'thenar')
-    """
+    """Sites of the shipped rigs that stand for them."""
     from thermicon.circuit import Rig
     from thermicon.circuit.rig.rig import rig_names
 
@@ -71,12 +67,7 @@ def check_conditions(changes: Mapping[str, float | str], rig: Rig) -> None:
 
 
 def rig_under(rig: Rig, changes: Mapping[str, float | str]) -> Rig:
-    """The rig under changed conditions: keys of its file, and the site, whose skin, contact and blood it takes.
-
-    >>> from thermicon.circuit import Rig
-    >>> round(rig_under(Rig.load("thenar"), {"site": "fingertip"}).contact.area_m2 * 1e4, 6)
-    1.5
-    """
+    """The rig under changed conditions: keys of its file, and the site, whose skin, contact and blood it takes."""
     from thermicon.circuit import Rig
 
     moved: dict[str, object] = {}
@@ -99,27 +90,12 @@ def measured_rows(
     parameters: int = 64,
     seed: int = 0,
 ) -> dict[str, dict[str, float | None]]:
-    """Rank a set under changed conditions and return, by the name of each icon and `ALL`, what was measured.
+    """Rank a set under changed conditions and return, by the name of each icon and `ALL`, columns of `MEASURES`.
 
-    Parameters
-    ----------
-    icons
-        The whole set: confusions are with all of it.
-    rig
-        The rig before the changes.
-    changes
-        Keys of the rig file, `site` and `people.age_years` with their values.
-    measures
-        Names out of `MEASURES`.
-    people, parameters, seed
-        As in `rank`. The same seed has the same people and noise at every value.
-
-    Returns
-    -------
-    dict
-        Columns of `MEASURES` by row; bits and `correct_95`, which needs draws, are of the set alone. Proportion
-        correct and bits of the set have intervals; d′ is that of the nearest other icon, of the set that of the nearest
-        pair.
+    Confusions are with the whole set; `changes` are keys of the rig file, `site` and `people.age_years` with their
+    values, `measures` names out of `MEASURES`. People, draws (`parameters`) and seed are as in `rank`, the same at
+    every value. Bits and `correct_95`, which needs draws, are of the set alone. d′ is that of the nearest other icon,
+    of the set that of the nearest pair.
     """
     from ..observer.observer_model import ObserverModel
     from .rank import rank

@@ -129,7 +129,7 @@ class SubsetIdentification:
 
         `favour` (people, n) is the log likelihood that people favour names by.
         """
-        points, _ = embed(d_prime[:most])
+        points = embed(d_prime[:most])
         people, _, axes = points.shape
         noise = np.random.default_rng(np.random.SeedSequence([seed, 5])).standard_normal((people, HALF, axes))
         push = np.einsum("psa,pna->pns", noise, points)

@@ -31,21 +31,7 @@ RATE_HZ = 100.0
 
 @dataclass(frozen=True, slots=True)
 class Stimulus:
-    """Stimuli played on a bench to one common end.
-
-    Attributes
-    ----------
-    dt_s
-        Step of the clock, s.
-    rows
-        How many rows of the traces count.
-    traces
-        The runs.
-
-    See Also
-    --------
-    Bench : Its method `play` plays stimuli.
-    """
+    """Stimuli played on a bench to one common end: `rows` of the `traces`, `dt_s` apart, count."""
 
     dt_s: float
     rows: int
@@ -64,8 +50,7 @@ class Stimulus:
     @property
     def time_s(self) -> Array:
         """Clock (rows,), s."""
-        clock: Array = self.dt_s * np.arange(self.rows, dtype=np.float64)
-        return clock
+        return self.dt_s * np.arange(self.rows, dtype=np.float64)
 
     def received(self, variable: Variable, channel: Channel) -> Array:
         """What the receptors of a channel go by, shape (k, rows): °C, or W/m² into the skin."""
@@ -80,22 +65,14 @@ class Stimulus:
     ) -> tuple[Array, Array]:
         """Sensations (cold, warm) of n persons, shape (n, k, rows), by their multipliers of the thresholds (n,)."""
         own = [np.atleast_1d(np.asarray(one, dtype=np.float64)) for one in (threshold_cold, threshold_warm)]
-        at_cold, at_warm = (
-            receptor_drive(self.received(observer.variable, channel), self.dt_s, channel, observer)
-            for channel in CHANNELS
-        )
-        cold, warm = (
-            sensation(
-                np.broadcast_to(drive, (multiple.size, *drive.shape)),
-                channel,
-                observer,
-                area_m2=self.area_m2,
-                site=self.site,
-                threshold=multiple[:, None],
+        found = []
+        for channel, multiple in zip(CHANNELS, own, strict=True):
+            drive = receptor_drive(self.received(observer.variable, channel), self.dt_s, channel, observer)
+            every = np.broadcast_to(drive, (multiple.size, *drive.shape))
+            found.append(
+                sensation(every, channel, observer, area_m2=self.area_m2, site=self.site, threshold=multiple[:, None])
             )
-            for drive, channel, multiple in zip((at_cold, at_warm), CHANNELS, own, strict=True)
-        )
-        return cold, warm
+        return found[0], found[1]
 
     def __repr__(self) -> str:
         missed = sum(not trace.reachable for trace in self.traces)
@@ -105,24 +82,8 @@ class Stimulus:
 
 @dataclass(frozen=True, slots=True)
 class Bench:
-    """A rig that rests at a baseline, with stimuli prescribed at the surface of skin or display.
+    """A rig that rests at a baseline (°C of that surface), with stimuli prescribed at the surface of skin or display.
 
-    Attributes
-    ----------
-    rig
-        The rig.
-    baseline_C
-        Temperature of that surface at rest, °C.
-    surface
-        `skin` or `display`.
-
-    Raises
-    ------
-    ValueError
-        For another surface.
-
-    Examples
-    --------
     >>> from thermicon.circuit import Rig
     >>> bench = Bench(Rig.load("thenar"))
     >>> bench.play([ramp("warm", 0.2, 1.0, hold_s=2.0)], 3.0)
@@ -158,11 +119,7 @@ class Bench:
 
 
 def ramp(channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float = 0.0, *, back: bool = False) -> str:
-    """Course that cools or warms by a size at a rate, holds, and with `back` returns at that rate.
-
-    >>> ramp("cold", 0.5, 1.0, hold_s=2.0, back=True)
-    'cool by 0.5 K at 1 K/s; hold for 2 s; return at 1 K/s'
-    """
+    """Course that cools or warms by a size at a rate, holds, and with `back` returns at that rate."""
     verb = "cool" if channel == "cold" else "warm"
     parts = [f"{verb} by {size_K:.9g} K at {rate_K_per_s:.9g} K/s"]
     parts += [f"hold for {hold_s:.9g} s"] if hold_s > 0.0 else []

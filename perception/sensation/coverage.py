@@ -35,11 +35,7 @@ NEAREST = {
 
 @lru_cache(maxsize=1)
 def load_coverage() -> Table:
-    """The limits as records: `temperature`, `rate` and, one a site, `site`.
-
-    >>> load_coverage().one("temperature").interval
-    (15.0, 45.0)
-    """
+    """The limits as records: `temperature`, `rate` and, one a site, `site`."""
     return load_records(DATA / "coverage.toml", extra=("recorded",))
 
 
@@ -56,11 +52,7 @@ def outside_data(trace: Trace) -> tuple[str, ...]:
 
 
 def outside_site(site: str) -> tuple[str, ...]:
-    """A sentence where no detection threshold is published for a site.
-
-    >>> outside_site("fingertip")
-    ('no detection threshold is on record for the fingertip: those of the thenar are used',)
-    """
+    """A sentence where no detection threshold is published for a site."""
     known = {record.site for record in load_coverage().select("site")}
     words = [word for word in site.lower().split() if word not in MIRRORS]
     if "-".join(words) in known:
@@ -69,11 +61,7 @@ def outside_site(site: str) -> tuple[str, ...]:
 
 
 def nearest_site(site: str) -> tuple[str | None, str]:
-    """The recorded site that is nearest to one without records, and why; None where none is near.
-
-    >>> nearest_site("fingertip"), nearest_site("left upper arm")[0], nearest_site("back")[0]
-    (('thenar', 'hairless skin of the same hand'), 'forearm', None)
-    """
+    """The recorded site that is nearest to one without records, and why; None where none is near."""
     words = set(site.lower().replace("-", " ").split())
     for recorded, (near, why) in NEAREST.items():
         if words & set(near):

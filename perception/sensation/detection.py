@@ -70,12 +70,6 @@ def response_times(
     `conduction_s` (cold, warm), `decision_s` in s and `criterion` (cold, warm), in multiples of the observer's, are one
     number or one for each leading index. Gain and decision differ from trial to trial. Times run on past the end of
     the sensations by the slowest delay, so that none is cut off.
-
-    >>> import numpy as np
-    >>> rise = np.minimum(np.arange(0.0, 2.0, 0.01) * 20.0, 20.0)
-    >>> found = response_times(rise, 0 * rise, 0.01, Observer.load(), conduction_s=(0.3, 1.4), decision_s=0.2)
-    >>> bool(0.5 < found.quantile()[0] < 0.9)
-    True
     """
     rows, samples = as_rows(psi_cold)[0].shape
     slowest = float(np.exp(quarters(observer.decision_noise)).max() * np.max(decision_s))
@@ -131,11 +125,7 @@ def report_courses(
 
 
 def time_of(given: Array, time_s: Array, probability: float) -> float:
-    """When (s) the probability (n_time,) of a report first reaches a value; inf where it never does.
-
-    >>> time_of(np.array([0.0, 0.2, 0.6]), np.array([0.0, 1.0, 2.0]), 0.4)
-    1.5
-    """
+    """When (s) the probability (n_time,) of a report first reaches a value; inf where it never does."""
     reached = given >= probability
     k = int(reached.argmax())
     if not reached[k]:
@@ -144,11 +134,7 @@ def time_of(given: Array, time_s: Array, probability: float) -> float:
 
 
 def quarters(sd: float) -> Array:
-    """A normal number of mean 0 at the middles of four equal parts of its distribution; 0 alone where it has no spread.
-
-    >>> quarters(1.0).round(2)
-    array([-1.15, -0.32,  0.32,  1.15])
-    """
+    """A normal number of mean 0 at the middles of four equal parts of its distribution; without spread, 0 alone."""
     if sd == 0.0:
         return np.zeros(1)
     return sd * np.array([NormalDist().inv_cdf(share) for share in (0.125, 0.375, 0.625, 0.875)])
@@ -162,11 +148,7 @@ LATEST_S = 5.0
 
 
 def report_step(dt_s: float) -> float:
-    """Step (s) of the response times to sensations that are dt_s apart: whole samples, about `STEP_S`.
-
-    >>> report_step(0.01), report_step(0.05)
-    (0.02, 0.05)
-    """
+    """Step (s) of the response times to sensations that are dt_s apart: whole samples, about `STEP_S`."""
     return dt_s * max(1, round(STEP_S / dt_s))
 
 
@@ -203,8 +185,7 @@ class Detection:
         """Number of persons, the first axis, who have reported by each time, with that axis kept (1, ..., n_time)."""
         if self.reported is None:
             raise ValueError(UNTIMED)
-        total: Array = self.reported.sum(axis=0, keepdims=True)
-        return total
+        return np.asarray(self.reported.sum(axis=0, keepdims=True))
 
     @property
     def channel(self) -> NDArray[np.int64]:
@@ -270,11 +251,7 @@ def channel_name(index: int) -> Channel | None:
 
 
 def false_alarms(criterion: float, correlation_s: float, wait_s: float) -> float:
-    """Probability that noise alone passes the criterion in one of two channels within `wait_s`.
-
-    >>> 0.019 < false_alarms(3.34, 0.3, 5.0) < 0.021
-    True
-    """
+    """Probability that noise alone passes the criterion in one of two channels within `wait_s`."""
     return -math.expm1(2.0 * log_no_crossing(criterion, correlation_s, wait_s))
 
 

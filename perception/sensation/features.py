@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import wraps
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
-from weakref import WeakKeyDictionary
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Array
-from ..observer.observer import Channel, Observer
-from .percept import Percept, perceive
+from ..observer.channels import Channel
+from .percept import Percept
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
@@ -20,24 +17,6 @@ STILL_K = 1e-6
 SIDE_SHARE = 0.1
 """A direction counts when its excursion is more than this share of the larger one."""
 HELD_SHARE = 0.99
-Arguments = ParamSpec("Arguments")
-Number = TypeVar("Number")
-
-
-def of_each_trace(
-    number: Callable[Concatenate[Trace, Arguments], Number],
-) -> Callable[Concatenate[Trace, Arguments], Number]:
-    """A number of a trace, kept as long as the trace is: in a set each icon is compared with all others."""
-    kept: WeakKeyDictionary[Trace, dict[tuple[Any, ...], Number]] = WeakKeyDictionary()
-
-    @wraps(number)
-    def found(trace: Trace, *args: Arguments.args, **kwargs: Arguments.kwargs) -> Number:
-        key, own = (*args, *kwargs.items()), kept.setdefault(trace, {})
-        if key not in own:
-            own[key] = number(trace, *args, **kwargs)
-        return own[key]
-
-    return cast(Callable[Concatenate["Trace", Arguments], Number], found)
 
 
 def receptor_C(trace: Trace, channel: Channel) -> Array:
@@ -64,26 +43,18 @@ def delay_s(trace: Trace, channel: Channel) -> float | None:
     return None if receptor is None or skin is None else receptor - skin
 
 
-def onset_s(trace: Trace, observer: Observer | None = None) -> float | None:
-    """Onset for the nominal person, s on the response clock; None where the icon is not felt."""
-    return perceive(trace, observer).onset_s
-
-
-@of_each_trace
 def excursion_K(trace: Trace, channel: Channel) -> float:
     """Largest cooling at the cold depth (≤ 0) or largest warming at the warm depth (≥ 0), K."""
     change = _change(receptor_C(trace, channel))
     return float(change.min() if channel == "cold" else change.max())
 
 
-@of_each_trace
 def excursion_rate_K_per_s(trace: Trace, channel: Channel) -> float:
     """Steepest rate towards that excursion before it is reached, K/s with its sign."""
     change = _change(receptor_C(trace, channel))
     return _attack(trace, change, int(change.argmin() if channel == "cold" else change.argmax()))
 
 
-@of_each_trace
 def passing_s(trace: Trace, channel: Channel, threshold_K: float) -> float | None:
     """When a receptor has changed by `threshold_K` in its own direction, s from the start; None where it never does."""
     change = _change(receptor_C(trace, channel)) * (-1.0 if channel == "cold" else 1.0)
@@ -108,7 +79,6 @@ def peak_lead_s(trace: Trace, percept: Percept, channel: Channel) -> float | Non
     return felt - float(trace.time_s[int((skin >= HELD_SHARE * skin.max()).argmax())])
 
 
-@of_each_trace
 def directions(trace: Trace) -> tuple[Channel, ...]:
     """Directions the receptors are moved in, in the order of their excursions; a tenth of the larger is ignored."""
     cold, warm = _change(trace.cold_receptor_C), _change(trace.warm_receptor_C)
@@ -125,8 +95,7 @@ def direction_words(trace: Trace) -> str:
 
 
 def _change(temperature_C: Array) -> Array:
-    change: Array = temperature_C - temperature_C[0]
-    return change
+    return np.asarray(temperature_C - temperature_C[0])
 
 
 def _peak(change: Array) -> int:

@@ -40,20 +40,16 @@ class Percept(Drawn):
     Attributes
     ----------
     psi_cold, psi_warm
-        Sensation of each channel (n_time,), d′, on the clock named by `clock`.
+        Sensation of each channel (n_time,), d′, on the receptor clock.
     dt_s
         Step of the clock, s.
-    onset_s
-        Median response time of the trials that end in a report, s on the response clock (first passage + conduction +
-        decision); None where the icon is not felt, which is where fewer than half of the trials do.
-    channel
-        Channel that most reports go by; None where the icon is not felt.
+    onset_s, channel
+        Median response time (s, on the response clock) of the trials that end in a report, and the channel that most
+        reports go by; None where the icon is not felt, which is where fewer than half of the trials end in one.
     detected_probability
         Share of trials of this person that end in a report, beyond reports of nothing, 0–1.
     icon
         Name of the icon.
-    clock
-        `receptor`.
     conduction_s
         What the percept clock is later by, cold and warm, s.
     outside_data
@@ -77,7 +73,6 @@ class Percept(Drawn):
     channel: Channel | None
     detected_probability: float
     icon: str | None = None
-    clock: str = "receptor"
     conduction_s: tuple[float, float] = (0.0, 0.0)
     outside_data: tuple[str, ...] = ()
 
@@ -103,8 +98,7 @@ class Percept(Drawn):
     @property
     def time_s(self) -> Array:
         """Clock of the traces, s."""
-        clock: Array = self.dt_s * np.arange(self.psi_cold.size, dtype=np.float64)
-        return clock
+        return self.dt_s * np.arange(self.psi_cold.size, dtype=np.float64)
 
     def peak_s(self, channel: Channel) -> float | None:
         """When the sensation of a channel is strongest, s on the receptor clock; None where it does not rise.
@@ -143,7 +137,7 @@ class Percept(Drawn):
         return (
             f"Percept({self.icon or 'unnamed'}, nominal person: {self.summary}, "
             f"peaks cold {self.psi_cold.max():.3g} d′, warm {self.psi_warm.max():.3g} d′, "
-            f"{self.time_s[-1]:.3g} s, {self.clock} clock{beyond})"
+            f"{self.time_s[-1]:.3g} s, receptor clock{beyond})"
         )
 
 
@@ -232,11 +226,7 @@ def perceive_many(
 
 
 def uniform_clock(time_s: ArrayLike) -> tuple[float, int]:
-    """Step (s) of a uniform clock and how many rows it has; a shorter last step is left off.
-
-    >>> uniform_clock([0.0, 0.5, 1.0, 1.2])
-    (0.5, 3)
-    """
+    """Step (s) of a uniform clock and how many rows it has; a shorter last step is left off."""
     clock = np.asarray(time_s, dtype=np.float64)
     if clock.size < 2:
         raise ValueError("a percept needs a trace of at least two rows")

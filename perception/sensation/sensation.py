@@ -43,11 +43,6 @@ def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer:
     `received` has shape (..., n_time) on a uniform clock of `dt_s`: temperature in °C at the depth
     of the channel or, as `observer.variable` says, heat flow there in W/m² into the skin. The drive
     has the same shape. At the first sample the receptor is adapted as far as the neutral zone allows.
-
-    >>> import numpy as np
-    >>> cooling = 32.0 - np.minimum(np.arange(0.0, 4.0, 0.01), 1.0)
-    >>> bool(receptor_drive(cooling, 0.01, "warm", Observer.load()).max() > 0.0)
-    False
     """
     from ..kernels.kernels import adapted_drive
 
@@ -57,19 +52,10 @@ def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer:
     limit = -NO_LIMIT_C * sign if receptor.limit_C is None else receptor.limit_C
     low, high = observer.neutral(channel)
 
+    times = observer.integration_s, receptor.adaptation_s
+
     def work(part: slice) -> None:
-        adapted_drive(
-            rows[part],
-            dt_s,
-            sign,
-            limit,
-            receptor.softness_K,
-            low,
-            high,
-            observer.integration_s,
-            receptor.adaptation_s,
-            drive[part],
-        )
+        adapted_drive(rows[part], dt_s, sign, limit, receptor.softness_K, low, high, *times, drive[part])
 
     over_rows(work, rows.shape[0], rows.size)
     return drive.reshape(shape)
@@ -89,11 +75,6 @@ def sensation(
     `area_m2` is the area of contact (None: the reference area), `site` where on the body (None: the
     thenar); `threshold` multiplies the thresholds of this person, age included, one number or one
     for each leading index.
-
-    >>> person = Observer.load()
-    >>> step = [[0.0, person.cold.threshold_drive]]
-    >>> round(float(sensation(step, "cold", person)[0, 1]), 12)
-    1.0
     """
     rows, shape = as_rows(drive)
     psi = np.empty(shape)
@@ -126,12 +107,7 @@ def sense(
 
 
 def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, site: str | None = None) -> float:
-    """How much smaller thresholds are than on the hand at the reference area, by summation and site.
-
-    >>> person = Observer.load()
-    >>> sensitivity("cold", person, None, "thenar")
-    1.0
-    """
+    """How much smaller thresholds are than on the hand at the reference area, by summation and site."""
     factor = observer.site_factor(channel, site)
     if area_m2 is None:
         return 1.0 / factor
@@ -143,11 +119,7 @@ def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, sit
 
 
 def summed_area_cm2(area_cm2: float, field_cm2: float = FIELD_CM2, end_cm2: float = END_CM2) -> float:
-    """The area that counts, in cm²; ``math.inf`` as `end_cm2` and 0 as `field_cm2` turn the two ends off.
-
-    >>> [round(summed_area_cm2(area), 2) for area in (0.01, 9.0, 18000.0)]
-    [0.36, 12.23, 199.99]
-    """
+    """The area that counts, in cm²; ``math.inf`` as `end_cm2` and 0 as `field_cm2` turn the two ends off."""
     if not area_cm2 > 0.0:
         raise ValueError(f"the area of contact must be above 0 cm², not {area_cm2:g} cm²")
     touched = (math.sqrt(area_cm2) + math.sqrt(field_cm2)) ** 2
@@ -161,10 +133,6 @@ def area_factor(
     field_cm2: float = FIELD_CM2,
     end_cm2: float = END_CM2,
 ) -> float:
-    """Sensitivity at an area over that at a reference area.
-
-    >>> round(area_factor(18.0, 9.0, 0.7), 3)
-    1.525
-    """
+    """Sensitivity at an area over that at a reference area."""
     ratio = summed_area_cm2(area_cm2, field_cm2, end_cm2) / summed_area_cm2(reference_cm2, field_cm2, end_cm2)
     return math.pow(ratio, exponent)

@@ -20,6 +20,7 @@ from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.confusion import embed
 from thermicon.perception.identification.delivered import judge_delivered
 from thermicon.perception.identification.episodes import EpisodesError
+from thermicon.perception.identification.map import stress
 from thermicon.perception.observer.people import draw_people
 from thermicon.perception.selection.appraise import population_dprime
 from thermicon.perception.selection.pool import Pool
@@ -53,7 +54,7 @@ def test_memory_keeps_distances(icons: IconSet, rig: str, bent: float) -> None:
     """No cost is so high that d′ are no distances any more, which points in space would have to bend."""
     apart, _ = population_dprime(list(icons), Rig.load(rig), draw_people(8, 3))
     assert excess(apart) < 0.3
-    assert embed(apart)[1].max() < bent
+    assert stress(apart, embed(apart)).max() < bent
 
 
 def dprime(one: str, other: str) -> float:

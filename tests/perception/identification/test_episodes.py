@@ -217,14 +217,14 @@ def test_share_of_the_scatter_of_ratings_moves_intensity_noise(observer: Observe
 
 
 def test_messages(observer: Observer) -> None:
-    with pytest.raises(ValueError, match=r"share of the scatter of ratings must lie in 0 to 1, not 1.5"):
-        replace(observer.memory, share=1.5)
-    with pytest.raises(ValueError, match=r"memory noise of episodes must be above 0, not 0"):
-        replace(observer.memory, timing=0.0)
-    with pytest.raises(ValueError, match=r"cost of a missing episode must be 0 or more, not -1"):
-        replace(observer.memory, missing=-1.0)
-    with pytest.raises(ValueError, match=r"bar of an episode must be above 0 d′, not 0"):
-        replace(observer.memory, bar=0.0)
+    for field, value, said in (
+        ("share", 1.5, "share of the scatter of ratings = 1.5 must lie in 0 to 1"),
+        ("timing", 0.0, r"memory noise \(episodes\) = 0 must be above 0"),
+        ("missing", -1.0, "cost of a missing episode = -1 must be 0 or more"),
+        ("bar", 0.0, "bar of an episode = 0 must be above 0"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            replace(observer.memory, **{field: value})
     with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\), not \(2, 10\)"):
         Episodes.of(np.zeros((2, 10)), np.zeros((2, 10)), DT, observer)
 

@@ -87,11 +87,6 @@ def test_a_gap_lets_the_icon_before_be_felt(usual: Ranking, left_behind: CarryOv
     assert told["d_prime"] == pytest.approx(worst, rel=1e-9)
 
 
-def test_what_is_left_behind_is_summed_up_in_d_prime_from_memory(left_behind: CarryOver) -> None:
-    most = left_behind.apart[NORMS.index("episodes")].max()
-    assert repr(left_behind) == f"CarryOver(6 icons, 2 s apart: up to {most:.3g} d′ from memory)"
-
-
 def test_what_is_left_behind_is_what_a_run_of_both_gives(monkeypatch: pytest.MonkeyPatch) -> None:
     """The nominal person feels one icon after another, written as one icon: no superposition, no tricks."""
     from thermicon.circuit import simulate

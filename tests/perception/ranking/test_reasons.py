@@ -1,91 +1,155 @@
+"""Why two icons are distinguished: the components of their distance, and the sentences that name them."""
+
+import math
 import re
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
-from thermicon.perception import Observer, perceive
-from thermicon.perception.identification.episodes import PARTS
-from thermicon.perception.ranking.reasons import pair_reasons
+from thermicon.circuit import Rig, Trace, simulate
+from thermicon.icons import load_library, parse
+from thermicon.perception import Observer, Percept, perceive
+from thermicon.perception.identification.episodes import PARTS, dprime_from_memory, remembered
+from thermicon.perception.ranking.reasons import DistanceComponent, components_of, pair_reasons
 from thermicon.perception.ranking.rules import load_rules
-from thermicon.perception.sensation.features import attack_K_per_s, delay_s, excursion_K, onset_s, peak_change_K
+from thermicon.perception.sensation.features import attack_K_per_s, delay_s, excursion_K, peak_change_K
 
 
-def why(cue: Any, observer: Observer, a: dict[str, Any], b: dict[str, Any]) -> list[Any]:
-    one, two = cue(name="a", **a), cue(name="b", **b)
-    return list(pair_reasons(one, two, perceive(one, observer), perceive(two, observer), observer))
+def why(one: Trace, two: Trace, observer: Observer, felt: tuple[Percept, Percept] | None = None) -> tuple[str, ...]:
+    both = (perceive(one, observer), perceive(two, observer)) if felt is None else felt
+    return pair_reasons(one, two, both, observer, "episodes", remembered(both, observer), (0, 1))
 
 
-def test_features_of_a_trapezoid(cue: Any, observer: Observer) -> None:
-    trace = cue(change=-6.0, rate=3.0, lag_s=0.25)
+def pair(cue: Any, observer: Observer, a: dict[str, Any], b: dict[str, Any]) -> tuple[str, ...]:
+    return why(cue(name="a", **a), cue(name="b", **b), observer)
+
+
+def parts_of(a: Trace, b: Trace, observer: Observer | None = None) -> dict[str, DistanceComponent]:
+    person = Observer.load() if observer is None else observer
+    felt = perceive(a, person), perceive(b, person)
+    parts = components_of(remembered(felt, person), 0, 1, person)
+    assert tuple(part.name for part in parts) == PARTS
+    assert math.hypot(*(part.value for part in parts)) == pytest.approx(dprime_from_memory(*felt, person), rel=1e-9)
+    return {part.name: part for part in parts}
+
+
+def largest(parts: dict[str, DistanceComponent]) -> str:
+    return max(parts.values(), key=lambda part: part.value).name
+
+
+def test_features_of_a_trapezoid(cue: Any) -> None:
+    trace, still = cue(change=-6.0, rate=3.0, lag_s=0.25), cue(change=1e-9)
     assert peak_change_K(trace, "cold") == pytest.approx(-6.0)
     assert attack_K_per_s(trace, "warm") == pytest.approx(-3.0)
     assert delay_s(trace, "cold") == pytest.approx(0.25, abs=1e-9)
     assert excursion_K(trace, "warm") == pytest.approx(0.0)
-    assert onset_s(trace, observer) == perceive(trace, observer).onset_s
-    still = cue(change=1e-9)
     assert attack_K_per_s(still, "cold") == 0.0
     assert delay_s(still, "cold") is None
-    assert onset_s(still, observer) is None
+
+
+def test_each_component_answers_to_what_was_changed(cue: Any, observer: Observer) -> None:
+    same = parts_of(cue(-4.0), cue(-4.0), observer)
+    assert [part.value for part in same.values()] == [0.0] * 5
+    assert not any(part.above for part in same.values())
+    assert same["intensity"].a == same["intensity"].b
+    assert largest(parts_of(cue(-4.0), cue(4.0), observer)) == "direction"
+    weaker = parts_of(cue(-4.0), cue(-2.0), observer)
+    assert weaker["direction"].value == 0.0
+    assert weaker["intensity"].value == pytest.approx(math.log(2.0) / 0.42, rel=0.1)  # σ_I of this observer
+    slower = parts_of(cue(-4.0, rate=4.0), cue(-4.0, rate=2.0), observer)
+    assert largest(slower) == "rate"
+    assert slower["rate"].value >= math.log(2.0) / 0.31  # and its return, which is felt too
+    assert slower["rate"].a == pytest.approx(2.0 * slower["rate"].b, rel=0.02)  # type: ignore[operator]
+    assert largest(parts_of(cue(-4.0, hold=2.0), cue(-4.0, hold=6.0), observer)) == "duration"
+    later = parts_of(cue(-4.0), cue(-4.0, lag_s=1.0), observer)
+    assert largest(later) == "pause"
+    assert later["duration"].value == pytest.approx(0.0, abs=0.05)
+
+
+def test_of_what_is_not_felt_there_are_no_values(cue: Any, observer: Observer) -> None:
+    parts = parts_of(cue(-4.0), cue(0.0), observer)
+    assert parts["direction"].above
+    assert all(part.b is None for part in parts.values())
+    assert parts["rate"].to_dict() == {
+        "part": "rate", "value": 0.0, "unit": "d′", "noticeable": 1.0, "above": False, "a": parts["rate"].a, "b": None,
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "most"),
+    [
+        ("cooling-step", "double-dip", "direction"),
+        ("cooling-step", "linear-cooling", "rate"),
+        ("double-dip", "cold-to-warm", "direction"),
+    ],
+)
+def test_components_of_shipped_icons(one: str, other: str, most: str) -> None:
+    rig, icons = Rig.load("thenar"), load_library("six-icons")
+    assert largest(parts_of(*(simulate(icons[name], rig, tail_s=10) for name in (one, other)))) == most
+
+
+DIP = "cool by 3 °C at 2 °C/s; hold for 1 s; return at 2 °C/s"
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "most"),
+    [
+        ("cool by 3 K at 3 K/s; warm by 6 K at 3 K/s", "warm by 3 K at 3 K/s; cool by 6 K at 3 K/s", "direction"),
+        (f"{DIP}; rest for 2 s; {DIP}", f"{DIP}; rest for 6 s; {DIP}", "pause"),
+    ],
+)  # fmt: skip
+def test_components_of_sequences(one: str, other: str, most: str) -> None:
+    """The order of directions counts. Of two dips farther apart, which have no partner, the reason is the pause."""
+    bodies = [body if body.endswith(DIP) else f"{body}; return at 3 °C/s" for body in (one, other)]
+    icons = list(parse(f"cue 1\nset s {{ control display }}\nicon a {{ {bodies[0]} }}\nicon b {{ {bodies[1]} }}\n"))
+    end_s = 10 + max(icon.corners().duration_s for icon in icons)
+    parts = parts_of(*(simulate(icon, Rig.load("thenar"), tail_s=end_s - icon.corners().duration_s) for icon in icons))
+    assert largest(parts) == most
+    if most == "pause":
+        assert parts[most].b - parts[most].a > 2.0  # type: ignore[operator]
 
 
 def test_same_direction_gives_peaks_rates_and_onsets(cue: Any, observer: Observer) -> None:
-    carries, direction, peaks, rates, onsets = why(cue, observer, {"change": -4.0}, {"change": -3.0, "rate": 1.0})
-    assert direction.text == (
-        "same direction: a cools (-4.00 K at the cold receptor); b cools (-3.00 K at the cold receptor)"
-    )
-    assert peaks.text == (
+    one, two = cue(name="a", change=-4.0), cue(name="b", change=-3.0, rate=1.0)
+    carries, direction, peaks, rates, onsets = why(one, two, observer)
+    assert direction == "same direction: a cools (-4.00 K at the cold receptor); b cools (-3.00 K at the cold receptor)"
+    assert peaks == (
         "both cool: peaks -4.00 and -3.00 K at the cold receptor differ by 1.00 K, more than the just noticeable 0.07 K"
     )
-    assert rates.text == (
+    assert rates == (
         "rates -3.00 and -1.00 K/s at the cold receptor differ by a factor 3.00, more than the just noticeable 1.43"
     )
-    assert rates.values["ratio"] == pytest.approx(3.0)
-    assert onsets.values["difference"] == pytest.approx(abs(onsets.values["a"] - onsets.values["b"]))
-    assert f"{onsets.values['difference']:.2f} s apart, within the 0.20 s of the response window" in onsets.text
-    assert carries.text.startswith("mostly distinguished by how fast they start: a ")
-    shares = [carries.values[part] ** 2 for part in PARTS]
-    assert sum(shares) == pytest.approx(carries.values["d_prime"] ** 2)
-    assert carries.text.endswith(
-        f"d′ {carries.values['rate']:.1f} of {carries.values['d_prime']:.1f} for a nominal person"
-    )
+    first, second = (perceive(each, observer).onset_s or 0.0 for each in (one, two))
+    assert f"{abs(first - second):.2f} s apart, within the 0.20 s of the response window" in onsets
+    assert carries.startswith("mostly distinguished by how fast they start: a ")
+    parts = parts_of(one, two, observer)
+    whole = math.hypot(*(part.value for part in parts.values()))
+    assert carries.endswith(f"d′ {parts['rate'].value:.1f} of {whole:.1f} for a nominal person")
 
 
-def test_what_fails_to_separate_is_said(cue: Any, observer: Observer) -> None:
-    _, _, peaks, rates, onsets = why(cue, observer, {"change": 4.0}, {"change": 4.05})
-    assert "both warm" in peaks.text
-    assert peaks.text.endswith("differ by 0.05 K, within the just noticeable 0.09 K")
-    assert rates.text.endswith("differ by a factor 1.00, within the just noticeable 1.43")
-    assert onsets.text.endswith("within the 0.40 s of the response window")
-
-
-def test_other_directions_give_no_peaks(cue: Any, observer: Observer) -> None:
-    reasons = why(cue, observer, {"change": -4.0}, {"change": 3.0})
-    assert [r.unit for r in reasons] == ["d′", "K", "s"]
-    assert reasons[0].text.startswith("mostly distinguished by what is felt: a cold")
-    assert reasons[1].text == (
+def test_other_relations_have_other_sentences(cue: Any, observer: Observer) -> None:
+    _, _, peaks, rates, onsets = pair(cue, observer, {"change": 4.0}, {"change": 4.05})
+    assert "both warm" in peaks and peaks.endswith("differ by 0.05 K, within the just noticeable 0.09 K")
+    assert rates.endswith("differ by a factor 1.00, within the just noticeable 1.43")
+    assert onsets.endswith("within the 0.40 s of the response window")
+    carries, direction, onsets = pair(cue, observer, {"change": -4.0}, {"change": 3.0})
+    assert carries.startswith("mostly distinguished by what is felt: a cold")
+    assert direction == (
         "directions differ: a cools (-4.00 K at the cold receptor); b warms (+3.00 K at the warm receptor)"
     )
-    assert reasons[2].text.startswith("nominal person: felt at 0.")
-
-
-def test_identical_icons_get_one_sentence(cue: Any, observer: Observer) -> None:
-    (only,) = why(cue, observer, {"change": -4.0}, {"change": -4.0})
-    assert only.text == "nothing differs: a and b move the receptors in the same way, so their names are guessed"
-    (longer,) = why(cue, observer, {"change": -4.0}, {"change": -4.0, "end_s": 20.0})
-    assert longer.text == only.text
-
-
-def test_what_no_sensation_distinguishes_is_guessed(cue: Any, observer: Observer) -> None:
-    one, two = cue(change=-0.001, name="a"), cue(change=-0.0012, name="b")
-    felt = perceive(one, observer), perceive(two, observer)
-    assert pair_reasons(one, two, *felt, observer)[0].text == "neither a nor b is felt, so their names are guessed"
+    assert onsets.startswith("nominal person: felt at 0.")
+    assert "not felt by the nominal person: a" in pair(cue, observer, {"change": -0.05}, {"change": -4.0})
+    assert pair(cue, observer, {"change": -0.001}, {"change": -0.0012})[0].startswith("neither a nor b is felt")
+    only = "nothing differs: a and b move the receptors in the same way, so their names are guessed"
+    assert pair(cue, observer, {"change": -4.0}, {"change": -4.0}) == (only,)
+    assert pair(cue, observer, {"change": -4.0}, {"change": -4.0, "end_s": 20.0}) == (only,)
 
 
 @pytest.mark.parametrize("share", [0.9999, 0.99999, 1.00001, 1.0001])
 def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, share: float) -> None:
     needed = load_rules().one("peak", channel="warm").central
-    peaks = why(cue, observer, {"change": 4.0}, {"change": 4.0 + needed * share})[2].text
+    peaks = pair(cue, observer, {"change": 4.0}, {"change": 4.0 + needed * share})[2]
     found = re.search(r"differ by (\S+) K, (more than|within) the just noticeable (\S+) K$", peaks)
     assert found is not None
     gap, said, limit = found.groups()
@@ -97,23 +161,10 @@ def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, share: f
 
 def test_rounding_does_not_undo_the_verdict_on_rates_and_onsets(cue: Any, observer: Observer) -> None:
     ratio = load_rules().one("rate ratio").central
-    rates = why(cue, observer, {"change": -4.0, "rate": 2.0}, {"change": -4.0, "rate": 2.0 * ratio * 0.999})[3].text
+    rates = pair(cue, observer, {"change": -4.0, "rate": 2.0}, {"change": -4.0, "rate": 2.0 * ratio * 0.999})[3]
     assert rates.endswith("differ by a factor 1.429, within the just noticeable 1.43")
-    one = cue(change=-4.0, name="a")
-    felt = perceive(one, observer)
-    late = replace(felt, onset_s=(felt.onset_s or 0.0) + 0.1999)
-    onsets = pair_reasons(one, cue(change=-4.2, name="b"), felt, late, observer)[4].text
-    assert onsets.endswith(": 0.1999 s apart, within the 0.20 s of the response window")
-
-
-def test_as_much_as_is_said_of_what_is_equal(cue: Any, observer: Observer) -> None:
-    one = cue(change=-4.0, name="a")
+    one, two = cue(change=-4.0, name="a"), cue(change=-4.2, name="b")
     felt = replace(perceive(one, observer), onset_s=0.0)
-    later = replace(felt, onset_s=0.2)
-    text = pair_reasons(one, cue(change=-4.2, name="b"), felt, later, observer)[4].text
-    assert text.endswith("0.20 s apart, as much as the 0.20 s of the response window")
-
-
-def test_unfelt_icons_are_named(cue: Any, observer: Observer) -> None:
-    texts = [r.text for r in why(cue, observer, {"change": -0.05}, {"change": -4.0})]
-    assert "not felt by the nominal person: a" in texts
+    for late, said in ((0.1999, "0.1999 s apart, within the 0.20 s"), (0.2, "0.20 s apart, as much as the 0.20 s")):
+        onsets = why(one, two, observer, (felt, replace(felt, onset_s=late)))[4]
+        assert onsets.endswith(f"{said} of the response window")

@@ -9,7 +9,7 @@ from thermicon.perception.sensation.percept import on_one_clock, uniform_clock
 
 def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:
     percept = perceive(cue(change=-4.0, name="dip"), observer)
-    assert (percept.channel, percept.clock, percept.icon) == ("cold", "receptor", "dip")
+    assert (percept.channel, percept.icon) == ("cold", "dip")
     assert percept.detected_probability == pytest.approx(1.0)
     assert percept.onset_s is not None
     assert 0.55 < percept.onset_s < 0.8
