@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermicon.circuit.records import Table, load_records
+from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
 from .channels import (
@@ -31,9 +32,8 @@ from .channels import (
     drive_unit,
     source_of,
 )
-from .mechanisms import check_without, find_mechanism
 from .observer_file import check_complete, read_records
-from .parts import EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
+from .parts import LEG_M_PER_S, EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
@@ -58,13 +58,19 @@ OF_CHANNEL: Mapping[str, str] = {
 }
 OF_BOTH: Mapping[str, str] = {"adaptation_s": "slow adaptation time", "softness_K": "softness of the limits"}
 """Fields of a receptor: constants of which each channel has its own, and those that both share."""
-TURNED_OFF = {
-    "transducer": "p",
-    "gain noise": "gain_noise",
-    "decision between trials": "decision_noise",
-    "choice time": "choice_s",
+TURNED_OFF: Mapping[str, Mapping[str, float]] = {
+    "delays": {},
+    "cold limit": {},
+    "warm limit": {},
+    "ends of summation": {},
+    "transducer": {"p": 2.0},
+    "gain noise": {"gain_noise": 0.0},
+    "decision between trials": {"decision_noise": 0.0},
+    "choice time": {"choice_s": 0.0},
 }
-"""Mechanisms with one constant, and its field."""
+"""Mechanisms that can be turned off, and what fields are then: conduction is the leg's and has no way from the cord to
+the brain; any change in a channel's direction is felt, however warm or cold; a power of area without ends; the square
+law, ψ ∝ u² near threshold; additive noise alone; one decision time a person; a choice as long as a simple reaction."""
 FOREARM_SITES = ("forearm", "wrist", "arm")
 
 
@@ -161,27 +167,28 @@ class Observer:
     ) -> Observer:
         """The shipped observer, or one from another parameter file, in one of its variants.
 
-        `without` names mechanisms that are turned off, out of `MECHANISMS`; other constants stay what they are. Raises
+        `without` names mechanisms that are turned off, out of `TURNED_OFF`; other constants stay what they are. Raises
         `RecordError` for a file without what is needed, `ValueError` for a variant or mechanism that does not exist.
         """
         whole = _shipped(variable) if path is None else cls.from_table(read_records(Path(path)), variable=variable)
-        off = check_without(without, "observer")
-        return whole.with_mechanisms_off(off) if off else whole
+        return whole._without(without) if without else whole
 
-    def with_mechanisms_off(self, names: frozenset[str]) -> Observer:
-        """The observer without some mechanisms that act on it, all else the same."""
-        changes: dict[str, Any] = {"without": self.without | names}
+    def _without(self, names: Iterable[str]) -> Observer:
+        if isinstance(names, str):
+            raise ValueError(f"mechanisms are given as a list of names, such as without=[{names!r}]")
+        off, changes = frozenset(names), dict[str, Any]()
+        for name in off:
+            if name not in TURNED_OFF:
+                raise ValueError(f"there is no mechanism {name!r}: {did_you_mean(name, set(TURNED_OFF))}")
+            changes |= TURNED_OFF[name]
         for channel in CHANNELS:
             receptor = self.receptor(channel)
-            if f"{channel} limit" in names:
+            if f"{channel} limit" in off:
                 receptor = replace(receptor, limit_C=None)
-            if "delays" in names:
-                velocity = find_mechanism("delays").off(f"{channel} conduction velocity")
-                receptor = replace(receptor, velocity_m_per_s=velocity)
+            if "delays" in off:
+                receptor = replace(receptor, velocity_m_per_s=LEG_M_PER_S[channel])
             changes[channel] = receptor
-        for name in names & set(TURNED_OFF):
-            changes[TURNED_OFF[name]] = find_mechanism(name).off(INFERRED[TURNED_OFF[name]])
-        return replace(self, **changes)
+        return replace(self, without=off, **changes)
 
     @classmethod
     def from_table(cls, table: Table, *, variable: Variable = "temperature") -> Observer:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from statistics import NormalDist
@@ -18,7 +18,6 @@ from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
-from .mechanisms import check_without
 from .observer import load_thresholds, observer_records
 
 if TYPE_CHECKING:
@@ -104,7 +103,6 @@ def draw_people(
     seed: int = 0,
     *,
     age_years: float | None = None,
-    without: Iterable[str] = (),
     spreads: Mapping[str, float] | None = None,
 ) -> People:
     """Draw n virtual people; person i is the same whatever n is.
@@ -121,10 +119,9 @@ def draw_people(
     age_years
         Age of all of them, which multiplies thresholds as `age_factor` says; None leaves age out, which is people of 20
         to 30 years.
-    without
-        Mechanisms of people that are turned off: `criterion between people` or `age`.
     spreads
-        Other inferred constants of people by name, such as one draw of the posterior; None: the shipped ones.
+        Other inferred constants of people by name, such as one draw of the posterior; those left out, or None: the
+        shipped ones.
 
     Returns
     -------
@@ -134,19 +131,18 @@ def draw_people(
     Raises
     ------
     ValueError
-        For fewer than one person, an age outside 18 to 100 years, and a mechanism that does not act on people.
+        For fewer than one person, and an age outside 18 to 100 years.
 
     Examples
     --------
     >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
     >>> bool((a.memory == b.memory[:3]).all())
     True
-    >>> draw_people(3, without=["criterion between people"]).criterion_cold.tolist()
+    >>> draw_people(3, spreads={"criterion between people": 0.0}).criterion_cold.tolist()
     [1.0, 1.0, 1.0]
     """
     if n < 1:
         raise ValueError(f"at least one person is needed, not {n}")
-    off = check_without(without, "people")
     record = people_records()
     column, normal = _columns(n, seed)
     constants, inferred = {} if spreads is None else spreads, observer_records()
@@ -167,11 +163,9 @@ def draw_people(
         low, high = record[name].interval
         return _triangular(column[name], low, record[name].central, high)
 
-    aged = [1.0 if age_years is None or "age" in off else age_factor(age_years, channel) for channel in CHANNELS]
+    aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
     threshold_cold, threshold_warm = both("threshold")
     criterion_cold, criterion_warm = both("criterion")
-    if "criterion between people" in off:
-        criterion_cold, criterion_warm = np.ones(n), np.ones(n)
     least, most = record["memory"].interval
     return People(
         threshold_cold=aged[0] * threshold_cold,

@@ -17,7 +17,6 @@ from thermicon.perception.arrays import Array, own_arrays
 from thermicon.perception.evidence.results import Constant, load_constants
 from thermicon.perception.experiments.skin_modes import Corner, SkinModes, skin_modes
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
-from thermicon.perception.observer.mechanisms import DEPTH_MM
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.parts import Transducer
 from thermicon.perception.sensation.detection import detect
@@ -98,7 +97,7 @@ def depth_effect() -> Effect:
         skin = _skin(site)
         for counted, at, look in (
             ("below the stratum corneum", skin.corneum_m + depth, below),
-            ("0.15 mm from the surface", 1e-3 * DEPTH_MM["cold"], surface),
+            ("0.15 mm from the surface", 0.15e-3, surface),
         ):
             change = skin.course(at, 32.0, [(0.5, -5.0)], DT_S, time.size)
             curves.append(Curve(f"{site}, {counted}", look, time, change - change[0]))

@@ -34,19 +34,11 @@ def test_spreads_are_those_of_the_records() -> None:
     assert crowd.lapse.max() <= 0.03
 
 
-def test_people_without_a_mechanism_of_theirs() -> None:
-    whole, alike = draw_people(9, seed=1, age_years=70.0), draw_people(9, seed=1, age_years=70.0, without=["age"])
-    young = draw_people(9, seed=1)
-    assert np.array_equal(alike.threshold_warm, young.threshold_warm)
-    assert (whole.threshold_warm > alike.threshold_warm).all()
-    one = draw_people(9, seed=1, without=["criterion between people"])
+def test_people_with_one_criterion_are_otherwise_the_same() -> None:
+    young, one = draw_people(9, seed=1), draw_people(9, seed=1, spreads={"criterion between people": 0.0})
     assert np.all(one.criterion_cold == 1.0)
     assert np.array_equal(one.threshold_cold, young.threshold_cold)
     assert np.array_equal(one.decision_s, young.decision_s)
-    with pytest.raises(ValueError, match=r"'gain noise' acts on the observer, not on the people: .*Observer.load\("):
-        draw_people(9, without=["gain noise"])
-    with pytest.raises(ValueError, match=r"no mechanism 'aga'.*age"):
-        draw_people(9, without=["aga"])
 
 
 def test_every_field_names_its_record() -> None:

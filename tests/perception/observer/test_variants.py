@@ -15,8 +15,7 @@ from thermicon.perception.observer.channels import (
     receptor_column,
     receptor_input,
 )
-from thermicon.perception.observer.mechanisms import MECHANISMS, find_mechanism
-from thermicon.perception.observer.observer import Receptor
+from thermicon.perception.observer.observer import TURNED_OFF, Receptor
 from thermicon.perception.sensation.bench import Bench, ramp
 from thermicon.perception.sensation.sensation import sensitivity
 
@@ -31,10 +30,7 @@ def test_every_variant_loads_and_is_near_the_thresholds_it_was_inferred_from(var
         assert 0.5 * published < forced_choice(person, bench, channel) < 2.0 * published
 
 
-OF_OBSERVER = [mechanism.name for mechanism in MECHANISMS if mechanism.carrier == "observer"]
-
-
-@pytest.mark.parametrize("name", OF_OBSERVER)
+@pytest.mark.parametrize("name", TURNED_OFF)
 def test_turning_a_mechanism_off_changes_what_is_computed(name: str) -> None:
     """A constant differs, or what is computed from the constants: not only the list of names."""
     whole, off = Observer.load(), Observer.load(without=[name])
@@ -43,43 +39,13 @@ def test_turning_a_mechanism_off_changes_what_is_computed(name: str) -> None:
     assert replace(off, without=frozenset()) != whole or large[0] != large[1]
 
 
-@pytest.mark.parametrize(
-    ("name", "cure"),
-    [
-        ("depth", r"acts on the rig, not on the observer: give the rig skin.depth_from = .surface., .* 0.15 .* 0.30"),
-        ("skin", r"acts on the rig, .* contact.resistance_m2K_per_W = 0.00054"),
-        ("criterion between people", r"acts on the people, .* draw_people\(n, without="),
-        ("age", r"acts on the people, .* draw_people\(n, without="),
-        ("caution", r"acts on the inference, .*ablation.csv"),
-        ("laboratories", r"acts on the inference, .*ablation.csv"),
-    ],
-)
-def test_a_mechanism_of_something_else_says_where_it_is_turned_off(name: str, cure: str) -> None:
-    with pytest.raises(ValueError, match=cure):
-        Observer.load(without=[name])
-    assert name not in OF_OBSERVER
-
-
-def test_the_cure_for_depth_works() -> None:
-    rig = Rig.load("thenar").with_(
-        **{"skin.depth_from": "surface", "skin.cold_receptor_mm": 0.15, "skin.warm_receptor_mm": 0.30}
-    )
-    assert rig.skin.cold_receptor_m == pytest.approx(0.15e-3)
-
-
-def test_values_of_what_is_off_are_those_of_the_inference() -> None:
-    fixed = {name: value for mechanism in MECHANISMS for name, value in mechanism.fixed.items()}
-    off = Observer.load(without=["delays", "transducer"])
-    assert off.p == fixed["transducer exponent"]
-    assert off.cold.velocity_m_per_s == fixed["cold conduction velocity"]
-    assert find_mechanism("gain noise").off("gain noise") == 0.0 < fixed["gain noise"]
-
-
 def test_mechanisms_can_be_turned_off_together_and_unknown_ones_are_named() -> None:
     whole = Observer.load()
     both = Observer.load(without=["cold limit", "gain noise"])
     assert both.cold.limit_C is None
     assert both.gain_noise == 0.0
+    assert Observer.load(without=["delays", "transducer"]).p == 2.0
+    assert Observer.load(without=["delays"]).warm.velocity_m_per_s == 0.5
     assert both.warm == whole.warm
     with pytest.raises(ValueError, match=r"no mechanism 'gain nose'.*gain noise"):
         Observer.load(without=["gain nose"])
