@@ -34,32 +34,11 @@ def constants() -> Array:
 
 
 def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
-    """Return the cumulative thermal dose in equivalent minutes at 43 °C.
+    """Cumulative thermal dose (…, rows) in equivalent minutes at 43 °C, of temperatures (…, rows) in °C at times in s.
 
-    Parameters
-    ----------
-    time_s
-        Times (rows,) in s, increasing.
-    temperature_C
-        Temperatures (…, rows) in °C.
+    CEM43 = ∫ R^(43 − T) dt with R = 0.5 from 43 °C on, 0.25 from 37 to 43 °C, and 0 below; source: Sapareto and Dewey
+    1984, in `circuit/data/exposure.toml`.
 
-    Returns
-    -------
-    Array
-        Dose (…, rows) in min, from 0 at the first row.
-
-    Raises
-    ------
-    ValueError
-        Where times and temperatures do not match, times do not increase, or temperatures are not finite.
-
-    Notes
-    -----
-    CEM43 = ∫ R^(43 − T) dt with R = 0.5 from 43 °C on, 0.25 from 37 to 43 °C, and 0 below; source: Sapareto and
-    Dewey 1984, in `circuit/data/exposure.toml`.
-
-    Examples
-    --------
     >>> cem43_min([0, 60, 120], [43, 43, 43]).tolist()
     [0.0, 1.0, 2.0]
     >>> round(float(cem43_min([0, 60], [42, 42])[-1]), 9)
@@ -71,32 +50,11 @@ def cem43_min(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
 
 
 def henriques(time_s: npt.ArrayLike, temperature_C: npt.ArrayLike) -> Array:
-    """Return the cumulative burn integral Ω.
+    """Cumulative burn integral Ω (…, rows) of temperatures (…, rows) in °C; a first-degree burn begins at 0.53.
 
-    Parameters
-    ----------
-    time_s
-        Times (rows,) in s, increasing.
-    temperature_C
-        Temperatures (…, rows) in °C.
-
-    Returns
-    -------
-    Array
-        Ω (…, rows), from 0 at the first row; a first-degree burn begins at 0.53.
-
-    Raises
-    ------
-    ValueError
-        Where times and temperatures do not match, times do not increase, or temperatures are not finite.
-
-    Notes
-    -----
-    Ω = ∫ A·exp(−Ea/(R·T)) dt with the absolute temperature T (Henriques and Moritz 1947), see
+    Ω = ∫ A·exp(−Ea/(R·T)) dt with the absolute temperature T (Henriques and Moritz 1947), in
     `circuit/data/exposure.toml`.
 
-    Examples
-    --------
     >>> round(float(henriques([0, 600], [44, 44])[-1]), 3)
     0.007
     """

@@ -220,27 +220,10 @@ def gate_shown(
 ) -> tuple[Gate, ...]:
     """Check what a device with its own control loop shows, in repeated plays in any order; as `gate_set` does.
 
-    Parameters
-    ----------
-    drives
-        For each drive, its display in each way in which the device may follow.
-    rig
-        The rig, of which skin, contact and air with their uncertainty are used.
-    stuck_C
-        Ends in °C of the device's range, at which a single fault may leave it.
-    limits
-        Limits in place of the rig's.
-    pause_s
-        Time between plays, 0 to 600 s; None: the longest recovery time.
-    module
-        Keep the rules of a hot plate, taken as warm as the display, so that checks can be joined with a module's.
-        The rate of skin is left to these, since a jump of the display is an idealisation.
-
-    Raises
-    ------
-    PauseError
-        For an impossible pause.
-
+    `drives` has the display of each drive in each way in which the device may follow; of the rig, skin, contact and air
+    with their uncertainty are used. A single fault may leave the device at one of `stuck_C` (°C). `module` keeps the
+    rules of a hot plate, taken as warm as the display, so that checks can be joined with a module's; the rate of skin
+    is left to these, since a jump of the display is an idealisation.
     """
     check_pause(pause_s)
     rules = rig.limits if limits is None else limits

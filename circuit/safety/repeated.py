@@ -29,16 +29,7 @@ PRACTICAL_S = 0.1
 
 
 class PauseError(InputError):
-    """An impossible pause between plays.
-
-    Examples
-    --------
-    >>> try:
-    ...     check_pause(-1.0)
-    ... except PauseError as problem:
-    ...     print(problem)
-    a pause of -1 s between plays is not possible; give 0 to 600 s
-    """
+    """An impossible pause between plays."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,16 +35,7 @@ ORDER_MB = 1.0
 
 
 class SessionError(InputError):
-    """A session that cannot be planned or played; the text gives the reason and what to change.
-
-    Examples
-    --------
-    >>> try:
-    ...     SessionPlan(())
-    ... except SessionError as problem:
-    ...     print(problem)
-    a session ...
-    """
+    """A session that cannot be planned or played; the text gives the reason and what to change."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +86,7 @@ class SessionPlan:
 
     @staticmethod
     def shuffled(names: Sequence[str], repeats: int, *, seed: int = 0, gap_s: float = 10.0) -> SessionPlan:
-        """Return a plan with every icon `repeats` times in random order; equal seeds give equal orders.
-
-        Raises SessionError as the plan does, and for fewer than one repeat.
+        """A plan with every icon `repeats` times in random order; equal seeds give equal orders.
 
         >>> plan = SessionPlan.shuffled(["dip", "glow"], 3, seed=1)
         >>> plan, plan.order.count("dip")
@@ -115,10 +104,9 @@ class SessionPlan:
 
 
 def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
-    """Return the icon names of an order file: one per line or separated by commas; # begins a comment.
+    """The icon names of an order file: one per line or separated by commas; # begins a comment.
 
-    Raises SessionError for a file that cannot be read or holds no name, and for a name that is not in the set, with its
-    line and the nearest name.
+    Raises SessionError for a file that cannot be read or holds no name, and for one not in the set, with line and cure.
     """
     where = Path(path)
     names: list[str] = []
@@ -143,11 +131,7 @@ def order_text(plan: SessionPlan) -> str:
 
 
 def check_length(durations_s: Sequence[float], gap_s: float) -> float:
-    """Return how long a session lasts in s, from its first start to its last end; SessionError where that is too long.
-
-    >>> check_length([8.0, 4.0], 10.0)
-    22.0
-    """
+    """How long a session lasts in s, from its first start to its last end; SessionError where that is too long."""
     total = math.fsum(durations_s) + gap_s * (len(durations_s) - 1)
     if total > LONGEST_S:
         raise SessionError(

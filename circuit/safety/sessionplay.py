@@ -66,14 +66,11 @@ class SessionDrive:
 
 
 def drive_of(plan: SessionPlan, icons: Mapping[str, Icon], rig: Rig, tracking: str = "replay") -> SessionDrive:
-    """Return the one drive of a session; `icons` has every name of the plan.
+    """The one drive of a session; `icons` has every name of the plan.
 
     Every icon starts at the first update of the driver at or after the end of its gap. The current of each is designed
     from rest, and its own resting current flows until the next one starts; with `display` the driver follows each
     icon's display temperature and holds the display at the icon's baseline in the gaps.
-
-    Raises SessionError for a session that is too long and for what cannot be tracked, RigError for a baseline that
-    cannot be held.
     """
     if tracking not in TRACKINGS:
         raise SessionError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
@@ -172,11 +169,7 @@ def _setpoints(icon: Icon, rig: Rig, count: int, lasts_s: float) -> tuple[float,
 
 
 def held_A(drive: Drive, count: int, update_Hz: float) -> Array:
-    """Currents in A held over `count` updates: a drive's own, or the means of one that is linear between its rows.
-
-    >>> held_A(Drive([0, 1], [0.0, 1.0]), 4, 4.0).tolist()
-    [0.125, 0.375, 0.625, 0.875]
-    """
+    """Currents in A held over `count` updates: a drive's own, or the means of one that is linear between its rows."""
     if drive.held:
         return drive.current_A[:count]
     edges = np.arange(count + 1) / update_Hz

@@ -72,21 +72,10 @@ class _Rules:
 
 
 class Tally:
-    """Runs of some lanes against every rule, added stretch by stretch.
+    """Runs of some lanes, each a corner or a name, against every rule, added stretch by stretch.
 
-    Parameters
-    ----------
-    limits
-        The rules.
-    lanes
-        The corner, or the name, of each lane.
-    run
-        The scenario of every lane but for its corner.
-    plays
-        Number of plays in a session, by which sums over time are multiplied.
-    begun_C
-        Skin temperature (lanes,) from which changes count; None: that of the first row.
-
+    `run` is the scenario of every lane but for its corner, `plays` the number by which sums over time are multiplied,
+    `begun_C` the skin (lanes,) from which changes count; None: that of the first row.
     """
 
     def __init__(

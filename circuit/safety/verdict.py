@@ -37,29 +37,10 @@ class SafetyVerdict(Judged):
 
 
 def judge_safety(trace: Trace) -> SafetyVerdict:
-    """Check a trace against the limits of its rig.
+    """Check a trace against the limits of its rig, or the shipped ones; RigError for a load in place of skin.
 
-    Parameters
-    ----------
-    trace
-        One run; without limits of its own it is checked against the shipped ones.
-
-    Returns
-    -------
-    SafetyVerdict
-        Colour, and the worst value of every rule.
-
-    Raises
-    ------
-    RigError
-        For a trace of a rig with a load in place of skin.
-
-    Notes
-    -----
     This is one run of the rig as given. `gate` also covers uncertainty, endings, repetition and single faults.
 
-    Examples
-    --------
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import load_library
     >>> judge_safety(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"))).colour
@@ -139,20 +120,8 @@ class Summary:
 
 
 def summarise(trace: Trace) -> Summary:
-    """Return the numbers of a trace by which rigs and icons are compared.
+    """The numbers of a trace by which rigs and icons are compared: misses, extremes, energy and the safety of this run.
 
-    Parameters
-    ----------
-    trace
-        One run.
-
-    Returns
-    -------
-    Summary
-        Duration, misses, extremes, electrical energy and the safety of this run.
-
-    Examples
-    --------
     >>> from thermicon.circuit import Rig, simulate
     >>> from thermicon.icons import load_library
     >>> summarise(simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar")))

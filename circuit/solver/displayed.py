@@ -32,11 +32,7 @@ SKIN_ROW = FELT.index("skin_C")
 
 
 def part_of(update_s: float, finest_s: float = FINEST_S) -> float:
-    """Return an update in s, or the largest whole fraction of it that is not above the finest.
-
-    >>> part_of(0.01), part_of(0.5)
-    (0.01, 0.01)
-    """
+    """An update in s, or its largest whole fraction that is not above the finest."""
     return update_s / max(1, math.ceil(update_s / finest_s - 1e-9))
 
 

@@ -24,16 +24,7 @@ four months; largest current in A, far above what any module takes."""
 
 
 class DriveError(InputError):
-    """A drive that cannot be played, or a drive file that cannot be read.
-
-    Examples
-    --------
-    >>> try:
-    ...     Drive([0, 2, 1], [0.0, 0.5, 0.5])
-    ... except DriveError as problem:
-    ...     print(problem)
-    row 3: time 1 s does not come after 2 s; times must increase
-    """
+    """A drive that cannot be played, or a drive file that cannot be read."""
 
 
 @dataclass(frozen=True, slots=True)

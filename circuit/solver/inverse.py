@@ -123,14 +123,9 @@ def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
-    """Return the designs of many cues on one rig, each with its outcome, computed in parallel on all cores.
+    """The designs of many cues on one rig until a common end, each as `design` gives it, in parallel on all cores.
 
-    As `design`, but all cues share `end_s`. Cues that prescribe current, and rigs with a control loop, are designed one
-    by one.
-
-    >>> from thermicon.icons import load_library
-    >>> [plan.outcome.reached for plan in design_many(load_library("six-icons"), Rig.load("thenar"), 9.0)]
-    [True, True, True, True, True, True]
+    Cues that prescribe current, and rigs with a control loop, are designed one by one.
     """
     designs: dict[int, Design] = {}
     for control in ("skin", "display") if rig.controller is None else ():
@@ -168,10 +163,10 @@ def gains_of(rig: Rig) -> tuple[float, float, float, float, float]:
 
 
 def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
-    """Return the currents of the rig's own PID loop for a cue; `plan` is the ideal inverse of the same cue.
+    """The currents of the rig's own PID loop for a cue, whose set-point is the cue's display temperature.
 
-    The set-point of the loop is the cue's display temperature; under skin control it is the display temperature that
-    the ideal inverse finds, since the loop sees the display alone. The outcome still judges what the cue prescribes.
+    Under skin control that is the display of the ideal inverse `plan`, since the loop sees the display alone; the
+    outcome still judges what the cue prescribes.
     """
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)

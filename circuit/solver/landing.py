@@ -28,11 +28,7 @@ def refuse_landing(rig: Rig, what: str) -> None:
 
 
 def lead_of(rig: Rig) -> int:
-    """Number of the driver's updates between landing and the start of a cue; 0 where the hand rests.
-
-    >>> lead_of(Rig.load("thenar").with_(**{"contact.lands_s": -0.5}))
-    50
-    """
+    """Number of the driver's updates between landing and the start of a cue; 0 where the hand rests."""
     return 0 if rig.contact.lands_s is None else round(-rig.contact.lands_s * rig.driver.update_Hz)
 
 
@@ -57,10 +53,7 @@ def _resting_lumps(rig: Rig) -> Array:
 
 
 def landing_state(rig: Rig, *, current_A: float | None = None, display_C: float | None = None) -> Array:
-    """State (nodes,) in °C at which a hand lands on a display in air, under a current or at a temperature of it.
-
-    Raises RigError where the rig has no such steady state.
-    """
+    """State (nodes,) in °C at which a hand lands on a display in air, under a current or held; RigError for none."""
     network = network_of(rig)
     film_W_per_K = rig.ambient.film_W_per_m2K * rig.contact.area_m2
     try:
@@ -82,10 +75,7 @@ def landing_state(rig: Rig, *, current_A: float | None = None, display_C: float 
 
 
 def start_under(rig: Rig, current_A: float) -> Array:
-    """State (nodes,) in °C in which a run under a given current begins: at rest, or when a hand has landed.
-
-    Raises ArithmeticError where the rig has no steady state.
-    """
+    """State (nodes,) in °C in which a run under a given current begins: at rest, if it exists, or after landing."""
     steady = state_under_current(network_of(rig), current_A)
     return steady if rig.contact.lands_s is None else start_after(rig, np.full(lead_of(rig) + 1, current_A))
 

@@ -207,15 +207,7 @@ class SkinModes:
     def run(
         self, display_C: Array, step_s: float, modes: Array, rows: Sequence[int] | None = None
     ) -> tuple[Array, Array]:
-        """Return FELT (7, rows) and the modes at the end, for a display (rows,) linear between rows `step_s` apart.
-
-        `rows` are the places of some quantities in FELT; None: all.
-
-        >>> modes = modes_of(Rig.load("thenar"))
-        >>> felt, _ = modes.run(np.full(3, 32.0), 0.01, modes.steady(32.0))
-        >>> bool(np.ptp(felt[0]) == 0.0)
-        True
-        """
+        """FELT (7, rows), or some `rows` of it, and the modes at the end, for a display (rows,) linear between rows."""
         from . import kernel_modes
 
         keep, now, then = step_weights(self.rate_per_s, step_s)
@@ -253,10 +245,10 @@ class SkinModes:
     def display_for_skin(
         self, target_C: Array, step_s: float, start_C: float, slew_K_per_s: float, limits_C: tuple[float, float]
     ) -> Array:
-        """Return the display (rows,) in °C that takes the face of the skin to targets (rows,), the first held before.
+        """The display (rows,) in °C that takes the face of the skin to targets (rows,), the first held before.
 
         As the inverse of a module does, each level comes from one implicit step over the period, which damps it, and
-        the state moves by the exact one. `slew_K_per_s` and `limits_C` are those of the thermode.
+        the state moves by the exact one. Slew rate and limits are those of the thermode.
         """
         row = FELT.index("skin_C")
         weight, direct = self.reading[row], float(self.direct[row])
@@ -284,11 +276,7 @@ class SkinModes:
 
 @lru_cache(maxsize=256)
 def modes_of(rig: Rig, insulated: bool = False) -> SkinModes:
-    """Return the modes of a rig's skin in contact; `insulated`: under a display that conducts no heat.
-
-    >>> round(modes_of(Rig.load("thenar")).display_holding_skin_C(32.0), 2)
-    31.96
-    """
+    """The modes of a rig's skin in contact; `insulated`: under a display that conducts no heat."""
     return modes_on(skin_network_of(rig), insulated)
 
 
@@ -316,12 +304,8 @@ def modes_on(network: Network, insulated: bool = False, readings: tuple[Index, A
 
 
 def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: float = np.inf) -> Array:
-    """Return the display (rows,) in °C of a thermode that follows set-points (rows,), `step_s` apart, from rest.
-
-    First-order lag, exact for set-points that are linear between rows, and no faster than its slew rate.
-
-    >>> shown(np.array([30.0, 31.0, 31.0]), 0.1, slew_K_per_s=5.0).tolist()
-    [30.0, 30.5, 31.0]
+    """The display (rows,) in °C of a thermode that follows set-points (rows,), `step_s` apart, from rest: with a first-
+    order lag, exact for set-points that are linear between rows, and no faster than its slew rate.
     """
     most = slew_K_per_s * step_s
     if lag_s <= 0 and np.abs(np.diff(setpoint_C)).max(initial=0.0) <= most:

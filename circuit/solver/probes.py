@@ -46,11 +46,7 @@ SMALL = 1e-5
 
 
 def between(rows_s: Array, rig: Rig) -> int:
-    """Number of parts into which the rows of a run are divided, so that no probe with memory steps over 10 ms.
-
-    >>> between(np.array([0.0, 0.025]), Rig.load("thenar").with_(probe=[{"name": "a", "place": "skin", "lag_s": 1.0}]))
-    3
-    """
+    """Number of parts into which the rows of a run are divided, so that no probe with memory steps over 10 ms."""
     if not any(probe.lag_s or probe.place == "insulated skin" for probe in rig.probes):
         return 1
     parts = max(1, math.ceil(float(np.diff(rows_s).max(initial=0.0)) / SLOWEST_ROWS_S - 1e-9))
@@ -65,11 +61,7 @@ def between(rows_s: Array, rig: Rig) -> int:
 
 
 def divided(rows_s: Array, parts: int) -> Array:
-    """Times in s with every gap between rows in equal parts; every `parts`-th is a row.
-
-    >>> divided(np.array([0.0, 1.0, 3.0]), 2)
-    array([0. , 0.5, 1. , 2. , 3. ])
-    """
+    """Times in s with every gap between rows in equal parts; every `parts`-th is a row."""
     if parts == 1:
         return rows_s
     inside = rows_s[:-1, np.newaxis] + np.diff(rows_s)[:, np.newaxis] * (np.arange(parts) / parts)

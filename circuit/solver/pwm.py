@@ -25,17 +25,11 @@ bridge ripples less, so that nothing is understated."""
 def duty_of(
     rule: str, current_A: Array, peak_A: float, module: Peltier, cold_C: Array, hotter_K: Array | float = 0.0
 ) -> Array:
-    """Return signed duties (n,) that replace currents (n,) in A, with the cold plate at temperatures (n,) in °C.
+    """Signed duties (n,) that replace currents (n,) in A, with the cold plate at temperatures (n,) in °C.
 
     `mean current` keeps the mean, I/Ip. `equal heat` takes as much heat from the cold plate as the steady current does;
-    where the bridge's own current is past the greatest cooling, there is no such duty, and the mean is kept.
-    `hotter_K` (n,): how much hotter the bridge makes the hot plate, whose heat leaks back and is taken away as well.
-
-    >>> module = Peltier(0.0521, 6.35, 6.56, 2.6, 2.6)
-    >>> duty_of("mean current", np.array([0.95]), 1.9, module, np.array([27.0])).round(3)
-    array([0.5])
-    >>> duty_of("equal heat", np.array([0.95]), 1.9, module, np.array([27.0])).round(3)
-    array([0.657])
+    where the bridge's own current is past the greatest cooling, there is no such duty, and the mean is kept. `hotter_K`
+    (n,): how much hotter the bridge makes the hot plate, whose heat leaks back and is taken away as well.
     """
     mean = np.clip(current_A / peak_A, -1.0, 1.0)
     if rule == "mean current":
@@ -49,9 +43,10 @@ def duty_of(
 
 
 def switched(duty: Array, rate_Hz: float, carrier_Hz: float, peak_A: float) -> Drive:
-    """Return the current of a bridge that holds duties (n + 1,) for one update each, the last for none.
+    """The current of a bridge that holds duties (n + 1,) for one update each, the last for none; cycles begin with the
+    on-time.
 
-    Every cycle begins with the on-time. A carrier above SIMULATED_CARRIER_HZ is simulated slower, at or below it.
+    A carrier above SIMULATED_CARRIER_HZ is simulated slower, at or below it.
     """
     cycles = round(min(carrier_Hz, max(rate_Hz, SIMULATED_CARRIER_HZ)) / rate_Hz)
     share = np.repeat(duty[:-1], cycles)

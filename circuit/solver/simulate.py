@@ -92,22 +92,8 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
 
 
 def duration_s(icon: Icon, rig: Rig) -> float:
-    """Return the time in s from a cue's start to its last corner.
+    """Time in s from a cue's start to its last corner; under current control it depends on the rig's holding current.
 
-    Parameters
-    ----------
-    icon
-        The cue.
-    rig
-        The rig; under current control the duration depends on its holding current.
-
-    Returns
-    -------
-    float
-        Duration in s.
-
-    Examples
-    --------
     >>> from thermicon.icons import load_library
     >>> duration_s(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
     8.0
@@ -120,35 +106,7 @@ def duration_s(icon: Icon, rig: Rig) -> float:
 
 
 def simulate_all(icons: Sequence[Icon], rig: Rig, *, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, ...]:
-    """Simulate every cue of a set on one rig, in parallel where that is quicker.
-
-    Parameters
-    ----------
-    icons
-        The cues.
-    rig
-        The rig.
-    end_s
-        Time in s until which every trace continues.
-    rate_Hz
-        Rows of the traces per second.
-
-    Returns
-    -------
-    tuple of Trace
-        One trace per cue, as `simulate` gives it.
-
-    Raises
-    ------
-    RigError
-        Where no current holds a baseline, or a run is not physical or too long.
-
-    Examples
-    --------
-    >>> from thermicon.icons import load_library
-    >>> len(simulate_all(tuple(load_library("six-icons")), Rig.load("thenar"), end_s=18.0))
-    6
-    """
+    """Traces of every cue of a set on one rig until a common end, as `simulate` gives them, in parallel."""
     module = rig.thermode is None and rig.controller is None
     alike = not rig.probes and module and all(icon.context.control != "current" for icon in icons)
     if not alike or len(icons) < FEWEST:

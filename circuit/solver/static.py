@@ -24,28 +24,11 @@ WARMEST_COLD_PLATE_K = 320.0
 
 
 def check_static(icon: Icon, rig: Rig) -> tuple[str, ...]:
-    """Return the reasons why a cue is impossible on a rig, without simulating it.
+    """The reasons why a cue is impossible on a rig, a sentence each, without simulating it.
 
-    Parameters
-    ----------
-    icon
-        The cue.
-    rig
-        The rig.
-
-    Returns
-    -------
-    tuple of str
-        A sentence for each reason; empty where there is none.
-
-    Notes
-    -----
     Checked are the baseline, the lowest and the highest level (the rig must be able to hold each in steady state) and,
-    under display control, each ramp against the steepest that the driver can start from rest at the ramp's first level.
-    `simulate` reports whether the rig reaches the target in time.
+    under display control, each ramp against the steepest that the driver can start from rest at its first level.
 
-    Examples
-    --------
     >>> from thermicon.icons import load_library
     >>> check_static(load_library("six-icons")["cooling-step"], Rig.load("thenar"))
     ()

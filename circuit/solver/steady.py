@@ -35,8 +35,8 @@ PLATE_BALANCE = (ALPHA, RESISTANCE, CONDUCTANCE, SINK_C, SINK_W_PER_K)
 def _plates(network: Network, in_the_end: bool = False) -> tuple[float, float, float, float, float]:
     """α, R, 1/Θ, and temperature and conductance of what the hot plate rests on in steady state.
 
-    A passive heat sink stays at the temperature where it starts; `in_the_end`, or where that is not given, it is itself
-    in balance with its air, so that the hot plate rests on the air through two resistances in series.
+    A passive heat sink stays where it starts; `in_the_end`, or where that is not given, it is itself in balance with
+    its air, so that the hot plate rests on the air through two resistances in series.
     """
     alpha, ohm, leak, sink, out = (float(network.plates[k]) for k in PLATE_BALANCE)
     if network.passive:
@@ -62,9 +62,8 @@ def _column(network: Network) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=512)
 def state_under_current(network: Network, current_A: float, in_the_end: bool = False) -> Array:
-    """Return the steady state (nodes,) in °C, read-only, under a constant current; see `_plates` for `in_the_end`.
-
-    Raises ArithmeticError where there is none (the module would heat without limit).
+    """Steady state (nodes,) in °C, read-only, under a constant current; ArithmeticError where it would heat without
+    limit.
     """
     plates, (z, e) = _plates(network, in_the_end), _column(network)
     cold, hot = _balance(plates, current_A, float(network.conductance_W_per_K[0]), z[0], e[0])
@@ -92,10 +91,7 @@ def _balance(
 def bare_plates(
     network: Network, film_W_per_K: float, air_C: float, current_A: float | None, display_C: float | None
 ) -> tuple[float, float, float]:
-    """Return current in A, cold and hot plate in °C of a display in air, under a current or held at a temperature.
-
-    Raises ArithmeticError where there is no steady state.
-    """
+    """Current in A, cold and hot plate in °C of a display in air, under a current or held; ArithmeticError for none."""
     plates = _plates(network)
     if current_A is None:
         assert display_C is not None
@@ -130,10 +126,7 @@ def _fill(network: Network, cold: float, hot: float, z: Array, e: Array) -> Arra
 
 
 def holding_current_A(network: Network, control: str, level_C: float) -> float:
-    """Return the current in A that holds `skin` or `display` at a level in °C in steady state.
-
-    Where the module cannot cool that far, the result is the current of greatest cooling; check its steady state.
-    """
+    """Current in A that holds `skin` or `display` at a level in °C: that of greatest cooling where none is enough."""
     alpha, ohm, leak, sink, out = _plates(network)
     z, e = _column(network)
     cold = level_C
@@ -161,32 +154,10 @@ def check_sink(rig: Rig, state_C: Array) -> None:
 
 
 def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
-    """Return the current and the temperatures that hold a baseline in steady state.
+    """The current in A, and the temperatures (nodes,) in °C, read-only, that hold a baseline of `skin` or `display`.
 
-    Parameters
-    ----------
-    rig
-        A rig with a module.
-    control
-        What is held: `skin` or `display`.
-    level_C
-        The baseline in °C.
+    Raises RigError where the module, the driver or the heat sink cannot hold it, with the limit and a cure.
 
-    Returns
-    -------
-    current_A : float
-        The holding current in A.
-    state_C : Array
-        Temperatures (nodes,) in °C of the circuit's nodes, in the order of `thermicon.circuit.solver.network`;
-        read-only.
-
-    Raises
-    ------
-    RigError
-        Where the module, the driver or the heat sink cannot hold the baseline, with the limit and a cure.
-
-    Examples
-    --------
     >>> current, state = steady_state(Rig.load("thenar"), "skin", 32.0)
     >>> round(current, 2)
     0.08

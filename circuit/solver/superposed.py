@@ -58,11 +58,7 @@ def is_linear(rigs: Sequence[Rig], nominal: Rig, probes: Sequence[str], rows_s: 
 
 
 def corners_of(display_C: Array) -> tuple[Index, Array] | None:
-    """Places and changes of slope (cues, corners) of displays (cues, periods + 1); None where one has too many.
-
-    >>> corners_of(np.array([[32.0, 32.0, 31.5, 31.0, 31.0]]))
-    (array([[1, 3]]), array([[-0.5,  0.5]]))
-    """
+    """Places and changes of slope (cues, corners) of displays (cues, periods + 1); None where one has too many."""
     slope = np.diff(display_C, axis=1)
     change = np.diff(slope, axis=1, prepend=0.0)
     bent = np.abs(change) > SAME_K

@@ -251,32 +251,9 @@ class Trace:
 
 
 def write_trace(traces: Trace | list[Trace], path: str | Path, power: bool = False) -> None:
-    r"""Write traces to one table, one after the other; NaN becomes an empty cell.
+    r"""Write traces to one table, one after the other: Parquet where the name ends in ``.parquet``, else CSV.
 
-    Parameters
-    ----------
-    traces
-        One trace or several.
-    path
-        Name of the file; it is written as Parquet if it ends in ``.parquet``, else as CSV.
-    power
-        Whether to add the column `power_W`, the electrical power of the module in W.
-
-    Raises
-    ------
-    InputError
-        Where Parquet is requested and pyarrow, which writes it, is not installed.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> from thermicon.circuit import Rig, simulate
-    >>> from thermicon.icons import load_library
-    >>> trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"), rate_Hz=10)
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     write_trace(trace, Path(folder) / "step.csv")
-    ...     (Path(folder) / "step.csv").read_text(encoding="utf-8").count("\n")
-    82
+    `power` adds the column `power_W`; NaN becomes an empty cell. Raises InputError where pyarrow is not installed.
     """
     import pandas as pd
 
@@ -296,10 +273,10 @@ def judge(
     limits: tuple[tuple[str, float], ...],
     steps_s: tuple[tuple[float, float], ...] = (),
 ) -> Outcome:
-    """Return the outcome of targets and reached temperatures (periods,), both at the end of each driver period.
+    """The outcome of targets and reached temperatures (periods,), both at the end of each driver period.
 
-    `steps_s` are the times at which steps begin, and until when each must have arrived. A step with less than 2 s left
-    at the end of the run does not count as late.
+    `steps_s`: when steps begin, and until when each must have arrived; one with less than 2 s left at the end is not
+    late.
     """
     miss = reached_C - target_C
     close, counted = np.abs(miss) <= CLOSE_K, np.ones(len(miss), dtype=bool)
