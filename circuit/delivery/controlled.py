@@ -19,9 +19,8 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
 from ..rig.parts import Controller
-from ..safety.checks import Check, Scenario, worst_of
+from ..safety.checks import Check, CutOff, Demands, Loop, Scenario, SingleFault, worst_of
 from ..safety.demanded import polarity_check
-from ..safety.demands import CutOff, Demands, Loop, SingleFault
 from ..safety.display import DisplayCourse, DisplayPlant
 from ..safety.gate import Gate, gate_shown
 from ..safety.plant import recovery_s

@@ -21,8 +21,8 @@ from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, target_at
 from ..solver.landing import refuse_landing
 from ..solver.modes import modes_of
-from ..solver.pwm import steady_of
 from ..solver.simulate import duration_s, rows_until, simulate_current
+from ..solver.steady import steady_of
 from ..solver.trace import Trace
 from .delivered_drive import DeliveredDrive, Narrowed
 from .device import Device

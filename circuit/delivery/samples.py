@@ -12,9 +12,8 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array
 from ..rig.rig import Rig
-from ..solver.drive import Drive
+from ..solver.drive import Drive, duty_of, switched
 from ..solver.inverse import Design
-from ..solver.pwm import duty_of, switched
 from .device import Device, Scale
 from .devicefile import DeviceError
 

@@ -22,9 +22,8 @@ from ..safety.gate import Gate, gate_set, gate_shown
 from ..solver.batch_inputs import Bank, cut, run_forward
 from ..solver.drive import Drive
 from ..solver.network import network_of
-from ..solver.pwm import steady_of
 from ..solver.simulate import rows_until
-from ..solver.steady import state_under_current
+from ..solver.steady import state_under_current, steady_of
 from .controlled import gate_controlled
 from .delivered_drive import DeliveredDrive
 from .formats.form import samples_of

@@ -17,18 +17,21 @@ import numpy as np
 
 from ..arrays import Array
 from ..rig.rules import Limits
-from ..solver.batch_inputs import State
+from ..solver.batch_inputs import Bank, Intervals, State, run_on
 from ..solver.drive import Drive
-from .checks import Before, Check, Scenario
-from .demands import Demands
-from .endings import ENDING_ROWS_S, ENDINGS, LATE_S, judge_the_end, without_power, zero_current_C
+from ..solver.network import unpowered
+from ..solver.steady import state_under_current
+from .checks import Before, Check, Demands, Scenario
 from .ensemble import Ensemble, LaneDrives, row_of
-from .plant import Future, Plant, Single, Stretch
+from .plant import ENDING_ROWS_S, LATE_S, LATER_S, Future, Plant, Single, Stretch
 from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally, worst_of_lanes
 
 if TYPE_CHECKING:
     from .repeated import Repeating
+
+ENDINGS = ("last value held", "zero current", "power off")
+IN_THE_END = "zero current in the end"
 
 LONGER_S = (1.0, 4.0, 15.0)
 
@@ -212,3 +215,31 @@ def checks_of_lanes(ensemble: Ensemble, drives: LaneDrives, limits: Limits) -> t
     """Every rule in its worst scenario where each corner plays a drive of its own, from rest at its first current."""
     play = CurrentPlay(drives, drives.current_A[:, 0])
     return worst_of_lanes(Single.of(CurrentPlant.of(ensemble), play, limits).tallies)
+
+
+def zero_current_C(ensemble: Ensemble) -> Array:
+    """WATCHED (4, corners) that zero current leads to without limit of time."""
+    steady_C = np.full((len(WATCHED), len(ensemble.corners)), HOTTEST_C)
+    for lane, network in enumerate(ensemble.networks):
+        state = state_under_current(network, 0.0, in_the_end=True)
+        steady_C[:, lane] = [network.read(state, name) for name in WATCHED]
+    return steady_C
+
+
+def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
+    """The steady state under zero current, checked against the limits of temperature."""
+    tally = Tally(limits, ensemble.corners, Scenario(ending=IN_THE_END), begun_C=begun_C)
+    levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
+    tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
+    return tally
+
+
+def without_power(ensemble: Ensemble, state: State, times_s: Array) -> tuple[Array, State]:
+    """WATCHED at times from now of rigs whose controlled heat sinks have lost their power, and the last states."""
+    networks = [
+        unpowered(network, float(sink)) for network, sink in zip(ensemble.networks, state.sink[:, 0], strict=True)
+    ]
+    none = np.zeros((len(times_s) - 1, len(networks)))
+    intervals = Intervals(times_s, np.arange(len(times_s)), none, none)
+    begun = State.settled(state.nodes_C)
+    return run_on(Bank.of(networks), ensemble.lanes, ensemble.lanes, intervals, begun, WATCHED)

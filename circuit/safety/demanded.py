@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arrays import Array
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .checks import Scenario, colour_of, findings_of
+from .checks import CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
 from .current import CurrentPlant, CurrentPlay
-from .demands import CutOff, Demands, PolarityCheck, SingleFault
-from .endings import dose_time_s
+from .ensemble import Ensemble
 from .repeated import PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
 from .single_faults import Faulty
-from .tally import WATCHED, Tally
+from .tally import HOTTEST_C, WATCHED, Tally, cem43_min
 
 if TYPE_CHECKING:
     from .plant import Single
@@ -198,3 +198,17 @@ def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:
     needed = not tally.passes()
     check = PolarityCheck(needed, round(test_A, 3), TEST_S, round(0.5 * fall, 2), (round(low, 1), round(high, 1)))
     return check, SingleFault("swapped", colour_of(findings_of(tally.checks())), {"check": check})
+
+
+def dose_time_s(ensemble: Ensemble, limits: Limits, state: State, dose_before: Array, session_s: float) -> float:
+    """For how long in s zero current may last before the dose of skin reaches its limit, at most a session.
+
+    `dose_before` (corners,) in min CEM43 is what the drive has added.
+    """
+    most = next(rule.limit for rule in limits.rules if rule.quantity == "thermal dose")
+    times = np.concatenate([[0.0], np.geomspace(1.0, session_s, 120)])
+    values, _ = ensemble.hold(0.0, state, times)
+    skin = np.clip(np.nan_to_num(values[WATCHED.index("skin_C")], nan=HOTTEST_C), None, HOTTEST_C)
+    dose = cem43_min(times, skin).max(axis=0) + float(dose_before.max())
+    over = np.flatnonzero(dose > most)
+    return session_s if not len(over) else float(times[max(0, over[0] - 1)])

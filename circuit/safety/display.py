@@ -18,11 +18,9 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.modes import FELT, SkinModes, modes_of
-from .checks import worst_of
+from .checks import CutOff, Demands, SingleFault, worst_of
 from .corners import contact_corners
-from .demands import CutOff, Demands, SingleFault
-from .endings import ENDING_ROWS_S, ENDING_S, LATE_S
-from .plant import Future, Plant, Stretch, left_s
+from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, Future, Plant, Stretch, left_s
 from .playmap import PlayMap, least_bound
 from .single_faults import BEYOND_K, MARGIN
 from .tally import WATCHED, Tally

@@ -21,8 +21,7 @@ from ..solver.drive import Drive, DriveError
 from ..solver.landing import refuse_landing
 from ..solver.modes import ConstantCurrent
 from ..solver.network import Network, network_of
-from ..solver.pwm import steady_of
-from ..solver.steady import check_sink, state_under_current
+from ..solver.steady import check_sink, state_under_current, steady_of
 from .corners import Corner, corners_of
 from .plant import Stretch
 from .tally import HOTTEST_C, WATCHED

@@ -15,13 +15,11 @@ from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import tightened
 from ..solver.drive import Drive, DriveError
-from .checks import Check, Judged, colour_of, findings_of, hard_of, worst_of
+from .checks import Check, Demands, Judged, colour_of, findings_of, hard_of, worst_of
 from .current import CurrentPlant, CurrentPlay
-from .demands import Demands
 from .display import DisplayCourse, DisplayPlant
-from .endings import ENDING_S
 from .ensemble import Ensemble
-from .plant import Plant, Played, Single, States
+from .plant import ENDING_S, Plant, Played, Single, States
 from .repeated import LONGEST_PAUSE_S, Repeated, Repeating, check_pause, plays_in, shortest_pause_s
 
 

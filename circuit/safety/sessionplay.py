@@ -34,10 +34,9 @@ from ..solver.trace import Trace
 from .checks import Check, Judged, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
-from .exposure import cem43_min, henriques
 from .plant import Single
 from .session import Play, Session, SessionError, SessionPlan, TimeBeyond, check_length
-from .tally import WATCHED, Tally
+from .tally import WATCHED, Tally, cem43_min, henriques
 from .verdict import SafetyVerdict, checks_of
 
 TRACKINGS = ("replay", "display")

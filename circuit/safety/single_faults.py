@@ -16,7 +16,7 @@ from ..arrays import Array, Index
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .demands import CutOff, Harm, SingleFault
+from .checks import CutOff, Harm, SingleFault
 from .ensemble import Ensemble, between
 from .tally import WATCHED
 

@@ -88,20 +88,6 @@ def fill_burn(time_s, warm, known, out):
         out[k + 1] = total
 
 
-@compiled
-def fill_doses(time_s, warm, known, out):
-    """`fill_dose` for each lane of temperatures (lanes, rows)."""
-    for lane in range(len(warm)):
-        fill_dose(time_s, warm[lane], known, out[lane])
-
-
-@compiled
-def fill_burns(time_s, warm, known, out):
-    """`fill_burn` for each lane of temperatures (lanes, rows)."""
-    for lane in range(len(warm)):
-        fill_burn(time_s, warm[lane], known, out[lane])
-
-
 @kernel(nogil=True, fastmath={"nnan", "nsz"})
 def extremes(values):
     """Least and greatest of finite values (rows,)."""

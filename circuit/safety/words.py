@@ -13,12 +13,11 @@ from thermicon.icons.number_text import signed, significant
 
 from ..rig.uncertainty import WORDS, stated, tightened
 from .checks import Before, Check, Cure, Scenario, cures_of, hard_of
-from .endings import ENDING_S
-from .plant import RECOVERED_K
+from .plant import ENDING_S, RECOVERED_K
 from .repeated import PRACTICAL_S
 
 if TYPE_CHECKING:
-    from .demands import CutOff, Harm, PolarityCheck, SingleFault
+    from .checks import CutOff, Harm, PolarityCheck, SingleFault
     from .gate import Gate
     from .repeated import Repeated
 

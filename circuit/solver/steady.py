@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -187,3 +188,16 @@ def steady_state(rig: Rig, control: str, level_C: float) -> tuple[float, Array]:
         )
     check_sink(rig, state)
     return float(current), state
+
+
+def steady_of(rig: Rig, duty: float, peak_A: float) -> Array:
+    """Return the steady state in °C of a constant duty, without the ripple.
+
+    The mean current is D·Ip and the mean of its square 1/D times the square of that, as if the resistance were R/D.
+    """
+    network = network_of(rig)
+    if duty == 0:
+        return state_under_current(network, 0.0)
+    plates = network.plates.copy()
+    plates[RESISTANCE] /= abs(duty)
+    return state_under_current(replace(network, plates=plates), duty * peak_A)

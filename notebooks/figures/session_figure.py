@@ -107,7 +107,7 @@ def _mark_plays(session: Session, ax: Axes, scale: float) -> None:
 
 def _dose(session: Session, ax: Axes, scale: float) -> None:
     """Dose so far as a share of what a session may have, on the rig as given; the worst case as a mark at the end."""
-    from thermicon.circuit.safety.exposure import cem43_min, henriques
+    from thermicon.circuit.safety.tally import cem43_min, henriques
 
     trace = session.trace
     for quantity, label, grow, color, dashes, mark in (

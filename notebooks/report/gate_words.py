@@ -14,8 +14,7 @@ from thermicon.icons.number_text import number, signed
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
-    from thermicon.circuit.safety.checks import Scenario
-    from thermicon.circuit.safety.demands import Demands
+    from thermicon.circuit.safety.checks import Demands, Scenario
     from thermicon.circuit.safety.gate import Gate
     from thermicon.circuit.safety.repeated import Repeated
 

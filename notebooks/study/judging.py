@@ -173,8 +173,8 @@ def _nominal(
     import numpy as np
 
     from thermicon.circuit import SessionPlan, simulate_current
-    from thermicon.circuit.safety.exposure import cem43_min
     from thermicon.circuit.safety.sessionplay import drive_of
+    from thermicon.circuit.safety.tally import cem43_min
 
     known = {icon.name: icon for icon in icons}
     played = drive_of(SessionPlan(order, gap_s), known, rig, tracking)

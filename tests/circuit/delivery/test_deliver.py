@@ -24,10 +24,10 @@ from thermicon.circuit.delivery.prepare import lost_text
 from thermicon.circuit.delivery.samples import Samples, rate_of, within
 from thermicon.circuit.delivery.setpoints import Setpoints, closed, setpoints_of
 from thermicon.circuit.records import Record
+from thermicon.circuit.solver.drive import duty_of, switched
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.pwm import duty_of, steady_of, switched
-from thermicon.circuit.solver.steady import state_under_current
+from thermicon.circuit.solver.steady import state_under_current, steady_of
 from thermicon.icons import Icon, load_library, parse
 from thermicon.icons.model.corners import Corners
 

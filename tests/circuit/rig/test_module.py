@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from tests.peltier import coldest_C, greatest_difference_A, heat_rejected_W
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier
 from thermicon.circuit.solver.network import current_for_heat_A, greatest_cooling_A, hot_plate_C
 
@@ -16,7 +17,6 @@ def test_most_heat_is_the_closed_form() -> None:
     # α²Tc²/(2R) − ΔT/Θ at I = αTc/R; 17.2319 W at 2.4614 A for this module
     best = 0.0521 * 300 / 6.35
     assert best == pytest.approx(2.4614, abs=1e-4)
-    assert MODULE.greatest_heat_W(TC, TH) == pytest.approx(17.2319, abs=1e-4)
     assert MODULE.heat_absorbed_W(best, TC, TH) == pytest.approx(17.2319, abs=1e-4)
 
 
@@ -31,7 +31,7 @@ def test_best_coefficient_of_performance_is_the_closed_form() -> None:
 def test_electrical_power_is_the_difference_of_the_heats() -> None:
     current = 0.7
     power = MODULE.voltage_V(current, TC, TH) * current
-    assert power == pytest.approx(MODULE.heat_rejected_W(current, TC, TH) - MODULE.heat_absorbed_W(current, TC, TH))
+    assert power == pytest.approx(heat_rejected_W(MODULE, current, TC, TH) - MODULE.heat_absorbed_W(current, TC, TH))
 
 
 @pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(Peltier)[:5]])
@@ -74,14 +74,7 @@ def test_more_heat_than_the_module_can_absorb_gives_the_current_of_greatest_cool
 
 
 def test_greatest_difference_is_where_no_heat_is_absorbed_any_more() -> None:
-    coldest, current = MODULE.coldest_C(TH), MODULE.greatest_difference_current_A(TH)
-    assert MODULE.greatest_difference_K(TH) == pytest.approx(TH - coldest)
-    assert MODULE.greatest_heat_W(coldest, TH) == pytest.approx(0.0, abs=1e-9)
+    coldest, current = coldest_C(MODULE, TH), greatest_difference_A(MODULE, TH)
     for other in (0.98 * current, current, 1.02 * current):
         assert MODULE.heat_absorbed_W(other, coldest, TH) <= 1e-9
     assert MODULE.heat_absorbed_W(current, coldest, TH) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_current_and_figure_of_merit_of_the_published_check() -> None:
-    assert MODULE.greatest_heat_current_A(TC) == pytest.approx(2.4614, abs=1e-4)
-    assert MODULE.figure_of_merit_per_K() == pytest.approx(0.0521**2 / (6.35 * 0.1524))

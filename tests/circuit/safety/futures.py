@@ -9,8 +9,9 @@ import numpy as np
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.corners import Corner
-from thermicon.circuit.safety.endings import ENDING_ROWS_S, ENDING_S, ENDINGS, without_power
+from thermicon.circuit.safety.current import ENDINGS, without_power
 from thermicon.circuit.safety.ensemble import Ensemble
+from thermicon.circuit.safety.plant import ENDING_ROWS_S, ENDING_S
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.drive import Drive
 

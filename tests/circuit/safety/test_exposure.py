@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from thermicon.circuit.safety.exposure import cem43_min, henriques
+from thermicon.circuit.safety.tally import cem43_min, henriques
 
 A, EA, GAS = 3.1e98, 6.28e5, 8.31446261815324
 

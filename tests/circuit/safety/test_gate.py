@@ -11,8 +11,7 @@ import pytest
 from thermicon.circuit import Drive, Gate, Limits, Rig, design, gate, simulate, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.safety.checks import Check, findings_of
-from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
-from thermicon.circuit.safety.endings import ENDINGS
+from thermicon.circuit.safety.current import ENDINGS, CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.plant import Single
 from thermicon.circuit.safety.tally import WATCHED

@@ -11,12 +11,11 @@ from thermicon.circuit import Drive, Rig, design, gate, simulate_current
 from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of
-from thermicon.circuit.safety.endings import ENDINGS
+from thermicon.circuit.safety.current import ENDINGS
 from thermicon.circuit.safety.tally import WATCHED
-from thermicon.circuit.solver.drive import DriveError
+from thermicon.circuit.solver.drive import DriveError, switched
 from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.pwm import steady_of, switched
-from thermicon.circuit.solver.steady import state_under_current
+from thermicon.circuit.solver.steady import state_under_current, steady_of
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")

@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Limits, Rig, gate
-from thermicon.circuit.safety.demanded import polarity_check, rest_before
-from thermicon.circuit.safety.endings import dose_time_s
+from thermicon.circuit.safety.demanded import dose_time_s, polarity_check, rest_before
 from thermicon.circuit.safety.ensemble import Ensemble, between
-from thermicon.circuit.safety.exposure import cem43_min
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.single_faults import Faulty
-from thermicon.circuit.safety.tally import WATCHED, Tally
+from thermicon.circuit.safety.tally import WATCHED, Tally, cem43_min
 from thermicon.circuit.solver.batch_inputs import State
 
 THENAR = Rig.load("thenar")

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.peltier import heat_rejected_W
 from thermicon.circuit import Device, Drive, Rig, design, gate, play_session, simulate, simulate_current, simulate_many
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.rig.rigfile import RigError
@@ -200,6 +201,6 @@ def test_steady_states_take_the_key() -> None:
     assert state[-2] == pytest.approx(28.0)
     steady = THENAR.with_(**{**KEYS["passive sink"], "heat_sink.temperature_C": None})
     current, state = steady_state(steady, "skin", 32.0)
-    rejected = steady.module.heat_rejected_W(current, float(state[1]), float(state[0]))
+    rejected = heat_rejected_W(steady.module, current, float(state[1]), float(state[0]))
     assert state[-2] == pytest.approx(24.0 + 1.5 * rejected, abs=1e-9)
     assert state[0] == pytest.approx(state[-2] + 0.2 * rejected, abs=1e-9)

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tests.peltier import heat_rejected_W
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rigfile import RigError
@@ -46,7 +47,7 @@ def test_power_is_what_the_module_turns_into_heat(trace: Trace) -> None:
     assert list(frame.columns) == [*COLUMNS, "power_W"]
     for row in (0, 150, 700):
         plates = float(trace.current_A[row]), float(trace.display_C[row]), float(trace.hot_plate_C[row])
-        heat = rig.module.heat_rejected_W(*plates) - rig.module.heat_absorbed_W(*plates)
+        heat = heat_rejected_W(rig.module, *plates) - rig.module.heat_absorbed_W(*plates)
         assert frame["power_W"][row] == pytest.approx(heat, abs=1e-9)
     thermode = simulate(load_library("six-icons").icons[0], Rig.load("tcs2"))
     assert thermode.to_frame(power=True)["power_W"].isna().all()
