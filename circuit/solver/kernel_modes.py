@@ -1,6 +1,6 @@
-"""Compiled sums over what is linear: modes that decay each by itself, and a ramp's response that many ramps share.
+"""Compiled sums over what is linear: modes under a display, and a ramp's response that many ramps share.
 
-A reading is a weighted sum of all modes. Skin under a display that is linear between periods is a sum of responses to
+Skin under a display that is linear between periods is a sum of responses to
 one ramp: a display whose slope changes by s_j K per period at period k_j leads to readings
 
     y(k) = y(0) + Σ_j s_j · R(k − k_j),
@@ -20,7 +20,6 @@ import numpy as np
 from ..rig.module import ZERO_C_IN_K
 from .kernel import compiled
 from .kernel_follow import FREE, limited
-from .modes import FARTHEST
 from .network import (
     ALPHA,
     COLD,
@@ -33,68 +32,8 @@ from .network import (
     SKIN,
 )
 
-FADED = 48.0
-"""Beyond this exponent a mode has decayed to less than the rounding of a temperature."""
-
-SAME_S, MOST_ROWS = 1e-11, 64
-"""Up to 64 rows in equal steps share one exponential and the powers of a factor: rounding stays within 1e-14."""
-
 MARGIN_A, MARGIN = 0.01, 0.02
 """A display counts as playable where this much more current either way, in A and as a share, is free of limits too."""
-
-
-@compiled
-def pieces_of(times_s, first_row):
-    """Fill the first rows of pieces of time with equal steps; returns their number. The last row + 1 ends them all."""
-    count, row = 0, 0
-    while row < times_s.size:
-        first_row[count] = row
-        count, last = count + 1, row + 1
-        if last < times_s.size:
-            step = times_s[last] - times_s[row]
-            while (
-                last < times_s.size
-                and last - row < MOST_ROWS
-                and abs(times_s[last] - times_s[last - 1] - step) <= SAME_S
-            ):
-                last += 1
-        row = last
-    first_row[count] = times_s.size
-    return count
-
-
-@compiled
-def relax(rigs, times_s, rate_per_s, modes, reading, level, out):
-    """Fill `out` (probes, lanes, times) with readings of modes (lanes, m) that decay for times from now in s.
-
-    A lane is on the rig `rigs` (lanes,), with rates (rigs, m), `reading` (rigs, probes, m) and `level` (rigs, probes),
-    which is read when all modes have decayed. Times increase.
-    """
-    probes, lanes, rows = out.shape
-    first_row, powers = np.empty(rows + 1, dtype=np.int64), np.empty(MOST_ROWS)
-    pieces = pieces_of(times_s, first_row)
-    for lane in range(lanes):
-        rig = rigs[lane]
-        for p in range(probes):
-            for t in range(rows):
-                out[p, lane, t] = level[rig, p]
-        for m in range(modes.shape[1]):
-            rate, before = rate_per_s[rig, m], -1.0
-            powers[0] = 1.0
-            for piece in range(pieces):
-                first, last = first_row[piece], first_row[piece + 1]
-                if rate * times_s[first] > FADED:
-                    break
-                step = times_s[first + 1] - times_s[first] if last > first + 1 else before
-                if abs(step - before) > SAME_S:
-                    before, factor = step, math.exp(min(-rate * step, FARTHEST))
-                    for j in range(1, MOST_ROWS):
-                        powers[j] = powers[j - 1] * factor
-                decay = math.exp(min(-rate * times_s[first], FARTHEST))
-                for p in range(probes):
-                    share, row = reading[rig, p, m] * modes[lane, m] * decay, out[p, lane]
-                    for j in range(last - first):
-                        row[first + j] += share * powers[j]
 
 
 @compiled
