@@ -10,8 +10,9 @@ heat grows with the square: where the driver can pass that current, gains in bet
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, replace
-from functools import lru_cache
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache, lru_cache
 
 from ..rig.corner import perturbed
 from ..rig.rig import Rig
@@ -21,6 +22,7 @@ from ..solver.steady import state_under_current
 
 GAINS_BETWEEN = (-1.0, -0.5, 0.0, 0.5, 1.0)
 """Shares of the gain's uncertainty where the coldest gain may lie between the ends: within 0.02 K of it."""
+MOVED = tuple(key for key in WORDS if key != "gain_relative")
 NEARLY = 0.97
 """Share of the greatest current at which the display is compared with that at the greatest: a step towards less."""
 
@@ -32,14 +34,14 @@ class Corner:
     The gain of the current source is not part of `rig`: it scales the current.
     """
 
-    contact_resistance_relative: float
-    ambient_K: float
-    gain_relative: float
-    heat_sink_K: float
-    seebeck_relative: float
-    conductance_relative: float
-    plates_relative: float
     rig: Rig
+    contact_resistance_relative: float = 0.0
+    ambient_K: float = 0.0
+    gain_relative: float = 0.0
+    heat_sink_K: float = 0.0
+    seebeck_relative: float = 0.0
+    conductance_relative: float = 0.0
+    plates_relative: float = 0.0
 
     def __str__(self) -> str:
         from .words import corner_text
@@ -66,42 +68,37 @@ def corners_of(rig: Rig) -> tuple[Corner, ...]:
       conductance −10 %, plates −20 %']
     """
     unsure = rig.uncertainty
-    spans: list[tuple[float, ...]] = [
-        (-most, most) if most else (0.0,)
-        for most in (
-            unsure.contact_resistance_relative,
-            unsure.gain_relative,
-            unsure.seebeck_relative,
-            unsure.conductance_relative,
-            unsure.plates_relative,
-        )
-    ]
+    gains = _ends(unsure.gain_relative)
     if unsure.gain_relative and passes_most_cooling(rig):
-        spans[1] = tuple(share * unsure.gain_relative for share in GAINS_BETWEEN)
-    corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
-    rigs: dict[tuple[float, ...], Rig] = {}  # corners that differ in gain only share one
-    for around, (contact, gain, seebeck, conductance, plates) in itertools.product(
-        surroundings(rig), itertools.product(*spans)
-    ):
-        corner = Corner(contact, around[0], gain, around[1], seebeck, conductance, plates, rig)
-        if not corner.nominal:
-            deviations = (contact, *around, seebeck, conductance, plates)
-            if deviations not in rigs:
-                rigs[deviations] = _there(corner)
-            corners.append(replace(corner, rig=rigs[deviations]))
-    return tuple(corners)
+        gains = tuple(share * unsure.gain_relative for share in GAINS_BETWEEN)
+    module = map(_ends, (unsure.seebeck_relative, unsure.conductance_relative, unsure.plates_relative))
+    others = list(itertools.product(_ends(unsure.contact_resistance_relative), gains, *module))
+    return _cornered(
+        rig,
+        (
+            (contact, ambient, gain, sink, *rest)
+            for ambient, sink in surroundings(rig)
+            for contact, gain, *rest in others
+        ),
+    )
 
 
 def contact_corners(rig: Rig) -> tuple[Corner, ...]:
     """The rig as given, then all combinations of contact and ambient at either end of their uncertainty."""
-    contact, ambient = rig.uncertainty.contact_resistance_relative, rig.uncertainty.ambient_K
-    spans = [(-most, most) if most else (0.0,) for most in (contact, ambient)]
-    corners = [Corner(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, rig)]
-    for share, shift in itertools.product(*spans):
-        if share or shift:
-            there = perturbed(rig, contact_resistance_relative=share, ambient_K=shift)
-            corners.append(Corner(share, shift, 0.0, 0.0, 0.0, 0.0, 0.0, there))
-    return tuple(corners)
+    every = itertools.product(_ends(rig.uncertainty.contact_resistance_relative), _ends(rig.uncertainty.ambient_K))
+    return _cornered(rig, ((contact, ambient, 0.0, 0.0, 0.0, 0.0, 0.0) for contact, ambient in every))
+
+
+def _ends(most: float) -> tuple[float, ...]:
+    """Both ends of an uncertainty, or nothing but the rig as given."""
+    return (-most, most) if most else (0.0,)
+
+
+def _cornered(rig: Rig, every: Iterable[tuple[float, ...]]) -> tuple[Corner, ...]:
+    """The rig as given, then a corner for each of the deviations that is one; those that differ in gain share a rig."""
+    there = cache(lambda *moved: perturbed(rig, **dict(zip(MOVED, moved, strict=True))))
+    known = (each for each in every if any(each))
+    return (Corner(rig), *(Corner(there(*each[:2], *each[3:]), *each) for each in known))
 
 
 def passes_most_cooling(rig: Rig) -> bool:
@@ -127,15 +124,3 @@ def surroundings(rig: Rig) -> tuple[tuple[float, float], ...]:
     warmer = perturbed(rig, ambient_K=ambient).deep_C >= perturbed(rig, ambient_K=-ambient).deep_C
     hot = ambient if warmer else -ambient
     return (-hot, -sink), (hot, sink)
-
-
-def _there(corner: Corner) -> Rig:
-    return perturbed(
-        corner.rig,
-        contact_resistance_relative=corner.contact_resistance_relative,
-        ambient_K=corner.ambient_K,
-        heat_sink_K=corner.heat_sink_K,
-        seebeck_relative=corner.seebeck_relative,
-        conductance_relative=corner.conductance_relative,
-        plates_relative=corner.plates_relative,
-    )

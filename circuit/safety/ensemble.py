@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import overload
 
 import numpy as np
 
@@ -209,10 +208,6 @@ def row_of(drive: Drive | LaneDrives) -> float:
     return float(max(FINEST_S, shortest / max(1.0, np.ceil(shortest / ROW_S - 1e-9))))
 
 
-@overload
-def between(drive: Drive, begin_s: float, end_s: float) -> Drive: ...
-@overload
-def between(drive: Drive | LaneDrives, begin_s: float, end_s: float) -> Drive | LaneDrives: ...
 def between(drive: Drive | LaneDrives, begin_s: float, end_s: float) -> Drive | LaneDrives:
     """A drive from one time to another, on its own clock."""
     inside = (drive.time_s > begin_s + 1e-12) & (drive.time_s < end_s - 1e-12)

@@ -96,12 +96,6 @@ class SessionPlan:
         places = np.random.default_rng(seed).permutation(len(names) * repeats)
         return SessionPlan(tuple(names[place % len(names)] for place in places.tolist()), gap_s, seed)
 
-    @staticmethod
-    def repeated(order: Sequence[str], repeats: int = 1, *, gap_s: float = 10.0) -> SessionPlan:
-        """Return a plan that goes through an order `repeats` times; raises SessionError as `shuffled`."""
-        check_repeats(repeats, len(order), "entries of the order")
-        return SessionPlan(tuple(order) * repeats, gap_s)
-
 
 def read_order(path: str | Path, icons: IconSet) -> tuple[str, ...]:
     """The icon names of an order file: one per line or separated by commas; # begins a comment.
@@ -225,8 +219,6 @@ class Session(Judged):
         Thermal dose in min at 43 °C, and burn integral, of the rig as given.
     energy_J
         Electrical energy into the module in J.
-    heat_to_sink_W
-        Least and greatest heat into the sink in W; None where the sink has a capacity of its own.
     recovery_s
         Time in s after the end until display and skin are within 0.1 K of their start, in every corner of the
         uncertainty; None where it exceeds 10 min.
@@ -253,7 +245,6 @@ class Session(Judged):
     dose_cem43_min: float
     henriques: float
     energy_J: float
-    heat_to_sink_W: tuple[float, float] | None
     recovery_s: float | None
 
     def __repr__(self) -> str:
@@ -304,7 +295,7 @@ class Session(Judged):
         """All of it as plain data; units are in the names."""
         from .words import WHAT_IT_IS_NOT
 
-        trace, sink = self.trace, self.heat_to_sink_W
+        trace = self.trace
         dose, burn = self.worst("thermal dose"), self.worst("Henriques integral")
         return {
             "verdict": self.verdict,
@@ -333,8 +324,6 @@ class Session(Judged):
                 for place in ("skin", "display", "hot_plate", "cold_receptor", "warm_receptor")
                 for side in ("min", "max")
             },
-            "heat_to_sink_min_W": sink and sink[0],
-            "heat_to_sink_max_W": sink and sink[1],
             "time_beyond": [asdict(each) for each in self.time_beyond],
             "checks": [check.to_dict() for check in self.checks],
             "uncertainty": asdict(self.uncertainty),

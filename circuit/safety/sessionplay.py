@@ -269,7 +269,6 @@ def play_session(
         dose_cem43_min=float(cem43_min(trace.time_s, trace.skin_C)[-1]),
         henriques=float(henriques(trace.time_s, trace.skin_C)[-1]),
         energy_J=float(power.sum()),
-        heat_to_sink_W=_heat_to_sink_W(rig, trace),
         recovery_s=worst.recovery_s,
     )
 
@@ -312,16 +311,6 @@ def _times_beyond(limits: Limits, trace: Trace) -> tuple[TimeBeyond, ...]:
         over = values > rule.limit if rule.upper else values < rule.limit
         totals.append(TimeBeyond(rule.quantity, rule.severity, rule.upper, rule.limit, float(steps[over].sum())))
     return tuple(totals)
-
-
-def _heat_to_sink_W(rig: Rig, trace: Trace) -> tuple[float, float] | None:
-    """Least and most heat from the hot plate into an ideal heat sink, whose temperature is known."""
-    sink = rig.heat_sink
-    if sink.controller is not None or sink.passive is not None:
-        return None
-    hot = np.array([trace.hot_plate_C.min(), trace.hot_plate_C.max()])
-    least, most = (hot - sink.temperature_C) / sink.resistance_K_per_W
-    return float(least), float(most)
 
 
 def worst_case_of(

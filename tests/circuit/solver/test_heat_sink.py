@@ -10,7 +10,6 @@ import pytest
 
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.rig.corner import perturbed
-from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
 
@@ -70,21 +69,3 @@ def test_its_air_is_the_rooms_unless_it_is_given() -> None:
 def test_a_passive_sink_survives_a_file(rig: Rig, tmp_path: Path) -> None:
     rig.save(tmp_path / "sink.toml")
     assert Rig.load(tmp_path / "sink.toml").heat_sink == rig.heat_sink
-
-
-@pytest.mark.parametrize(
-    ("change", "fault"),
-    [
-        ({"air_resistance_K_per_W": 1.5}, r"capacity_J_per_K is missing; a passive heat sink needs it, in J/K"),
-        ({**PASSIVE, "kp_W_per_K": 3.0}, r"a passive heat sink has no controller; remove it or heat_sink\.kp_W_per_K"),
-        ({"temperature_C": None}, r"heat_sink\.temperature_C is missing; add it, in °C"),
-        ({"air_C": 20.0}, r"heat_sink\.air_C = 20 °C: belongs to a passive heat sink; add heat_sink\.capacity_J_per_K"),
-        ({**PASSIVE, "air_resistance_K_per_W": 0.0}, r"air_resistance_K_per_W = 0\.0 K/W: must be greater than 0 K/W"),
-        ({**PASSIVE, "air_C": 400.0}, r"heat_sink\.air_C = 400\.0 °C: must be at most 120 °C"),
-        ({**PASSIVE, "air_resistence_K_per_W": 1.0}, r"did you mean heat_sink\.air_resistance_K_per_W"),
-        ({"capacity_J_per_K": 50.0}, r"heat_sink\.kp_W_per_K is missing; .* or with heat_sink\.air_resistance_K_per_W"),
-    ],
-)  # fmt: skip
-def test_impossible_sinks_are_refused(change: dict[str, object], fault: str) -> None:
-    with pytest.raises(RigError, match=fault):
-        THENAR.with_(heat_sink=change)

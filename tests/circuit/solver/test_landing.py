@@ -96,23 +96,3 @@ def test_a_display_that_air_does_not_let_cool_is_refused() -> None:
                                 "skin.deep_C": 34.0})  # fmt: skip
     with pytest.raises(RigError, match=r"baseline|before the hand lands"):
         simulate(hold(18.0), weak)
-
-
-@pytest.mark.parametrize(
-    ("rig", "changes", "fault"),
-    [
-        ("thenar", {"contact.lands_s": 1.0}, r"contact\.lands_s = 1\.0 s: must be at most 0 s"),
-        ("thenar", {"contact.lands_s": -601.0}, r"contact\.lands_s = -601\.0 s: must be at least -600 s"),
-        ("thenar", {"contact.lands_s": "soon"}, r"contact\.lands_s = 'soon'.*number in s"),
-        ("thenar", {"contact.land_s": -1.0}, r"did you mean contact\.lands_s"),
-        ("tcs2", {"contact.lands_s": -1.0}, r"lands_s: cannot be combined with a thermode.*a rig with a module"),
-        ("thenar", {"contact.lands_s": -1.0, "heat_sink.capacity_J_per_K": 50.0, "heat_sink.kp_W_per_K": 10.0,
-                    "heat_sink.ki_W_per_Ks": 1.0, "heat_sink.power_limit_W": 40.0},
-         r"cannot be combined with a heat sink with a controller of its own"),
-        ("thenar", {"contact.lands_s": -1.0, "probe": [{"name": "a", "place": "insulated skin"}]},
-         r"cannot be combined with a probe on \"insulated skin\""),
-    ],
-)  # fmt: skip
-def test_impossible_landings_are_refused(rig: str, changes: dict[str, object], fault: str) -> None:
-    with pytest.raises(RigError, match=fault):
-        Rig.load(rig).with_(**changes)

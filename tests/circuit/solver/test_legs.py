@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, simulate, simulate_current, simulate_many
-from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import load_library
@@ -82,27 +81,6 @@ def test_columns_of_different_length_share_a_batch() -> None:
         for number, icon in enumerate(icons):
             alone = simulate(icon, rig)
             assert np.abs(together["skin_C"][place, number] - alone.skin_C).max() < 2e-5
-
-
-@pytest.mark.parametrize(
-    ("change", "fault"),
-    [
-        ({"leg_nodes": 3}, r"module\.leg_capacity_J_per_K is missing; legs .* need it, in J/K"),
-        ({"leg_capacity_J_per_K": 0.8}, r"0\.8 J/K: has no effect while module\.leg_nodes is 0; set module\.leg_nodes"),
-        ({"leg_nodes": 21, "leg_capacity_J_per_K": 0.8}, r"module\.leg_nodes = 21: must be at most 20"),
-        ({"leg_nodes": -1, "leg_capacity_J_per_K": 0.8}, r"module\.leg_nodes = -1: must be at least 0"),
-        ({"leg_nodes": 2.5, "leg_capacity_J_per_K": 0.8}, r"module\.leg_nodes = 2\.5: .*whole number|integer"),
-        ({"leg_nodes": 3, "leg_capacity_J_per_K": 0.0}, r"leg_capacity_J_per_K = 0\.0 J/K: must be greater than 0 J/K"),
-        (
-            {"leg_nodes": 3, "leg_capacity_J_per_K": 5e3},
-            r"leg_capacity_J_per_K = 5000\.0 J/K: must be at most 1000 J/K",
-        ),
-        ({"leg_node": 3}, r"did you mean module\.leg_nodes"),
-    ],
-)
-def test_impossible_legs_are_refused(change: dict[str, object], fault: str) -> None:
-    with pytest.raises(RigError, match=fault):
-        THENAR.with_(module=change)
 
 
 def test_legs_survive_a_file(tmp_path: Path) -> None:

@@ -96,33 +96,6 @@ def test_a_log_of_a_block_is_fitted_and_says_nothing_of_contact_with_skin() -> N
         fit(log, THENAR, free=["load.capacity_J_per_K"])
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"load.capacity_J_per_K": 5.0}, r"load.conductance_W_per_K is missing; add it"),
-        (
-            {"load.film_W_per_m2K": 5.0, "load.capacity_J_per_K": 5.0},
-            r"to air, load.capacity_J_per_K to a block",
-        ),
-        ({"load.film_W_per_m2K": -1.0}, r"load.film_W_per_m2K = -1 W/m²K|load.film_W_per_m2K = -1.0"),
-        ({"load.film": 5.0}, r"load.film: unknown key.*film_W_per_m2K"),
-        ({"load.film_W_per_m2K": 5.0, "contact.lands_s": -2.0}, r"contact.lands_s: there is no hand to land"),
-        (
-            {"load.film_W_per_m2K": 5.0, "probe": [{"name": "deep", "place": "skin", "depth_mm": 1.0}]},
-            r"probe deep: there is no skin on a rig with \[load\]; use place = \"display\"",
-        ),
-    ],
-)
-def test_what_is_no_load_is_refused(changes: dict[str, Any], message: str) -> None:
-    with pytest.raises(RigError, match=message):
-        THENAR.with_(**changes)
-
-
-def test_a_thermode_has_no_load() -> None:
-    with pytest.raises(RigError, match=r"load: a thermode keeps its display at the set-points"):
-        Rig.load("tcs2").with_(**{"load.film_W_per_m2K": 5.0})
-
-
 def test_a_rig_with_a_load_says_so_and_is_written_and_read() -> None:
     rig = THENAR.with_(load=BLOCK)
     assert repr(rig).startswith("Rig('thenar', metal block, 9 cm², room 24.0 °C")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable
 from pathlib import Path
 
@@ -143,8 +142,6 @@ def test_a_verdict_takes_the_key(key: str) -> None:
     verdict = gate(ended, rig, rest_A=plan.rest_A)
     network_end = state_under_current(Ensemble.of(rig).networks[0], 0.0, in_the_end=True)
     assert verdict.drift_C == pytest.approx(Ensemble.of(rig).networks[0].read(network_end, "skin_C"))
-    session = play_session(load_library("six-icons"), SessionPlan(("cooling-step",) * 2, gap_s=5.0), rig)
-    assert (session.heat_to_sink_W is None) == (key == "passive sink")
 
 
 def refusals(rig: Rig) -> dict[str, Callable[[], object]]:
@@ -161,39 +158,6 @@ def test_what_is_about_a_hand_that_rests_refuses_one_that_lands(what: str) -> No
     rig = THENAR.with_(**KEYS["landing"])
     with pytest.raises(RigError, match=rf"contact\.lands_s = -2 s: .*{what}.*; remove contact\.lands_s"):
         refusals(rig)[what]()
-
-
-STEPPED = {
-    "state_under_current", "steady_state", "run_forward", "run_on", "run_follow", "run_regulate", "ConstantCurrent",
-    "steady_of", "modes_of", "modes_on", "start_under", "start_after",
-}  # fmt: skip
-"""What computes a temperature of the circuit."""
-CONSIDERED = {
-    "fitting": {"forward"},
-    "delivery": {
-        "any_loop", "controlled", "deliver", "formats/form", "netlist", "temperatures", "worstcase",
-    },
-    "safety": {"corners", "display", "endings", "ensemble", "sessiondrive"},
-    "solver": {
-        "batch", "batch_inputs", "constant_current", "displayed", "inverse", "landing", "prescribed", "pwm",
-        "simulate", "static", "steady",
-    },
-}  # fmt: skip
-"""Modules that call one of them, each looked at for the keys above: they pass the rig on whole, or refuse the key."""
-
-
-def test_no_other_module_steps_the_circuit() -> None:
-    there: dict[str, set[str]] = {}
-    for path in sorted(CIRCUIT.rglob("*.py")):
-        called = {
-            node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-            if isinstance(node, ast.Call)
-        }
-        if called & STEPPED:
-            room, _, module = path.relative_to(CIRCUIT).with_suffix("").as_posix().partition("/")
-            there.setdefault(room, set()).add(module)
-    assert there == CONSIDERED
 
 
 def test_steady_states_take_the_key() -> None:

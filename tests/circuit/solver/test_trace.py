@@ -11,7 +11,6 @@ from tests.peltier import heat_rejected_W
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.rules import limit_table
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.solver.draw import plot_current
 from thermicon.circuit.solver.trace import judge, write_trace
@@ -91,13 +90,6 @@ def test_parquet_without_pyarrow_names_the_cure(trace: Trace, tmp_path: Path, mo
     assert not list(tmp_path.iterdir())
 
 
-def test_a_trace_is_frozen_and_read_only(trace: Trace) -> None:
-    with pytest.raises(ValueError, match="read-only"):
-        trace.skin_C[0] = 0.0
-    with pytest.raises(AttributeError, match="cannot assign"):
-        trace.icon = "other"  # type: ignore[misc]
-
-
 def test_repr_and_picture(trace: Trace) -> None:
     assert repr(trace) == ("Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)")
     assert trace._repr_html_().startswith("<svg")
@@ -133,15 +125,6 @@ def test_reached_has_a_stated_tolerance() -> None:
     assert outcome.reason == "misses its target by 0.26 K at 0.01 s, limited by the current limit from 0.00 s"
 
 
-def test_every_limit_has_a_source() -> None:
-    assert {record.quantity for record in limit_table()} == {
-        "skin surface", "display", "rate of skin temperature", "cold-receptor depth", "hot plate", "thermal dose",
-        "Henriques integral", "time of the display above 43 °C", "time of the display above 48 °C", "numbness",
-        "cold pain", "heat pain",
-    }  # fmt: skip
-    assert all(record.source for record in limit_table())
-
-
 def test_safety_is_judged_from_the_simulated_skin(trace: Trace) -> None:
     assert judge_safety(trace).colour == "green"
     assert judge_safety(trace).reason is None
@@ -165,9 +148,3 @@ def test_a_finding_tells_the_extreme_and_the_crossing_apart() -> None:
     assert finding.since_s < finding.time_s
     assert finding.limit == pytest.approx(24.04, abs=0.01)
     assert "below the soft limit of 24.04 °C, 8 K from where it began, from" in str(finding)
-
-
-def test_a_trace_writes_itself_as_csv(trace: Trace, tmp_path: Path) -> None:
-    trace.to_csv(tmp_path / "one.csv")
-    write_trace(trace, tmp_path / "other.csv")
-    assert (tmp_path / "one.csv").read_bytes() == (tmp_path / "other.csv").read_bytes()
