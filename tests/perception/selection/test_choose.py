@@ -7,10 +7,9 @@ import pytest
 
 from thermicon.circuit import Rig, Trace
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
-from thermicon.icons import Icon, parse, read_cue
+from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import choose, draw_people, rank
 from thermicon.perception.observer.people import People
-from thermicon.perception.ranking.scores import energy_J
 from thermicon.perception.selection.appraise import appraise, population_dprime
 from thermicon.perception.selection.request import ChoiceError, Selection
 
@@ -25,11 +24,6 @@ GOOD = (
 TWICE = "icon twice { cool by 5 °C at 3 °C/s; hold for 0.5 s; hold for 0.5 s; return at 3 °C/s }\n"
 HOT = "icon hot { warm by 20 °C at 3 °C/s; hold for 5 s; return at 3 °C/s }\n"
 FAST = "icon fast { cool by 12 °C at 60 °C/s; return at 60 °C/s }\n"
-
-
-@pytest.fixture(scope="module")
-def rig() -> Rig:
-    return Rig.load("thenar")
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +87,7 @@ def test_it_is_judged_again_at_its_own_range(pool: Pool, rig: Rig, crowd: People
     assert found.seen == 10
 
 
-def test_time_and_energy_are_those_of_the_traces(pool: Pool, rig: Rig) -> None:
+def test_time_and_energy_are_those_of_the_traces_and_are_kept(pool: Pool, rig: Rig) -> None:
     free = pool.choose(2)
     chosen = [k for k, icon in enumerate(pool.icons) if icon.name in free.icons]
     lengths = [duration_s(pool.icons[k], rig) for k in chosen]
@@ -105,20 +99,9 @@ def test_time_and_energy_are_those_of_the_traces(pool: Pool, rig: Rig) -> None:
         steps = np.minimum(np.append(trace.time_s[1:], np.inf), length) - trace.time_s
         energy += float((trace.voltage_V * trace.current_A * steps)[rows].sum())
     assert free.total_J == pytest.approx(energy)
-    less = pool.choose(2, most_s=free.total_s - 0.5)
-    assert less.total_s <= free.total_s - 0.5
-    assert less.value <= free.value
-    frugal = pool.choose(2, most_J=free.total_J - 0.5)
+    less, frugal = pool.choose(2, most_s=free.total_s - 0.5), pool.choose(2, most_J=free.total_J - 0.5)
+    assert less.total_s <= free.total_s - 0.5 and less.value <= free.value
     assert frugal.total_J <= free.total_J - 0.5
-
-
-def test_energy_is_the_integral_of_voltage_times_current(pool: Pool) -> None:
-    trace = pool.traces[0]
-    whole = float((trace.voltage_V[:-1] * trace.current_A[:-1] * np.diff(trace.time_s)).sum())
-    assert energy_J(trace, 30.0) == pytest.approx(whole)
-    assert energy_J(trace, 3.0) + float(trace.voltage_V[300] * trace.current_A[300] * 0.005) == pytest.approx(
-        energy_J(trace, 3.005)
-    )
 
 
 @pytest.mark.parametrize("objective", ["worst", "correct", "bits", "bits-per-s"])
@@ -133,8 +116,7 @@ def test_the_same_arguments_give_the_same_choice(pool: Pool, objective: str) -> 
     ]
 
 
-def test_intervals_are_those_of_the_chosen() -> None:
-    six, rig = read_cue("six-icons"), Rig.load("thenar")
+def test_intervals_are_those_of_the_chosen(six: IconSet, rig: Rig) -> None:
     found = choose(rank(six, rig, people=8, parameters=0), Selection(3), parameters=8)
     own = found.to_dict()["at_own_range"]
     low, high = own["proportion_correct_interval_new_laboratory"]
@@ -155,44 +137,38 @@ def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) 
     assert dict(bad.choose(3, must=("twice",)).excluded)["b"] == "moves in the same way as twice"
 
 
-def test_what_is_too_much_is_told(bad: Pool, pool: Pool) -> None:
-    with pytest.raises(ChoiceError, match=r"^6 icons cannot be chosen: there are only 5 icons$"):
-        pool.choose(6)
-    with pytest.raises(ChoiceError, match=r"^6 icons cannot be chosen: only 5 of 8 are left \(twice moves .*; hot is"):
-        bad.choose(6)
-    with pytest.raises(ChoiceError, match=r"^no icon is called 'twise', which must be .*; did you mean twice\?$"):
-        bad.choose(3, must=("twise",))
-    with pytest.raises(ChoiceError, match=r"^hot must be among the chosen but cannot be: it is not safe: "):
-        bad.choose(3, must=("hot",))
-    with pytest.raises(
-        ChoiceError, match=r"^twice must be among the chosen but cannot be: it moves in the same way as b$"
-    ):
-        bad.choose(3, must=("b", "twice"))
-    with pytest.raises(ChoiceError, match=r"^no 3 of the 5 icons stay within a total of 5 s \(the 3 shortest last 1"):
-        pool.choose(3, most_s=5.0)
-    with pytest.raises(
-        ChoiceError, match=r"^no 3 of the 5 icons with a among them .* of 0.1 J \(the 3 most frugal take"
-    ):
-        pool.choose(3, must=("a",), most_J=0.1)
+@pytest.mark.parametrize(
+    ("which", "asked", "said"),
+    [
+        ("pool", {"count": 6}, "6 icons cannot be chosen: there are only 5 icons$"),
+        ("bad", {"count": 6}, r"6 icons cannot be chosen: only 5 of 8 are left \(twice moves .*; hot is"),
+        ("bad", {"must": ("twise",)}, r"no icon is called 'twise', which must be .*; did you mean twice\?$"),
+        ("bad", {"must": ("hot",)}, "hot must be among the chosen but cannot be: it is not safe: "),
+        (
+            "bad",
+            {"must": ("b", "twice")},
+            "twice must be among the chosen .*: it moves in the same way as b",
+        ),
+        ("pool", {"most_s": 5.0}, r"no 3 of the 5 icons stay within a total of 5 s \(the 3 shortest last 1"),
+        ("pool", {"must": ("a",), "most_J": 0.1}, "no 3 .* with a among them .* of 0.1 J .the 3 most frugal take"),
+        ("pool", {"count": 1}, "1 cannot be chosen: at least 2 icons are needed"),
+        ("pool", {"count": 2, "must": ("a", "b", "c")}, "3 icons must be among 2: choose more, or ask for fewer$"),
+        ("pool", {"objective": "best"}, "the objective is one of worst, correct, bits, bits-per-s, not 'best'$"),
+        ("pool", {"most_s": -1.0}, "the total time must be above 0, not -1 s$"),
+        ("pool", {"most_J": float("nan")}, "the total energy must be above 0, not nan J$"),
+        ("pool", {"must": "ab"}, r"must is a tuple of names, such as must=\('ab',\)$"),
+    ],
+)
+def test_what_cannot_be_chosen_is_told(
+    which: str, asked: dict[str, Any], said: str, request: pytest.FixtureRequest
+) -> None:
+    with pytest.raises(ChoiceError, match=f"^{said}"):
+        request.getfixturevalue(which).choose(**{"count": 3, **asked})
 
 
-def test_one_icon_is_no_pool(rig: Rig, crowd: People) -> None:
-    alone = Pool(GOOD.split("\n")[0], rig, crowd)
+def test_too_few_are_no_pool(rig: Rig, crowd: People) -> None:
     with pytest.raises(ChoiceError, match=r"^2 icons cannot be chosen: there is only 1 icon$"):
-        alone.choose(2)
+        Pool(GOOD.split("\n")[0], rig, crowd).choose(2)
     none = Pool(HOT + HOT.replace("icon hot", "icon hotter").replace("20 °C", "19 °C"), rig, crowd)
     with pytest.raises(ChoiceError, match=r"^2 icons cannot be chosen: none is left \(hot is not safe"):
         none.choose(2)
-
-
-def test_what_no_set_can_answer() -> None:
-    with pytest.raises(ChoiceError, match=r"^1 cannot be chosen: at least 2 icons are needed"):
-        Selection(1)
-    with pytest.raises(ChoiceError, match=r"^3 icons must be among 2: choose more, or ask for fewer$"):
-        Selection(2, must=("a", "b", "c"))
-    with pytest.raises(ChoiceError, match=r"^the objective is one of worst, correct, bits, bits-per-s, not 'best'$"):
-        Selection(2, "best")  # type: ignore[arg-type]
-    with pytest.raises(ChoiceError, match=r"^the total time must be above 0, not -1 s$"):
-        Selection(2, most_s=-1.0)
-    with pytest.raises(ChoiceError, match=r"^the total energy must be above 0, not nan J$"):
-        Selection(2, most_J=float("nan"))

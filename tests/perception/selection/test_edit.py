@@ -6,7 +6,7 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.solver.simulate import duration_s
-from thermicon.icons import Icon, load_library, parse
+from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import cheapest_edit, draw_people, rank
 from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 from thermicon.perception.selection.appraise import population_dprime
@@ -17,27 +17,17 @@ PEOPLE = 40
 
 
 @pytest.fixture(scope="module")
-def rig() -> Rig:
-    return Rig.load("thenar")
-
-
-@pytest.fixture(scope="module")
-def six() -> list[Icon]:
-    return list(load_library("six-icons"))
-
-
-@pytest.fixture(scope="module")
-def found(six: list[Icon], rig: Rig) -> Edit:
+def found(six: IconSet, rig: Rig) -> Edit:
     edit = cheapest_edit(rank(six, rig, people=PEOPLE, parameters=0), "warming-step", "linear-warming")
     assert isinstance(edit, Edit)
     return edit
 
 
-def changed(six: list[Icon], edit: Edit) -> list[Icon]:
+def changed(six: IconSet, edit: Edit) -> list[Icon]:
     return [edit.edited if icon.name == edit.icon else icon for icon in six]
 
 
-def test_an_edit_is_one_line_that_reads_back(six: list[Icon], found: Edit) -> None:
+def test_an_edit_is_one_line_that_reads_back(six: IconSet, found: Edit) -> None:
     before = next(icon for icon in six if icon.name == found.icon)
     assert parse(str(found.edited))[found.icon] == found.edited
     old, new = (text.splitlines() for text in (str(before), str(found.edited)))
@@ -45,11 +35,11 @@ def test_an_edit_is_one_line_that_reads_back(six: list[Icon], found: Edit) -> No
     assert differ == [(found.old, found.new)]
 
 
-def test_it_parts_the_pair_for_people_and_harms_no_other(six: list[Icon], found: Edit, rig: Rig) -> None:
+def test_it_parts_the_pair_for_people_and_harms_no_other(six: IconSet, found: Edit, rig: Rig) -> None:
     crowd = draw_people(PEOPLE, 0)
     names = [icon.name for icon in six]
     i, j, edited = names.index("warming-step"), names.index("linear-warming"), names.index(found.icon)
-    before = np.median(population_dprime(six, rig, crowd)[0], axis=0)
+    before = np.median(population_dprime(list(six), rig, crowd)[0], axis=0)
     after = np.median(population_dprime(changed(six, found), rig, crowd)[0], axis=0)
     assert before[i, j] < DISTINGUISHABLE_DPRIME <= after[i, j]
     assert found.d_prime == pytest.approx(after[i, j], abs=0.01)
@@ -57,7 +47,7 @@ def test_it_parts_the_pair_for_people_and_harms_no_other(six: list[Icon], found:
         assert after[edited, k] >= min(before[edited, k] - 0.11, 2.0 * DISTINGUISHABLE_DPRIME)
 
 
-def test_it_is_safe_and_reached_and_costs_what_is_said(six: list[Icon], found: Edit, rig: Rig) -> None:
+def test_it_is_safe_and_reached_and_costs_what_is_said(six: IconSet, found: Edit, rig: Rig) -> None:
     trace = simulate(found.edited, rig)
     assert trace.reachable
     assert judge_safety(trace).safe
@@ -70,21 +60,19 @@ def test_it_is_safe_and_reached_and_costs_what_is_said(six: list[Icon], found: E
     assert found.cost == pytest.approx(ratios[0] + 0.1 * max(added, 0.0))
 
 
-def test_the_same_arguments_give_the_same_edit(six: list[Icon], found: Edit, rig: Rig) -> None:
-    assert cheapest_edit(rank(six, rig, people=PEOPLE, parameters=0), "warming-step", "linear-warming") == found
-
-
-def test_what_is_apart_needs_no_edit(six: list[Icon], rig: Rig) -> None:
-    edit = cheapest_edit(rank(six, rig, people=8, parameters=0), "cooling-step", "warming-step")
+def test_what_needs_no_edit_and_what_no_edit_can_do_is_told(six: IconSet, rig: Rig) -> None:
+    ranking = rank(six, rig, people=8, parameters=0)
+    edit = cheapest_edit(ranking, "cooling-step", "warming-step")
     assert isinstance(edit, NoEdit)
     assert "criterion 2.56" in edit.reason
-
-
-def test_what_no_edit_can_do_is_told(six: list[Icon], rig: Rig) -> None:
-    edit = cheapest_edit(rank(six, rig, people=8, parameters=0), "warming-step", "linear-warming", wanted=30.0)
+    edit = cheapest_edit(ranking, "warming-step", "linear-warming", wanted=30.0)
     assert isinstance(edit, NoEdit)
     assert edit.reason.startswith("no single edit separates them to d′ 30: the largest d′ of a safe and reachable one")
     assert 0.0 < float(edit.reason.rsplit(" ", 1)[1]) < 30.0
+    with pytest.raises(KeyError, match="nobody"):
+        cheapest_edit(ranking, "warming-step", "nobody")
+    with pytest.raises(ValueError, match=r"^a pair is two icons, not double-dip twice"):
+        cheapest_edit(ranking, "double-dip", "double-dip")
 
 
 def test_what_is_short_of_the_criterion_is_said_to_be_less(rig: Rig) -> None:
@@ -116,8 +104,8 @@ def test_a_repeat_is_an_edit(rig: Rig) -> None:
     assert edit.d_prime >= DISTINGUISHABLE_DPRIME
 
 
-def test_numbers_are_found_and_changed_within_repeats() -> None:
-    icon = load_library("six-icons")["double-dip"]
+def test_numbers_are_found_and_changed_within_repeats(six: IconSet) -> None:
+    icon = six["double-dip"]
     numbers = numbers_of(icon, 32.0)
     assert [(n.path, n.field, n.value) for n in numbers] == [
         ((0,), "count", 2.0),
@@ -156,18 +144,10 @@ def test_icons_too_weak_to_feel_are_made_strong_enough(rig: Rig) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_promised_is_what_a_ranking_finds(six: list[Icon], rig: Rig) -> None:
-    whole = load_library("six-icons")
+def test_what_is_promised_is_what_a_ranking_finds(six: IconSet, rig: Rig) -> None:
     found = cheapest_edit(rank(six, rig, people=12, parameters=0), "warming-step", "linear-warming", wanted=3.5)
     assert isinstance(found, Edit)
-    edited = replace(whole, entries=tuple(found.edited if icon.name == found.icon else icon for icon in whole))
+    edited = replace(six, entries=tuple(found.edited if icon.name == found.icon else icon for icon in six))
     pairs = rank(edited, rig, people=12, parameters=0).pairs
     (pair,) = (p for p in pairs if {p.a, p.b} == {"warming-step", "linear-warming"})
     assert pair.d_prime == pytest.approx(found.d_prime, rel=1e-6)
-
-
-def test_bad_questions(six: list[Icon], rig: Rig) -> None:
-    with pytest.raises(KeyError, match="nobody"):
-        cheapest_edit(rank(six, rig, people=4, parameters=0), "warming-step", "nobody")
-    with pytest.raises(ValueError, match=r"^a pair is two icons, not double-dip twice"):
-        cheapest_edit(rank(six, rig, people=4, parameters=0), "double-dip", "double-dip")

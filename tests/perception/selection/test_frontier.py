@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.icons import load_library, parse
+from thermicon.icons import IconSet, parse
 from thermicon.perception import choose, frontier, rank
 from thermicon.perception.selection.frontier import Frontier
 from thermicon.perception.selection.goal import GoalError
@@ -15,10 +15,8 @@ THREE = (
 
 
 @pytest.fixture(scope="module")
-def found() -> Frontier:
-    return frontier(
-        load_library("six-icons"), Rig.load("thenar"), people=12, seed=3, objective="worst", most=5, parameters=0
-    )
+def found(six: IconSet, rig: Rig) -> Frontier:
+    return frontier(six, rig, people=12, seed=3, objective="worst", most=5, parameters=0)
 
 
 def test_every_size_has_its_best_choice(found: Frontier) -> None:
@@ -33,9 +31,9 @@ def test_every_size_has_its_best_choice(found: Frontier) -> None:
         assert point.total_s > 0.0
 
 
-def test_a_choice_is_that_of_rank(found: Frontier) -> None:
+def test_a_choice_is_that_of_rank(found: Frontier, six: IconSet, rig: Rig) -> None:
     asked = Selection(3, "worst")
-    whole = rank(load_library("six-icons"), Rig.load("thenar"), people=12, seed=3, parameters=0)
+    whole = rank(six, rig, people=12, seed=3, parameters=0)
     chosen = choose(whole, asked, parameters=0)
     point = found.points[1]
     assert set(point.icons) == set(chosen.icons)
@@ -44,9 +42,9 @@ def test_a_choice_is_that_of_rank(found: Frontier) -> None:
     assert point.total_s == pytest.approx(chosen.total_s)
 
 
-def test_direct_naming_of_all_icons_is_that_of_rank() -> None:
+def test_direct_naming_of_all_icons_is_that_of_rank(rig: Rig) -> None:
     """By itself, as a choice and on a frontier, a set has one proportion correct."""
-    icons, rig = parse(THREE), Rig.load("thenar")
+    icons = parse(THREE)
     whole = rank(icons, rig, people=8, parameters=0, norm="naming")
     own = choose(whole, Selection(3), parameters=0).at_own_range
     assert own.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
@@ -66,20 +64,19 @@ def test_as_a_table_and_a_picture(found: Frontier) -> None:
     assert repr(found).startswith("Frontier(2 to 5 of 6 icons by worst on thenar")
 
 
-def test_total_time_ends_the_curve() -> None:
-    short = frontier(load_library("six-icons"), Rig.load("thenar"), people=4, goal="time <= 17 s", parameters=0)
+def test_total_time_ends_the_curve(six: IconSet, rig: Rig) -> None:
+    short = frontier(six, rig, people=4, goal="time <= 17 s", parameters=0)
     assert [len(point.icons) for point in short.points] == [2]
     assert short.points[0].total_s <= 17.0
     with pytest.raises(
         ChoiceError, match=r"no 2 of the 6 icons stay within a total of 9 s \(the 2 shortest last 16 s\)"
     ):
-        frontier(load_library("six-icons"), Rig.load("thenar"), people=2, goal="time <= 9 s", parameters=0)
+        frontier(six, rig, people=2, goal="time <= 9 s", parameters=0)
     with pytest.raises(ChoiceError, match="a choice of 1 has no pair"):
-        frontier(load_library("six-icons"), Rig.load("thenar"), most=1)
+        frontier(six, rig, most=1)
 
 
-def test_what_95_percent_reach_is_the_number_of_a_goal() -> None:
-    six, rig = load_library("six-icons"), Rig.load("thenar")
+def test_what_95_percent_reach_is_the_number_of_a_goal(six: IconSet, rig: Rig) -> None:
     goal = "correct >= 85 % for 95 % of people, time <= 30 s"
     seen = frontier(six, rig, people=8, parameters=8, objective="worst", goal=goal)
     assert [len(point.icons) for point in seen.points] == [2, 3]

@@ -1,7 +1,14 @@
+import dataclasses
+
+import numpy as np
 import pytest
 
-from thermicon.perception import Goal
+from thermicon.circuit import Rig
+from thermicon.icons import IconSet
+from thermicon.perception import Goal, choose, rank
 from thermicon.perception.selection.goal import QUANTITIES, GoalError
+from thermicon.perception.selection.goal_result import SetOutcome, judge_goal
+from thermicon.perception.selection.request import Selection
 
 
 def test_a_goal_is_read_and_written_in_one_form() -> None:
@@ -67,3 +74,101 @@ def test_every_quantity_can_be_asked_for() -> None:
         unit = next(iter(known.units))
         goal = Goal.parse(f"{name} {known.comparison} 5 {unit}".rstrip())
         assert goal.parts[0].limit == pytest.approx(5 * known.units[unit])
+
+
+OUTCOME = SetOutcome(
+    names=("dip", "glow", "wave"),
+    correct=0.9,
+    bits=1.4,
+    d_prime=2.4,
+    detected=np.array([0.99, 0.93, 1.0]),
+    onset_s=np.array([0.9, 1.6, 1.1]),
+    durations_s=np.array([3.0, 4.0, 5.0]),
+    energies_J=np.array([2.0, 1.0, 4.0]),
+    worst_pair=("glow", "wave"),
+    nearest_pair=("dip", "wave"),
+    amber=(),
+    red=(),
+    persons={"correct": np.linspace(0.5, 1.0, 101), "bits": np.full(10, 1.2), "detected": np.full(10, 0.9)},
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "met", "binding"),
+    [
+        ("correct >= 90 %", 0.9, True, ()),
+        ("correct >= 91 %", 0.9, False, ("glow and wave are confused most",)),
+        ("correct >= 55 % for 90 % of people", 0.55, True, ()),
+        ("correct >= 56 % for 90 % of people", 0.55, False, ("glow and wave are confused most",)),
+        ("detected >= 95 %", 0.93, False, ("glow is detected least",)),
+        ("d_prime >= 2", 2.4, True, ()),
+        ("d_prime >= 2.56", 2.4, False, ("dip and wave have the smallest d′",)),
+        ("bits >= 1.5 bits", 1.4, False, ("glow and wave are confused most",)),
+        ("time <= 12 s", 12.0, True, ()),
+        ("time <= 11 s", 12.0, False, ("wave takes most",)),
+        ("energy <= 6 J", 7.0, False, ("wave takes most",)),
+        ("onset <= 1.5 s", 1.6, False, ("glow is felt last",)),
+        ("count 4", 3.0, False, ("the set has fewer icons",)),
+        ("safety green", 0.0, True, ()),
+    ],
+)
+def test_every_quantity_is_judged(text: str, value: float, met: bool, binding: tuple[str, ...]) -> None:
+    result = judge_goal(Goal.parse(text), OUTCOME)
+    assert result.parts[0].value == pytest.approx(value)
+    assert (result.met, result.binding) == (met, binding)
+
+
+def test_safety_is_the_worst_of_the_icons() -> None:
+    amber = dataclasses.replace(OUTCOME, amber=("dip",))
+    red = dataclasses.replace(amber, red=("wave",))
+    green, tolerant = Goal.parse("safety green"), Goal.parse("safety amber")
+    assert [judge_goal(green, each).met for each in (OUTCOME, amber, red)] == [True, False, False]
+    assert [judge_goal(tolerant, each).met for each in (OUTCOME, amber, red)] == [True, True, False]
+    assert judge_goal(green, red).binding == ("wave, dip are not green",)
+    assert judge_goal(green, amber).to_dict()["parts"][0]["value"] == "amber"
+    assert judge_goal(Goal.parse("count 3"), red).binding == ("wave cannot be played",)
+
+
+def test_an_icon_that_is_not_reached_is_no_matter_of_safety() -> None:
+    missed = dataclasses.replace(OUTCOME, unreached=("wave",))
+    result = judge_goal(Goal.parse("safety green, count 3"), missed)
+    assert [part.met for part in result.parts] == [True, False]
+    assert result.binding == ("wave cannot be played",)
+    assert result.to_dict()["not_reached"] == ["wave"]
+
+
+def test_a_weak_rig_makes_icons_unreached_not_red(six: IconSet, rig: Rig) -> None:
+    ranking = rank(six, rig.with_(**{"driver.current_limit_A": 0.5}), people=2, parameters=0)
+    reached = judge_goal("safety green", ranking)
+    assert all(icon.safe for icon in ranking.icons)
+    assert reached.met
+    assert reached.unreached == tuple(icon.name for icon in ranking.icons if not icon.reachable) != ()
+
+
+def test_an_icon_that_is_not_felt_has_no_onset() -> None:
+    silent = dataclasses.replace(OUTCOME, onset_s=np.array([0.9, np.nan, 1.1]))
+    result = judge_goal(Goal.parse("onset <= 5 s"), silent)
+    assert (result.met, result.parts[0].value) == (False, None)
+    assert result.binding == ("glow is not felt",)
+
+
+def test_a_share_of_people_needs_draws() -> None:
+    with pytest.raises(ValueError, match="needs draws of the posterior"):
+        judge_goal(Goal.parse("correct >= 50 % for 95 % of people"), dataclasses.replace(OUTCOME, persons={}))
+
+
+def test_a_ranking_and_a_choice_are_judged_by_their_own_numbers(six: IconSet, rig: Rig) -> None:
+    goal = "correct >= 99 % for 95 % of people, correct >= 30 %, time <= 500 s"
+    ranking = rank(six, rig, people=6, parameters=12)
+    choice = choose(ranking, Selection(2), parameters=12)
+    whole, chosen = judge_goal(goal, ranking), judge_goal(Goal.parse(goal), ranking, choice)
+    assert [part.met for part in whole.parts] == [False, True, True]
+    assert whole.parts[1].value == ranking.proportion_correct
+    assert chosen.parts[0].value > whole.parts[0].value  # type: ignore[operator]
+    assert chosen.parts[2].value == pytest.approx(choice.total_s)
+    # People and model together: the 5 % quantile lies below the mean over people.
+    assert whole.parts[0].value < ranking.proportion_correct  # type: ignore[operator]
+    held = whole.to_dict()
+    assert (held["text"], held["met"]) == (Goal.parse(goal).text, False)
+    assert held["parts"][0]["wanted"] == 0.99
+    assert held["binding"]

@@ -24,11 +24,6 @@ SMALL = (
 
 
 @pytest.fixture(scope="module")
-def rig() -> Rig:
-    return Rig.load("thenar")
-
-
-@pytest.fixture(scope="module")
 def small() -> IconSet:
     return parse(SMALL)
 
