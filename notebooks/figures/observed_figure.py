@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from thermicon.perception.pilot.data import Answered, Measured
+    from thermicon.perception.pilot.conditioning import Answered, Measured
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Fit, MeasurementFit, Three
 
@@ -39,7 +39,7 @@ def observed_figure(found: Observed[Any, Any], stacked: bool = False) -> Figure:
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
-    from thermicon.perception.pilot.data import Answered
+    from thermicon.perception.pilot.conditioning import Answered
 
     answered = isinstance(found.data, Answered)
     rows = min(len(found.data.trials.icons), MOST_ICONS) if answered else len(found.fit.conditions)

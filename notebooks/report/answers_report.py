@@ -11,7 +11,7 @@ from thermicon.icons.number_text import percent, percent_span, seconds
 from .blocks import Block, Bullets, Grid, Text, grid
 
 if TYPE_CHECKING:
-    from thermicon.perception.pilot.data import Answered
+    from thermicon.perception.pilot.conditioning import Answered
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Fit, Three
     from thermicon.perception.pilot.trials import AnswerScore

@@ -12,7 +12,7 @@ from .answers_report import LEAST_LABORATORIES, answered_blocks, misfit, p_text
 from .blocks import Block, Bullets, Grid, Heading, Text, grid
 
 if TYPE_CHECKING:
-    from thermicon.perception.pilot.data import Measured
+    from thermicon.perception.pilot.conditioning import Measured
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import MeasurementFit
 
@@ -25,7 +25,7 @@ LEAST_CARRIED = 30
 
 def observed_report(found: Observed[Any, Any], files: Sequence[str], last: str = "") -> list[Block]:
     """Report what was observed, how it fits, what the predictions of all sets become, and a last word."""
-    from thermicon.perception.pilot.data import Answered
+    from thermicon.perception.pilot.conditioning import Answered
 
     title = found.predictions[0].before.title
     told = answered_blocks(found) if isinstance(found.data, Answered) else measured_blocks(found)

@@ -17,8 +17,7 @@ from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
 from ..progress import Progress, step_counter
-from .conditioning import Conditioned, condition
-from .data import Answered, Measured
+from .conditioning import Answered, Conditioned, Measured, condition
 from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements_file import Measurements
 from .playing import Confusions, Stage, laboratories_for, stage
@@ -179,7 +178,7 @@ def observed(
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> from thermicon.perception.pilot.synthetic import synthetic_trials
+    >>> from thermicon.perception.pilot.playing import synthetic_trials
     >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
     >>> answers = synthetic_trials(icons, rig, participants=2, trials=12, seed=3)
     >>> found = observed(answers, icons, rig, draws=20)

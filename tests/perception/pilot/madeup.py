@@ -13,8 +13,8 @@ from thermicon.perception.observer.channels import CHANNELS
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.measurement_likelihood import measuring
 from thermicon.perception.pilot.measurements_file import Measurements
+from thermicon.perception.pilot.playing import made_up_laboratory
 from thermicon.perception.pilot.states import OFFSETS, SEEDS, LaboratoryPrior
-from thermicon.perception.pilot.synthetic import made_up_laboratory
 
 CROWD = 256
 """People of a made-up laboratory, of whom participants are drawn."""

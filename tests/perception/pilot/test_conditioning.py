@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from tests.weights import weighted_quantile
-from thermicon.perception.pilot.conditioning import condition, systematic
-from thermicon.perception.pilot.data import Answered
+from thermicon.perception.pilot.conditioning import Answered, condition, systematic
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
 from thermicon.perception.pilot.playing import Confusions
 from thermicon.perception.pilot.prediction import compare

@@ -19,9 +19,8 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
-from thermicon.perception.pilot.playing import Confusions, stage
+from thermicon.perception.pilot.playing import Confusions, answers_of, spread, stage
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
-from thermicon.perception.pilot.synthetic import answers_of, spread
 
 ENDS = (0.025, 0.975)
 RIG = Rig.load("thenar")

@@ -8,26 +8,16 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.icons import IconSet, read_cue
+from thermicon.icons import IconSet
 from thermicon.perception import rank
 from thermicon.perception.identification.laboratory import DRAWS
 from thermicon.perception.observer.observer_model import ObserverModel
-from thermicon.perception.pilot.data import Answered
+from thermicon.perception.pilot.conditioning import Answered
 from thermicon.perception.pilot.laboratory_file import middle_of, off_middle
 from thermicon.perception.pilot.observed import Observed, observed
+from thermicon.perception.pilot.playing import synthetic_trials
 from thermicon.perception.pilot.prediction import Fit
-from thermicon.perception.pilot.synthetic import synthetic_trials
 from thermicon.perception.ranking.sensitivity import sensitivity
-
-
-@pytest.fixture(scope="module")
-def icons() -> IconSet:
-    return read_cue("six-icons")
-
-
-@pytest.fixture(scope="module")
-def rig() -> Rig:
-    return Rig.load("thenar")
 
 
 def pilot(icons: IconSet, rig: Rig, participants: int, trials: int, draws: int, seed: int) -> Observed[Answered, Fit]:
@@ -53,20 +43,14 @@ def compared(found: Observed[Answered, Fit], icons: IconSet, rig: Rig, folder: P
 
 
 @pytest.mark.slow
-def test_rank_says_of_a_kept_laboratory_what_observed_said(icons: IconSet, rig: Rig, tmp_path: Path) -> None:
-    off, shared = compared(pilot(icons, rig, 4, 24, 120, 8), icons, rig, tmp_path)
-    assert abs(off) < 0.03
-    assert shared > 0.75
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("participants", "trials", "seed"), [(12, 48, 2), (12, 48, 5), (3, 60, 1)])
-def test_so_it_does_after_a_large_pilot(
-    icons: IconSet, rig: Rig, tmp_path: Path, participants: int, trials: int, seed: int
+@pytest.mark.parametrize(
+    ("participants", "trials", "draws", "seed"), [(4, 24, 120, 8), (12, 48, 300, 2), (12, 48, 300, 5), (3, 60, 300, 1)]
+)
+def test_rank_says_of_a_kept_laboratory_what_observed_said(
+    icons: IconSet, rig: Rig, tmp_path: Path, participants: int, trials: int, draws: int, seed: int
 ) -> None:
-    found = pilot(icons, rig, participants, trials, 300, seed)
-    off, shared = compared(found, icons, rig, tmp_path)
-    assert abs(off) < 0.04
+    off, shared = compared(pilot(icons, rig, participants, trials, draws, seed), icons, rig, tmp_path)
+    assert abs(off) < (0.03 if participants == 4 else 0.04)
     assert shared > 0.75
 
 

@@ -14,8 +14,7 @@ from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
-from thermicon.perception.pilot.conditioning import Conditioned, condition
-from thermicon.perception.pilot.data import Measured
+from thermicon.perception.pilot.conditioning import Conditioned, Measured, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
     groups_of,

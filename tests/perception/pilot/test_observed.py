@@ -10,27 +10,17 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError
-from thermicon.icons import IconSet, read_cue
+from thermicon.icons import IconSet
 from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
-from thermicon.perception.pilot.data import Answered
+from thermicon.perception.pilot.conditioning import Answered
 from thermicon.perception.pilot.observed import Observed, observed
+from thermicon.perception.pilot.playing import synthetic_trials, trials_text
 from thermicon.perception.pilot.prediction import Fit
 from thermicon.perception.pilot.states import LaboratoryPrior
-from thermicon.perception.pilot.synthetic import synthetic_trials, trials_text
 from thermicon.perception.pilot.trials import Trials
 from thermicon.perception.pilot.trials_file import read_trials
-
-
-@pytest.fixture(scope="module")
-def icons() -> IconSet:
-    return read_cue("six-icons")
-
-
-@pytest.fixture(scope="module")
-def rig() -> Rig:
-    return Rig.load("thenar")
 
 
 @pytest.fixture(scope="module")
@@ -135,21 +125,23 @@ def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Answere
     assert draws.table(3).one("bar of an episode").central == draws.memory[3, 1]
 
 
-def test_memory_that_cannot_be_is_refused(found: Observed[Answered, Fit], tmp_path: Path) -> None:
-    path, lines = tmp_path / "lab.csv", found.files()[1].splitlines()
-    lines = [line for line in lines if not line.startswith("# sha256")]
+@pytest.mark.parametrize(
+    ("memory", "said"),
+    [
+        (("1.5", "1", "0.3"), r"share of the scatter of ratings: 1\.5 must lie in 0 to 1"),
+        (("0.5", "1", "-0.3"), r"memory noise \(episodes\): -0\.3 must be above 0"),
+        (("0.5", "0", "0.3"), r"bar of an episode: 0 must be above 0"),
+    ],
+)
+def test_memory_that_cannot_be_is_refused(
+    found: Observed[Answered, Fit], tmp_path: Path, memory: tuple[str, ...], said: str
+) -> None:
+    path = tmp_path / "lab.csv"
+    lines = [line for line in found.files()[1].splitlines() if not line.startswith("# sha256")]
     first = next(k for k, line in enumerate(lines) if not line.startswith("#")) + 1
-    lines[first] = ",".join([*lines[first].split(",")[:-3], "1.5", "1", "0.3"])
+    lines[first] = ",".join([*lines[first].split(",")[:-3], *memory])
     path.write_text("\n".join(lines), encoding="utf-8")
-    with pytest.raises(RecordError, match=r"share of the scatter of ratings: 1\.5 must lie in 0 to 1"):
-        PosteriorDraws.load(path)
-    lines[first] = ",".join([*lines[first].split(",")[:-3], "0.5", "1", "-0.3"])
-    path.write_text("\n".join(lines), encoding="utf-8")
-    with pytest.raises(RecordError, match=r"memory noise \(episodes\): -0\.3 must be above 0"):
-        PosteriorDraws.load(path)
-    lines[first] = ",".join([*lines[first].split(",")[:-3], "0.5", "0", "0.3"])
-    path.write_text("\n".join(lines), encoding="utf-8")
-    with pytest.raises(RecordError, match=r"bar of an episode: 0 must be above 0"):
+    with pytest.raises(RecordError, match=said):
         PosteriorDraws.load(path)
 
 
@@ -185,17 +177,6 @@ def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Answered,
     drive = values[:, names.index("warm threshold drive")]
     offset = values[:, names.index("sensitivity of the laboratory, warm")]
     assert np.allclose(sorted(draws.values("warm threshold drive")), sorted(drive * np.exp(-offset)))
-
-
-def test_the_first_draw_predicts_what_is_usual_in_this_laboratory(found: Observed[Answered, Fit]) -> None:
-    drive = found.draws().values("cold threshold drive")[0]
-    values, names = found.prior.values(found.conditioned.after), found.prior.names
-    own = values[:, names.index("cold threshold drive")] * np.exp(
-        -values[:, names.index("sensitivity of the laboratory, cold")]
-    )
-    correct = found.confusions_after.correct
-    first = int(np.abs(own - drive).argmin())
-    assert abs(correct[first] - np.median(correct)) < correct.std()
 
 
 def test_answers_to_another_set_and_too_few_draws_are_refused(icons: IconSet, rig: Rig, answers: Trials) -> None:

@@ -5,13 +5,12 @@ from __future__ import annotations
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.icons import read_cue
+from thermicon.icons import IconSet, read_cue
 from thermicon.perception.pilot.plan import plan
 
 
 @pytest.mark.slow
-def test_a_plan_of_one_and_of_two_sets() -> None:
-    icons, rig = read_cue("six-icons"), Rig.load("thenar")
+def test_a_plan_of_one_and_of_two_sets(icons: IconSet, rig: Rig) -> None:
     steps: list[tuple[int, int]] = []
     one = plan(
         icons, rig, participants=[4, 30], trials=[12, 48], draws=20, wanted=0.12,
@@ -41,6 +40,6 @@ def test_a_plan_of_one_and_of_two_sets() -> None:
         ({"draws": 3}, "at least 20 draws are needed, not 3"),
     ],
 )
-def test_sizes_that_cannot_be_are_refused(options: dict[str, object], said: str) -> None:
+def test_sizes_that_cannot_be_are_refused(icons: IconSet, rig: Rig, options: dict[str, object], said: str) -> None:
     with pytest.raises(ValueError, match=said):
-        plan(read_cue("six-icons"), Rig.load("thenar"), **options)  # type: ignore[arg-type]
+        plan(icons, rig, **options)  # type: ignore[arg-type]
