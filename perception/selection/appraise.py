@@ -34,6 +34,8 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
+REACHED_BY = 0.95
+"""Share of people who reach what a set is also judged by."""
 DRAWS = 100
 AMBIENT_SD_K = 2.0
 GAIN_SD = 0.05
@@ -45,13 +47,17 @@ TIED = 1e-12
 
 @dataclass(frozen=True, slots=True)
 class Appraisal:
-    """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second."""
+    """One set at its own range: the worst pair by median d′, proportion correct, bits, and bits per second.
+
+    `reached` is the proportion correct that 95 % of people reach.
+    """
 
     worst_pair: tuple[str, str]
     d_prime: float
     proportion_correct: float
     information_bits: float
     bits_per_s: float
+    reached: float
 
     def value(self, objective: Objective) -> float:
         """The number that an objective goes by."""
@@ -98,15 +104,16 @@ def appraise(
     nominal = Observer.load() if observer is None else observer
     felt, durations = population_response(icons, rig, crowd, tracking, observer=nominal)
     d_prime, named = identify(felt, norm, crowd, nominal, seed, task=task)
-    bits = float(information_bits(named.probability).mean())
+    each, bits = proportion_correct(named.probability), float(information_bits(named.probability).mean())
     middle = np.median(d_prime, axis=0)
     a, b = nearest_two(middle)
     return Appraisal(
         worst_pair=(icons[a].name, icons[b].name),
         d_prime=float(middle[a, b]),
-        proportion_correct=float(proportion_correct(named.probability).mean()),
+        proportion_correct=float(each.mean()),
         information_bits=bits,
         bits_per_s=bits / float(np.mean(durations)),
+        reached=float(np.quantile(each, 1.0 - REACHED_BY)),
     )
 
 

@@ -7,19 +7,19 @@ chosen icons are then evaluated again at their own range.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
 from ..progress import Progress, step_counter
 from .appraise import Appraisal, appraise, nearest_two
-from .max_min_subset import Limits, SubsetChoice, max_min_subset, nearest_pair
+from .goal import Goal
+from .max_min_subset import SubsetChoice, max_min_subset, nearest_pair
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection
 from .subset_identification import SubsetIdentification, pick
@@ -145,77 +145,93 @@ def choose(
     >>> len(choose(pool, Selection(2), parameters=0).icons)
     2
     """
-    job, felt, model = ranking.job, ranking.felt, ranking.model
-    draws = model.draw_count(parameters, DRAWS)
-    step, crowd = step_counter(progress, 1 + draws), model.people(job.people, job.seed)
-    icons, d_prime = job.icons, felt.d_prime
-    whole = Pool.of(icons, job.rig, model.nominal, end_s=job.end_s, rate_Hz=RATE_HZ)
-    places, excluded = whole.usable(asked, model.nominal)
-    pool = whole.some(places)
-    d = d_prime[:, places][:, :, places]
-    must = [k for k, icon in enumerate(pool.icons) if icon.name in asked.must]
-    limits = pool.limits(asked.most_s, asked.most_J)
-    namings = None
-    if asked.objective != "worst":
-        favour = replace(job.task, places=tuple(places)).favour(0, len(d), len(places), job.seed)
-        namings = SubsetIdentification.of(d, crowd.lapse, pool.durations_s, job.seed, favour=favour)
-    picked = pick(np.median(d, axis=0), namings, asked.count, asked.objective, must, limits, job.seed)
-    if picked is None:
-        raise ChoiceError(pool.nothing_fits(asked))
-    chosen = [places[k] for k in picked.chosen]
-    names = [icons[k].name for k in chosen]
-    a, b = nearest_two(felt.middle[np.ix_(chosen, chosen)])
-    share, loss = _for_people(d, picked, must, limits) if asked.objective == "worst" else (None, None)
-    task = task_among(job.task, ranking.carry_over, chosen)
-    own = appraise(
-        [icons[k] for k in chosen],
-        job.rig,
-        people=crowd,
-        seed=job.seed,
-        tracking=job.tracking,
-        norm=job.norm,
-        task=task,
-        observer=model.nominal,
-    )
-    step()
-    found = None
-    if draws:
-        alone = Nominal(
-            own.proportion_correct,
-            own.information_bits,
-            felt.detected[chosen],
-            felt.middle[np.ix_(chosen, chosen)],
-            felt.detection.onset_s[chosen],
-        )
-        found = new_laboratory(
-            felt.thin.of(chosen), crowd, alone, job.norm, model=model, draws=draws, seed=job.seed, task=task, step=step
-        )
-    return Choice(
-        icons=tuple(names),
-        objective=asked.objective,
-        value=picked.value,
-        optimal=picked.optimal,
-        bound=picked.bound,
-        worst_pair=(names[a], names[b]),
-        total_s=math.fsum(pool.durations_s[list(picked.chosen)]),
-        total_J=math.fsum(pool.energies_J[list(picked.chosen)]),
-        pool=len(places),
-        people=len(d) if namings is None else len(namings.lapse),
-        seen=picked.seen,
-        excluded=excluded,
-        best_share=share,
-        loss=loss,
-        at_own_range=own,
-        new_laboratory=found,
-    )
+    draws = ranking.model.draw_count(parameters, DRAWS)
+    chooser = Chooser(ranking, asked)
+    found = chooser.best(asked.count, draws, step_counter(progress, 1 + draws))
+    if found is None:
+        raise ChoiceError(chooser.pool.nothing_fits(asked))
+    return found
 
 
-def _for_people(d: Array, picked: SubsetChoice, must: Sequence[int], limits: Limits) -> tuple[float, float]:
-    """Share of people for whom no other choice has a better worst pair, and the median loss (d′)."""
-    own = list(picked.chosen)
-    losses = []
-    for one in d[:ONE_BY_ONE]:
-        mine = nearest_pair(one, own)
-        best = max_min_subset(one, len(own), must, limits, ties=False)
-        losses.append(max(0.0, (mine if best is None else best.value) - mine))
-    return float(np.mean(np.array(losses) <= 1e-9)), float(np.median(losses))
+class Chooser:
+    """The icons of a ranking that can be chosen by a request, and who is named what among them, for any number.
+
+    A goal leaves icons out that miss what it asks of single ones. Raises `ChoiceError` where too few are left.
+    """
+
+    def __init__(self, ranking: Ranking, asked: Selection, goal: Goal | None = None) -> None:
+        job, model = ranking.job, ranking.model
+        self.ranking, self.asked, self.crowd = ranking, asked, model.people(job.people, job.seed)
+        whole = Pool.of(job.icons, job.rig, model.nominal, end_s=job.end_s, rate_Hz=RATE_HZ)
+        self.places, self.excluded = whole.usable(asked, model.nominal, goal)
+        self.pool = whole.some(self.places)
+        self.d = ranking.felt.d_prime[:, self.places][:, :, self.places]
+        self.must = [k for k, icon in enumerate(self.pool.icons) if icon.name in asked.must]
+        self.limits = self.pool.limits(asked.most_s, asked.most_J)
+        self.namings = None
+        if asked.objective != "worst":
+            favour = replace(job.task, places=tuple(self.places)).favour(0, len(self.d), len(self.places), job.seed)
+            self.namings = SubsetIdentification.of(
+                self.d, self.crowd.lapse, self.pool.durations_s, job.seed, favour=favour
+            )
+
+    def best(self, count: int, draws: int, step: Callable[[], None]) -> Choice | None:
+        """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
+
+        `step` is called once, and after each draw.
+        """
+        ranking, asked, pool, namings = self.ranking, self.asked, self.pool, self.namings
+        job, felt, model = ranking.job, ranking.felt, ranking.model
+        picked = pick(np.median(self.d, axis=0), namings, count, asked.objective, self.must, self.limits, job.seed)
+        if picked is None:
+            return None
+        chosen = [self.places[k] for k in picked.chosen]
+        names, middle = [job.icons[k].name for k in chosen], felt.middle[np.ix_(chosen, chosen)]
+        a, b = nearest_two(middle)
+        share, loss = self._for_people(picked) if asked.objective == "worst" else (None, None)
+        task = task_among(job.task, ranking.carry_over, chosen)
+        own = appraise(
+            [job.icons[k] for k in chosen],
+            job.rig,
+            people=self.crowd,
+            seed=job.seed,
+            tracking=job.tracking,
+            norm=job.norm,
+            task=task,
+            observer=model.nominal,
+        )
+        step()
+        found = None
+        if draws:
+            onset_s = felt.detection.onset_s[chosen]
+            alone = Nominal(own.proportion_correct, own.information_bits, felt.detected[chosen], middle, onset_s)
+            how: dict[str, Any] = {"model": model, "draws": draws, "seed": job.seed, "task": task, "step": step}
+            found = new_laboratory(felt.thin.of(chosen), self.crowd, alone, job.norm, **how)
+        return Choice(
+            icons=tuple(names),
+            objective=asked.objective,
+            value=picked.value,
+            optimal=picked.optimal,
+            bound=picked.bound,
+            worst_pair=(names[a], names[b]),
+            total_s=math.fsum(pool.durations_s[list(picked.chosen)]),
+            total_J=math.fsum(pool.energies_J[list(picked.chosen)]),
+            pool=len(self.places),
+            people=len(self.d) if namings is None else len(namings.lapse),
+            seen=picked.seen,
+            excluded=self.excluded,
+            best_share=share,
+            loss=loss,
+            at_own_range=own,
+            new_laboratory=found,
+        )
+
+    def _for_people(self, picked: SubsetChoice) -> tuple[float, float]:
+        """Share of people for whom no other choice has a better worst pair, and the median loss (d′)."""
+        own = list(picked.chosen)
+        losses = []
+        for one in self.d[:ONE_BY_ONE]:
+            mine = nearest_pair(one, own)
+            best = max_min_subset(one, len(own), self.must, self.limits, ties=False)
+            losses.append(max(0.0, (mine if best is None else best.value) - mine))
+        return float(np.mean(np.array(losses) <= 1e-9)), float(np.median(losses))

@@ -1,37 +1,29 @@
 """The frontier of a pool: how well the best few icons of it are distinguished, by how many they are.
 
-For each number of icons the best choice is found as in `choose`, and judged by people who know only these icons. What
-95 % of people reach depends, as in a goal, on people and on the uncertainty of the model.
+For each number of icons it is the choice of `choose`, judged by people who know only these icons. What 95 % of people
+reach depends, as in a goal, on people and on the uncertainty of the model.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array
 from ..drawn import Drawn
-from ..identification.confusion import confuse
-from ..identification.laboratory import DRAWS, Nominal, new_laboratory
-from ..identification.measures import information_bits, proportion_correct
-from ..identification.population import RATE_HZ, identify
+from ..identification.laboratory import DRAWS
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People
 from ..progress import Progress, step_counter
-from ..ranking.batches import Execution, Job, PooledResult, collect_batches
-from .appraise import nearest_two, population_response
+from ..ranking.rank import rank
+from ..ranking.ranking import Ranking
+from .appraise import REACHED_BY
+from .choose import Choice, Chooser
 from .goal import Goal
-from .goal_result import GoalResult, SetOutcome, judge_goal
-from .max_min_subset import SubsetChoice
-from .pool import Pool, soft_finding
+from .goal_result import GoalResult, judge_goal
 from .request import ChoiceError, Objective, Selection
-from .subset_identification import SubsetIdentification, pick
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -41,8 +33,6 @@ if TYPE_CHECKING:
 
 MOST = 12
 """Most icons that a choice has unless more are asked for."""
-REACHED_BY = 0.95
-"""Share of people who reach what a choice is also judged by."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +179,7 @@ def frontier(
     >>> [len(point.icons) for point in found.points]
     [2, 3]
     """
-    members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
+    model = ObserverModel.of(observer)
     if most < 2:
         raise ChoiceError(f"a choice of {most} has no pair to compare: give 2 or more")
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
@@ -198,95 +188,48 @@ def frontier(
         wanted.check_draws(draws)
     time, energy = (None, None) if wanted is None else wanted.totals
     asked = Selection(2, objective, most_s=time, most_J=energy)
-    whole = Pool.of(members, rig, model.nominal, rate_Hz=RATE_HZ)
-    places, excluded = whole.usable(asked, model.nominal, wanted)
-    pool = whole.some(places)
-    job = Job(pool.icons, rig, pool.end_s, people, seed, 1, tracking, chosen, observer=model.for_jobs())
-    largest = min(most, len(pool))
-    step = step_counter(progress, job.batches + largest - 1)
-    pooled, crowd = collect_batches(job, Execution(), step), model.people(people, seed)
-    namings = SubsetIdentification.of(pooled.d_prime, crowd.lapse, pool.durations_s, seed)
-    limits = pool.limits(time, energy)
+    how: dict[str, Any] = {"people": people, "seed": seed, "tracking": tracking, "norm": norm, "observer": model}
+    ranking = rank(icons, rig, parameters=0, progress=progress, **how)
+    chooser = Chooser(ranking, asked, wanted)
+    largest = min(most, len(chooser.pool))
+    step = step_counter(progress, (largest - 1) * (1 + draws))
     points: list[FrontierPoint] = []
     for count in range(2, largest + 1):
-        picked = pick(pooled.middle, namings, count, objective, (), limits, seed)
-        if picked is None:  # nor will more keep the limits
+        choice = chooser.best(count, draws, step)
+        if choice is None:  # nor will more keep the limits
             break
-        points.append(_point(picked, pool, pooled, job, crowd, model, draws, wanted))
-        step()
+        points.append(_point(choice, ranking, wanted))
     if not points:
-        raise ChoiceError(pool.nothing_fits(asked))
+        raise ChoiceError(chooser.pool.nothing_fits(asked))
     return Frontier(
         rig=rig.name,
         rig_changes=tuple(rig.changes),
         people=people,
         seed=seed,
-        norm=chosen,
+        norm=norm,
         objective=objective,
-        pool=len(pool),
-        excluded=excluded,
+        pool=len(chooser.pool),
+        excluded=chooser.excluded,
         points=tuple(points),
         draws=draws,
         goal=wanted,
     )
 
 
-def _point(
-    picked: SubsetChoice,
-    pool: Pool,
-    pooled: PooledResult,
-    job: Job,
-    crowd: People,
-    model: ObserverModel,
-    draws: int,
-    goal: Goal | None,
-) -> FrontierPoint:
-    """A choice as people who know it alone identify it, and a goal judged for it."""
-    places = list(picked.chosen)
-    few, own = pool.some(places), pooled.d_prime[:, places][:, :, places]
-    if job.norm == "naming":  # what is named directly is felt again
-        felt, _ = population_response(few.icons, job.rig, crowd, job.tracking, observer=model.nominal)
-        named = identify(felt, job.norm, crowd, model.nominal, job.seed)[1].probability
-    else:
-        named = confuse(own, lapse=crowd.lapse, seed=job.seed).probability
-    each, middle = proportion_correct(named), np.median(own, axis=0)
-    at = nearest_two(middle)
-    names = tuple(icon.name for icon in few.icons)
-    nearest = names[at[0]], names[at[1]]
-    correct, bits = float(each.mean()), float(information_bits(named).mean())
-    detected, onset_s = pooled.detected[places], pooled.detection.onset_s[places]
-    persons: dict[str, Array] = {}
-    if draws:
-        predicted = Nominal(correct, bits, detected, middle, onset_s)
-        persons = new_laboratory(
-            pooled.thin.of(places), crowd, predicted, job.norm, model=model, draws=draws, seed=job.seed
-        ).persons
-    amber = tuple(name for name, trace in zip(names, few.traces, strict=True) if soft_finding(trace))
-    outcome = SetOutcome(
-        names=names,
-        correct=correct,
-        bits=bits,
-        d_prime=float(middle[at]),
-        detected=detected,
-        onset_s=onset_s,
-        durations_s=few.durations_s,
-        energies_J=few.energies_J,
-        worst_pair=nearest,
-        nearest_pair=nearest,
-        amber=amber,
-        red=(),
-        persons=persons,
-    )
+def _point(choice: Choice, ranking: Ranking, goal: Goal | None) -> FrontierPoint:
+    """A choice in the numbers of a frontier, and a goal judged for it."""
+    own, elsewhere = choice.at_own_range, choice.new_laboratory
+    low = None if elsewhere is None else float(np.quantile(elsewhere.persons["correct"], 1.0 - REACHED_BY))
     return FrontierPoint(
-        icons=names,
-        proportion_correct=correct,
-        low=float(np.quantile(each, 1.0 - REACHED_BY)),
-        information_bits=bits,
-        d_prime=outcome.d_prime,
-        total_s=math.fsum(outcome.durations_s),
-        total_J=math.fsum(outcome.energies_J),
-        optimal=picked.optimal,
-        low_with_model=float(np.quantile(persons["correct"], 1.0 - REACHED_BY)) if persons else None,
-        amber=amber,
-        goal=None if goal is None else judge_goal(goal, outcome),
+        icons=choice.icons,
+        proportion_correct=own.proportion_correct,
+        low=own.reached,
+        information_bits=own.information_bits,
+        d_prime=own.d_prime,
+        total_s=choice.total_s,
+        total_J=choice.total_J,
+        optimal=choice.optimal,
+        low_with_model=low,
+        amber=tuple(icon.name for icon in ranking.icons if icon.name in choice.icons and icon.cautions),
+        goal=None if goal is None else judge_goal(goal, ranking, choice),
     )
