@@ -32,8 +32,6 @@ class SkinModes:
     response of each lump to a unit change of the display, `rate_per_s` (n,) and `weight` (n lumps, n modes) the modes.
     """
 
-    site: str
-    contact_m2K_per_W: float
     corneum_m: float
     deep_C: float
     depth_m: Array
@@ -124,22 +122,20 @@ def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0)
     """
     from scipy.linalg import eigh_tridiagonal
 
-    lumps = _lumps(site_rig)
-    between = lumps.resistance + lumps.resistance_of_living / effusivity
+    rig = _rig(site_rig)
+    column = column_of(_with_living(rig.skin, effusivity), rig.column.blood_capacity_J_per_m3K)
+    between = column.resistance_m2K_per_W.copy()
     between[0] += contact_m2K_per_W
-    conductance = 1.0 / between
-    root = np.sqrt(lumps.capacity + lumps.capacity_of_living * effusivity)
+    conductance, root = 1.0 / between, np.sqrt(column.capacity_J_per_m2K)
     # Perfusion and the deep node pull every lump towards the same temperature, so that they enter as one.
-    diagonal = (conductance[:-1] + conductance[1:] + lumps.perfusion) / root**2
+    diagonal = (conductance[:-1] + conductance[1:] + column.perfusion_W_per_m2K) / root**2
     rate, mode = eigh_tridiagonal(diagonal, -conductance[1:-1] / (root[1:] * root[:-1]), check_finite=False)
-    drive = mode[0] * conductance[0] / root[0] / rate
-    weight = mode * drive[None, :] / root[:, None]
+    weight = mode * (mode[0] * conductance[0] / root[0] / rate)[None, :] / root[:, None]
+    outermost = rig.skin.layers[0]
     return SkinModes(
-        lumps.site,
-        contact_m2K_per_W,
-        lumps.corneum_m,
-        lumps.deep_C,
-        lumps.depth_m,
+        outermost.thickness_m if outermost.name == STRATUM_CORNEUM else 0.0,
+        rig.deep_C,
+        column.depth_m,
         between[1:-1],
         weight.sum(axis=1),
         np.asarray(rate, dtype=np.float64),
@@ -147,55 +143,20 @@ def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0)
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Lumps:
-    """Lumps of a site's skin, with what scales with the effusivity of living tissue apart from what does not.
-
-    Resistance is `resistance` + `resistance_of_living`/e and capacity `capacity` + e·`capacity_of_living` for an
-    effusivity that is e times the tabulated one.
-    """
-
-    site: str
-    corneum_m: float
-    deep_C: float
-    depth_m: Array
-    perfusion: Array
-    resistance: Array
-    resistance_of_living: Array
-    capacity: Array
-    capacity_of_living: Array
-
-
 @lru_cache(maxsize=16)
-def _lumps(site_rig: str) -> _Lumps:
-    rig = Rig.load(site_rig)
-    blood = rig.column.blood_capacity_J_per_m3K
-    skin = rig.skin
-    tissue, twice = column_of(skin, blood), column_of(_with_living_twice(skin), blood)
-    living_resistance = 2.0 * (tissue.resistance_m2K_per_W - twice.resistance_m2K_per_W)
-    living_capacity = twice.capacity_J_per_m2K - tissue.capacity_J_per_m2K
-    return _Lumps(
-        rig.site,
-        skin.layers[0].thickness_m if skin.layers[0].name == STRATUM_CORNEUM else 0.0,
-        rig.deep_C,
-        tissue.depth_m,
-        tissue.perfusion_W_per_m2K,
-        tissue.resistance_m2K_per_W - living_resistance,
-        living_resistance,
-        tissue.capacity_J_per_m2K - living_capacity,
-        living_capacity,
-    )
+def _rig(name: str) -> Rig:
+    return Rig.load(name)
 
 
-def _with_living_twice(skin: Skin) -> Skin:
-    """Skin whose living layers have twice the effusivity."""
+def _with_living(skin: Skin, effusivity: float) -> Skin:
+    """Skin whose living layers have so many times their effusivity."""
     layers = [
         layer
         if layer.name == STRATUM_CORNEUM
         else replace(
             layer,
-            conductivity_W_per_mK=2.0 * layer.conductivity_W_per_mK,
-            heat_capacity_J_per_kgK=2.0 * layer.heat_capacity_J_per_kgK,
+            conductivity_W_per_mK=effusivity * layer.conductivity_W_per_mK,
+            heat_capacity_J_per_kgK=effusivity * layer.heat_capacity_J_per_kgK,
         )
         for layer in skin.layers
     ]
