@@ -18,7 +18,7 @@ from thermicon.perception.evidence.results import (
     load_constants,
     load_predictions,
 )
-from thermicon.perception.evidence.rows import PEOPLE_WRIST, load_evidence, load_rows
+from thermicon.perception.evidence.rows import load_evidence, load_rows
 from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.observer.people import people_records
 
@@ -38,26 +38,10 @@ def experiments_table() -> str:
         counts[row.experiment] = counts.get(row.experiment, 0) + 1
     known = load_evidence().experiments
     lines = [
-        (key, known[key].title, known[key].citation, known[key].licence, known[key].method, counts[key])
-        if key in known
-        else (key, *_published(key), counts[key])
-        for key in counts
+        (key, each.title, each.citation, each.licence, each.method, counts[key])
+        for key, each in ((key, known[key]) for key in counts)
     ]
     return markdown(("key", "experiment", "citation", "licence of code and data", "what was asked", "rows"), lines)
-
-
-def _published(key: str) -> tuple[str, str, str, str]:
-    """Title, citation, licence and question of numbers that are printed in papers."""
-    table, licence = load_thresholds(), "numbers from print"
-    if key == "steps":
-        asked = "radiant heat on the forehead: how many steps are distinguishable; its error is assumed"
-        return "Steps from threshold to pain", "Herget, Granath & Hardy 1941", licence, asked
-    if key == "amplitudes":
-        record = table.one("amplitude difference threshold", channel="cold")
-        return "Amplitude differences", record.source, licence, "two pulses one after the other; amplitudes not stated"
-    record = table.one("detection threshold", channel="cold", site=key)
-    people = f"; spread of {PEOPLE_WRIST} people" if key == "wrist" else ""
-    return f"Forced choice at the {key}", record.source, licence, f"in which interval was it?{people}"
 
 
 def constants_table(mechanisms: Sequence[str] = (), *, sources: bool = True) -> str:

@@ -10,8 +10,8 @@ from pydantic import BaseModel
 from thermicon.circuit.delivery.devicefile import LIMITS, UNITS, UNITS_BY_DRIVE, DeviceTable
 from thermicon.circuit.rig.modules import build_of, module_table
 from thermicon.circuit.rig.rigfile import RigTable
-from thermicon.notebooks.study.keys import TABLES as STUDY_TABLES
-from thermicon.notebooks.study.keys import Study
+from thermicon.notebooks.study.study_file import TABLES as STUDY_TABLES
+from thermicon.notebooks.study.study_file import Study
 
 BOUNDS = {"minimum": "≥ {:g}", "exclusiveMinimum": "> {:g}", "maximum": "≤ {:g}", "exclusiveMaximum": "< {:g}"}
 KINDS = {"integer": "whole number", "number": "number", "string": "text", "boolean": "true or false"}

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from thermicon.circuit import Session
 
-    from ..study.keys import Threshold
     from ..study.schedule import Course, Pace, PlannedPlay
+    from ..study.study_file import Threshold
 
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#999999")
 """Okabe and Ito's colours, which people of every colour vision can distinguish; beyond eight, hatches differ."""

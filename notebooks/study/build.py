@@ -18,9 +18,8 @@ from thermicon.icons.model.statements import Hold, Ramp, Return
 from thermicon.icons.near_words import did_you_mean
 
 from .judging import Judged, Progress, judge_drives, judge_sessions
-from .keys import MOST_ASKED, Study, Threshold
 from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
-from .study_file import StudyError, parse_study, study_hash, study_text
+from .study_file import MOST_ASKED, Study, StudyError, Threshold, parse_study, study_hash, study_text
 from .timing import Landing, find_gap, find_landing, regulated
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from thermicon.circuit.safety.sessionplay import WorstCase
     from thermicon.icons import Icon
 
-    from .keys import Study
+    from .study_file import Study
 
 ALL_JUDGED = 4
 """Participants up to whom every session is judged in all corners; of more, those whose run is the most extreme."""

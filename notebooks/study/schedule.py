@@ -16,9 +16,8 @@ from typing import Any
 
 from thermicon.circuit.safety.session import LONGEST_S, MOST_PLAYS
 
-from .keys import Study
 from .orders import orders_of
-from .study_file import StudyError, labels_of
+from .study_file import Study, StudyError, labels_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,7 @@
-"""A study file at the door: read, checked as a whole, and identified by the hash of everything that decides a study."""
+"""A study file: its keys, each with its bounds and one sentence on what it means, read and checked as a whole.
+
+A study is identified by the hash of everything that decides it.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +11,174 @@ from collections import Counter
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
+from typing import Annotated, Literal
 
-from pydantic import ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
-from thermicon.circuit.inputs import InputError, Place, key_faults, read_text, read_toml
+from thermicon.circuit.inputs import LONGEST_NAME, InputError, Place, key_faults, one_line, read_text, read_toml
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
-from .keys import TABLES, Study, Table
+Line = Annotated[str, AfterValidator(one_line)]
+Name = Annotated[Line, Field(min_length=1, max_length=LONGEST_NAME)]
+Label = Annotated[Line, Field(pattern=r"^[A-Za-z0-9]+$", min_length=1, max_length=30)]
+"""Letters and digits alone: it becomes part of file names, where BIDS takes nothing else."""
+Key = Annotated[Line, Field(pattern=r"^[a-z0-9]+$", max_length=20)]
+"""The name of a key as PsychoPy calls it: space, escape, q."""
+
+MOST_PARTICIPANTS, MOST_BLOCKS, MOST_REPETITIONS = 500, 100, 500
+MOST_ASKED = 30
+"""Icons that a person can be asked to name."""
+Order = Literal["balanced", "williams", "random", "shuffled"]
+
+
+class Table(BaseModel):
+    """A table of the file: unknown keys, wrong types and NaN are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+
+class Stimuli(Table):
+    """What is played, and on what."""
+
+    set: Annotated[Name | None, Field(description="cue file, or the name of a shipped set")] = None
+    icons: Annotated[
+        list[Name],
+        Field(max_length=MOST_ASKED, description="names of the icons to play; all of the set without this key"),
+    ] = []
+    rig: Annotated[Name, Field(description="rig file, or the name of a shipped rig")] = "thenar"
+    rig_changes: Annotated[
+        list[Line], Field(max_length=100, description="changes to the rig, each as `KEY=VALUE`")
+    ] = []
+    device: Annotated[Name, Field(description="device file, or the name of a shipped device")] = "ni-analogue-output"
+    format: Annotated[
+        Literal["psychopy"], Field(description="format of the drives; the script plays those of PsychoPy")
+    ] = "psychopy"
+
+
+class Participants(Table):
+    """Who takes part: a count, or labels."""
+
+    count: Annotated[
+        int | None, Field(ge=1, le=MOST_PARTICIPANTS, description="number of participants, labelled 01, 02, …")
+    ] = None
+    labels: Annotated[
+        list[Label] | None,
+        Field(
+            min_length=1, max_length=MOST_PARTICIPANTS, description="labels of letters and digits, in place of a count"
+        ),
+    ] = None
+
+
+class Trials(Table):
+    """How often each icon is played, and in which order."""
+
+    repetitions: Annotated[int, Field(ge=1, le=MOST_REPETITIONS, description="plays of each icon in one block")]
+    blocks: Annotated[
+        int, Field(ge=1, le=MOST_BLOCKS, description="blocks, with a break before each but the first")
+    ] = 1
+    practice: Annotated[
+        int, Field(ge=0, le=20, description="plays of each icon before the first block, which do not count")
+    ] = 1
+    order: Annotated[
+        Order,
+        Field(
+            description="`balanced`: icons follow each other equally often, as far as the numbers allow, and never "
+            "themselves; `williams`: rows of a Williams design; `random`: shuffled without immediate repeats; "
+            "`shuffled`: shuffled"
+        ),
+    ] = "balanced"
+
+
+class Timing(Table):
+    """Pauses, and what they are derived from."""
+
+    gap_s: Annotated[
+        float | None,
+        Field(ge=0, le=600, description="least time from the end of an icon to the next; derived without this key"),
+    ] = None
+    carry_over_d_prime: Annotated[
+        float,
+        Field(
+            gt=0,
+            le=5,
+            description="the derived gap is so long that no icon feels different by more than this after any other",
+        ),
+    ] = 1.0
+    wait_for_skin: Annotated[
+        bool,
+        Field(description="whether the derived gap lasts until skin and display are back within 0.1 K in every corner"),
+    ] = False
+    landing_s: Annotated[
+        float | None,
+        Field(ge=0, le=1800, description="wait with the hand on the display before a block; derived without this key"),
+    ] = None
+    landing_from_K: Annotated[
+        float, Field(gt=0, le=10, description="how far from its rest the skin arrives at most; assumed")
+    ] = 2.5
+    landing_within_K: Annotated[
+        float, Field(ge=0.01, le=2, description="the derived landing lasts until skin and receptors are this close")
+    ] = 0.1
+    break_s: Annotated[float, Field(ge=0, le=3600, description="shortest break between blocks, the hand off")] = 60.0
+    answer_s: Annotated[
+        float, Field(ge=0, le=600, description="longest wait for an answer after the icon; 0: no end")
+    ] = 0.0
+
+
+class Run(Table):
+    """What the script shows, and the keys and the line it uses."""
+
+    question: Annotated[
+        Line | None,
+        Field(min_length=1, description="question on the screen; that of the kind of study without this key"),
+    ] = None
+    start_key: Annotated[Key, Field(description="key that starts a block")] = "space"
+    stop_key: Annotated[Key, Field(description="key that ends the run after the trial")] = "q"
+    abort_key: Annotated[Key, Field(description="key that switches the display off at once")] = "escape"
+    marker: Annotated[
+        Line,
+        Field(
+            pattern=r"^(none|serial:.+|parallel:.+|ni:.+)$",
+            description="line for markers: `none`, `serial:COM5`, `parallel:0x0378` or `ni:Dev1/port0`",
+        ),
+    ] = "none"
+
+
+class Threshold(Table):
+    """A threshold measured by QUEST+ in place of trials in a given order."""
+
+    direction: Annotated[Literal["cool", "warm"], Field(description="whether the skin is cooled or warmed")]
+    least_K: Annotated[float, Field(ge=0.02, le=10, description="smallest change of the display")] = 0.1
+    most_K: Annotated[float, Field(ge=0.05, le=15, description="greatest change of the display")] = 4.0
+    levels: Annotated[int, Field(ge=3, le=30, description="number of changes, equally spaced in logarithm")] = 12
+    rate_K_per_s: Annotated[float, Field(gt=0, le=20, description="rate of the change, there and back")] = 2.0
+    hold_s: Annotated[float, Field(ge=0, le=30, description="time at the level")] = 3.0
+    trials: Annotated[int, Field(ge=5, le=500, description="trials of a participant, catch trials included")] = 40
+    catch_share: Annotated[float, Field(ge=0, le=0.5, description="share of trials in which nothing is played")] = 0.2
+    target: Annotated[
+        float,
+        Field(ge=0.4, le=0.8, description="the threshold is felt with this probability, false alarms and lapses aside"),
+    ] = 0.5
+
+
+class Study(Table):
+    """A whole study file."""
+
+    format: Annotated[Literal[1], Field(description="1")]
+    name: Annotated[Label, Field(description="name of letters and digits, which the files carry")]
+    title: Annotated[Line, Field(max_length=LONGEST_NAME, description="one line about the study")] = ""
+    stimuli: Stimuli
+    participants: Participants
+    trials: Trials | None = None
+    threshold: Threshold | None = None
+    timing: Timing = Timing()
+    run: Run = Run()
+
+
+TABLES: dict[str, type[Table]] = {
+    "stimuli": Stimuli, "participants": Participants, "trials": Trials, "timing": Timing, "run": Run,
+    "threshold": Threshold,
+}  # fmt: skip
+"""Tables of a study file by their keys, in the order of the reference."""
 
 LIMIT_MB = 1.0
 SHIPPED = "example-study.toml"

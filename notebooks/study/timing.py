@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
 
-    from .keys import Timing
+    from .study_file import Timing
 
 GAPS_S = (0.0, 5.0, 10.0, 15.0, *np.arange(20.0, 121.0, 10.0).tolist(), 150.0, 180.0, 240.0, 300.0, 420.0, 600.0)
 """Gaps tried, the longest first: what is left behind may rise before it falls, when after-sensations come late."""

@@ -12,11 +12,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from statistics import median
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.circuit import Rig
 
-from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable
+from ..observer.channels import CHANNELS, VARIABLES, Channel
 from ..observer.observer import Observer
 from ..observer.parts import SPINAL_M_PER_S, SPINE_M
 from ..sensation.bench import Bench, ramp
@@ -30,47 +30,6 @@ if TYPE_CHECKING:
 RIG, ICONS = "thenar", "six-icons"
 CHANGES_K = (3.0, 10.0)
 RATE_K_PER_S, HOLD_S = 1.0, 3.0
-TITLES = {
-    "thenar": "Forced choice at the thenar",
-    "wrist": "Forced choice at the wrist",
-    "amplitudes": "Amplitude differences",
-    "steps": "Steps from threshold to pain",
-}
-"""Titles of experiments that are printed in papers and have no table of open data."""
-SAME_NOISE = (
-    "noise of gain and sensation is the same for everybody: sensitivity and criterion alone make widths differ less "
-    "than they do"
-)
-SUSPECTED = {
-    ("E1", "rt_within_sd_ln_5strip_onset_clock", "warm"): (
-        "scatter of decision times: no other experiment asks for a choice in haste; and warm fibres, which differ in "
-        "velocity, conduct with one velocity here"
-    ),
-    ("E1", "rt_cold_warm_correlation_5strip_onset_clock", "both"): (
-        "people's decision times, which both channels share, differ more than the other experiments show"
-    ),
-    ("E4", "sigma_gm_age30", "warm"): (
-        "the criterion of yes and no is known from this experiment alone: without it thresholds, and widths with them, "
-        "come out too small"
-    ),
-    ("E4", "sigma_between_sd_log10_noise_removed", "cold"): SAME_NOISE,
-    ("E4", "sigma_between_sd_log10_noise_removed", "warm"): SAME_NOISE,
-}
-"""Mechanism suspected of each row that is missed when its experiment is left out."""
-
-
-@dataclass(frozen=True, slots=True)
-class Magnitude:
-    """Peak sensations of one variant for a change at the display: d′ of `CHANGES_K`, K."""
-
-    channel: Channel
-    variable: Variable
-    peaks: tuple[float, ...]
-
-    @property
-    def jnds(self) -> int:
-        """Whole steps of d′ = 1 up to the largest change."""
-        return int(self.peaks[-1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +59,7 @@ class Conditioning:
     offsets: tuple[Constant, ...]
     ablation: tuple[AblatedRow, ...]
     stages: tuple[OnsetStages, ...]
-    magnitudes: tuple[Magnitude, ...]
+    magnitudes: tuple[dict[str, Any], ...]
 
     @property
     def missed(self) -> tuple[PredictedRow, ...]:
@@ -156,30 +115,38 @@ def experiment_title(key: str) -> str:
     >>> experiment_title("wrist"), experiment_title("E3")
     ('Forced choice at the wrist', 'Method of limits on the forearm')
     """
-    return TITLES[key] if key in TITLES else load_evidence().experiments[key].title
+    return load_evidence().experiments[key].title
 
 
 def suspected(row: PredictedRow) -> str:
     """The mechanism behind a miss; nothing where the row is covered."""
     if row.covered:
         return ""
-    return SUSPECTED.get((row.experiment, row.statistic, row.channel), "none named yet")
+    return load_evidence().suspected.get((row.experiment, row.statistic, row.channel), "none named yet")
 
 
-def magnitudes() -> tuple[Magnitude, ...]:
+def magnitudes() -> tuple[dict[str, Any], ...]:
     """Peak d′ of a change by 3 and by 10 K from 32 °C at 1 K/s, held for 3 s, cold then warm of every variant."""
-    bench = Bench(Rig.load(RIG), surface="display")
+    bench, made = Bench(Rig.load(RIG), surface="display"), []
     played = {
         c: [bench.play([ramp(c, size, RATE_K_PER_S, HOLD_S)], size / RATE_K_PER_S + HOLD_S) for size in CHANGES_K]
         for c in CHANNELS
     }
-    made = []
     for variable in VARIABLES:
         observer = Observer.load(variable=variable)
         for place, channel in enumerate(CHANNELS):
             felt = [each.felt(observer)[place] for each in played[channel]]
-            peaks = tuple(float((each - each[..., :1]).max()) for each in felt)
-            made.append(Magnitude(channel, variable, peaks))
+            peaks = [float((each - each[..., :1]).max()) for each in felt]
+            made.append(
+                {
+                    "channel": channel,
+                    "variable": variable,
+                    "changes_K": list(CHANGES_K),
+                    "peak_d_prime": peaks,
+                    "just_noticeable_steps": int(peaks[-1]),
+                    "conditions": f"{RATE_K_PER_S:g} K/s at the display, held {HOLD_S:g} s, {RIG}",
+                }
+            )
     return tuple(made)
 
 

@@ -70,7 +70,7 @@ class Experiment(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """All published statistics, and the experiments that they come from by their keys.
+    """All published statistics, the experiments that rows come from by their keys, and what is suspected of misses.
 
     >>> load_evidence().find("E3", "threshold_gm", "warm").value
     1.859
@@ -78,6 +78,7 @@ class Evidence:
 
     statistics: tuple[Statistic, ...]
     experiments: dict[str, Experiment]
+    suspected: dict[Key, str]
 
     def find(self, experiment: str, statistic: str, channel: str) -> Statistic:
         """One statistic; a RecordError names the nearest where it is not there."""
@@ -96,8 +97,10 @@ def load_evidence() -> Evidence:
 
 def read_evidence(statistics: Path, experiments: Path) -> Evidence:
     """Evidence from a table of statistics and a file of experiments; raises RecordError with row and column."""
-    known = [Experiment.model_validate(row) for row in tomllib.loads(experiments.read_text("utf-8"))["experiment"]]
-    by_key, rows = {each.key: each for each in known}, []
+    tree = tomllib.loads(experiments.read_text("utf-8"))
+    by_key = {row["key"]: Experiment.model_validate(row) for row in tree["experiment"]}
+    missed = {(row["experiment"], row["statistic"], row["channel"]): row["mechanism"] for row in tree["suspected"]}
+    rows = []
     with statistics.open(encoding="utf-8", newline="") as file:
         for line, row in enumerate(csv.DictReader(file), start=2):
             try:
@@ -108,7 +111,7 @@ def read_evidence(statistics: Path, experiments: Path) -> Evidence:
                 raise RecordError(f"{statistics.name}, line {line}: {column}: {first['msg']}") from None
             if rows[-1].experiment not in by_key:
                 raise RecordError(f"{statistics.name}, line {line}: {experiments.name} has no {rows[-1].experiment!r}")
-    return Evidence(tuple(rows), by_key)
+    return Evidence(tuple(rows), by_key, missed)
 
 
 SPREAD_DISCREPANCY = 0.20

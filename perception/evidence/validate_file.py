@@ -7,17 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ..observer.channels import VARIABLES
-from .conditioning import (
-    CHANGES_K,
-    HOLD_S,
-    RATE_K_PER_S,
-    RIG,
-    Conditioning,
-    Magnitude,
-    OnsetStages,
-    experiment_title,
-    suspected,
-)
+from .conditioning import Conditioning, OnsetStages, experiment_title, suspected
 from .predicted import Predicted
 from .results import EDGE, UNMOVED_SD, AblatedRow, Constant, PredictedRow
 from .validate import Judged, Line, ValidationReport
@@ -28,19 +18,11 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
     """The keys of the file, in their order; proportions are 0–1, every number has its unit beside it."""
     evidence = report.evidence
     return {
-        "thermicon": report.version,
-        "people": report.people,
-        "draws": report.draws,
-        "seed": report.seed,
-        "trials": report.trials,
+        **_data(report, "people", "draws", "seed", "trials", thermicon="version"),
         "variants": [{"name": variable, "variable": variable} for variable in VARIABLES],
         "targets": [
             {
-                "number": section.target.number,
-                "title": section.target.title,
-                "asks": section.target.asks,
-                "source": section.target.source,
-                "mechanism_suspected": section.target.mechanism,
+                **_data(section.target, "number", "title", "asks", "source", mechanism_suspected="mechanism"),
                 "rows": [_line(line) for line in section.lines],
             }
             for section in report.sections
@@ -79,27 +61,20 @@ def _line(line: Line) -> dict[str, Any]:
 def _judged(one: Judged) -> dict[str, Any]:
     found, verdict = one.predicted, one.verdict
     return {
-        "variant": found.variable,
+        **_data(found, "conditions", variant="variable"),
+        **_data(verdict, "text", verdict="word"),
         "value": _finite(found.value),
         "interval": [_finite(found.low), _finite(found.high)],
         "people_16_to_84": None if found.people is None else list(found.people),
-        "verdict": verdict.word,
-        "text": verdict.text,
         "share_of_draws_that_hold": one.share_holding,
-        "conditions": found.conditions,
     }
 
 
 def _predicted(one: Predicted) -> dict[str, Any]:
     return {
-        "experiment": one.experiment,
-        "quantity": one.quantity,
-        "channel": one.channel,
-        "variant": one.variable,
+        **_data(one, "experiment", "quantity", "channel", "unit", "conditions", variant="variable"),
         "value": _finite(one.value),
         "interval": [_finite(one.low), _finite(one.high)],
-        "unit": one.unit,
-        "conditions": one.conditions,
         "draws": [_finite(each) for each in one.draws],
     }
 
@@ -126,58 +101,44 @@ def conditioning_file(known: Conditioning) -> dict[str, Any]:
         "edge_below": EDGE,
         "ablation": [_ablated(each) for each in known.ablation],
         "onset_stages": [_stages(each) for each in known.stages],
-        "magnitudes": [_magnitude(each) for each in known.magnitudes],
+        "magnitudes": list(known.magnitudes),
     }
+
+
+def _data(each: object, *same: str, **named: str) -> dict[str, Any]:
+    """Attributes of a record by the keys of the file: `same` where both have one name, `named` where they have not."""
+    return {name: getattr(each, name) for name in same} | {key: getattr(each, name) for key, name in named.items()}
 
 
 def _row(row: PredictedRow) -> dict[str, Any]:
     return {
-        "experiment": row.experiment,
+        **_data(row, "experiment", "statistic", "channel", "unit", row="label", log_scale="log"),
         "title": experiment_title(row.experiment),
-        "statistic": row.statistic,
-        "channel": row.channel,
-        "row": row.label,
-        "unit": row.unit,
-        "log_scale": row.log,
         "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
         "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
         "left_out": {
-            "value": row.left_out,
+            **_data(row, "log_score", "covered", value="left_out", miss_sd="score"),
             "interval": [row.left_out_low, row.left_out_high],
-            "miss_sd": row.score,
-            "log_score": row.log_score,
-            "covered": row.covered,
         },
         "mechanism_suspected": suspected(row) or None,
     }
 
 
 def _constant(constant: Constant) -> dict[str, Any]:
+    named = {"prior_source": "source", "sd_over_prior": "narrowed", "prior_quantile": "quantile"}
     return {
-        "name": constant.name,
-        "mechanism": constant.mechanism,
-        "unit": constant.unit,
-        "value": constant.value,
+        **_data(constant, "name", "mechanism", "unit", "value", "moved", "at_edge", **named),
         "interval": [constant.low, constant.high],
         "prior_interval": [constant.prior_low, constant.prior_high],
-        "prior_source": constant.source,
-        "sd_over_prior": constant.narrowed,
-        "prior_quantile": constant.quantile,
-        "moved": constant.moved,
-        "at_edge": constant.at_edge,
     }
 
 
 def _ablated(run: AblatedRow) -> dict[str, Any]:
+    named = {"sum_of_squares": "squares", "worst_row": "worst"}
     return {
-        "variable": run.variable,
+        **_data(run, "variable", "log_evidence", "difference", "worst_sd", **named),
         "without": run.without or None,
         "replaced_by": run.replaced_by or None,
-        "log_evidence": run.log_evidence,
-        "difference": run.difference,
-        "sum_of_squares": run.squares,
-        "worst_row": run.worst,
-        "worst_sd": run.worst_sd,
         "sources": run.sources.split(" | ") if run.sources else [],
     }
 
@@ -186,14 +147,3 @@ def _stages(each: OnsetStages) -> dict[str, Any]:
     stages = asdict(each)
     leg_s = stages.pop("leg_s")
     return {**stages, "onset_s": each.onset_s, "onset_with_conduction_of_leg_s": leg_s}
-
-
-def _magnitude(each: Magnitude) -> dict[str, Any]:
-    return {
-        "channel": each.channel,
-        "variable": each.variable,
-        "changes_K": list(CHANGES_K),
-        "peak_d_prime": list(each.peaks),
-        "just_noticeable_steps": each.jnds,
-        "conditions": f"{RATE_K_PER_S:g} K/s at the display, held {HOLD_S:g} s, {RIG}",
-    }

@@ -9,8 +9,8 @@ from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Session, SessionPlan, play_session
 from thermicon.icons import parse
 from thermicon.notebooks.figures.study_figure import COLOURS, MOST_ROWS, study_figure, threshold_figure
-from thermicon.notebooks.study.keys import Threshold
 from thermicon.notebooks.study.schedule import Course, Pace, Trial, planned_plays
+from thermicon.notebooks.study.study_file import Threshold
 
 from .conftest import CUES
 

@@ -7,8 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.notebooks.study.keys import Timing
-from thermicon.notebooks.study.study_file import StudyError
+from thermicon.notebooks.study.study_file import StudyError, Timing
 from thermicon.notebooks.study.timing import (
     GAPS_S,
     carried_over,

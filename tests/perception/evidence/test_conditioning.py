@@ -5,8 +5,9 @@ import math
 
 import pytest
 
-from thermicon.perception.evidence.conditioning import SUSPECTED, experiment_title, load_conditioning, suspected
+from thermicon.perception.evidence.conditioning import experiment_title, load_conditioning, suspected
 from thermicon.perception.evidence.results import EDGE, load_constants, load_predictions
+from thermicon.perception.evidence.rows import load_evidence
 from thermicon.perception.evidence.validate import ValidationReport
 from thermicon.perception.evidence.validate_file import conditioning_file, report_file
 from thermicon.perception.observer.observer import TURNED_OFF
@@ -21,7 +22,7 @@ def test_every_row_is_there_and_every_miss_has_a_suspect() -> None:
         assert each.covered == inside
         assert bool(suspected(each)) == (not each.covered)
     missed = {(r.experiment, r.statistic, r.channel) for r in known.missed}
-    assert missed == set(SUSPECTED)
+    assert missed == set(load_evidence().suspected)
     scores = [abs(each.score) for each in known.missed]
     assert scores == sorted(scores, reverse=True)
 
