@@ -25,7 +25,6 @@ BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
-_LATE: ContextVar[list[str] | None] = ContextVar("late notes", default=None)
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 
 
@@ -42,8 +41,7 @@ def interrupted() -> typer.Exit:
 
 
 def fail(message: str) -> NoReturn:
-    """Say what is wrong on stderr, after all other notes, and leave with the code for bad input."""
-    _say_late()
+    """Say what is wrong on stderr, and leave with the code for bad input."""
     typer.echo(clean(message), err=True)
     raise typer.Exit(BAD_INPUT)
 
@@ -64,32 +62,6 @@ def note(message: str, *, always: bool = False) -> None:
         typer.echo(clean(message), err=True)
     except BrokenPipeError:
         into_nowhere(sys.stderr)
-
-
-@contextlib.contextmanager
-def late_notes() -> Iterator[None]:
-    """Hold back notes for the end of the block, where they do not stand between a command and its result."""
-    token = _LATE.set([])
-    try:
-        yield
-    finally:
-        _say_late()
-        _LATE.reset(token)
-
-
-def note_at_end(message: str) -> None:
-    """Note something once, at the end of the command; at once outside of one."""
-    held = _LATE.get()
-    if held is None:
-        note(message)
-    elif message not in held:
-        held.append(message)
-
-
-def _say_late() -> None:
-    held = _LATE.get() or []
-    while held:
-        note(held.pop(0))
 
 
 def into_nowhere(stream: TextIO) -> None:
@@ -123,8 +95,7 @@ def check_changes(changes: Sequence[str]) -> None:
 def load_rig(name: str | None, changes: Sequence[str], *, module_matters: bool = True) -> Rig:
     """Load the rig of ``--rig`` with the changes of ``--set``; its warnings go to stderr.
 
-    What is doubtful about the data sheets of its module is said at the end, and not at all by commands that neither
-    simulate nor export, to which the module does not matter.
+    Commands that neither simulate nor export say nothing of the data sheets of its module, which does not matter there.
     """
     check_changes(changes)
     from thermicon.circuit import Rig
@@ -132,12 +103,10 @@ def load_rig(name: str | None, changes: Sequence[str], *, module_matters: bool =
     rig = Rig.load(name or DEFAULT_RIG)
     if changes:
         rig = rig.with_set(list(changes))
-    sheets = () if rig.pump is None else rig.pump.origin.warnings
+    sheets = () if rig.pump is None or module_matters else rig.pump.origin.warnings
     for warning in rig.warnings:
         if warning not in sheets:
             note(f"warning: {warning}")
-        elif module_matters:
-            note_at_end(f"warning: {warning}")
     return rig
 
 

@@ -14,7 +14,7 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
-from .options import MOST_ICONS, RigOptions, sets_like, warn_of_site
+from .options import MOST_ICONS, RigOptions, flag, opt, sets_like, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -31,12 +31,10 @@ def check_command(
     rig: RigOptions,
     files: NoFiles = None,
     fix: Annotated[
-        bool,
-        typer.Option("--fix", help="Format files in canonical layout, in place; comments, numbers and units stay."),
+        bool, flag("--fix", "Format files in canonical layout, in place; comments, numbers and units stay.")
     ] = False,
     explain: Annotated[
-        str | None,
-        typer.Option(metavar="CODE", help="Instead: explain an error by its code, such as E102, or its title."),
+        str | None, opt("CODE", "Instead: explain an error by its code, such as E102, or its title.")
     ] = None,
 ) -> None:
     """Check cue files and report every error in them, or one line per file when there is none.

@@ -16,7 +16,7 @@ from ..messages import load_rig, note, usage
 from ..report.blocks import Text
 from ..report.run_report import Comparison, compare_report, comparison_line, headline
 from ..report.terminal import show
-from .options import FigureOptions, IconName, RigOptions, pick, read_set
+from .options import FigureOptions, IconName, RigOptions, flag, opt, pick, read_set
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -45,12 +45,11 @@ def compare_command(
     rig: RigOptions,
     figure: FigureOptions,
     file: Annotated[
-        str | None,
-        typer.Option(metavar="FILE", help="For two rigs: the icons to play.  [default: one icon of six-icons]"),
+        str | None, opt("FILE", "For two rigs: the icons to play.  [default: one icon of six-icons]")
     ] = None,
     icon: IconName = None,
     align: Annotated[
-        bool, typer.Option("--align", help="For a trace and a log: shift B in time to where it is most like A.")
+        bool, flag("--align", "For a trace and a log: shift B in time to where it is most like A.")
     ] = False,
 ) -> None:
     """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.

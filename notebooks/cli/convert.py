@@ -15,7 +15,7 @@ from thermicon.icons.number_text import number
 
 from ..files.outputs import STDOUT, check_output
 from ..messages import fail, note, usage
-from .options import IconName, out, pick, read_set, write_text
+from .options import IconName, opt, out, pick, read_set, write_text
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -33,14 +33,10 @@ def convert_command(
     icon: IconName = None,
     tolerance: Annotated[
         float | None,
-        typer.Option(
-            "--tolerance", metavar="K", help="For .csv: largest deviation of the icon from the recording, in K."
-        ),
+        opt("K", "For .csv: largest deviation of the icon from the recording, in K.", name="--tolerance"),
     ] = None,
-    name: Annotated[str | None, typer.Option("--name", metavar="NAME", help="For .csv: the name of the icon.")] = None,
-    column: Annotated[
-        str | None, typer.Option("--column", metavar="COLUMN", help="For .csv: the column of temperatures.")
-    ] = None,
+    name: Annotated[str | None, opt("NAME", "For .csv: the name of the icon.", name="--name")] = None,
+    column: Annotated[str | None, opt("COLUMN", "For .csv: the column of temperatures.", name="--column")] = None,
     control: Annotated[
         Literal["skin", "display"] | None,
         typer.Option(help="For .csv: whether skin or display temperatures were recorded."),

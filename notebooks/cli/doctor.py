@@ -19,6 +19,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from ..messages import BAD_INPUT
+from .options import flag
 
 PROGRAM = "thermicon"
 PIP = f'"{sys.executable}" -m pip'
@@ -63,7 +64,7 @@ class Finding:
 
 
 def doctor_command(
-    json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of lines.")] = False,
+    json: Annotated[bool, flag("--json", "Print one JSON object instead of lines.")] = False,
 ) -> None:
     """Check the installation: versions, extras, the cache, the kernel of Jupyter, and a self-test.
 

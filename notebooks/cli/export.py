@@ -19,7 +19,7 @@ from ..messages import BAD_INPUT, REFUSED, Missing, note, progress_bar, usage
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, steps_of
 from ..report.terminal import show
-from .options import IconName, NoFile, RigOptions, Tail, out, pick, read_set, warn_of_site
+from .options import IconName, NoFile, RigOptions, Tail, flag, opt, out, pick, read_set, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Export
@@ -35,31 +35,19 @@ LARGEST = 2**30
 def export_command(
     rig: RigOptions,
     file: NoFile = None,
-    to: Annotated[
-        str | None, typer.Option(metavar="FORMAT", help="File format; thermicon list formats has them.")
-    ] = None,
+    to: Annotated[str | None, opt("FORMAT", "File format; thermicon list formats has them.")] = None,
     folder: Annotated[
         Path | None,
         out("DIR", "Folder for drives and sidecars; nothing else should be in it.", "-o", "--output"),
     ] = None,
-    device: Annotated[
-        str | None,
-        typer.Option(metavar="DEVICE", help="A shipped device or a .toml file.  [default: by format]"),
-    ] = None,
+    device: Annotated[str | None, opt("DEVICE", "A shipped device or a .toml file.  [default: by format]")] = None,
     icon: IconName = None,
     tail: Tail = 0.0,
     pause: Annotated[
-        float | None,
-        typer.Option(
-            metavar="S", min=0.0, max=LONGEST_PAUSE_S, help="Seconds between plays.  [default: the recovery time]"
-        ),
+        float | None, opt("S", "Seconds between plays.  [default: the recovery time]", 0.0, LONGEST_PAUSE_S)
     ] = None,
     force: Annotated[
-        bool,
-        typer.Option(
-            "--force",
-            help="Replace files, and export icons that are lossy or not reached; unsafe ones never.",
-        ),
+        bool, flag("--force", "Replace files, and export icons that are lossy or not reached; unsafe ones never.")
     ] = False,
     verify: Annotated[
         Path | None,

@@ -13,7 +13,7 @@ from ..files.outputs import check_output, check_separate
 from ..messages import note, usage
 from ..report.fit_report import fit_report, plan_report
 from ..report.terminal import show
-from .options import FigureOptions, RigOptions, write_text
+from .options import FigureOptions, RigOptions, flag, opt, write_text
 
 OFFSET_K, MOST_OFFSET_K = 0.1, 10.0
 """As in `thermicon.circuit.fitting.fit`, repeated here to avoid its imports."""
@@ -34,26 +34,30 @@ def fit_command(
     ] = None,
     free: Annotated[
         list[str] | None,
-        typer.Option(
-            "--free",
-            metavar="KEY,KEY",
-            help="Required: keys of the rig to fit. contact.resistance_m2K_per_W, contact.area_cm2; module. with "
+        opt(
+            "KEY,KEY",
+            "Required: keys of the rig to fit. contact.resistance_m2K_per_W, contact.area_cm2; module. with "
             "seebeck_V_per_K, resistance_ohm, thermal_resistance_K_per_W, hot_plate_J_per_K, cold_plate_J_per_K; "
             "heat_sink. with temperature_C, resistance_K_per_W, capacity_J_per_K; driver.transconductance_A_per_V; "
             "ambient.temperature_C; skin.rest_C; load. with capacity_J_per_K, conductance_W_per_K, film_W_per_m2K; "
             "lags: controller.lag_s, probe.NAME.lag_s, thermode.lag_s; thermode.slew_K_per_s.",
+            name="--free",
         ),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", metavar="NEW.toml", readable=False, help="Write the fitted rig as a rig file."),
+        opt(
+            "NEW.toml",
+            "Write the fitted rig as a rig file.",
+            name="-o --output",
+            readable=False,
+        ),
     ] = None,
     name: Annotated[
-        str | None,
-        typer.Option("--name", metavar="NAME", help="Name of the fitted rig.  [default: that of the file of -o]"),
+        str | None, opt("NAME", "Name of the fitted rig.  [default: that of the file of -o]", name="--name")
     ] = None,
     plan: Annotated[
-        bool, typer.Option("--plan", help="Without a log: how well each choice of sensors will identify these keys.")
+        bool, flag("--plan", "Without a log: how well each choice of sensors will identify these keys.")
     ] = False,
     hold: Annotated[
         bool | None,
@@ -63,19 +67,16 @@ def fit_command(
         ),
     ] = None,
     fit_start: Annotated[
-        bool, typer.Option("--fit-start", help="Fit the start as well, where the rig was not steady at the first row.")
+        bool, flag("--fit-start", "Fit the start as well, where the rig was not steady at the first row.")
     ] = False,
     offset: Annotated[
-        float,
-        typer.Option(
-            metavar="K", min=0.0, max=MOST_OFFSET_K, help="What a temperature sensor may read off (standard deviation)."
-        ),
+        float, opt("K", "What a temperature sensor may read off (standard deviation).", 0.0, MOST_OFFSET_K)
     ] = OFFSET_K,
     fixed_skin: Annotated[
         bool,
-        typer.Option(
+        flag(
             "--fixed-skin",
-            help="Take the skin's layers as the rig has them.  [default: fitted along, within the spread of people]",
+            "Take the skin's layers as the rig has them.  [default: fitted along, within the spread of people]",
         ),
     ] = False,
 ) -> None:

@@ -19,6 +19,8 @@ from .options import (
     FigureOptions,
     FileNames,
     RigOptions,
+    flag,
+    opt,
     out,
     read_set,
     warn_of_frames,
@@ -43,41 +45,30 @@ def improve_command(
     files: FileNames,
     crowd: CrowdOptions,
     rig: RigOptions,
-    choose: Annotated[
-        int | None, typer.Option(metavar="N", min=2, max=MOST_CHOSEN, help="Choose the best N icons.")
-    ] = None,
-    up_to: Annotated[
-        int | None,
-        typer.Option(metavar="N", min=2, max=MOST_CHOSEN, help="Choose the best 2, 3, … N icons, as a table."),
-    ] = None,
+    choose: Annotated[int | None, opt("N", "Choose the best N icons.", 2, MOST_CHOSEN)] = None,
+    up_to: Annotated[int | None, opt("N", "Choose the best 2, 3, … N icons, as a table.", 2, MOST_CHOSEN)] = None,
     goal: Annotated[
         str | None,
-        typer.Option(
-            metavar="TEXT",
-            help='What is wanted, such as "correct >= 90 % for 95 % of people, time <= 10 s, safety green".',
-        ),
+        opt("TEXT", 'What is wanted, such as "correct >= 90 % for 95 % of people, time <= 10 s, safety green".'),
     ] = None,
     edits: Annotated[
-        bool, typer.Option("--edits", help="Find the cheapest edit of every pair that is not distinguishable.")
+        bool, flag("--edits", "Find the cheapest edit of every pair that is not distinguishable.")
     ] = False,
     evaluations: Annotated[
         int | None,
-        typer.Option(
-            metavar="N",
-            min=10,
-            max=1_000_000,
-            help="Search the families of FILE: number of icons to try; more take longer and may find a better set.  "
+        opt(
+            "N",
+            "Search the families of FILE: number of icons to try; more take longer and may find a better set.  "
             "[default: 2000]",
+            10,
+            1_000_000,
         ),
     ] = None,
     objective: Annotated[
         Objective | None,
         typer.Option(help="What a choice or a search improves.  [default: that of the goal, or worst (pair)]"),
     ] = None,
-    must: Annotated[
-        list[str] | None,
-        typer.Option(metavar="ICON", help="An icon that must be chosen; may be given several times."),
-    ] = None,
+    must: Annotated[list[str] | None, opt("ICON", "An icon that must be chosen; may be given several times.")] = None,
     output: Annotated[
         list[Path] | None,
         out(

@@ -20,7 +20,7 @@ from thermicon.icons.atomic import check_folder, complete_or_absent, stopped_cle
 from ..files.document import Document
 from ..files.outputs import FILE, OBSERVER, PAGE_FOLDER, RIG
 from ..messages import fail, interrupted, load_observer, load_rig, note, usage
-from .options import out, rigs_like
+from .options import flag, opt, out, rigs_like
 
 FOLDER = Path("thermicon-notebooks")
 FILES = (".cue", ".csv", ".ipynb", ".json", ".py", ".toml", ".txt")
@@ -42,31 +42,20 @@ def lab_command(
         ),
     ] = FOLDER,
     page: Annotated[
-        bool,
-        typer.Option("--page", help="Serve the workbench as a web page (with Voila) instead of opening JupyterLab."),
+        bool, flag("--page", "Serve the workbench as a web page (with Voila) instead of opening JupyterLab.")
     ] = False,
     rig: Annotated[
-        str | None,
-        typer.Option(metavar="RIG", autocompletion=rigs_like, help="With --page: rig of the page, by name or path."),
+        str | None, opt("RIG", "With --page: rig of the page, by name or path.", autocompletion=rigs_like)
     ] = None,
     observer: Annotated[
         Path | None,
         out("FILE", "With --page: predict with another observer, such as the lab.csv of pilot --keep.", "--observer"),
     ] = None,
-    files_only: Annotated[
-        bool, typer.Option("--files-only", help="Only copy the notebooks, for use in your own Jupyter.")
-    ] = False,
-    no_browser: Annotated[bool, typer.Option("--no-browser", help="Print the address and open no browser.")] = False,
-    port: Annotated[
-        int | None,
-        typer.Option(metavar="N", min=1, max=65535, help="Port on this machine.  [default: 8888; 8866 with --page]"),
-    ] = None,
-    allow_root: Annotated[
-        bool, typer.Option("--allow-root", help="Let JupyterLab run as root, as in a container.")
-    ] = False,
-    force: Annotated[
-        bool, typer.Option("--force", help="Also replace notebooks that are there by the shipped ones.")
-    ] = False,
+    files_only: Annotated[bool, flag("--files-only", "Only copy the notebooks, for use in your own Jupyter.")] = False,
+    no_browser: Annotated[bool, flag("--no-browser", "Print the address and open no browser.")] = False,
+    port: Annotated[int | None, opt("N", "Port on this machine.  [default: 8888; 8866 with --page]", 1, 65535)] = None,
+    allow_root: Annotated[bool, flag("--allow-root", "Let JupyterLab run as root, as in a container.")] = False,
+    force: Annotated[bool, flag("--force", "Also replace notebooks that are there by the shipped ones.")] = False,
 ) -> None:
     """Copy the notebooks to a folder and open JupyterLab there; Ctrl-C stops it.
 

@@ -14,7 +14,7 @@ from ..files.outputs import check_output
 from ..messages import usage
 from ..report.blocks import grid
 from ..report.terminal import show
-from .options import RigOptions, read_set, warn_of_site, write_text
+from .options import RigOptions, flag, opt, read_set, warn_of_site, write_text
 
 
 def list_command(
@@ -24,15 +24,12 @@ def list_command(
         typer.Argument(metavar="icons|rigs|devices|formats", show_default=False, help="What to list.  [default: all]"),
     ] = None,
     cite: Annotated[
-        str | None,
-        typer.Option(metavar="FILE", help="Instead: a paragraph for the methods section, of --rig too if it is given."),
+        str | None, opt("FILE", "Instead: a paragraph for the methods section, of --rig too if it is given.")
     ] = None,
-    bibtex: Annotated[bool, typer.Option("--bibtex", help="With --cite: BibTeX entries of the sources.")] = False,
+    bibtex: Annotated[bool, flag("--bibtex", "With --cite: BibTeX entries of the sources.")] = False,
     copy: Annotated[
         tuple[str, Path] | None,
-        typer.Option(
-            metavar="NAME FILE", help="Instead: write a shipped set (.cue), rig or device (.toml) to a new file."
-        ),
+        opt("NAME FILE", "Instead: write a shipped set (.cue), rig or device (.toml) to a new file."),
     ] = None,
 ) -> None:
     """List shipped icon sets, rigs, devices and file formats of drives; cite them, or copy one to start from."""

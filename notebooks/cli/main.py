@@ -18,7 +18,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from ..messages import be_quiet, fail, interrupted, into_nowhere, is_ours, late_notes
+from ..messages import be_quiet, fail, interrupted, into_nowhere, is_ours
 from .options import flat
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
@@ -82,9 +82,8 @@ class Commands(TyperGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command; bad input exits with 1, Ctrl-C with 130, a reader that went away with 0."""
         try:
-            with late_notes():
-                result = super().invoke(ctx)
-                sys.stdout.flush()
+            result = super().invoke(ctx)
+            sys.stdout.flush()
         except KeyboardInterrupt:
             raise interrupted() from None
         except BrokenPipeError:

@@ -48,6 +48,16 @@ def sets_like(incomplete: str) -> list[str]:
     return [name for name in library_names() if name.startswith(incomplete)]
 
 
+def opt(metavar: str, what: str, least: Any = None, most: Any = None, name: str = "", **more: Any) -> Any:
+    """An option with a value, of a number with its limits; it is called as its argument unless it has a name."""
+    return typer.Option(*name.split(), metavar=metavar, min=least, max=most, help=what, **more)
+
+
+def flag(name: str, what: str) -> Any:
+    """An option without a value."""
+    return typer.Option(name, help=what)
+
+
 def out(ending: str, what: str, *names: str) -> Any:
     """An option that names a file to write; its path is checked as bad input, not as bad usage (`readable=False`)."""
     return typer.Option(*names, metavar=ending, readable=False, help=what)
@@ -66,21 +76,19 @@ NoFile = Annotated[
         metavar="FILE", autocompletion=sets_like, show_default=False, help="A cue file, or the name of a shipped set."
     ),
 ]
-IconName = Annotated[str | None, typer.Option("--icon", metavar="NAME", help="Only this icon of the file.")]
-Tail = Annotated[
-    float, typer.Option(metavar="S", min=0.0, max=LONGEST_TAIL_S, help="Seconds simulated after the last corner.")
-]
+IconName = Annotated[str | None, opt("NAME", "Only this icon of the file.", name="--icon")]
+Tail = Annotated[float, opt("S", "Seconds simulated after the last corner.", 0.0, LONGEST_TAIL_S)]
 Json = Annotated[Path | None, out("OUT", "Write every number as JSON; - prints it.", "--json")]
 Table = Annotated[Path | None, out("OUT", "Write the table to .csv or .parquet; - prints it.", "-o", "--output")]
-People = Annotated[int, typer.Option(metavar="N", min=1, max=MOST_PEOPLE, help="Number of virtual people.")]
-Seed = Annotated[int, typer.Option(metavar="SEED", min=0, max=LARGEST_SEED, help="Seed of everything that is drawn.")]
+People = Annotated[int, opt("N", "Number of virtual people.", 1, MOST_PEOPLE)]
+Seed = Annotated[int, opt("SEED", "Seed of everything that is drawn.", 0, LARGEST_SEED)]
 Intervals = Annotated[
     int | None,
-    typer.Option(
-        metavar="N",
-        min=0,
-        max=MOST_DRAWS,
-        help="Draws of the posterior for intervals and goals; 0 for none.  [default: 128, or all there are]",
+    opt(
+        "N",
+        "Draws of the posterior for intervals and goals; 0 for none.  [default: 128, or all there are]",
+        0,
+        MOST_DRAWS,
     ),
 ]
 
@@ -109,13 +117,9 @@ class RigOptions(Options):
     """The rig, with changes of single keys."""
 
     rig: Annotated[
-        str | None,
-        typer.Option(metavar="RIG", autocompletion=rigs_like, help="A shipped rig or a .toml file.  [default: thenar]"),
+        str | None, opt("RIG", "A shipped rig or a .toml file.  [default: thenar]", autocompletion=rigs_like)
     ] = None
-    set: Annotated[
-        list[str] | None,
-        typer.Option(metavar="KEY=VALUE", help="Change one key of the rig; may be given several times."),
-    ] = None
+    set: Annotated[list[str] | None, opt("KEY=VALUE", "Change one key of the rig; may be given several times.")] = None
 
     def __post_init__(self) -> None:
         check_changes(self.changes)
@@ -156,10 +160,10 @@ class ObserverOptions(Options):
     norm: Annotated[Literal["episodes", "naming"], typer.Option(help="How icons are remembered.")] = "episodes"
     observer: Annotated[
         Path | None,
-        typer.Option(
-            metavar="FILE",
+        opt(
+            "FILE",
+            "Predict with another observer: draws that pilot --keep writes (.csv), or its records (.toml).",
             readable=False,
-            help="Predict with another observer: draws that pilot --keep writes (.csv), or its records (.toml).",
         ),
     ] = None
 
@@ -202,10 +206,7 @@ class FigureOptions(Options):
 
     figure: Annotated[Path | None, out("OUT", "Draw the figure: .pdf, .svg or .png.")] = None
     paper: Annotated[
-        str | None,
-        typer.Option(
-            metavar="WIDTH", help="Draw for print, so wide (85mm, 18cm, 7in): letters on the panels, no title."
-        ),
+        str | None, opt("WIDTH", "Draw for print, so wide (85mm, 18cm, 7in): letters on the panels, no title.")
     ] = None
 
     def __post_init__(self) -> None:
@@ -261,28 +262,11 @@ class Joined:
         return "\n".join(map(str, self.sets))
 
 
-def read_all(files: Sequence[str]) -> list[IconSet]:
-    """Read every file; CueErrors carries what is wrong in all of them, not only in the first."""
-    from thermicon.icons import CueErrors, read_cue
-    from thermicon.icons.model.errors import CueError
-
-    sets: list[IconSet] = []
-    errors: list[CueError] = []
-    more = 0
-    for file in files:
-        try:
-            sets.append(read_cue(file))
-        except CueErrors as found:
-            errors += found.errors
-            more += found.more
-    if errors:
-        raise CueErrors(tuple(errors), more)
-    return sets
-
-
 def read_set(files: Sequence[str]) -> IconSet:
     """Read files and join their icons into one set; JoinError when two icons share a name."""
-    sets = read_all(files)
+    from thermicon.icons import read_cue
+
+    sets = [read_cue(file) for file in files]
     if len(sets) == 1:
         return sets[0]
     owner: dict[str, str] = {}

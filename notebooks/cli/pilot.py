@@ -7,8 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.number_text import percent
 
@@ -20,6 +18,7 @@ from .options import (
     Json,
     ObserverOptions,
     RigOptions,
+    opt,
     out,
     read_set,
     warn_of_frames,
@@ -67,32 +66,26 @@ def pilot_command(
         ),
     ] = None,
     participants: Annotated[
-        str | None,
-        typer.Option(
-            metavar="N,N,…", help=f"Plan: numbers of participants to try, 2 to 500.  [default: {PARTICIPANTS}]"
-        ),
+        str | None, opt("N,N,…", f"Plan: numbers of participants to try, 2 to 500.  [default: {PARTICIPANTS}]")
     ] = None,
     trials: Annotated[
-        str | None,
-        typer.Option(
-            metavar="N,N,…", help=f"Plan: trials of a participant with each set, to try.  [default: {TRIALS}]"
-        ),
+        str | None, opt("N,N,…", f"Plan: trials of a participant with each set, to try.  [default: {TRIALS}]")
     ] = None,
     wanted: Annotated[
         float | None,
-        typer.Option(
-            metavar="PERCENT",
-            help="Plan: wanted width of the 95 % interval in points; with two sets, wanted share of experiments that "
+        opt(
+            "PERCENT",
+            "Plan: wanted width of the 95 % interval in points; with two sets, wanted share of experiments that "
             "distinguish them.  [default: 10; 80]",
         ),
     ] = None,
     draws: Annotated[
         int | None,
-        typer.Option(
-            metavar="N",
-            min=LEAST_DRAWS,
-            max=MOST_DRAWS,
-            help="Draws of the posterior, each with a laboratory.  [default: 1000; 300 for a plan]",
+        opt(
+            "N",
+            "Draws of the posterior, each with a laboratory.  [default: 1000; 300 for a plan]",
+            LEAST_DRAWS,
+            MOST_DRAWS,
         ),
     ] = None,
     json: Json = None,
@@ -173,7 +166,7 @@ def condition(
     from thermicon.perception.pilot.observed import observed
     from thermicon.perception.pilot.trials_file import read_trials
 
-    from ..report.observed_report import observed_report
+    from ..report.pilot_report import observed_report
     from ..report.terminal import show
 
     (icons, *others), where = [read_set([name]) for name in files], rig.load()

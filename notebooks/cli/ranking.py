@@ -26,6 +26,8 @@ from .options import (
     Json,
     Options,
     RigOptions,
+    flag,
+    opt,
     out,
     read_set,
     warn_of_frames,
@@ -70,9 +72,9 @@ class TaskOptions(Options):
 
     task: Annotated[
         list[str] | None,
-        typer.Option(
-            metavar="KEY=VALUE",
-            help="The predicted experiment; may be given several times: trials=48, gap=S between icons (else until "
+        opt(
+            "KEY=VALUE",
+            "The predicted experiment; may be given several times: trials=48, gap=S between icons (else until "
             "carry-over has faded), context=SHARE of the memory noise that grows with the range of the set, 0 to 1, "
             "bias=SD of people's response bias in log likelihood, 0 to 5.",
         ),
@@ -123,16 +125,15 @@ def rank_command(
         Path | None, out("OUT", "Write a report: one .html file, or .md without pictures.", "--report")
     ] = None,
     doubt: Annotated[
-        bool, typer.Option("--doubt", help="Instead: which constants carry the doubt, and what to measure first.")
+        bool, flag("--doubt", "Instead: which constants carry the doubt, and what to measure first.")
     ] = False,
     details: Annotated[
-        bool, typer.Option("--details", help="Also reasons, intervals of people, assumptions, and all notes.")
+        bool, flag("--details", "Also reasons, intervals of people, assumptions, and all notes.")
     ] = False,
     workers: Annotated[
         str | None,
-        typer.Option(
-            metavar="N|ADDRESS",
-            help="Number of CPU cores, or a dask cluster by the address of its scheduler.  [default: all cores]",
+        opt(
+            "N|ADDRESS", "Number of CPU cores, or a dask cluster by the address of its scheduler.  [default: all cores]"
         ),
     ] = None,
 ) -> None:

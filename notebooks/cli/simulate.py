@@ -28,7 +28,9 @@ from .options import (
     IconName,
     NoFile,
     RigOptions,
+    flag,
     only,
+    opt,
     out,
     pick,
     read_set,
@@ -55,29 +57,25 @@ def simulate_command(
         out("DRIVE.csv", "Play this drive current (columns time_s, current_A) instead of icons.", "--current"),
     ] = None,
     hold: Annotated[
-        bool,
-        typer.Option("--hold", help="With --current: hold each current until the next row instead of interpolating."),
+        bool, flag("--hold", "With --current: hold each current until the next row instead of interpolating.")
     ] = False,
     order: Annotated[
         Path | None,
         out("FILE", "Play a session: icons in the order of this file, which has one name per line.", "--order"),
     ] = None,
     random: Annotated[
-        int | None,
-        typer.Option(metavar="N", min=1, max=MOST_PLAYS, help="Play a session: every icon N times, in random order."),
+        int | None, opt("N", "Play a session: every icon N times, in random order.", 1, MOST_PLAYS)
     ] = None,
     gap: Annotated[
         float | None,
-        typer.Option(
-            metavar="S",
-            min=0.0,
-            max=LONGEST_GAP_S,
-            help="In a session: seconds from the end of one icon to the start of the next.  [default: 10]",
+        opt(
+            "S",
+            "In a session: seconds from the end of one icon to the start of the next.  [default: 10]",
+            0.0,
+            LONGEST_GAP_S,
         ),
     ] = None,
-    seed: Annotated[
-        int | None, typer.Option(metavar="SEED", min=0, max=LARGEST_SEED, help="Seed of --random.  [default: 0]")
-    ] = None,
+    seed: Annotated[int | None, opt("SEED", "Seed of --random.  [default: 0]", 0, LARGEST_SEED)] = None,
     tracking: Annotated[
         Literal["replay", "display"] | None,
         typer.Option(
@@ -94,15 +92,10 @@ def simulate_command(
             "--output",
         ),
     ] = None,
-    rate: Annotated[float, typer.Option(metavar="HZ", min=1e-3, max=1e6, help="Samples per second.")] = 100.0,
+    rate: Annotated[float, opt("HZ", "Samples per second.", 1e-3, 1e6)] = 100.0,
     tail: Annotated[
         float | None,
-        typer.Option(
-            metavar="S",
-            min=0.0,
-            max=LONGEST_TAIL_S,
-            help="Seconds simulated after the last corner.  [default: 0; 10 in figures]",
-        ),
+        opt("S", "Seconds simulated after the last corner.  [default: 0; 10 in figures]", 0.0, LONGEST_TAIL_S),
     ] = None,
 ) -> None:
     """Simulate icons: the current that plays them, and temperatures and heat flow down to the receptors.

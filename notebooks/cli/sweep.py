@@ -26,6 +26,7 @@ from .options import (
     Seed,
     Table,
     Tail,
+    opt,
     pick,
     read_set,
     warn_of_site,
@@ -208,9 +209,9 @@ def sweep_command(
     file: FileName,
     vary: Annotated[
         list[str],
-        typer.Option(
-            metavar="KEY=LOW:HIGH:N",
-            help="A key of the rig, or people.age_years, and N values from LOW to HIGH, Nlog for equal ratios; or "
+        opt(
+            "KEY=LOW:HIGH:N",
+            "A key of the rig, or people.age_years, and N values from LOW to HIGH, Nlog for equal ratios; or "
             "values with commas, such as site=thenar,fingertip. Give it twice for a grid.",
         ),
     ],
@@ -220,9 +221,9 @@ def sweep_command(
     icon: IconName = None,
     measure: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAME,NAME",
-            help="Also predict what people perceive: correct, correct_95 (what 95 % of people reach), detected, onset, "
+        opt(
+            "NAME,NAME",
+            "Also predict what people perceive: correct, correct_95 (what 95 % of people reach), detected, onset, "
             "d_prime, bits.",
         ),
     ] = None,

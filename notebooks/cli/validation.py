@@ -5,20 +5,15 @@ from __future__ import annotations
 from json import dumps
 from typing import Annotated
 
-import typer
-
 from ..files.outputs import STDOUT, check_output
 from ..messages import progress_bar, usage
-from .options import Json, Seed, write_text
+from .options import Json, Seed, opt, write_text
 
 
 def validate_command(
-    people: Annotated[int, typer.Option(metavar="N", min=2, max=2000, help="Number of virtual people.")] = 200,
+    people: Annotated[int, opt("N", "Number of virtual people.", 2, 2000)] = 200,
     draws: Annotated[
-        int,
-        typer.Option(
-            metavar="N", min=0, max=1000, help="Number of observers drawn for intervals and trade-offs; 0 for none."
-        ),
+        int, opt("N", "Number of observers drawn for intervals and trade-offs; 0 for none.", 0, 1000)
     ] = 128,
     seed: Seed = 0,
     json: Json = None,

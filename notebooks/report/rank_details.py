@@ -10,7 +10,7 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 from .blocks import Block, Bullets, Heading
 from .choices import laboratory
 
-MOST_DISAGREEMENTS, MOST_EDITS, SAME_DPRIME = 5, 20, 0.05
+MOST_EDITS, SAME_DPRIME = 20, 0.05
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
 DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
@@ -25,7 +25,7 @@ def detail_blocks(result: Mapping[str, Any]) -> list[Block]:
     if result["set"]["worst_pair"]:
         first, *reasons = worst_points(result)
         found += [Heading(first), Bullets(tuple(reasons)), *edits_blocks(result)]
-    return [*found, *assumption_blocks(result["assumptions"]), *disagreement_blocks(result)]
+    return [*found, *assumption_blocks(result["assumptions"])]
 
 
 def playable(icons: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -250,17 +250,3 @@ def _site(site: Mapping[str, Any]) -> str:
     twice = site["proportion_correct_at_twice_the_thresholds"]
     more = "" if twice is None else f"; with twice those thresholds, {percent(twice)} correct"
     return f"{site['site']}: {near}, {used}{more}"
-
-
-def disagreement_blocks(result: Mapping[str, Any]) -> list[Block]:
-    """Where rules of thumb and model disagree, of the chosen icons where some are."""
-    found = result["set"]["rules_disagree"]
-    if result["chosen"]:
-        chosen = {*result["chosen"]["icons"]}
-        found = [each for each in found if {each[key] for key in ("icon", "a", "b") if key in each} <= chosen]
-    if not found:
-        return []
-    why = "rules compare two icons played back to back, while naming one needs memory"
-    points = [each["text"] for each in found[:MOST_DISAGREEMENTS]]
-    points += [f"and {len(found) - MOST_DISAGREEMENTS} more; --json lists all"] * (len(found) > MOST_DISAGREEMENTS)
-    return [Heading(f"Rules of thumb and model disagree ({why})", 3), Bullets(tuple(points))]

@@ -71,7 +71,6 @@ def report(
         *_settings(result, rig, command),
         *view_parts(made.ranking),
         *_pairs(result),
-        *_rules(result),
         *icon_parts(result, icons, rig),
         Heading("Rig file"),
         Text("The whole rig as it was used, changes included."),
@@ -134,17 +133,6 @@ def _pairs(result: dict[str, Any]) -> Iterator[Block]:
     yield grid(("icon", "and", "d′", "confused", *names), cells, ("d′", "confused", *names))
     more = f" {len(rows) - MOST_PAIRS} more pairs are in the JSON." if len(rows) > MOST_PAIRS else ""
     yield Text(f"Components in bold are above the just noticeable difference of icons played back to back.{more}")
-
-
-def _rules(result: dict[str, Any]) -> Iterator[Block]:
-    yield Heading("Rules of thumb")
-    rules = [(icon["name"], rule) for icon in result["icons"] for rule in icon["rules"]]
-    rules += [("the rig", rule) for rule in result["set"]["rules"]]
-    failed = [[name, rule["text"], rule["source"]] for name, rule in rules if not rule["pass"]]
-    apart = sum(pair["distinguishable_by_rules"] for pair in result["pairs"])
-    pairs = f" The rules alone distinguish {apart} of {len(result['pairs'])} pairs." if result["pairs"] else ""
-    yield Text(f"{len(rules) - len(failed)} of {len(rules)} rules on icons and rig pass.{pairs} The following fail:")
-    yield grid(("icon", "rule", "source"), failed) if failed else Text("none.")
 
 
 def view_parts(ranking: Ranking) -> Iterator[Block]:

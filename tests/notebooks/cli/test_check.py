@@ -80,12 +80,6 @@ def test_bad_files_are_told_together_and_stay_as_they_are(cli: Cli, tmp_path: Pa
     assert good.read_text(encoding="utf-8") == TIDY
 
 
-def test_an_own_file_hides_a_shipped_set_of_its_name(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    written(tmp_path / "six-icons", LOOSE)
-    assert cli("check", "--fix", "six-icons").stderr == "six-icons: formatted\n"
-
-
 def test_line_ends_stay_and_a_byte_order_mark_goes(cli: Cli, tmp_path: Path) -> None:
     path = written(tmp_path / "a.cue", b"\xef\xbb\xbf" + LOOSE.replace("\n", "\r\n").encode())
     assert cli("check", "--fix", path).exit_code == 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -117,30 +116,6 @@ def test_a_trace_and_a_log_are_compared_at_the_times_of_the_log(cli: Cli, two: P
     turned = cli("compare", log, trace)
     assert row(turned, "skin")[-2:] == ["−0.2", "K"]
     assert "the 31 times of log.csv" in turned.stdout
-
-
-def test_a_trace_file_with_several_icons_needs_a_name(cli: Cli, two: Path, tmp_path: Path) -> None:
-    _, log = measured(tmp_path, cli, two)
-    both = tmp_path / "both.parquet"
-    assert cli("simulate", two, "-o", both).exit_code == 0
-    for more, code, words in (
-        ((), 2, "has traces of 2 icons; name one of cool-step, warm-step"),
-        (("--icon", "cool-step"), 0, ""),
-        (("--icon", "cool-stp"), 1, "no trace of cool-stp; did you mean cool-step?"),
-    ):
-        said = cli("compare", both, log, *more)
-        assert said.exit_code == code
-        assert words in " ".join(said.stderr.split())
-
-
-def test_a_parquet_file_without_pyarrow(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    good, packed = tmp_path / "good.csv", tmp_path / "packed.parquet"
-    good.write_text(GOOD, encoding="utf-8")
-    packed.write_bytes(b"PAR1")
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    said = cli("compare", good, packed)
-    assert (said.exit_code, said.stdout) == (1, "")
-    assert 'pip install "thermicon[parquet]"' in " ".join(said.stderr.split())
 
 
 def test_a_log_with_a_clock_of_its_own_is_aligned(cli: Cli, tmp_path: Path) -> None:

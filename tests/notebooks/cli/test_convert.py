@@ -22,15 +22,6 @@ def test_a_set_is_written_as_json_and_as_cue_text_over_what_was_there(cli: Cli, 
     assert as_cue.read_text(encoding="utf-8") == str(load_library("six-icons"))
 
 
-def test_one_icon_and_one_member(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "one.cue"
-    assert cli("convert", "six-icons", "--icon", "double-dip", "-o", path).exit_code == 0
-    (icon,) = read_cue(path)
-    assert (icon.name, read_cue(path).metadata) == ("double-dip", load_library("six-icons").metadata)
-    member = load_library("search-space").icons[7].name
-    assert cli("convert", "search-space", "--icon", member, "-o", tmp_path / "member.cue").exit_code == 0
-
-
 def test_what_a_played_icon_needs_comes_along(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "a.cue"
     path.write_text("cue 1; icon a { hold for 1 s }; icon b { play a; hold for 1 s }; icon c { rest for 1 s }")

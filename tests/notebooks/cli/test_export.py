@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import wave
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -196,28 +195,3 @@ def test_very_many_icons_are_not_compared_with_each_other(
     assert said.exit_code == 0, said.stderr
     assert "warning: 2 icons are too many to compare" in said.stderr
     assert json.loads((tmp_path / "out" / "cool-step.json").read_text())["perception"]["d_prime"] == {}
-
-
-@pytest.mark.slow
-def test_a_slow_device_gets_a_sound_file_that_plays(cli: Cli, two: Path, tmp_path: Path) -> None:
-    slow = device(tmp_path, "dc-coupled-audio", "48000", "100")
-    asked = ("export", two, "--to", "wav", "--icon", "cool-step", "-o", tmp_path / "out", *SURE)
-    said = cli(*asked, "--device", "dac-16")
-    assert said.exit_code == 1
-    assert "wav: dac-16 is not said to be DC-coupled (dc_coupled = true)" in said.stderr
-    said = cli(*asked, "--device", slow)
-    assert said.exit_code == 0, said.stderr
-    with wave.open(str(tmp_path / "out" / "cool-step.wav")) as sound:
-        assert (sound.getframerate(), sound.getnframes()) == (48000, 802 * 480)
-    told = json.loads((tmp_path / "out" / "cool-step.json").read_text())
-    assert told["update_rate_Hz"]["realised"] == 100.0
-    assert (told["format"]["frames_per_second"], told["format"]["frames_per_update"]) == (48000, 480)
-
-
-@pytest.mark.slow
-def test_the_duties_of_a_bridge_are_not_replayed_and_the_message_says_why(cli: Cli, two: Path, tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    assert cli("export", two, "--to", "csv", "--device", "pwm-h-bridge-10", "-o", out, "--force", *SURE).exit_code == 0
-    said = cli("simulate", "--current", out / "cool-step.csv", "--hold", "-o", tmp_path / "trace.csv")
-    assert said.exit_code == 1
-    assert "cool-step.csv:1: these are duties of a bridge" in said.stderr

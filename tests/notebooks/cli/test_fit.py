@@ -114,14 +114,3 @@ def test_a_doubtful_log_is_told_and_a_useless_one_leaves_nothing(
     assert "Traceback" not in told
     for word in words:
         assert word in told
-
-
-@pytest.mark.slow
-def test_a_log_is_laid_beside_a_trace(cli: Cli, log: Path, tmp_path: Path) -> None:
-    figure = tmp_path / "beside.png"
-    said = cli("simulate", "calibration-drive", "--measured", log, "--figure", figure, "--set", f"{CONTACT}=7e-4")
-    assert said.exit_code == 0, said.stderr
-    assert "measured − simulated (rig.csv, shifted by" in said.stdout
-    line = next(line for line in said.stdout.splitlines() if line.startswith("  display   rms"))
-    assert 0.01 < float(line.split()[2]) < 0.1
-    assert figure.stat().st_size > 20_000

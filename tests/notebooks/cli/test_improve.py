@@ -60,14 +60,6 @@ def test_the_json_says_what_was_chosen_within_its_limits(ranked: Callable[..., d
         assert words in found["words"]
 
 
-def test_a_choice_is_told_of_its_own_disagreements(ranked: Callable[..., dict[str, Any]]) -> None:
-    found = ranked("--choose", 3)
-    chosen = set(found["chosen"]["icons"])
-    others = [each["text"] for each in found["set"]["rules_disagree"] if not {each.get("a"), each.get("b")} <= chosen]
-    assert others
-    assert not any(text in found["words"] for text in others)
-
-
 def test_without_families_and_questions_every_close_pair_gets_an_edit(ranked: Callable[..., dict[str, Any]]) -> None:
     every = ranked()
     assert every["chosen"] is None

@@ -41,12 +41,6 @@ def test_the_notebooks_are_put_into_a_folder_and_what_is_there_is_kept(cli: Cli,
     assert "%load_ext" in first.read_text(encoding="utf-8")
 
 
-def test_without_a_folder_they_get_one_of_their_own(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert cli("lab", "--files-only").stderr.startswith("thermicon-notebooks: ")
-    assert (tmp_path / "thermicon-notebooks" / FIRST).is_file()
-
-
 def test_a_full_disk_leaves_nothing(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     real = Path.write_bytes
 

@@ -104,18 +104,6 @@ def test_odd_answers_are_judged_by_as_much_as_was_tried(cli: Cli, two: Path, tmp
     told(cli("pilot", two, "--answers", path, "--draws", 240), "cannot explain these answers, not even with other")
 
 
-def test_doubtful_times_are_warned_of_on_screen_and_in_the_file(
-    cli: Cli, two: Path, answers: Path, tmp_path: Path
-) -> None:
-    out = tmp_path / "out.json"
-    answers.write_text(answers.read_text(encoding="utf-8").replace("time_s", "rt"), encoding="utf-8")
-    said = cli("pilot", two, "--answers", answers, *QUICK, "--json", out)
-    assert said.exit_code == 0
-    warning = f"{answers}: times in the column 'rt' are not read: name it time_s"
-    assert said.stderr.startswith(f"warning: {warning}")
-    assert json.loads(out.read_text(encoding="utf-8"))["warnings"][0].startswith(warning)
-
-
 def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "plan.json"
     said = cli("pilot", two, *QUICK, "--participants", "16,4", "--trials", "6,20", "--json", out)

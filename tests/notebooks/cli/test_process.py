@@ -126,21 +126,6 @@ def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tup
         assert (two.parent / name).stat().st_size > 0, name
 
 
-@posix
-@pytest.mark.slow
-def test_a_reader_that_goes_away_is_no_error() -> None:
-    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "simulate", "six-icons", "-o", "-"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as run:
-        assert run.stdout is not None
-        assert run.stderr is not None
-        assert run.stdout.readline().startswith("icon,time_s,current_A")
-        run.stdout.close()
-        said = run.stderr.read()
-    assert run.returncode == 0, said
-    assert "Traceback" not in said
-    assert "Broken" not in said
-
-
 def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
     from thermicon.notebooks.report.blocks import grid
     from thermicon.notebooks.report.terminal import show

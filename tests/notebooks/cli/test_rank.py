@@ -1,4 +1,4 @@
-"""``thermicon rank``: the JSON that scripts read and the table that people read."""
+"""``thermicon rank``: the JSON that scripts read, the table that people read, the next command, and other observers."""
 
 from __future__ import annotations
 
@@ -10,65 +10,57 @@ from typing import Any
 
 import pytest
 
+from tests.builders import few_draws
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.icons.number_text import percent_span
 from thermicon.notebooks.cli import ranking
 from thermicon.notebooks.report.rank_report import Step, next_step
+from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
-TOP = {
-    *("thermicon", "rig", "rig_changes", "seed", "people", "tracking", "by", "norm", "content_hash"),
-    *("icons", "pairs", "confusion", "set", "chosen"),
+PROMISED = {
+    "top": "thermicon rig rig_changes seed people tracking by norm content_hash icons pairs confusion set chosen",
+    "icon": "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct "
+    "reachable safe reason cautions rules rules_score outside_data",
+    "pair": "a b d_prime confused_probability why rules edit distinguishable_by_rules",
+    "set": "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "
+    "information_bits_plugin trials worst_pair rules_disagree norm_sensitivity rules_score rules "
+    "proportion_correct_interval_new_laboratory information_bits_interval_new_laboratory",
 }
-ICON = {
-    *("name", "detected_probability", "onset_s", "channel", "peak_change_K", "attack_K_per_s", "delay_s"),
-    *("proportion_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "outside_data"),
-}
-PAIR = {"a", "b", "d_prime", "confused_probability", "why", "rules", "edit", "distinguishable_by_rules"}
-SET = {
-    *(
-        "proportion_correct",
-        "proportion_correct_interval",
-        "information_bits",
-        "information_bits_interval",
-        "bits_per_s",
-    ),
-    *("information_bits_plugin", "trials", "worst_pair", "rules_disagree", "norm_sensitivity"),
-    *("proportion_correct_interval_new_laboratory", "information_bits_interval_new_laboratory", "rules_score", "rules"),
-}
+TOP, ICON, PAIR, SET = ({*words.split()} for words in PROMISED.values())
 
 
 @pytest.fixture
-def ranked(cli: Cli, two: Path, tmp_path: Path) -> dict[str, Any]:
+def records(tmp_path: Path) -> Path:
+    own = tmp_path / "lab.toml"
+    own.write_bytes((DATA / "observer.toml").read_bytes())
+    return own
+
+
+def test_the_json_has_the_promised_keys_and_the_details_its_numbers(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "rank.json"
-    said = cli("rank", two, "--people", 20, "--seed", 3, "--json", out)
+    said = cli("rank", two, "--people", 8, "--seed", 3, "--intervals", 8, "--json", out, "--details")
     assert said.exit_code == 0, said.stderr
     text = out.read_text(encoding="utf-8")
-    assert "NaN" not in text
-    assert "Infinity" not in text
-    found: dict[str, Any] = json.loads(text)
-    return found
-
-
-def test_the_json_has_the_promised_keys(ranked: dict[str, Any]) -> None:
+    assert "NaN" not in text and "Infinity" not in text
+    ranked = json.loads(text)
     assert set(ranked) >= TOP
-    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["norm"]) == ("thenar", 3, 20, "episodes")
+    assert (ranked["rig"], ranked["seed"], ranked["people"], ranked["norm"]) == ("thenar", 3, 8, "episodes")
     assert ranked["tracking"] == "display"  # what control display asks for
     for icon in ranked["icons"]:
         assert set(icon) >= ICON
         assert set(icon["peak_change_K"]) == {"cold_receptor", "warm_receptor"}
-    for pair in ranked["pairs"]:
-        assert set(pair) >= PAIR
-    assert set(ranked["set"]) >= SET
-
-
-@pytest.mark.slow
-def test_rows_of_the_confusions_sum_to_one(ranked: dict[str, Any]) -> None:
-    assert ranked["confusion"]["labels"] == ["cool-step", "warm-step"]
-    for row in ranked["confusion"]["probability"]:
-        assert sum(row) == pytest.approx(1.0, abs=1e-9)
-        assert all(0 <= share <= 1 for share in row)
+    assert all(set(pair) >= PAIR for pair in ranked["pairs"])
+    found = ranked["set"]
+    assert set(found) >= SET
+    (low, high), (least, most) = (
+        found[f"{k}_interval_new_laboratory"] for k in ("proportion_correct", "information_bits")
+    )
+    people = found["new_laboratory_people"]
+    assert f"  - mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}\n" in said.stdout
+    assert f"  - in a new laboratory (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
+    assert "48-trial experiment" in said.stdout
 
 
 def test_the_table_reads_well_in_a_pipe(process: Cli, two: Path) -> None:
@@ -77,7 +69,7 @@ def test_the_table_reads_well_in_a_pipe(process: Cli, two: Path) -> None:
     assert "\x1b" not in said.stdout
     lines = [line for line in said.stdout.splitlines() if not line.startswith("Next: ")]  # whole, to be copied
     assert max(map(len, lines)) <= 80
-    for word in ("detected", "onset", "channel", "most confused with", "bits/s", "Worst pair: ", "48-trial experiment"):
+    for word in ("detected", "onset", "channel", "most confused with", "bits/s", "Worst pair: ", "95 % of people"):
         assert word in said.stdout
     assert "not measurements" in " ".join(said.stdout.split())
 
@@ -93,11 +85,11 @@ def test_what_is_asked_first_stands_in_twenty_lines(process: Cli) -> None:
 @pytest.mark.parametrize(
     ("d_primes", "detected", "playable", "families", "step"),
     [
-        ((3.0, 3.0, 3.0), 0.9, 3, False, Step("export", ("--to", "csv", "-o", "drives"))),
-        ((1.0, 3.0, 3.0), 0.9, 3, False, Step("improve", ("--choose", "2"))),
+        ((2.6, 3.0, 3.0), 0.76, 3, False, Step("export", ("--to", "csv", "-o", "drives"))),
+        ((2.5, 3.0, 3.0), 0.9, 3, False, Step("improve", ("--choose", "2"))),
         ((1.0, 3.0, 3.0), 0.9, 3, True, Step("improve")),
         ((1.0, 1.0, 1.0), 0.9, 3, False, Step("improve", ("--edits",))),
-        ((1.0, 3.0, 3.0), 0.5, 3, False, Step("rank", ("--set", "contact.area_cm2=18"))),
+        ((1.0, 3.0, 3.0), 0.74, 3, False, Step("rank", ("--set", "contact.area_cm2=18"))),
         ((3.0, 3.0, 3.0), 0.9, 2, False, Step("improve", ("--choose", "2"))),
         ((3.0, 3.0, 3.0), 0.9, 0, False, Step("simulate")),
     ],
@@ -112,8 +104,8 @@ def test_the_next_command_is_chosen_by_what_was_found(
     names = (("a", "b"), ("a", "c"), ("b", "c"))
     pairs = [SimpleNamespace(a=a, b=b, d_prime=d) for (a, b), d in zip(names, d_primes, strict=True)]
     job = SimpleNamespace(icons=tuple(load_library("six-icons")), rig=Rig.load("thenar"))
-    ranking: Any = SimpleNamespace(icons=icons, pairs=pairs, job=job)
-    assert next_step(ranking, families) == step
+    found: Any = SimpleNamespace(icons=icons, pairs=pairs, job=job)
+    assert next_step(found, families) == step
 
 
 def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -135,34 +127,7 @@ def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> N
     assert "detected" in first, "a file without a title has none"
 
 
-@pytest.mark.slow
-def test_a_what_if_is_told_in_table_and_json(cli: Cli, two: Path, tmp_path: Path) -> None:
-    out = tmp_path / "rank.json"
-    options = ("--people", 2, "--norm", "naming", "--set", "driver.current_limit_A=0.3", "--json", out)
-    said = cli("rank", two, *options, "--details")
-    assert said.exit_code == 0, said.stderr
-    assert json.loads(out.read_text(encoding="utf-8"))["rig_changes"] == ["driver.current_limit_A=0.3"]
-    words = " ".join(said.stdout.split())
-    assert "Predicted for 2 virtual people on the thenar rig with driver.current_limit_A=0.3 (seed 0, " in words
-    assert "display tracking, naming norm). These are predictions of a model, not measurements." in words
-    assert "cool-step is not reached: misses its target by " in words
-    assert "; it is reached with its " in words
-    assert f"wrote {out}" in said.stderr
-    brief = cli("rank", two, *options[:2]).stdout
-    assert brief.endswith("\n\nPredicted, not measured: 2 virtual people on the thenar rig. More: --details\n")
-
-
-@pytest.mark.slow
-def test_one_person_has_no_spread(cli: Cli, two: Path) -> None:
-    said = cli("rank", two, "--people", 1, "--task", "trials=1", "--details")
-    assert "95 % of people" not in said.stdout
-    assert "% correct\n" in said.stdout
-    assert " bits\n" in said.stdout
-    assert "a 1-trial experiment would report" in said.stdout
-    assert "95 % of people" in cli("rank", two, "--people", 2, "--details").stdout
-
-
-def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Path) -> None:
+def test_a_set_that_asks_too_much_says_the_worst_in_twenty_lines(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "hard.cue"
     path.write_text(
         "cue 1\nset s { control current }\n"
@@ -170,80 +135,11 @@ def test_a_set_that_asks_too_much_says_all_that_is_wrong(cli: Cli, tmp_path: Pat
         "icon jolt { to 1.6 A at 0.4 A/s; to 0.1 A at 0.4 A/s }\n",
         encoding="utf-8",
     )
-    options = ("rank", path, "--people", 1, "--intervals", 0)
-    words = " ".join(cli(*options, "--details").stdout.split())
-    assert "burn is NOT SAFE and not reached: " in words
-    assert "jolt is not reached: the drive needs 1.6 A" in words
-    lines = cli(*options).stdout.splitlines()
+    lines = cli("rank", path, "--people", 1, "--intervals", 0).stdout.splitlines()
     assert len(lines) <= 20
     assert "burn is NOT SAFE and not reached: " in " ".join(lines)
     assert any(line.endswith(" more notes: thermicon rank --details") for line in lines)
     assert f"Next: thermicon simulate {path}" in lines
-
-
-@pytest.mark.slow
-def test_soft_limits_are_one_line(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "cold.cue"
-    cue = "{ cool by 12 °C at 2 °C/s; hold for 9 s; return at 2 °C/s }"
-    path.write_text(f"cue 1\nset s {{ control display }}\nicon a {cue}\nicon b {cue}\n", encoding="utf-8")
-    words = " ".join(cli("rank", path, "--people", 1, "--intervals", 0, "--details").stdout.split())
-    assert "Caution: a, b exceed a soft safety limit: of a, skin surface reaches " in words
-    assert words.count("skin surface") == 1
-    assert "NOT SAFE" not in words
-
-
-def test_rules_and_model_disagree_in_the_open(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "near.cue"
-    cues = [
-        f"icon i{k} {{ cool by {3 + 0.2 * k:.1f} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n" for k in range(5)
-    ]
-    path.write_text("cue 1\nset s { control display }\n" + "".join(cues), encoding="utf-8")
-    out = tmp_path / "rank.json"
-    words = " ".join(cli("rank", path, "--people", 2, "--intervals", 0, "--json", out, "--details").stdout.split())
-    found = json.loads(out.read_text(encoding="utf-8"))["set"]["rules_disagree"]
-    assert len(found) > 5
-    assert words.index("Worst pair") < words.index("Rules of thumb and model disagree (rules compare two icons ")
-    assert "while naming one needs memory" in words
-    assert words.count("below the 2.563 criterion") == 5
-    assert f"- and {len(found) - 5} more; --json lists all" in words
-
-
-@pytest.mark.slow
-def test_one_icon_has_nothing_to_be_confused_with(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "one.cue"
-    path.write_text("cue 1\nicon only { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n", encoding="utf-8")
-    said = cli("rank", path, "--people", 5, "--intervals", 0)
-    assert said.exit_code == 0, said.stderr
-    assert "Worst pair" not in said.stdout
-    assert " bits" not in said.stdout
-    folder = tmp_path / "figures"
-    said = cli("rank", path, "--people", 5, "--intervals", 0, "--figure", folder)
-    assert said.stderr == f"wrote ranking.png, distance.png, confusion.png and 1 overview into {folder}\n"
-
-
-def test_what_parameters_leave_open_is_told(cli: Cli, two: Path, tmp_path: Path) -> None:
-    out = tmp_path / "rank.json"
-    said = cli("rank", two, "--people", 8, "--intervals", 8, "--json", out, "--details")
-    assert said.exit_code == 0, said.stderr
-    found = json.loads(out.read_text(encoding="utf-8"))["set"]
-    (low, high), (least, most) = (
-        found[f"{k}_interval_new_laboratory"] for k in ("proportion_correct", "information_bits")
-    )
-    people = found["new_laboratory_people"]
-    assert f"  - mean of {people} people in a new laboratory (95 %): {percent_span(low, high)}\n" in said.stdout
-    assert f"  - in a new laboratory (95 %): {least:.2f}–{most:.2f} bits\n" in said.stdout
-    assert "over the range" not in cli("rank", two, "--people", 8, "--intervals", 0).stdout
-
-
-@pytest.mark.slow
-def test_icons_outside_the_data_are_told(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "far.cue"
-    cues = "".join(f"icon {n} {{ cool by {k} °C at 6 °C/s; return at 6 °C/s }}\n" for n, k in (("a", 4), ("b", 2)))
-    path.write_text(f"cue 1\nset s {{ control skin }}\n{cues}", encoding="utf-8")
-    options = ("--people", 1, "--intervals", 0, "--rig", "fingertip")
-    words = " ".join(cli("rank", path, *options, "--details").stdout.split())
-    assert "Outside the data: all icons: no detection threshold is on record for the fingertip: those of " in words
-    assert "Outside the data" not in cli("rank", path, "--people", 1, "--intervals", 0).stdout
 
 
 def test_a_first_ranking_says_once_on_a_terminal_that_it_compiles(
@@ -256,3 +152,80 @@ def test_a_first_ranking_says_once_on_a_terminal_that_it_compiles(
     ranking._say_if_first()
     ranking._say_if_first()
     assert capsys.readouterr().err.count("compiling for this computer, once") == 1
+
+
+def test_records_have_no_interval_and_say_so(cli: Cli, two: Path, records: Path) -> None:
+    said = cli("rank", two, "--people", 4, "--observer", records, "--details")
+    assert said.exit_code == 0, said.stderr
+    assert "lab.toml has no posterior draws" in said.stderr
+    assert "no interval for a new laboratory" in " ".join(said.stdout.split())
+    assert "in a new laboratory" not in said.stdout
+
+
+@pytest.mark.parametrize("command", [("pilot", "--answers", "t.csv"), ("pilot",), ("rank", "--doubt")])
+def test_what_needs_draws_refuses_records_and_names_the_draws_beside_them(
+    cli: Cli, two: Path, records: Path, tmp_path: Path, command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    trials = tmp_path / "t.csv"
+    trials.write_text("participant,trial,presented,responded\nP,1,cool-step,cool-step\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    for beside in ("the table of draws (.csv) that pilot --keep writes", "lab.csv, which stands beside it"):
+        said = cli(*command, two, "--observer", records)
+        assert (said.exit_code, said.stdout) == (1, "")
+        assert beside in " ".join(said.stderr.split())
+        (tmp_path / "lab.csv").write_bytes((DATA / "posterior.csv").read_bytes())
+
+
+def test_as_many_draws_are_used_as_there_are_and_another_rig_is_warned_of(cli: Cli, two: Path, tmp_path: Path) -> None:
+    lab, out = few_draws(tmp_path / "lab.csv", 6, "by weights from 12 laboratories", "thenar"), tmp_path / "out.json"
+    said = cli("rank", two, "--people", 4, "--observer", lab, "--json", out)
+    assert said.exit_code == 0, said.stderr
+    assert "note: lab.csv has 6 draws: all of them are used (--intervals is 128 by default)" in said.stderr
+    assert "conditioned on" not in said.stderr
+    assert "in your laboratory, lab.csv (95 %): " in " ".join(said.stdout.split())
+    assert ", observer lab.csv." in said.stdout
+    held = json.loads(out.read_text(encoding="utf-8"))
+    assert (held["observer"], len(held["persons"]["proportion_correct"])) == ("lab.csv", 4)
+    for more, words in (
+        (("--people", 4, "--intervals", 7), "--intervals 7: the lab.csv posterior has 6 draws"),
+        (("--doubt",), "lab.csv has 6 draws, and 64 are needed: keep more with pilot --draws 128"),
+    ):
+        said = cli("rank", two, "--observer", lab, *more)
+        assert (said.exit_code, said.stdout) == (1, "")
+        assert words in said.stderr
+    other = few_draws(tmp_path / "other.csv", 3, "by weights from 12 laboratories", "hand-dorsum")
+    said = cli("rank", two, "--people", 2, "--observer", other)
+    assert "warning: other.csv was conditioned on the hand-dorsum rig, not on thenar" in said.stderr
+
+
+def test_workers_change_no_byte(cli: Cli, two: Path, tmp_path: Path) -> None:
+    outs = []
+    for extra in ((), ("--workers", 1), ("--workers", 3)):
+        outs.append(tmp_path / f"{len(outs)}.json")
+        said = cli("rank", two, "--people", 5, "--intervals", 0, "--json", outs[-1], *extra)
+        assert said.exit_code == 0, said.stderr
+    assert len({out.read_bytes() for out in outs}) == 1
+
+
+def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:
+    pytest.importorskip("distributed")
+    said = cli("rank", two, "--people", 2, "--workers", "nowhere")
+    assert (said.exit_code, "'nowhere' is not the address of a scheduler" in said.stderr) == (1, True)
+
+
+def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_path: Path) -> None:
+    out, picture = tmp_path / "out.json", tmp_path / "out.png"
+    quick = ("--doubt", "--people", 3, "--intervals", 64, "--set", "contact.area_cm2=4")
+    said = cli("rank", two, *quick, "--json", out, "--figure", picture)
+    assert said.exit_code == 0, said.stderr
+    assert said.stderr == f"wrote {out}\nwrote {picture}\n"
+    assert max(len(line) for line in said.stdout.splitlines()) <= 80
+    effects = json.loads(out.read_text(encoding="utf-8"))["effects"]
+    assert {"constant", "unit", "low", "high", "proportion_correct", "information_bits"} <= set(effects[0])
+    words = " ".join(said.stdout.split())
+    assert words.startswith("Two for a test constant 95 % of draws correct bits correct low–high ")
+    assert "Measure first, by the share of the variance of the proportion correct that would go: - " in words
+    assert effects[0]["constant"].split()[0] in words
+    assert "64 draws for 3 virtual people on the thenar rig with contact.area_cm2=4 (seed 0, episodes norm): " in words
+    assert {"memory noise (episodes)", "contact resistance"} <= {each["constant"] for each in effects}
+    assert picture.stat().st_size > 10_000

@@ -11,10 +11,7 @@ from typing import Any
 
 import pytest
 
-from tests.circuit.surerig import sure_rig
 from tests.notebooks.study.conftest import QUICK, make, write_study
-from thermicon.circuit import Rig
-from thermicon.icons import read_cue
 
 Cli = Callable[..., Any]
 HOT = QUICK.replace('["dip", "glow"]', '["dip", "burn"]')
@@ -23,21 +20,6 @@ HOT = QUICK.replace('["dip", "glow"]', '["dip", "burn"]')
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make(tmp_path_factory.mktemp("study"), QUICK)
-
-
-@pytest.mark.slow
-def test_the_folder_has_everything(out: Path) -> None:
-    names = {path.name for path in out.iterdir()}
-    assert names >= {
-        *("study.toml", "study.json", "icons.cue", "rig.toml", "dip.csv", "dip.json", "glow.csv", "glow.json"),
-        *("conditions.csv", "play_icons.py", "run_study.py", "study_bench.py", "timeline.png", "README.txt"),
-        *("participants.tsv", "dataset_description.json", "task-quick_events.json"),
-        *(f"sub-{who}_task-quick_{what}" for who in "AB" for what in ("conditions.csv", "desc-planned_events.tsv")),
-    }
-    assert "study_questplus.py" not in names
-    assert [icon.name for icon in read_cue(out / "icons.cue")] == ["dip", "glow"]
-    assert Rig.load(out / "rig.toml").uncertainty == sure_rig().uncertainty
-    assert (out / "timeline.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_study_json_states_what_was_derived_and_judged(out: Path) -> None:

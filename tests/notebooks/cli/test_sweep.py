@@ -17,7 +17,6 @@ from thermicon.circuit.safety.verdict import summarise
 from thermicon.icons import read_cue
 from thermicon.notebooks import sweep
 from thermicon.notebooks.cli.sweep import Measured
-from thermicon.notebooks.figures.print_figure import restyle
 from thermicon.notebooks.figures.sweep_figure import sweep_figure
 from thermicon.perception import rank
 from thermicon.perception.selection.goal_result import judge_goal
@@ -66,13 +65,6 @@ def test_every_number_is_that_of_the_run(two: Path) -> None:
     assert frame["reached"].tolist() == [False, True, True, True]
 
 
-def test_equal_ratios(cli: Cli, two: Path) -> None:
-    said = cli("sweep", two, "--icon", "cool-step", "--vary", f"{CONTACT}=1e-4:1e-2:3log", "-o", "-")
-    frame = pd.read_csv(io.StringIO(said.stdout))
-    assert list(frame[CONTACT]) == [1e-4, 1e-3, 1e-2]
-    assert frame["cold_receptor_peak_change_K"].is_monotonic_increasing
-
-
 @pytest.mark.slow
 def test_two_keys_make_a_grid(cli: Cli, two: Path, tmp_path: Path) -> None:
     out, figure = tmp_path / "grid.csv", tmp_path / "grid.png"
@@ -115,14 +107,6 @@ def test_an_impossible_value_is_a_row_with_the_reason(cli: Cli, two: Path, tmp_p
     assert lost[["reached", "safe", "duration_s", "skin_min_C"]].isna().all(axis=None)
 
 
-def test_a_baseline_or_level_that_cannot_be_is_a_row_with_the_reason(two: Path, tmp_path: Path) -> None:
-    reason = swept(two, LIMIT, [0.01, 1.5])["reason"].iloc[0]
-    assert "a baseline of 32 °C on the display cannot be held: it needs" in reason
-    path = tmp_path / "free.cue"
-    path.write_text("cue 1\nicon a { warm to 34 °C at 1 °C/s; return at 1 °C/s }\n", encoding="utf-8")
-    assert swept(path, "skin.rest_C", [32.0, 38.0])["reason"].isna().tolist() == [True, False]
-
-
 class TestFigure:
     """What is drawn of a sweep."""
 
@@ -138,19 +122,6 @@ class TestFigure:
         assert all("(" in ax.get_ylabel() for ax in figure.axes)
         assert figure.axes[0].get_xscale() == "log"
 
-    @pytest.mark.parametrize(("key", "values", "count"), [(AREA, [4.0, 9.0], 2), (CONTACT, [3e-4, 3e-3], 7)])
-    def test_in_a_column_it_is_no_taller_than_a_fifth_more_than_it_is_wide(
-        self, two: Path, key: str, values: list[float], count: int
-    ) -> None:
-        figure = sweep_figure(swept(two, key, values), key, across=2)
-        restyle(figure, 85.0)
-        assert len(figure.axes) == count
-        assert "the same at all values: largest miss; display" in " ".join(figure.get_supxlabel().split())
-        assert float(figure.get_figheight()) <= 1.2 * float(figure.get_figwidth())
-        figure.draw_without_rendering()
-        boxes = [ax.yaxis.label.get_window_extent() for ax in figure.axes]
-        assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
-
     def test_where_all_is_the_same_it_is_drawn_flat_and_not_as_its_last_digits(self, two: Path) -> None:
         figure = sweep_figure(swept(two, AREA, [4.0, 4.0 + 1e-9]), AREA)
         assert len(figure.axes) == 9
@@ -159,11 +130,6 @@ class TestFigure:
         assert high - low > 0.1
         figure.draw_without_rendering()
         assert peak.yaxis.get_offset_text().get_text() == ""
-
-    @pytest.mark.slow
-    def test_it_marks_what_was_missed_and_what_was_impossible(self, two: Path) -> None:
-        figure = sweep_figure(swept(two, LIMIT, [0.0, 0.5, 1.0, 1.5]), LIMIT)
-        assert [text.get_text() for text in figure.legends[0].get_texts()][2:] == ["not reached", "impossible"]
 
 
 class TestPeople:

@@ -11,8 +11,8 @@ import pytest
 
 from thermicon.icons import load_library
 from thermicon.icons.files.shipped import library_names
-from thermicon.notebooks.report.answers_report import USEFUL_PEOPLE, observed_sentences
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
+from thermicon.notebooks.report.pilot_report import USEFUL_PEOPLE, observed_sentences
 from thermicon.perception import Goal
 from thermicon.perception.pilot.trials import Trials, score_person, score_pooled
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
