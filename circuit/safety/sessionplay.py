@@ -48,6 +48,9 @@ SLOWEST_HZ = 100.0
 MOST_ROWS = 1_500_000
 """Rows of a session, which take about 0.5 GB while they are computed."""
 
+_Timed = tuple[str, int, int]
+"""Name of an icon, the update with which it starts, and how many it takes."""
+
 
 @dataclass(frozen=True, slots=True)
 class SessionDrive:
@@ -84,33 +87,27 @@ def drive_of(plan: SessionPlan, icons: Mapping[str, Icon], rig: Rig, tracking: s
             f"{total:.0f} s at the driver's {update:g} Hz are {total * rate:.0f} rows; the limit is {MOST_ROWS:,}: "
             f"play fewer icons at once, or lower driver.update_Hz"
         )
-    starts, counts, begin = [], [], 0.0
+    timed, begin = list[_Timed](), 0.0
     for name in plan.order:
         start = math.ceil(begin * update - 1e-6)
-        starts.append(start)
-        counts.append(max(1, math.ceil(lasting[name] * update - 1e-9)))
+        timed.append((name, start, max(1, math.ceil(lasting[name] * update - 1e-9))))
         begin = start / update + lasting[name] + plan.gap_s
-    follow = _replayed if tracking == "replay" else _tracked
-    drive, first = follow(plan.order, icons, lasting, rig, starts, counts)
-    ends = tuple(start / update + lasting[name] for name, start in zip(plan.order, starts, strict=True))
-    return SessionDrive(drive, first.rest_A, first.start_C, tuple(start / update for start in starts), ends, rate)
+    drive, first = (_replayed if tracking == "replay" else _tracked)(timed, icons, lasting, rig)
+    starts = tuple(start / update for _, start, _ in timed)
+    ends = tuple(start + lasting[name] for name, start in zip(plan.order, starts, strict=True))
+    return SessionDrive(drive, first.rest_A, first.start_C, starts, ends, rate)
 
 
 def _replayed(
-    order: Sequence[str],
-    icons: Mapping[str, Icon],
-    lasting: Mapping[str, float],
-    rig: Rig,
-    starts: Sequence[int],
-    counts: Sequence[int],
+    timed: Sequence[_Timed], icons: Mapping[str, Icon], lasting: Mapping[str, float], rig: Rig
 ) -> tuple[Drive, Design]:
-    plans = {name: design(icons[name], rig, lasting[name]) for name in dict.fromkeys(order)}
-    currents = {
-        name: held_A(plan.drive, counts[order.index(name)], rig.driver.update_Hz) for name, plan in plans.items()
-    }
+    """The currents of every icon from rest, each followed by its own resting current."""
+    plans = {name: design(icons[name], rig, lasts_s) for name, lasts_s in lasting.items()}
+    counts = {name: count for name, _, count in timed}
+    currents = {name: held_A(plan.drive, counts[name], rig.driver.update_Hz) for name, plan in plans.items()}
     places, values = [], []
-    following = [*starts[1:], starts[-1] + counts[-1] + 1]
-    for name, start, count, after in zip(order, starts, counts, following, strict=True):
+    following = [*(start for _, start, _ in timed[1:]), timed[-1][1] + timed[-1][2] + 1]
+    for (name, start, count), after in zip(timed, following, strict=True):
         last = min(count, after - start)  # an icon that ends within an update gives way to the next one
         places.append(start + np.arange(last))
         values.append(currents[name][:last])
@@ -118,39 +115,32 @@ def _replayed(
             places.append(np.array([start + last]))
             values.append(np.array([plans[name].rest_A]))
     drive = Drive(np.concatenate(places) / rig.driver.update_Hz, np.concatenate(values), held=True)
-    return drive, plans[order[0]]
+    return drive, plans[timed[0][0]]
 
 
 def _tracked(
-    order: Sequence[str],
-    icons: Mapping[str, Icon],
-    lasting: Mapping[str, float],
-    rig: Rig,
-    starts: Sequence[int],
-    counts: Sequence[int],
+    timed: Sequence[_Timed], icons: Mapping[str, Icon], lasting: Mapping[str, float], rig: Rig
 ) -> tuple[Drive, Design]:
     """The driver's own currents for set-points at the end of every update of the whole session."""
-    update = rig.driver.update_Hz
-    displays = {
-        name: _setpoints(icons[name], rig, counts[order.index(name)], lasting[name]) for name in dict.fromkeys(order)
-    }
-    ends = starts[-1] + counts[-1]
-    target = np.full(ends, displays[order[0]][0])
-    for name, start, count in zip(order, starts, counts, strict=True):
+    update, counts = rig.driver.update_Hz, {name: count for name, _, count in timed}
+    displays = {name: _setpoints(icons[name], rig, counts[name], lasts_s) for name, lasts_s in lasting.items()}
+    named = timed[0][0]
+    ends = timed[-1][1] + timed[-1][2]
+    target = np.full(ends, displays[named][0])
+    for name, start, count in timed:
         base, levels = displays[name]
         target[start : start + count] = levels
         target[start + count :] = base
-    first = design(icons[order[0]], rig, lasting[order[0]])
+    first = design(icons[named], rig, lasting[named])
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     states, period = bank.states([first.start_C]), 1.0 / update
     if rig.controller is None:
         current = run_follow(bank, lane, lane, period, target[np.newaxis], False, states)[0]
     else:
-        setpoint = np.concatenate([[displays[order[0]][0]], target[:-1]])[np.newaxis]
+        setpoint = np.concatenate([[displays[named][0]], target[:-1]])[np.newaxis]
         gains = np.array([gains_of(rig)])
         current = run_regulate(bank, lane, lane, period, setpoint, gains, np.array([first.rest_A]), states)[0]
-    drive = Drive(np.arange(ends + 1) / update, np.append(current[0], first.rest_A), held=True)
-    return drive, first
+    return Drive(np.arange(ends + 1) / update, np.append(current[0], first.rest_A), held=True), first
 
 
 def _setpoints(icon: Icon, rig: Rig, count: int, lasts_s: float) -> tuple[float, Array]:

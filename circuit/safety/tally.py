@@ -178,14 +178,9 @@ class Tally:
         """A copy of the state so far, which goes on in an ending."""
         other = copy(self)
         other.run = replace(self.run, ending=ending)
-        other.copy_from(self)
-        return other
-
-    def copy_from(self, other: Tally) -> None:
-        """Take over the state of another tally with the same rules and lanes; the scenario stays."""
-        self._begun = other._begun
         for name in ("_sums", "_present", "_value", "_at_s", "_since_s"):
-            setattr(self, name, getattr(other, name).copy())
+            setattr(other, name, getattr(self, name).copy())
+        return other
 
     def checks(self, lanes: Index | None = None) -> tuple[Check, ...]:
         """Every rule once, in its worst lane, or in the lane given for each rule (rules,)."""

@@ -5,9 +5,9 @@ Nothing is decided here and nothing that decides imports this module: it is load
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import signed, significant
 
@@ -17,7 +17,7 @@ from .plant import ENDING_S, RECOVERED_K
 from .repeated import PRACTICAL_S
 
 if TYPE_CHECKING:
-    from .checks import CutOff, Harm, PolarityCheck, SingleFault
+    from .checks import Harm, SingleFault
     from .gate import Gate
     from .repeated import Repeated
 
@@ -43,9 +43,6 @@ BEFORE = {
 }
 
 NO_LIMIT = "no limit is passed"
-
-Told = tuple[str, str, str]
-"""What a single fault does, what prevents harm, and why nothing else does, with its mark before it."""
 
 
 @lru_cache(maxsize=4096)
@@ -190,102 +187,81 @@ def _unit(check: Check) -> str:
     return "" if check.unit == "1" else f" {check.unit}"
 
 
+FAULTS: dict[str, tuple[str, str, tuple[tuple[str, str, str], ...]]] = {
+    "hang": ("host hangs in mid-play", "the current hangs for {lasts_s:.2g} s: {harm}", (
+        ("watchdog_s", "a watchdog that cuts the current after {watchdog_s:g} s without a message from the host", ""),
+        ("", "a cut-off on the measured temperature", "; no watchdog is quick enough"),
+    )),
+    "stuck": ("driver stuck at its limit", "{harms}", (
+        ("react_s", "a cut-off at {ends} on the measured display, within {react_s:g} s", ""),
+        ("limit_A", "a current limit of {limit_A:.2g} A in the driver's hardware",
+         "; no cut-off is quick enough at {most_A:g} A"),
+        ("", "a smaller or shorter drive",
+         ": no cut-off is quick enough, and no current limit that still plays this one is low enough"),
+    )),
+    "unpowered": ("first play on a display that was without power", "{found}", (
+        ("rest_s", "holding the rest for {rest_s:g} s before the first play, without contact or with", ""),
+        ("at_once", "nothing need be", ""),
+        ("", "no rest up to 10 min", "; bring the display to its baseline before it touches the skin"),
+    )),
+    "swapped": ("poles swapped", "skin {low} … {high} °C", (
+        ("", "{test_A} A for {check.test_s:g} s before the first play",
+         ": the display must cool by {check.display_change_at_least_K:g} K or more"),
+    )),
+    "set-point hang": ("set-point hangs in mid-play", "display held at {levels} for {ending_s:g} s", (
+        ("", "a return to the baseline {watchdog_s:g} s after the last message from the host", ""),
+    )),
+    "loop stuck": (
+        "loop stuck at the end of its range", "display at {levels}; a hard limit is passed after {passed_s:.2g} s", (
+            ("react_s", "the device's own cut-off at {ends}, within {react_s:g} s", ""),
+            ("", "the protection of the device's maker, which must keep the display within {cut_off.low:g} … "
+             "{cut_off.high:g} °C", "; no cut-off that acts afterwards is quick enough"),
+        ),
+    ),
+    "unpowered loop": (
+        "first play on a display that was without power", "the display is between {low} and {high} °C", (
+            ("", "holding the baseline for {rest} before the first play", ""),
+        ),
+    ),
+    "loop lost": ("sensor lost or poles swapped: the loop runs to the driver's limit", "{harms}", (
+        ("", "a cut-off at {ends} on a second sensor of its own, within {react_s:g} s", ""),
+    )),
+}  # fmt: skip
+"""What fails, what it does, and what prevents harm, with the reason: the first whose value is there and not 0."""
+
+
 def fault_table(fault: SingleFault) -> dict[str, object]:
     """A single fault as a sidecar holds it: what fails, the verdict, what it does, and what prevents harm."""
-    name, tell = FAULTS[fault.kind]
-    text, cure, why = tell(**fault.values)
-    return {"fault": name, "colour": fault.colour, "text": text, "prevented_by": cure + why}
+    name, text, _ = FAULTS[fault.kind]
+    told, cure, why = _prevented(fault)
+    prevented = f"{cure}{why}"
+    return {"fault": name, "colour": fault.colour, "text": text.format(**told), "prevented_by": prevented}
 
 
 def fault_cure(fault: SingleFault) -> str:
     """What prevents the harm of a single fault, without the reason."""
-    return FAULTS[fault.kind][1](**fault.values)[1]
+    return _prevented(fault)[1]
 
 
-def _hang(lasts_s: float, harm: Harm | None, watchdog_s: float) -> Told:
-    text = f"the current hangs for {lasts_s:.2g} s: {_harm(harm)}"
-    if watchdog_s == 0.0:
-        return text, "a cut-off on the measured temperature", "; no watchdog is quick enough"
-    return text, f"a watchdog that cuts the current after {watchdog_s:g} s without a message from the host", ""
+def _prevented(fault: SingleFault) -> tuple[dict[str, Any], str, str]:
+    """The values of a fault as its words need them, what prevents its harm, and why nothing else does."""
+    told: dict[str, Any] = {**fault.values, "ending_s": ENDING_S}
+    span, rest_s = told.get("display_C"), told.get("rest_s")
+    told["rest"] = "10 min or more" if rest_s is None else f"{rest_s:g} s"
+    told["at_once"], told["found"] = rest_s == 0.0, NO_LIMIT if told.get("finding") is None else str(told["finding"])
+    told["harm"] = NO_LIMIT if told.get("harm") is None else _harm(told["harm"])
+    harms = [f"{_harm(harm)} at {signed(amperes, '.3g')} A" for harm, amperes in told.get("harms", ())]
+    told["harms"] = " and ".join(harms) or NO_LIMIT
+    told["levels"] = " or ".join(f"{signed(level, '.1f')} °C" for level in told.get("levels_C", ()))
+    if (cut := told.get("cut_off")) is not None:
+        told |= {"react_s": cut.react_within_s, "ends": f"{cut.low:g} and {cut.high:g} °C"}
+    if (check := told.get("check")) is not None:
+        span, told["test_A"] = check.swapped_skin_C, signed(check.test_current_A, ".3g")
+    if span is not None:
+        told["low"], told["high"] = (signed(level, ".1f") for level in span)
+    cure, why = next((cure, why) for key, cure, why in FAULTS[fault.kind][2] if not key or told[key])
+    return told, cure.format(**told), why.format(**told)
 
 
-def _stuck(harms: Sequence[tuple[Harm, float]], cut_off: CutOff, most_A: float, limit_A: float | None) -> Told:
-    if cut_off.react_within_s:
-        return _harms(harms), f"{_cut_off(cut_off)} on the measured display, within {cut_off.react_within_s:g} s", ""
-    if limit_A is None:
-        why = "no cut-off is quick enough, and no current limit that still plays this one is low enough"
-        return _harms(harms), "a smaller or shorter drive", f": {why}"
-    cure = f"a current limit of {limit_A:.2g} A in the driver's hardware"
-    return _harms(harms), cure, f"; no cut-off is quick enough at {most_A:g} A"
-
-
-def _unpowered(finding: Check | None, rest_s: float | None) -> Told:
-    text = NO_LIMIT if finding is None else str(finding)
-    if rest_s is None:
-        return text, "no rest up to 10 min", "; bring the display to its baseline before it touches the skin"
-    if not rest_s:
-        return text, "nothing need be", ""
-    return text, f"holding the rest for {rest_s:g} s before the first play, without contact or with", ""
-
-
-def _swapped(check: PolarityCheck) -> Told:
-    low, high = (signed(value, ".1f") for value in check.swapped_skin_C)
-    test = f"{signed(check.test_current_A, '.3g')} A for {check.test_s:g} s before the first play"
-    fall = f": the display must cool by {check.display_change_at_least_K:g} K or more"
-    return f"skin {low} … {high} °C", test, fall
-
-
-def _set_point_hang(levels_C: Sequence[float], watchdog_s: float) -> Told:
-    text = f"display held at {_levels(levels_C)} for {ENDING_S:g} s"
-    return text, f"a return to the baseline {watchdog_s:g} s after the last message from the host", ""
-
-
-def _loop_stuck(levels_C: Sequence[float], passed_s: float, cut_off: CutOff) -> Told:
-    text = f"display at {_levels(levels_C)}; a hard limit is passed after {passed_s:.2g} s"
-    if cut_off.react_within_s:
-        own = f"the device's own cut-off at {cut_off.low:g} and {cut_off.high:g} °C"
-        return text, f"{own}, within {cut_off.react_within_s:g} s", ""
-    within = f"which must keep the display within {cut_off.low:g} … {cut_off.high:g} °C"
-    why = "; no cut-off that acts afterwards is quick enough"
-    return text, f"the protection of the device's maker, {within}", why
-
-
-def _unpowered_loop(display_C: tuple[float, float], rest_s: float | None) -> Told:
-    low, high = (signed(level, ".1f") for level in display_C)
-    duration = "10 min or more" if rest_s is None else f"{rest_s:g} s"
-    text = f"the display is between {low} and {high} °C"
-    return text, f"holding the baseline for {duration} before the first play", ""
-
-
-def _loop_lost(harms: Sequence[tuple[Harm, float]], cut_off: CutOff) -> Told:
-    second = f"{_cut_off(cut_off)} on a second sensor of its own, within {cut_off.react_within_s:g} s"
-    return _harms(harms), second, ""
-
-
-FAULTS: dict[str, tuple[str, Callable[..., Told]]] = {
-    "hang": ("host hangs in mid-play", _hang),
-    "stuck": ("driver stuck at its limit", _stuck),
-    "unpowered": ("first play on a display that was without power", _unpowered),
-    "swapped": ("poles swapped", _swapped),
-    "set-point hang": ("set-point hangs in mid-play", _set_point_hang),
-    "loop stuck": ("loop stuck at the end of its range", _loop_stuck),
-    "unpowered loop": ("first play on a display that was without power", _unpowered_loop),
-    "loop lost": ("sensor lost or poles swapped: the loop runs to the driver's limit", _loop_lost),
-}
-"""What fails, and how its values are told."""
-
-
-def _harm(harm: Harm | None) -> str:
-    return NO_LIMIT if harm is None else f"{harm.quantity} reaches {signed(harm.value_C, '.1f')} °C"
-
-
-def _harms(harms: Sequence[tuple[Harm, float]]) -> str:
-    return " and ".join(f"{_harm(harm)} at {signed(amperes, '.3g')} A" for harm, amperes in harms) or NO_LIMIT
-
-
-def _cut_off(cut: CutOff) -> str:
-    return f"a cut-off at {cut.low:g} and {cut.high:g} °C"
-
-
-def _levels(levels_C: Sequence[float]) -> str:
-    return " or ".join(f"{signed(level, '.1f')} °C" for level in levels_C)
+def _harm(harm: Harm) -> str:
+    return f"{harm.quantity} reaches {signed(harm.value_C, '.1f')} °C"

@@ -129,10 +129,10 @@ def test_a_run_that_diverges_fails_as_the_hottest() -> None:
     assert check_of(tally, "Henriques integral").value > 1.0
 
 
-def test_a_tally_takes_over_the_state_of_another_and_keeps_its_names() -> None:
-    tally, other = Tally(LIMITS, ["a"]), Tally(LIMITS, ["a"], Scenario(ending="power off"))
+def test_a_tally_forks_with_its_state_into_an_ending() -> None:
+    tally = Tally(LIMITS, ["a"])
     tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 44.0))
-    other.copy_from(tally)
+    other = tally.fork("power off")
     tally.add(np.array([2.0, 3.0]), np.full((4, 1, 2), 50.0))
     check = check_of(other, "skin surface")
     assert (check.value, check.scenario) == (44.0, "a, then power off")
