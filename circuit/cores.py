@@ -26,12 +26,7 @@ def available() -> int:
 
 @contextmanager
 def at_most(count: int) -> Iterator[None]:
-    """Limit the work inside to this many cores; threads that it starts are not limited.
-
-    >>> with at_most(1):
-    ...     cores()
-    1
-    """
+    """Limit the work inside to this many cores; threads that it starts are not limited."""
     before = _allowed.set(max(1, count))
     try:
         yield

@@ -46,11 +46,7 @@ class InputError(Exception):
 
 
 def line_fault(text: str, longest: int = LONGEST_LINE, allowed: str = "") -> str | None:
-    """Return why a text cannot be a name or title; None where it is one line without control characters.
-
-    >>> line_fault("dac-16"), line_fault("\x1b[2J")
-    (None, 'holds the control character U+001B; remove it')
-    """
+    """Why a text cannot be a name or title; None where it is one line without control characters."""
     if bad := first_control(text, allowed):
         return f"holds the control character {bad}; remove it"
     if len(text) > longest:
@@ -77,25 +73,20 @@ def _checked(text: str, fault: str | None) -> str:
 
 
 def quoted(value: object) -> str:
-    """Return a value as messages quote it: as Python writes it, shortened where it is long.
-
-    >>> quoted("a" * 100), quoted(0.17)
-    ("'aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa…'", '0.17')
-    """
+    """A value as messages quote it: as Python writes it, shortened where it is long."""
     text = repr(value)
     return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 2]}…{text[-1]}"
 
 
 def read_text(path: Path, what: str, limit_MB: float, error: type[Exception] = InputError) -> str:
-    """Return the text of `path`, or raise `error` with a sentence on what is wrong with the file.
-
-    `what` names the kind of file in the message ("rig file"); no more than `limit_MB` of a file is read.
+    """The text of a file of a kind `what` ("rig file"), of at most `limit_MB`; raises `error`, which says what is
+    wrong.
     """
     return text_of(read_bytes(path, what, limit_MB, error), path, what, error)
 
 
 def text_of(data: bytes, path: Path, what: str, error: type[Exception] = InputError) -> str:
-    """Return the text in the bytes of a file, each line ended by a newline alone, as on any system; raises `error`."""
+    """The text in the bytes of a file, each line ended by a newline alone, as on any system; raises `error`."""
     if not data.strip():
         raise error(f"{path}: the file is empty; a {what} was expected")
     if b"\0" in data:
@@ -148,10 +139,10 @@ def require_pyarrow(path: str | Path, error: type[Exception] = InputError) -> No
 
 
 def read_toml(text: str, where: str, error: type[Exception] = InputError) -> dict[str, Any]:
-    """Return a TOML text as a dictionary, or raise `error` that says which line is wrong.
+    """A TOML text as a dictionary; raises `error`, which says which line is wrong.
 
-    Tables nested more deeply than Python's reader can follow, and whole numbers beyond 64 bits (TOML's own range), are
-    errors as well.
+    So are tables nested more deeply than Python's reader can follow, and whole numbers beyond 64 bits, TOML's own
+    range.
     """
     import tomllib
 
@@ -215,7 +206,7 @@ def key_faults(
     unit_of: Callable[[str], str] = lambda key: "",
     shape_of: Callable[[str], str] = lambda key: "must be spelled otherwise",
 ) -> list[str]:
-    """Return every fault that a table found in its keys, a sentence each.
+    """Every fault that a table found in its keys, a sentence each.
 
     `unknown` says what the key at a place may have been meant to be, `unit_of` has the unit of a dotted key, `shape_of`
     what a text must look like.

@@ -17,11 +17,7 @@ SUFFIXES = (".py", ".toml", ".csv", ".lark")
 
 @lru_cache(maxsize=4)
 def code_digest(packages: tuple[str, ...] = DRIVES) -> str:
-    """Return the SHA-256 of the version and of every source and data file of some packages.
-
-    >>> len(code_digest()), code_digest() == code_digest(("thermicon.icons",))
-    (64, False)
-    """
+    """The SHA-256 of the version and of every source and data file of some packages."""
     digest = hashlib.sha256(own_version().encode("utf-8"))
     for package in packages:
         for name, content in _sources(files(package), ""):
@@ -30,11 +26,7 @@ def code_digest(packages: tuple[str, ...] = DRIVES) -> str:
 
 
 def this_program() -> dict[str, str]:
-    """Return what a sidecar states about the program: its version, and the digest of the code that computes drives.
-
-    >>> sorted(this_program())
-    ['code_sha256', 'version']
-    """
+    """What a sidecar states about the program: its version, and the digest of the code that computes drives."""
     return {"version": own_version(), "code_sha256": code_digest()}
 
 

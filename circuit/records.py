@@ -1,7 +1,7 @@
 """Sourced numbers: a number without a source does not load.
 
-A table is a TOML file with one `[[record]]` block for each number. Every block states a
-quantity, a unit, a source and a value (or an interval), and the conditions under which it holds.
+A table is a TOML file with one `[[record]]` block for each number, which states a quantity, a unit, a source, a value
+or an interval, and the conditions under which it holds.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import Any
 
 from thermicon.icons.near_words import did_you_mean
 
@@ -29,14 +30,9 @@ class RecordError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One sourced number.
+    """One sourced number: `value` is the central figure and `low`, `high` its interval, in `unit`.
 
-    `value` is the central figure and `low`, `high` its interval, in `unit`; at least one of the
-    three, or a numeric entry of `extra`, is there. `extra` holds the further columns of a table.
-
-    >>> r = Record("threshold", "K", "Stevens & Choo 1998", value=0.20, low=0.17, high=0.29)
-    >>> r.central, r.interval
-    (0.2, (0.17, 0.29))
+    At least one of the three, or a numeric entry of `extra`, which holds the further columns of a table, is there.
     """
 
     quantity: str
@@ -104,12 +100,7 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Records of one file, in its order.
-
-    >>> t = Table("demo", (Record("velocity", "m/s", "Fowler 1988", value=0.5, channel="warm"),))
-    >>> t.one("velocity", channel="warm").central
-    0.5
-    """
+    """Records of one file, in its order."""
 
     name: str
     records: tuple[Record, ...]
@@ -153,18 +144,9 @@ class Table:
             records = matching
         return tuple(records)
 
-    def one(
-        self,
-        quantity: str,
-        *,
-        channel: str = "",
-        site: str = "",
-        method: str = "",
-        use: str = "",
-        where: Mapping[str, Plain] | None = None,
-    ) -> Record:
-        """The only record that matches the keys; an error when there are several or none."""
-        records = self.select(quantity, channel=channel, site=site, method=method, use=use, where=where)
+    def one(self, quantity: str, *, channel: str = "", **keys: Any) -> Record:
+        """The only record that matches the keys of `select`; an error when there are several or none."""
+        records = self.select(quantity, channel=channel, **keys)
         if len(records) > 1:
             exact = [r for r in records if r.channel == channel]
             if channel and len(exact) == 1:
@@ -177,10 +159,9 @@ class Table:
 
 
 def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -> Table:
-    """Read a TOML table of records.
+    """Read a TOML table of records; `extra` names the further columns that it may have, any other key is an error.
 
-    `extra` names the further columns this table may have (strings or numbers); any other key is
-    an error that shows the nearest one. Raises `RecordError` naming file, entry and cure.
+    Raises RecordError, which names file, entry and cure.
     """
     file = Path(path) if isinstance(path, str) else path
     what = "table of records"
@@ -210,8 +191,7 @@ def _record(file: str, index: int, entry: object, declared: tuple[str, ...]) -> 
         raise RecordError(f"{file}: record {index} is not a block of key = value lines")
     place = f"{file}, record {index} ({entry.get('quantity', 'no quantity')})"
     field_names = [f.name for f in fields(Record) if f.name != "extra"]
-    plain: dict[str, str] = {}
-    numbers: dict[str, float] = {}
+    given: dict[str, Any] = {"quantity": "", "unit": "", "source": ""}
     further: list[tuple[str, Plain]] = []
     for key, value in entry.items():
         if key not in field_names and key not in declared:
@@ -219,32 +199,16 @@ def _record(file: str, index: int, entry: object, declared: tuple[str, ...]) -> 
         if isinstance(value, bool) or not isinstance(value, str | int | float):
             raise RecordError(f"{place}: {key} must be a number or a text")
         checked: Plain = value if isinstance(value, str) else float(value)
-        if key in _NUMBERS:
-            if isinstance(checked, str):
-                raise RecordError(f"{place}: {key} = {checked!r} must be a number without quotes or unit")
-            numbers[key] = checked
-        elif key in field_names:
-            if not isinstance(checked, str):
-                raise RecordError(f"{place}: {key} = {checked!r} must be a text in quotes")
-            plain[key] = checked
+        if key in _NUMBERS and isinstance(checked, str):
+            raise RecordError(f"{place}: {key} = {checked!r} must be a number without quotes or unit")
+        if key in field_names and key not in _NUMBERS and not isinstance(checked, str):
+            raise RecordError(f"{place}: {key} = {checked!r} must be a text in quotes")
+        if key in field_names:
+            given[key] = checked
         else:
             further.append((key, checked))
     try:
-        return Record(
-            quantity=plain.get("quantity", ""),
-            unit=plain.get("unit", ""),
-            source=plain.get("source", ""),
-            value=numbers.get("value"),
-            low=numbers.get("low"),
-            high=numbers.get("high"),
-            channel=plain.get("channel", ""),
-            site=plain.get("site", ""),
-            method=plain.get("method", ""),
-            conditions=plain.get("conditions", ""),
-            confidence=plain.get("confidence", ""),
-            use=plain.get("use", ""),
-            extra=tuple(further),
-        )
+        return Record(**given, extra=tuple(further))
     except RecordError as problem:
         raise RecordError(f"{place}: {problem}") from None
 

@@ -127,10 +127,7 @@ class Check:
 
 
 def findings_of(checks: Sequence[Check]) -> tuple[Check, ...]:
-    """Of the limits exceeded, one for each quantity and side, the hard ones first.
-
-    Exceeding a hard limit implies exceeding the soft one.
-    """
+    """Of the limits exceeded, one for each quantity and side, the hard ones first: these imply the soft ones."""
     worst: dict[tuple[str, bool], Check] = {}
     broken = [check for check in checks if not check.passed]
     for check in sorted(broken, key=lambda one: (one.severity != "hard", one.since_s)):
@@ -151,11 +148,7 @@ def colour_of(findings: Sequence[Check]) -> str:
 
 
 def cures_of(findings: Sequence[Check]) -> tuple[Cure, ...]:
-    """What would keep every hard limit that is exceeded: a baseline, where a first play begins beyond one.
-
-    >>> cures_of([])
-    ()
-    """
+    """What would keep every hard limit that is exceeded: a baseline, where a first play begins beyond one."""
     hard = hard_of(findings)
     if any(check.unit == "°C" and check.since_s == 0.0 and check.run.before is None for check in hard):
         return ("baseline",)

@@ -61,12 +61,7 @@ class Corner:
 
 @lru_cache(maxsize=64)
 def corners_of(rig: Rig) -> tuple[Corner, ...]:
-    """Return the rig as given and then the corners of its uncertainty, fewer than 64 where one is 0.
-
-    >>> [str(corner) for corner in corners_of(Rig.load("thenar"))][:2]  # doctest: +NORMALIZE_WHITESPACE
-    ['the rig as given', 'contact −30 %, ambient +3 K, gain −10 %, heat sink −1 K, Seebeck −5 %,
-      conductance −10 %, plates −20 %']
-    """
+    """The rig as given and then the corners of its uncertainty, fewer than 64 where one is 0."""
     unsure = rig.uncertainty
     gains = _ends(unsure.gain_relative)
     if unsure.gain_relative and passes_most_cooling(rig):
@@ -102,12 +97,7 @@ def _cornered(rig: Rig, every: Iterable[tuple[float, ...]]) -> tuple[Corner, ...
 
 
 def passes_most_cooling(rig: Rig) -> bool:
-    """Whether more current cools less at the driver's limit, in steady state: then neither end of the gain is coldest.
-
-    >>> passes_most_cooling(Rig.load("thenar")), passes_most_cooling(Rig.load("thenar").with_(
-    ...     **{"module.seebeck_V_per_K": 0.03}))
-    (False, True)
-    """
+    """Whether more current cools less at the driver's limit at rest: then neither end of the gain is the coldest."""
     network, most = network_of(rig), rig.driver.current_max_A * (1.0 + rig.uncertainty.gain_relative)
     try:
         less, more = (float(state_under_current(network, share * most)[COLD]) for share in (NEARLY, 1.0))

@@ -101,8 +101,8 @@ def _demands(
 ) -> Demands:
     """What the hardware must prevent in a drive, in all corners and between bounds; `reach_C` are extremes of displays.
 
-    The numbers of watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that
-    decided, and found again in those where they are too slow; the rest in `corners`.
+    Watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that decided, and found again
+    where they are too slow; the rest in `corners`.
     """
     ensemble, limits = faulty.ensemble, faulty.limits
     for current_A in faulty.ends_A if ensemble.ideal else ():

@@ -89,7 +89,7 @@ class Ensemble:
         return np.arange(len(self.corners), dtype=np.int64)
 
     def at_rest(self, rest_A: float | Array) -> State:
-        """Steady states under a current, or each lane's, the hottest where a corner has none; RigError for the rig as
+        """Steady states under a current, or each lane's; the hottest where a corner has none, RigError for the rig as
         given.
         """
         rests = np.broadcast_to(rest_A, len(self.corners)).tolist()
@@ -188,10 +188,7 @@ class Ensemble:
         return modes
 
     def step(self, current_A: Array, state: State, times_s: Array, rigs: Index) -> tuple[Array, State]:
-        """WATCHED at times from now under currents (intervals, lanes), each held until the next time; the last states.
-
-        With a bridge they are means.
-        """
+        """WATCHED at times from now under currents (intervals, lanes), of a bridge their means, and the last states."""
         mean = self.gain[rigs] * current_A
         begin, end = (mean, mean) if self.bridge_A is None else switching(mean, self.bridge_A * self.gain[rigs])
         intervals = Intervals(times_s, np.arange(len(times_s)), np.ascontiguousarray(begin), np.ascontiguousarray(end))

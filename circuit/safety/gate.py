@@ -196,9 +196,9 @@ def gate_set(
 ) -> tuple[Gate, ...]:
     """Check drives, each with its rest in A, that may be played repeatedly in any order; as `gate` does.
 
-    Each is judged by itself, and between bounds on the states that any sequence of all of them can reach. Without a
-    pause, that is the longest recovery time among them. `averaged`: the drives have the mean currents of a bridge that
-    switches too fast for a plate to follow.
+    Each is judged by itself, and between bounds on the states that any sequence of all can reach; the pause is by
+    default the longest recovery time. `averaged`: drives have the mean currents of a bridge too fast for a plate to
+    follow.
     """
     check_pause(pause_s)
     with quiet_blas():

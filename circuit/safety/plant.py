@@ -160,9 +160,8 @@ def follow(
     tallies: Sequence[Tally],
     sums: bool = True,
 ) -> dict[str, Array]:
-    """Add what follows a play that ended at a time to the tally of each ending; the skin a minute later, (corners,).
-
-    `sums`: whether doses count.
+    """Add what follows a play that ended at a time to the tally of each ending, doses with `sums`; the skin a minute
+    later.
     """
     after_C = {}
     for ending, tally, futures in zip(plant.endings, tallies, plant.let_go(play, ended), strict=True):
@@ -206,7 +205,7 @@ class Single(Generic[Played, States]):
     ) -> Single[Played, States]:
         """Play from rest; raises RigError where the rig as given has no steady state to start from.
 
-        `before_s` is how long other plays took, whose doses `sums` has; `watch` is called with the seconds played.
+        `before_s`: how long other plays took, whose doses `sums` has; `watch` is called with the seconds played.
         """
         start = state = plant.rest(play)
         played = sums or Tally(limits, plant.corners, Scenario(way=play.way))
@@ -237,8 +236,8 @@ class Single(Generic[Played, States]):
 
 
 def recovery_s(plant: Plant[Played, States], play: Played, start: States, ended: States) -> float | None:
-    """Time in s from the end of a play until display and skin are within 0.1 K of a start, in every corner; None: later
-    than 10 min.
+    """Time in s from a play's end until display and skin are within 0.1 K of a start in every corner; None: over 10
+    min.
     """
     which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
     values = plant.hold(play, ended, RECOVERY_ROWS_S)[which]

@@ -36,11 +36,11 @@ class PauseError(InputError):
 class Repeated(Judged):
     """The verdict on a drive that is played repeatedly, with its resting current held in the pauses.
 
-    `recovery_s`: from the end of a play until display and skin are back within 0.1 K in every corner; None: later than
-    10 min. `shortest_pause_s` is the shortest that is safe, also with a single fault that the hardware prevents as
-    demanded, None where none is; `faultless_pause_s` is the shortest that is safe without faults. `plays` fit into a
-    session of `session_s`, over which doses add up. `checks` has every rule in the steady cycle, or between bounds on
-    the states that any number of plays, in any order of a set, can reach.
+    `recovery_s`: until display and skin are back within 0.1 K in every corner; None: later than 10 min.
+    `shortest_pause_s` is safe also with a single fault that the hardware prevents as demanded, `faultless_pause_s`
+    without faults; None where none is. `plays` fit into a session of `session_s`, over which doses add up. `checks` has
+    every rule in the steady cycle, or between bounds on the states that any number of plays, in any order of a set, can
+    reach.
     """
 
     pause_s: float
@@ -173,8 +173,7 @@ def pause_rows(pause_s: float) -> Array:
 def shortest_pause_s(repeating: Repeating[Played, States]) -> float | None:
     """The shortest pause in s, in steps of 0.1 s, with which no hard limit is passed; None up to 10 min.
 
-    Searched in the corners that are worst without a pause; the result is checked in all corners, and any that exceed a
-    limit are added to the search.
+    Searched in the corners that are worst without a pause, and checked in all; any that exceed a limit join the search.
     """
     tallies = [tally for drive_tallies in repeating.tallies(0.0) for tally in drive_tallies]
     if all(tally.passes() for tally in tallies):

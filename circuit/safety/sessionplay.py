@@ -177,10 +177,9 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, slots=True)
 class WorstCase(Judged):
-    """Every rule in its worst scenario, the number of scenarios, and the recovery time of display and skin.
+    """Every rule in its worst scenario, and the number of scenarios.
 
-    `recovery_s` counts from the end of the session until both are within 0.1 K of where they began in every corner,
-    with the resting current held; None where that takes longer than 10 min.
+    `recovery_s` counts from the end of the session, with the resting current held; None where it exceeds 10 min.
     """
 
     checks: tuple[Check, ...]
@@ -308,8 +307,7 @@ def worst_case_of(
 ) -> WorstCase:
     """Check blocks of a session in all corners, each from rest and with what may follow it; doses add up over them.
 
-    Times run on from block to block, breaks left out; `recovery_s` is that after the last block. `progress` is called
-    with the seconds played and their total. Raises RigError where the rig as given has no steady state to start from.
+    Times run on from block to block, breaks left out; `recovery_s` is that after the last block.
     """
     plays = [CurrentPlay(played.drive, played.rest_A) for played in blocks]
     total_s = round(sum(play.end_s for play in plays))

@@ -47,11 +47,7 @@ NO_LIMIT = "no limit is passed"
 
 @lru_cache(maxsize=4096)
 def corner_text(deviations: tuple[float, ...]) -> str:
-    """Deviations of a rig, in the order of WORDS.
-
-    >>> corner_text((-0.3, 0, 0.1, 0, 0, 0, 0)), corner_text((0,) * 7)
-    ('contact −30 %, gain +10 %', 'the rig as given')
-    """
+    """Deviations of a rig, in the order of WORDS, as in contact −30 %, gain +10 %."""
     parts = zip(deviations, WORDS.values(), strict=True)
     moved = [f"{name} {signed(scale * value, '+g')} {unit}" for value, (_, name, scale, unit) in parts if value]
     return ", ".join(moved) or "the rig as given"
@@ -105,11 +101,7 @@ def hard_reason(findings: Sequence[Check]) -> str | None:
 
 
 def more_and_cure(findings: Sequence[Check]) -> str:
-    """What follows the reason of a refusal: every other hard limit that is exceeded, and what would cure all of them.
-
-    >>> more_and_cure([])
-    ''
-    """
+    """What follows the reason of a refusal: every other hard limit exceeded, and what would cure all of them."""
     others = [
         f"{check.quantity} {value}{_unit(check)} (limit {limit})"
         for check in hard_of(findings)[1:]

@@ -60,9 +60,8 @@ def refuse_current(icon: Icon, who: str) -> None:
 
 
 def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_S) -> DisplayDesign:
-    """Return the set-points and display of a thermode for a cue until `end_s`.
-
-    Raises RigError for a cue that prescribes current, and for a baseline out of range.
+    """The set-points and display of a thermode for a cue until `end_s`; RigError for current, or a baseline out of
+    range.
 
     Corners of a prescribed display are rounded to the resolution; the display for a prescribed skin is not, as a
     thermode draws it in segments that stay within half a step.

@@ -104,10 +104,7 @@ def ahead(targets: Array, before: Array, lead: int) -> Array:
 
 
 def led(bank: Bank, rig_of: Index, cue_of: Index, currents: Array, rig: Rig, states: Array) -> Array:
-    """States (lanes, nodes) at the start of cues, after the currents (cues, lead) since landing in `states`.
-
-    `rig` gives the driver's period. A passive heat sink then has the temperature that its rig file gives.
-    """
+    """States (lanes, nodes) at the start of cues, after the currents (cues, lead) in A since landing in `states`."""
     count = currents.shape[1]
     if count:
         edges = np.arange(count + 1) / rig.driver.update_Hz

@@ -57,8 +57,8 @@ def hot_plate_C(current: float, base: float, total: float, alpha: float, ohm: fl
 def greatest_cooling_A(cold: float, base: float, total: float, alpha: float, ohm: float, leak: float) -> float:
     """Current in A at which the most heat is absorbed; more current than that heats.
 
-    It is below αT_c/R, since the hot plate warms with the current: fixed-point iteration of
-    I = (αT_c − (α·T_h + I·R)/Θ / (total − αI)) / R, temperatures in kelvin.
+    It is below αT_c/R, since the hot plate warms with it: I = (αT_c − (α·T_h + I·R)/Θ / (total − αI)) / R, iterated, in
+    kelvin.
     """
     absolute = cold + ZERO_C_IN_K
     current = alpha * absolute / ohm
@@ -86,8 +86,8 @@ def current_for_heat_A(
 ) -> float:
     """Smaller current in A that absorbs `heat` (W); `greatest` where the module cannot absorb that much.
 
-    The smaller root of αT_c·I − I²R/2 = heat + (T_h(I) − T_c)/Θ, with T_h from the previous iterate. The iteration
-    starts at `guess` (A) and ends when it moves by less than `close` (A).
+    The smaller root of αT_c·I − I²R/2 = heat + (T_h(I) − T_c)/Θ, with T_h from the previous iterate, from `guess` (A)
+    until it moves by less than `close` (A).
     """
     half = alpha * (cold + ZERO_C_IN_K)
     current = guess
