@@ -10,7 +10,7 @@ temperatures above the deep node's and u that of the display.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from itertools import pairwise
 
@@ -104,11 +104,7 @@ class ConstantCurrent:
 
     def only(self, rigs: Sequence[int]) -> ConstantCurrent:
         """The modes of some rigs, in that order."""
-        which = list(rigs)
-        return ConstantCurrent(
-            self.rate_per_s[which], self.to_modes[which], self.from_modes[which], self.rest_C[which],
-            self.reading[which], self.level_C[which],
-        )  # fmt: skip
+        return ConstantCurrent(*(getattr(self, field.name)[list(rigs)] for field in fields(self)))
 
     def run(self, rigs: Index, nodes_C: Array, times_s: Array, probes: Sequence[str]) -> Array:
         """Return probes (probes, lanes, times) at times from now of lanes on `rigs` (lanes,); nodes (lanes, m + 1)."""

@@ -37,22 +37,6 @@ def probe_depths(cue: Icon, rig: Rig, depths_m: list[float], rate_Hz: float = 10
     return Depths(values[: len(at)], values[len(at) :], trace)
 
 
-@pytest.mark.parametrize("rig", [THENAR, PAPER], ids=lambda rig: rig.name)
-def test_a_trace_and_the_same_depths_agree(rig: Rig) -> None:
-    seen = probe_depths(STEP, rig, [0.0, rig.skin.cold_receptor_m, rig.skin.warm_receptor_m, rig.skin.thickness_m])
-    trace = seen.trace
-    temperatures = (trace.skin_C, trace.cold_receptor_C, trace.warm_receptor_C, np.full(801, rig.deep_C))
-    flows = (
-        trace.heat_flow_skin_W_per_m2,
-        trace.heat_flow_cold_receptor_W_per_m2,
-        trace.heat_flow_warm_receptor_W_per_m2,
-    )
-    for k, expected in enumerate(temperatures):
-        assert seen.temperature_C[k] == pytest.approx(expected, abs=1e-9)
-    for k, expected in enumerate(flows):
-        assert seen.heat_flow_W_per_m2[k] == pytest.approx(expected, abs=1e-6)
-
-
 def test_heat_flow_at_a_lump_is_the_mean_of_its_faces_and_between_lumps_the_faces() -> None:
     k = 20
     lumps = THENAR.column.depth_m

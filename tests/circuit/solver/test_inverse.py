@@ -62,13 +62,6 @@ def test_the_skin_cue_needs_the_whole_driver_and_is_reached() -> None:
     assert (trace.display_C.min(), trace.display_C.max()) == pytest.approx((23.7, 33.5), abs=0.1)
 
 
-def test_the_display_cue_needs_less() -> None:
-    trace = simulate(step("display"), THENAR)
-    assert trace.outcome is not None
-    assert trace.outcome.reached
-    assert (trace.current_A.min(), trace.current_A.max()) == pytest.approx((-0.48, 1.11), abs=0.01)
-
-
 def test_a_miss_says_how_much_when_and_why() -> None:
     trace = simulate(step("skin"), THENAR.with_(**{"driver.current_limit_A": 1.0}))
     assert trace.outcome is not None

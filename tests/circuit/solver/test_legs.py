@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -81,10 +79,3 @@ def test_columns_of_different_length_share_a_batch() -> None:
         for number, icon in enumerate(icons):
             alone = simulate(icon, rig)
             assert np.abs(together["skin_C"][place, number] - alone.skin_C).max() < 2e-5
-
-
-def test_legs_survive_a_file(tmp_path: Path) -> None:
-    legs(3).save(tmp_path / "legs.toml")
-    again = Rig.load(tmp_path / "legs.toml")
-    assert again == legs(3)
-    assert (again.module.leg_nodes, again.module.leg_capacity_J_per_K) == (3, LEG_J_PER_K)

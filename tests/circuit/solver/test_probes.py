@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
-from thermicon.circuit.rig.assemble import insulation_records
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.probes import reading_of
 from thermicon.circuit.solver.trace import COLUMNS, write_trace
@@ -45,11 +44,6 @@ def test_a_rig_file_names_its_probes(tmp_path: Path) -> None:
     assert (pad.lateral_m, pad.width_m, pad.insulation_m2K_per_W) == pytest.approx((3e-3, 6e-3, 2e-3 / 0.015))
     assert Rig.load(path).with_(**{"probe.pad.lag_s": 2, "probe.0.width_mm": 8}).probes[0].width_m == 8e-3
     assert THENAR.probes == ()
-
-
-def test_what_an_insulated_probe_leaves_out_has_a_source() -> None:
-    assert len(insulation_records()) == 3
-    assert all(record.source for record in insulation_records())
 
 
 def test_setting_a_probe_that_is_not_there() -> None:
@@ -124,13 +118,3 @@ def test_a_run_too_long_for_its_probes_is_refused() -> None:
     rig = THENAR.with_(probe=[probe("pad", "insulated skin")])
     with pytest.raises(RigError, match=r"its probes need 4\.9e\+08 values over 100000 s; the limit is 2e\+08: shorten"):
         simulate_current(Drive([0, 1e5], [0.1, 0.1]), rig)
-
-
-def test_a_picture_shows_probes_when_asked(trace: Trace) -> None:
-    def labels(probes: bool) -> list[str]:
-        legend = trace.plot(probes=probes).get_legend()
-        assert legend is not None
-        return [text.get_text() for text in legend.get_texts()]
-
-    assert not any("probe" in label for label in labels(False))
-    assert labels(True)[-8:-5] == ["probe plate", "probe slow", "probe between"]

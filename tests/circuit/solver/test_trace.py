@@ -11,10 +11,9 @@ from tests.peltier import heat_rejected_W
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.solver.draw import plot_current
 from thermicon.circuit.solver.trace import judge, write_trace
-from thermicon.icons import load_library, parse
+from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
 STEP = load_library("six-icons")["cooling-step"]
@@ -123,28 +122,3 @@ def test_reached_has_a_stated_tolerance() -> None:
     brief[0] = -0.26
     outcome = judge(target, brief, 0.01, (("current limit", 0.0),))
     assert outcome.reason == "misses its target by 0.26 K at 0.01 s, limited by the current limit from 0.00 s"
-
-
-def test_safety_is_judged_from_the_simulated_skin(trace: Trace) -> None:
-    assert judge_safety(trace).colour == "green"
-    assert judge_safety(trace).reason is None
-    cold = simulate(parse("cue 1\nicon cold {\n cool to 20 °C at 2 °C/s\n}").icons[0], THENAR)
-    verdict = judge_safety(cold)
-    assert (verdict.colour, verdict.safe, verdict.reason) == ("amber", True, None)
-    assert "skin surface reaches 20 °C at" in str(verdict.findings[0])
-    first, second = simulate_current(Drive([0, 30], [-0.2, -0.2]), THENAR), judge_safety(simulate(STEP, THENAR))
-    verdict = judge_safety(first)
-    assert (verdict.colour, verdict.safe, second.safe) == ("red", False, True)
-    assert verdict.reason is not None
-    assert verdict.reason.startswith("skin surface reaches 58")
-    assert "at 0.00 s, above the hard limit of 42 °C from 0.00 s on" in verdict.reason
-    assert len({finding.quantity for finding in verdict.findings}) == len(verdict.findings), "the worst of each"
-
-
-def test_a_finding_tells_the_extreme_and_the_crossing_apart() -> None:
-    text = "cue 1\nset s { control display }\nicon far { cool by 10 °C at 1 °C/s; hold for 4 s }"
-    far = simulate(parse(text).icons[0], THENAR)
-    (finding,) = (finding for finding in judge_safety(far).findings if finding.quantity == "skin surface")
-    assert finding.since_s < finding.time_s
-    assert finding.limit == pytest.approx(24.04, abs=0.01)
-    assert "below the soft limit of 24.04 °C, 8 K from where it began, from" in str(finding)
