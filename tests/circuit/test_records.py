@@ -1,7 +1,9 @@
+import json
 from pathlib import Path
 
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit.records import Record, RecordError, Table, dump_records, load_records
 
 GOOD = """
@@ -54,30 +56,10 @@ def test_dumped_records_read_back_equal(tmp_path: Path) -> None:
     assert again == table
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (('source = "Fowler et al. 1988"', ""), r"numbers.toml, record 1 \(velocity\): the record has no source: add"),
-        (('source = "Fowler et al. 1988"', 'source = " "'), r"record 1 .* has no source"),
-        (('quantity = "velocity"\nvalue', "value"), r"record 1 \(no quantity\): the record has no quantity"),
-        (("value = 0.5\nlow = 0.3\nhigh = 0.7", ""), r"record 1 .* has no number: add value, or low and high"),
-        (
-            ("low = 0.3", "low = 0.6"),
-            r"low = 0\.6 and value = 0\.5 and high = 0\.7 are not in rising order: low comes first, high last",
-        ),
-        (("value = 0.5", "value = nan"), r"must be finite numbers"),
-        (("value = 0.5", 'value = "0.5"'), r"value = '0.5' must be a number without quotes or unit"),
-        (('unit = "m/s"', "unit = 3", 1), r"unit = 3.0 must be a text in quotes"),
-        (("value = 0.5", "value = true"), r"value must be a number or a text"),
-        (("channel", "chanel"), r"unknown key 'chanel'; did you mean channel\?"),
-        (('"calibrate"', '"fit"'), r"use = 'fit' is not one of calibrate, predict, assumed, reference"),
-        (('use = "calibrate"', 'confidence = "very"'), r"confidence = 'very' is not one of high, medium, low"),
-    ],
-)
-def test_wrong_records_are_refused(tmp_path: Path, change: tuple[str, str], message: str) -> None:
-    text = GOOD.replace(change[0], change[1], 1)
+@pytest.mark.parametrize(("change", "message"), messages(__file__)["record"].items())
+def test_wrong_records_are_refused(tmp_path: Path, change: str, message: str) -> None:
     with pytest.raises(RecordError, match=message):
-        table_of(tmp_path, text, "tissue")
+        table_of(tmp_path, GOOD.replace(*json.loads(change), 1), "tissue")
 
 
 def test_wrong_files_are_refused(tmp_path: Path) -> None:
