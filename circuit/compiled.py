@@ -24,7 +24,7 @@ import numba
 import numpy as np
 import scipy
 
-from thermicon.icons.userfolder import NotPrivate, compiled_folder, private_folder, remove_unused
+from thermicon.icons.atomic import NotPrivate, compiled_folder, private_folder, remove_unused
 
 STALE_S = 90 * 24 * 3600.0
 """Machine code that was not used for this long is removed."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
+from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
 from thermicon.icons.files.table import Fault
 from thermicon.icons.model.context import clean, clean_line, first_control
 

@@ -1,7 +1,6 @@
 # The names of this package in the order of the flow; each is imported when it is first asked for.
 from .language.parse import parse as parse
-from .files.shipped import read_cue as read_cue, load_library as load_library
-from .pictures.gallery import library as library
+from .files.shipped import read_cue as read_cue, load_library as load_library, library as library
 from .model.icon import Icon as Icon
 from .model.iconset import IconSet as IconSet
 from .model.family import Family as Family

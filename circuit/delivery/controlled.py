@@ -18,7 +18,7 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
-from ..rig.parts import Controller
+from ..rig.rigfile import Controller
 from ..safety.checks import Check, CutOff, Demands, Loop, Scenario, SingleFault, worst_of
 from ..safety.demanded import polarity_check
 from ..safety.display import DisplayCourse, DisplayPlant

@@ -14,7 +14,7 @@ from thermicon.icons import Icon
 from thermicon.icons.number_text import signed
 
 from ..arrays import Array
-from ..rig.load import refuse_load
+from ..rig.parts import refuse_load
 from ..rig.rig import Rig
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.drive import Drive

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..rig.keyunits import unit_of
+from ..rig.faults import unit_of
 from ..rig.rig import Rig
 from .forward import Channel, Run
 from .keys import CONTACT, value_of

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import InputError
-from ..rig.load import METAL
+from ..rig.parts import METAL
 from ..rig.rig import Rig
 from ..rig.rigfile import rig_keys, unknown_key
 from ..rig.settings import flattened

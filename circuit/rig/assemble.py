@@ -8,7 +8,7 @@ from functools import cache
 from importlib import resources
 
 from ..records import Table, load_records
-from .faults import CONTROLLED
+from .faults import CONTROLLED, sentence
 from .module import Peltier
 from .modules import ModuleOrigin, module_of
 from .parts import Driver, HeatSink, PassiveSink, Probe, SinkController
@@ -57,10 +57,7 @@ def _heat_sink(table: HeatSinkTable, room_C: float) -> HeatSink:
     if not missing:
         return HeatSink(table.temperature_C, table.resistance_K_per_W, SinkController(**settings))
     if len(missing) < len(CONTROLLED):
-        raise ValueError(
-            f"heat_sink.{missing[0]} is missing; a hot plate under its own control needs {', '.join(CONTROLLED)}; "
-            f"without all four it is ideal, or with heat_sink.air_resistance_K_per_W and a capacity passive"
-        )
+        raise ValueError(sentence("parts.controlled", key=missing[0], keys=", ".join(CONTROLLED)))
     return HeatSink(table.temperature_C, table.resistance_K_per_W)
 
 
@@ -78,10 +75,7 @@ def skin_of(table: SkinTable) -> Skin:
         for layer in table.layer
     )
     if table.depth_from == STRATUM_CORNEUM and layers[0].name != STRATUM_CORNEUM:
-        raise ValueError(
-            f'skin.depth_from = "{STRATUM_CORNEUM}": needs a first layer of that name, not "{layers[0].name}"; '
-            f'rename the layer or use "surface"'
-        )
+        raise ValueError(sentence("parts.depth_from", layer=STRATUM_CORNEUM, first=layers[0].name))
     above = table.layer[0].thickness_mm if table.depth_from == STRATUM_CORNEUM else 0.0
     return Skin(
         table.site,
@@ -106,11 +100,10 @@ def probes_of(tables: Sequence[ProbeTable], thickness_m: float) -> tuple[Probe, 
     probes = tuple(_probe(table) for table in tables)
     for place, probe in enumerate(probes):
         if any(probe.name == other.name for other in probes[:place]):
-            raise ValueError(f"probe.name = {probe.name!r}: there are two of that name; give every probe its own")
+            raise ValueError(sentence("parts.probe_twice", name=probe.name))
         if probe.depth_m > thickness_m * (1 + 1e-12):
             raise ValueError(
-                f"probe {probe.name}: depth_mm = {probe.depth_m * 1e3:g} mm: must lie inside the skin, "
-                f"which is {thickness_m * 1e3:g} mm deep"
+                sentence("parts.probe_deep", name=probe.name, depth=probe.depth_m * 1e3, skin=thickness_m * 1e3)
             )
     return probes
 
@@ -120,10 +113,7 @@ def _probe(table: ProbeTable) -> Probe:
     lateral, width, insulation = lateral_keys
     if table.place != "insulated skin":
         if any(value is not None for value in lateral_keys):
-            raise ValueError(
-                f"probe {table.name}: lateral_mm, width_mm and insulation_m2K_per_W belong to insulated skin, "
-                f"not to place = {table.place!r}; remove them"
-            )
+            raise ValueError(sentence("parts.probe_bare", probe=table))
         return Probe(table.name, table.place, table.depth_mm * 1e-3, table.lag_s, 0.0, 0.0, 0.0)
     records = insulation_records()
     if insulation is None:
@@ -132,10 +122,7 @@ def _probe(table: ProbeTable) -> Probe:
         lateral = records.one("lateral distance").central if width is None else width / 2
     width = 2 * lateral if width is None else width
     if lateral > width / 2 * (1 + 1e-9):
-        raise ValueError(
-            f"probe {table.name}: lateral_mm = {lateral:g} mm: no place under a round pad of width_mm = {width:g} mm "
-            f"is farther than {width / 2:g} mm from skin in contact; use at most that, or remove width_mm"
-        )
+        raise ValueError(sentence("parts.probe_lateral", name=table.name, lateral=lateral, width=width, most=width / 2))
     return Probe(
         table.name, table.place, table.depth_mm * 1e-3, table.lag_s, lateral * 1e-3, width * 1e-3, float(insulation)
     )

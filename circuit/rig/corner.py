@@ -9,7 +9,7 @@ from typing import Any
 
 from thermicon.icons.number_text import signed
 
-from .faults import PARAMETERS
+from .faults import PARAMETERS, sentence
 from .module import ZERO_C_IN_K, Peltier
 from .parts import HeatSink
 from .rig import Rig
@@ -26,26 +26,12 @@ def perturbed(
     conductance_relative: float = 0.0,
     plates_relative: float = 0.0,
 ) -> Rig:
-    """Return a rig whose numbers deviate from those of its file.
+    """Return a rig whose numbers deviate from those of its file, beyond whose bounds they may lie.
 
-    The bounds of a rig file do not apply to these numbers, but what is physically impossible is refused. Blood and deep
-    tissue are solved again where the rig solves them, since the resting temperature of bare skin stays as given. The
-    module's parameters stay those at the given heat sink temperature, even where they depend on it.
-
-    Shares: `contact_resistance_relative` (−0.3 is 30 % less), `seebeck_relative` and `conductance_relative` of the
-    module (its thermal resistance goes the other way), `plates_relative` of the heat capacities of both plates and of
-    the legs. In K: `ambient_K` of the room air, `heat_sink_K` of the heat sink, of the set point of its controller, or
-    of a passive sink and the air around it.
-    Raises RigError where a share leaves nothing (−1 or less), a temperature falls to absolute zero or a factor is not
-    finite.
-
-    >>> rig = Rig.load("thenar")
-    >>> there = perturbed(rig, contact_resistance_relative=-0.3, ambient_K=3.0)
-    >>> round(there.contact.resistance_m2K_per_W, 7), there.ambient.temperature_C, round(there.deep_C, 3)
-    (0.000378, 27.0, 33.609)
-    >>> round(perturbed(rig, conductance_relative=0.25).module.thermal_resistance_K_per_W, 3)
-    5.248
-
+    Shares (−0.3 is 30 % less) of contact resistance, Seebeck coefficient, thermal conductance of the module (its
+    resistance goes the other way) and heat capacities of plates and legs; K of the room air, and of the heat sink, its
+    set point, or a passive sink and its air. Bare skin rests as given; blood is solved again where the rig solves it.
+    Raises RigError for what is physically impossible.
     """
     shares = {
         "contact resistance": contact_resistance_relative,
@@ -65,7 +51,7 @@ def perturbed(
         document["contact"]["resistance_m2K_per_W"] = resistance
         changed = replace(changed, contact=replace(rig.contact, resistance_m2K_per_W=resistance))
     if ambient_K:
-        ambient = replace(rig.ambient, temperature_C=rig.ambient.temperature_C + ambient_K)
+        ambient = rig.ambient.model_copy(update={"temperature_C": rig.ambient.temperature_C + ambient_K})
         document["ambient"]["temperature_C"] = ambient.temperature_C
         if rig.pump is not None and rig.heat_sink.passive is not None:  # its air does not follow the room's
             document["heat_sink"]["air_C"] = rig.heat_sink.passive.air_C
@@ -82,11 +68,7 @@ def perturbed(
 
 
 def with_gain(rig: Rig, gain_relative: float) -> Rig:
-    """Return a rig whose driver saturates where a source does whose gain deviates by a share: at limits as they flow.
-
-    >>> with_gain(Rig.load("thenar"), 0.1).driver.current_max_A
-    1.6500000000000001
-    """
+    """Return a rig whose driver saturates where a source does whose gain deviates by a share."""
     if not gain_relative:
         return rig
     assert rig.pump is not None
@@ -158,14 +140,10 @@ def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, fl
             faults.append(f"{name} {signed(100 * share)} %: must be finite and leave more than nothing, above −100 %")
     for name, (shift, nominal) in shifts.items():
         if not (math.isfinite(shift) and nominal + shift > -ZERO_C_IN_K):
-            faults.append(
-                f"{name} {signed(shift)} K from {signed(nominal)} °C: must be finite and stay above absolute zero, "
-                f"{signed(-ZERO_C_IN_K)} °C"
-            )
+            by, least = f"{name} {signed(shift)} K from {signed(nominal)} °C", signed(-ZERO_C_IN_K)
+            faults.append(f"{by}: must be finite and stay above absolute zero, {least} °C")
     if not faults and (deep := _deep_C(rig, sum(shifts["ambient"]))) <= -ZERO_C_IN_K:
-        faults.append(
-            f"ambient {signed(shifts['ambient'][0])} K: blood and deep tissue would have to be at {signed(deep)} °C, "
-            f"below absolute zero, for bare skin to rest at {signed(rig.skin.rest_C)} °C"
-        )
+        said = {"shift": signed(shifts["ambient"][0]), "deep": signed(deep), "rest": signed(rig.skin.rest_C)}
+        faults.append(sentence("parts.deep", **said))
     if faults:
         raise RigError("\n".join(f"rig {rig.name}, one corner of it: {fault}; use less" for fault in faults))

@@ -1,19 +1,84 @@
-"""Faults between keys of a rig file: what is missing, and what rules each other out, one sentence for each."""
+"""Keys of a rig file: the units that end them, and faults between them, one sentence for each."""
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
+from functools import cache
+from importlib import resources
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .load import LoadTable
     from .rigfile import HeatSinkTable, ModuleTable, RigTable
 
-PARAMETERS = {"seebeck_V_per_K": "V/K", "resistance_ohm": "Ω", "thermal_resistance_K_per_W": "K/W"}
-"""The three parameters of a module in a rig file, with their units."""
+PARAMETERS = ("seebeck_V_per_K", "resistance_ohm", "thermal_resistance_K_per_W")
+"""The three parameters of a module in a rig file."""
 
 CONTROLLED = ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")
 """Keys of a heat sink with its own controller, all of which it needs."""
+
+
+UNITS = {
+    "min_CEM43": "min CEM43",
+    "W_per_m2K": "W/(m²·K)",
+    "m2K_per_W": "m²·K/W",
+    "J_per_kgK": "J/(kg·K)",
+    "kg_per_m3": "kg/m³",
+    "W_per_mK": "W/(m·K)",
+    "W_per_Ks": "W/Ks",
+    "A_per_Ks": "A/Ks",
+    "As_per_K": "As/K",
+    "V_per_K": "V/K",
+    "A_per_V": "A/V",
+    "A_per_K": "A/K",
+    "W_per_K": "W/K",
+    "K_per_W": "K/W",
+    "J_per_K": "J/K",
+    "K_per_s": "K/s",
+    "per_s": "1/s",
+    "cm2": "cm²",
+    "ohm": "Ω",
+    "min": "min",
+    "mm": "mm",
+    "Hz": "Hz",
+    "C": "°C",
+    "A": "A",
+    "V": "V",
+    "K": "K",
+    "W": "W",
+    "s": "s",
+}
+"""Units at the ends of keys, the longest first, as people write them."""
+
+
+def name_of(key: str) -> str:
+    """Return a key without the unit that ends it.
+
+    >>> name_of("contact.resistance_m2K_per_W"), name_of("skin.site")
+    ('contact.resistance', 'skin.site')
+    """
+    return next((key.removesuffix(f"_{unit}") for unit in UNITS if key.endswith(f"_{unit}")), key)
+
+
+def unit_of(key: str) -> str:
+    """Return the unit that ends a key's name, written as people write it.
+
+    >>> unit_of("contact.resistance_m2K_per_W"), unit_of("safety.session_min"), unit_of("skin.site")
+    ('m²·K/W', 'min', '')
+    """
+    return next((written for unit, written in UNITS.items() if key.endswith(f"_{unit}")), "")
+
+
+@cache
+def _words() -> dict[str, dict[str, str]]:
+    text = resources.files("thermicon.circuit").joinpath("data/rig-words.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def sentence(which: str, /, **values: object) -> str:
+    """A sentence of ``data/rig-words.toml`` with the values that it names."""
+    table, name = which.split(".")
+    return _words()[table][name].format(**values)
 
 
 def rig_faults(table: RigTable) -> list[str]:
@@ -27,56 +92,45 @@ def _display(table: RigTable) -> Iterator[str]:
     given = [key for key, part in pumped.items() if part is not None]
     missing = [key for key in ("module", "heat_sink", "driver") if pumped[key] is None]
     if table.thermode is not None and given:
-        yield (
-            f"thermode: a thermode has a loop of its own, so the rig has no {' and no '.join(given)}; remove "
-            f"{', '.join(f'[{key}]' for key in given)} or [thermode]"
-        )
+        parts, tables = " and no ".join(given), ", ".join(f"[{key}]" for key in given)
+        yield sentence("faults.both", parts=parts, tables=tables)
     elif table.thermode is None and len(missing) == 3:
-        yield "module is missing; add [module], [heat_sink] and [driver], or a [thermode] in their place"
+        yield sentence("faults.neither")
     elif table.thermode is None:
-        yield from (f"{key} is missing; add it" for key in missing)
+        yield from (sentence("faults.part", key=key) for key in missing)
 
 
 def _load(table: RigTable) -> Iterator[str]:
     """What goes with a load in place of skin."""
     if table.load is None:
         return
-    yield from _load_keys(table.load)
+    metal = {"capacity_J_per_K": table.load.capacity_J_per_K, "conductance_W_per_K": table.load.conductance_W_per_K}
+    given, air = [key for key, value in metal.items() if value is not None], table.load.film_W_per_m2K is not None
+    if air and given:
+        yield sentence("faults.load_two", key=given[0])
+    elif not air and not given:
+        yield sentence("faults.load_none")
+    elif not air and len(given) == 1:
+        yield sentence("faults.part", key="load." + next(key for key in metal if key not in given))
     if table.thermode is not None:
-        yield "load: a thermode keeps its display at the set-points on any load; remove [load] or [thermode]"
+        yield sentence("faults.load_thermode")
     if table.contact.lands_s is not None:
-        yield "contact.lands_s: there is no hand to land where the display touches a load; remove it or [load]"
+        yield sentence("faults.load_lands")
     deep = [probe.name for probe in table.probe if probe.place not in ("display", "interface")]
     if deep:
-        yield f'probe {deep[0]}: there is no skin on a rig with [load]; use place = "display" or "interface"'
-
-
-def _load_keys(load: LoadTable) -> Iterator[str]:
-    metal = {"capacity_J_per_K": load.capacity_J_per_K, "conductance_W_per_K": load.conductance_W_per_K}
-    given = [key for key, value in metal.items() if value is not None]
-    if load.film_W_per_m2K is not None and given:
-        yield f"load.film_W_per_m2K belongs to air, load.{given[0]} to a block of metal; remove one of them"
-    elif load.film_W_per_m2K is None and not given:
-        yield (
-            "load: give capacity_J_per_K and conductance_W_per_K (to the room) of a block of metal, or film_W_per_m2K "
-            "of air"
-        )
-    elif load.film_W_per_m2K is None and len(given) == 1:
-        yield f"load.{next(key for key in metal if key not in given)} is missing; add it"
+        yield sentence("faults.load_probe", name=deep[0])
 
 
 def _landing(table: RigTable) -> Iterator[str]:
     """Parts of a rig that start at rest, where a hand lands."""
-    sink, insulated = table.heat_sink, any(probe.place == "insulated skin" for probe in table.probe)
     apart = {
-        "a thermode, whose skin starts at rest under it; remove it or use a rig with a module": table.thermode
-        is not None,
-        "a heat sink with a controller of its own, whose loop starts at rest; remove one of them": sink is not None
-        and sink.power_limit_W is not None,
-        'a probe on "insulated skin", whose skin starts at rest; remove one of them': insulated,
+        "thermode": table.thermode is not None,
+        "controller": table.heat_sink is not None and table.heat_sink.power_limit_W is not None,
+        "insulated": any(probe.place == "insulated skin" for probe in table.probe),
     }
     if table.contact.lands_s is not None:
-        yield from (f"contact.lands_s: cannot be combined with {fault}" for fault, there in apart.items() if there)
+        for key in (key for key, there in apart.items() if there):
+            yield sentence("faults.lands", part=sentence(f"apart.{key}"))
 
 
 def heat_sink_faults(table: HeatSinkTable) -> Iterator[str]:
@@ -84,16 +138,13 @@ def heat_sink_faults(table: HeatSinkTable) -> Iterator[str]:
     passive = table.air_resistance_K_per_W is not None
     both = [f"heat_sink.{key}" for key in CONTROLLED[1:] if getattr(table, key) is not None]
     if table.temperature_C is None and not passive:
-        yield "heat_sink.temperature_C is missing; add it, in °C"
+        yield sentence("faults.sink_start")
     if table.air_C is not None and not passive:
-        yield (
-            f"heat_sink.air_C = {table.air_C:g} °C: belongs to a passive heat sink; add heat_sink.capacity_J_per_K "
-            f"and heat_sink.air_resistance_K_per_W, or remove it"
-        )
+        yield sentence("faults.sink_air", air=table.air_C)
     if passive and both:
-        yield f"heat_sink.air_resistance_K_per_W: a passive heat sink has no controller; remove it or {', '.join(both)}"
+        yield sentence("faults.sink_both", keys=", ".join(both))
     elif passive and table.capacity_J_per_K is None:
-        yield "heat_sink.capacity_J_per_K is missing; a passive heat sink needs it, in J/K (100 g of aluminium: 90 J/K)"
+        yield sentence("faults.sink_capacity")
 
 
 def module_faults(table: ModuleTable) -> Iterator[str]:
@@ -102,25 +153,16 @@ def module_faults(table: ModuleTable) -> Iterator[str]:
     ways = [*stated[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
     missing = [key for key in PARAMETERS if stated and key not in stated]
     if not ways:
-        yield (
-            f"module: no module is stated; give {', '.join(PARAMETERS)}, "
-            f"or one or two [[module.datasheet]], or the name of a shipped module"
-        )
+        yield sentence("faults.module_none", keys=", ".join(PARAMETERS))
     elif len(ways) > 1:
-        yield f"module: {' and '.join(ways)} are two ways of giving it; keep one and remove the other"
+        yield sentence("faults.module_two", ways=" and ".join(ways))
     elif missing or (stated and table.extraction is not None):
-        yield from (f"module.{key} is missing; add it, in {PARAMETERS[key]}" for key in missing)
+        yield from (sentence("faults.module_key", key=key, unit=unit_of(key)) for key in missing)
         if table.extraction is not None:
-            yield "module.extraction: only for a data sheet or a name; remove the key"
+            yield sentence("faults.module_extraction")
     elif table.datasheet is not None and len(table.datasheet) not in (1, 2):
-        yield f"module.datasheet: {len(table.datasheet)} tables; give one, or two for two hot-side temperatures"
+        yield sentence("faults.module_sheets", count=len(table.datasheet))
     elif table.leg_nodes and table.leg_capacity_J_per_K is None:
-        yield (
-            "module.leg_capacity_J_per_K is missing; legs that are divided into nodes need it, in J/K: volume of all "
-            "legs times some 1.2e6 J/(m³·K) (127 couples of 1.0 x 1.0 x 2.5 mm legs: 0.76 J/K)"
-        )
+        yield sentence("faults.legs_capacity")
     elif table.leg_capacity_J_per_K is not None and not table.leg_nodes:
-        yield (
-            f"module.leg_capacity_J_per_K = {table.leg_capacity_J_per_K:g} J/K: has no effect while module.leg_nodes "
-            f"is 0; set module.leg_nodes to 3 or more, or remove it"
-        )
+        yield sentence("faults.legs_nodes", capacity=table.leg_capacity_J_per_K)

@@ -12,9 +12,8 @@ from typing import TYPE_CHECKING
 from thermicon.icons.near_words import did_you_mean
 
 from ..records import Record, RecordError, Table, load_records
-from .datasheet import Datasheet, Extraction, at_mean_C
-from .faults import PARAMETERS
-from .module import Peltier
+from .faults import PARAMETERS, sentence
+from .module import Datasheet, Extraction, Peltier, at_mean_C
 
 if TYPE_CHECKING:
     from .rigfile import ModuleTable
@@ -66,13 +65,7 @@ class Build:
 
 
 def build_of(name: str) -> Build:
-    """Return the build of a shipped module; raises RecordError with the nearest name.
-
-    >>> build_of("TEC1-12706")
-    Build(face_cm2=16.0, plate_J_per_K=4.6, i_max_A=6.4)
-    >>> build_of("QC-17-1.0-2.5AS").face_cm2 is None
-    True
-    """
+    """Return the build of a shipped module; raises RecordError with the nearest name."""
     record = _records(name)[0]
     printed = dict(record.extra)
     size, plate = printed.get("footprint_mm"), printed.get("plate_J_per_K")
@@ -81,13 +74,7 @@ def build_of(name: str) -> Build:
 
 
 def load_module(name: str) -> tuple[Datasheet, ...]:
-    """Return the data sheets of a shipped module, coolest hot side first; raises RecordError with the nearest name.
-
-    >>> load_module("TEC1-12706")[0]
-    Datasheet(i_max_A=6.4, v_max_V=14.4, dt_max_K=66.0, t_hot_C=25.0, q_max_W=50.0)
-    >>> [sheet.t_hot_C for sheet in load_module("TEC1-12706")]
-    [25.0, 50.0]
-    """
+    """Return the data sheets of a shipped module, coolest hot side first; raises RecordError with the nearest name."""
     sheets = [_sheet(record) for record in _records(name)]
     return tuple(sorted(sheets, key=lambda sheet: sheet.t_hot_C))
 
@@ -155,12 +142,8 @@ def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tup
     nearest = first if side == "below" else last
     change = max(abs(b - a) / at * steps for a, b, at in zip(first, last, nearest, strict=True))
     cure = f"give a [[module.datasheet]] of a {sheet} side in place of one of the two, or " if own else ""
-    return (
-        f"module: the mean of heat sink and resting skin, {mean_C:.1f} °C, lies {side} the {low:.1f} … {high:.1f} °C "
-        f"that its two data sheets stand for; the parameters at {end:.1f} °C are used, from which the trend of both "
-        f"sheets leads away by up to {100 * change:.2g} %: where that matters, {cure}fit the module to a log "
-        f"(thermicon fit)"
-    )
+    ends = {"mean": mean_C, "low": low, "high": high, "end": end, "change": 100 * change}
+    return sentence("warnings.beyond_sheets", side=side, cure=cure, **ends)
 
 
 def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extraction, ...]:
@@ -174,10 +157,7 @@ def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extractio
         except ValueError as problem:
             raise ValueError(f"module.datasheet.{place}.{problem}") from None
     if len(extractions) == 2 and abs(extractions[1].mean_C - extractions[0].mean_C) < LEAST_APART_K:
-        raise ValueError(
-            f"module.datasheet: both stand for {extractions[0].mean_C:.1f} °C (t_hot_C less a quarter of dt_max_K); "
-            f"two must differ by at least {LEAST_APART_K:g} K, so leave one out"
-        )
+        raise ValueError(sentence("parts.sheets_alike", mean=extractions[0].mean_C, least=LEAST_APART_K))
     return tuple(extractions)
 
 
@@ -200,8 +180,7 @@ def _miss(extraction: Extraction) -> str:
 
 def _misses(extractions: Sequence[Extraction]) -> list[str]:
     return [
-        f"module: three figures of its data sheet miss the printed Qmax by {_miss(extraction)}, more than "
-        f'{100 * MOST_RESIDUAL:g} %; extraction = "four" reproduces it'
+        sentence("warnings.qmax", miss=_miss(extraction), most=100 * MOST_RESIDUAL)
         for extraction in extractions
         if extraction.residual_relative is not None and abs(extraction.residual_relative) > MOST_RESIDUAL
     ]

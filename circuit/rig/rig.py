@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -15,22 +15,12 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
 from .assemble import HeatPump, probes_of, pump_of, skin_of
-from .load import AIR, NO_CONTACT_M2K_PER_W, Load, load_of
+from .faults import sentence
 from .module import Peltier
 from .modules import ModuleOrigin
-from .parts import (
-    Ambient,
-    Contact,
-    Controller,
-    Driver,
-    HeatSink,
-    Probe,
-    Thermode,
-    Uncertainty,
-)
-from .rig_summary import rig_summary
-from .rig_warnings import rig_warnings
-from .rigfile import RigError, RigTable, parse_toml, read_table
+from .parts import AIR, NO_CONTACT_M2K_PER_W, Contact, Driver, HeatSink, Load, Probe, Uncertainty, load_of
+from .rig_words import rig_summary, rig_warnings
+from .rigfile import Ambient, Controller, RigError, RigTable, Thermode, parse_toml, read_table
 from .rules import Limits
 from .settings import changed, flattened, put_all, read_settings, toml_text
 from .skin import Column, ReceptorDepths, Skin, column_of
@@ -173,10 +163,7 @@ class Rig:
 
     def _pump_for(self, what: str) -> HeatPump:
         if self.pump is None:
-            raise RigError(
-                f"rig {self.name} is a thermode: it has no {what}, and takes temperatures, not current; use a rig "
-                f"with a module, such as thenar"
-            )
+            raise RigError(sentence("parts.thermode", name=self.name, what=what))
         return self.pump
 
     @property
@@ -217,7 +204,7 @@ class Rig:
     @property
     def resting_flux_W_per_m2(self) -> float:
         """Heat flow into bare skin at rest, W/m²; negative, since skin loses heat."""
-        return _resting_flux(self)
+        return (self.skin.rest_C - self.deep_C) / self.column.steady_drop_K(1.0)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -277,11 +264,6 @@ class Rig:
         return self.with_(**changes) if changes else self
 
 
-@lru_cache(maxsize=512)
-def _resting_flux(rig: Rig) -> float:
-    return (rig.skin.rest_C - rig.deep_C) / rig.column.steady_drop_K(1.0)
-
-
 def rig_names() -> tuple[str, ...]:
     """Return the names of the shipped rigs, the default first.
 
@@ -331,7 +313,7 @@ def _assemble(table: RigTable, document: str) -> Rig:
         tuple(table.notes),
         pump_of(table),
         Contact(area, touch, contact.lands_s),
-        Ambient(**table.ambient.model_dump()),
+        table.ambient,
         body,
         column,
         float(deep),
@@ -339,7 +321,7 @@ def _assemble(table: RigTable, document: str) -> Rig:
         uncertainty_of(table.uncertainty.given, table.uncertainty.reason),
         Limits.of(table.safety.changes, table.safety.reason),
         probes_of(table.probe, body.thickness_m),
-        None if table.controller is None else Controller(**table.controller.model_dump()),
-        None if table.thermode is None else Thermode(**table.thermode.model_dump()),
+        table.controller,
+        table.thermode,
         load,
     )

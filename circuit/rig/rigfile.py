@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -19,9 +19,7 @@ from ..inputs import (
     paragraph,
     read_toml,
 )
-from .faults import heat_sink_faults, module_faults, rig_faults
-from .keyunits import unit_of
-from .load import LoadTable
+from .faults import heat_sink_faults, module_faults, rig_faults, unit_of
 from .rules import faults_of
 from .uncertainty import uncertainty_faults
 
@@ -150,8 +148,11 @@ class ContactTable(_Table):
     lands_s: Annotated[float, Field(ge=-600, le=0)] | None = None
 
 
-class ControllerTable(_Table):
-    """A closed loop on a display thermistor."""
+class Controller(_Table):
+    """A PID loop on a display thermistor, sampled at the driver's update rate; positive current cools.
+
+    Thermistor lag s, gains A/K, A/(K·s), A·s/K; the derivative acts on the measured temperature.
+    """
 
     lag_s: Lag = 0.0
     kp_A_per_K: Gain
@@ -159,8 +160,11 @@ class ControllerTable(_Table):
     kd_As_per_K: Gain = 0.0
 
 
-class ThermodeTable(_Table):
-    """A thermode in place of module, heat sink, driver and controller, which follows set-points."""
+class Thermode(_Table):
+    """A display that follows set-points by its own control: slew K/s, lag s (first order), step K, range °C, rate Hz.
+
+    It stands in place of module, heat sink, driver and controller; a step of 0 K means continuous set-points.
+    """
 
     slew_K_per_s: Positive
     lag_s: Lag = 0.0
@@ -169,9 +173,22 @@ class ThermodeTable(_Table):
     highest_C: Celsius
     update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
 
+    def faults(self) -> Iterable[str]:
+        """A range without room."""
+        if self.lowest_C >= self.highest_C:
+            yield f"thermode.lowest_C = {self.lowest_C:g} °C: must be below thermode.highest_C ({self.highest_C:g} °C)"
 
-class AmbientTable(_Table):
-    """The air that bare skin rests in."""
+
+class LoadTable(_Table):
+    """Keys of [load]: a block of metal has a heat capacity and a conductance to the room, air a film."""
+
+    capacity_J_per_K: Annotated[float, Field(ge=1e-3, le=1e6)] | None = None
+    conductance_W_per_K: Annotated[float, Field(ge=1e-6, le=1e4)] | None = None
+    film_W_per_m2K: Annotated[float, Field(ge=0.1, le=1e5)] | None = None
+
+
+class Ambient(_Table):
+    """The air that bare skin rests in: temperature °C, film W/(m²·K)."""
 
     temperature_C: Celsius
     film_W_per_m2K: Film
@@ -285,10 +302,10 @@ class RigTable(_Table):
     module: ModuleTable | None = None
     heat_sink: HeatSinkTable | None = None
     driver: DriverTable | None = None
-    controller: ControllerTable | None = None
-    thermode: ThermodeTable | None = None
+    controller: Controller | None = None
+    thermode: Thermode | None = None
     contact: ContactTable
-    ambient: AmbientTable
+    ambient: Ambient
     load: LoadTable | None = None
     skin: SkinTable
     blood: BloodTable
@@ -318,36 +335,24 @@ def read_table(document: Mapping[str, Any], where: str) -> RigTable:
 
 @cache
 def rig_keys() -> tuple[str, ...]:
-    """All dotted keys of a rig file; those of a layer have 0 as its place."""
+    """All dotted keys of a rig file; those of a layer, a data sheet or a probe have 0 as its place."""
     return tuple(_keys(RigTable, ""))
 
 
-_OPTIONAL_TABLES: dict[str, type[BaseModel]] = {
-    "module": ModuleTable,
-    "heat_sink": HeatSinkTable,
-    "driver": DriverTable,
-    "controller": ControllerTable,
-    "thermode": ThermodeTable,
-    "load": LoadTable,
-}
-
-
-def _keys(table: type[BaseModel], prefix: str) -> Iterable[str]:
+def _keys(table: type[BaseModel], prefix: str) -> Iterator[str]:
     for name, field in table.model_fields.items():
-        if name == "layer":
-            yield from _keys(LayerTable, f"{prefix}layer.0.")
-        elif name == "datasheet":
+        inner, listed = _table_in(field.annotation), "list" in str(field.annotation)
+        if name != "source" and (inner is None or listed):
             yield prefix + name
-            yield from _keys(DatasheetTable, f"{prefix}datasheet.0.")
-        elif name == "probe":
-            yield "probe"
-            yield from _keys(ProbeTable, "probe.0.")
-        elif name in _OPTIONAL_TABLES:
-            yield from _keys(_OPTIONAL_TABLES[name], f"{name}.")
-        elif isinstance(field.annotation, type) and issubclass(field.annotation, BaseModel):
-            yield from _keys(field.annotation, f"{prefix}{name}.")
-        elif name != "source":
-            yield prefix + name
+        if inner is not None:
+            yield from _keys(inner, f"{prefix}{name}.0." if listed else f"{prefix}{name}.")
+
+
+def _table_in(annotation: Any) -> type[BaseModel] | None:
+    """The table that a key holds, alone or in a list."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    return next((table for each in get_args(annotation) if (table := _table_in(each))), None)
 
 
 def unknown_key(key: str) -> str:

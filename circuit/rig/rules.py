@@ -9,6 +9,7 @@ from functools import cache
 from importlib import resources
 
 from ..records import Record, Table, load_records
+from .faults import sentence
 
 SHORTEST_REASON, FEWEST_WORDS = 20, 4
 """Fewest characters and different words of a reason for a loosened limit: a sentence, not a word."""
@@ -168,17 +169,13 @@ def faults_of(changes: Mapping[str, float], reason: str = "") -> list[str]:
         if beyond(rule):
             reported.add(rule.key)
             bound, why = (rule.shipped, "no published figure allows more") if rule.bound is None else (rule.bound, "")
-            faults.append(
-                f"{subject}: cannot be loosened beyond {abs(bound):g}{unit} ({why or rule.bound_source}); use "
-                f"{'at most' if rule.upper or bound < 0 else 'at least'} {abs(bound):g}{unit}"
-            )
+            end, why = f"{abs(bound):g}{unit}", why or rule.bound_source
+            side = "at most" if rule.upper or bound < 0 else "at least"
+            faults.append(f"{subject}: cannot be loosened beyond {end} ({why}); use {side} {end}")
         elif rule.loosened and not is_reason(reason):
             reported.add(rule.key)
-            faults.append(
-                f"{subject}: is looser than the shipped limit of {abs(rule.shipped):g}{unit}; give safety.reason, a "
-                f"sentence of at least {SHORTEST_REASON} characters and {FEWEST_WORDS} different words on why this is "
-                f"justified, or use {abs(rule.shipped):g}{unit}"
-            )
+            limit, least = f"{abs(rule.shipped):g}{unit}", {"letters": SHORTEST_REASON, "words": FEWEST_WORDS}
+            faults.append(sentence("faults.looser", subject=subject, limit=limit, **least))
     return faults + _crossed(changes, reason)
 
 
@@ -189,11 +186,7 @@ def beyond(rule: Rule) -> bool:
 
 
 def is_reason(text: str) -> bool:
-    """Whether a text can be a reason: a sentence of at least 20 characters and four different words.
-
-    >>> is_reason("gain measured against a shunt, 2026-05-12"), is_reason("x" * 20)
-    (True, False)
-    """
+    """Whether a text can be a reason: a sentence of at least 20 characters and four different words."""
     words = {word.casefold() for word in re.findall(r"[^\W\d_]{2,}", text)}
     return len(text.strip()) >= SHORTEST_REASON and len(words) >= FEWEST_WORDS
 
@@ -204,10 +197,7 @@ def session_fault(minutes: float, reason: str) -> str | None:
     if not 1.0 <= minutes <= LONGEST_SESSION_MIN:
         return f"safety.{SESSION_KEY} = {minutes:g} min: must be 1 to {LONGEST_SESSION_MIN:g} min"
     if minutes < shipped and not is_reason(reason):
-        return (
-            f"safety.{SESSION_KEY} = {minutes:g} min: is shorter than the shipped {shipped:g} min, so that fewer plays "
-            f"add up; give safety.reason, a sentence on what ends a session, or use {shipped:g} min or more"
-        )
+        return sentence("faults.session", key=SESSION_KEY, minutes=minutes, shipped=shipped)
     return None
 
 
@@ -219,10 +209,7 @@ def _crossed(changes: Mapping[str, float], reason: str) -> list[str]:
             pair = not low.upper and high.upper and low.key != high.key
             same = (low.quantity, low.severity, low.relative) == (high.quantity, high.severity, high.relative)
             if pair and same and low.limit >= high.limit:
-                faults.append(
-                    f"safety.{low.key} = {low.limit:g} {low.unit}: is not below safety.{high.key} = {high.limit:g} "
-                    f"{high.unit}; leave some room between them"
-                )
+                faults.append(sentence("faults.crossed", low=low, high=high))
     return faults
 
 

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from .faults import PARAMETERS
+from .faults import PARAMETERS, sentence
 from .modules import build_of, module_names
 from .rigfile import RigError, parse_toml, rig_keys, unknown_key
 
@@ -34,20 +34,12 @@ def read_settings(settings: Iterable[str]) -> dict[str, object]:
 
 
 def changed(changes: Iterable[str]) -> dict[str, str]:
-    """Keys and values of changes of the form `key=value`.
-
-    >>> changed(["contact.area_cm2=4"])
-    {'contact.area_cm2': '4'}
-    """
+    """Keys and values of changes of the form `key=value`."""
     return dict(text.split("=", 1) for text in changes)
 
 
 def flattened(changes: Mapping[str, object], prefix: str = "") -> dict[str, object]:
-    """Return changes with dotted keys in the place of nested dictionaries.
-
-    >>> flattened({"module": {"resistance_ohm": 2.0}, "contact.area_cm2": 4})
-    {'module.resistance_ohm': 2.0, 'contact.area_cm2': 4}
-    """
+    """Return changes with dotted keys in the place of nested dictionaries."""
     flat: dict[str, object] = {}
     for key, value in changes.items():
         if isinstance(value, dict):
@@ -82,7 +74,7 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
         else:
             if position == 0:
                 _check_display(document, part, key)
-            if part in _OPTIONAL and position == 0 and any(key == known for known in rig_keys()):
+            if part in _OPTIONAL and position == 0 and key in rig_keys():
                 place.setdefault(part, {})
             if part == "datasheet" and part not in place:
                 raise RigError(f"{key}: this rig's module has no data sheet; set module.datasheet, a list of them")
@@ -94,15 +86,11 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
         plain.append(part_of_key)
         if position == 0 and part == "source":
             raise RigError(f"{key}: a source cannot be changed here")
-    if (".".join([*plain, parts[-1]]) not in rig_keys() and key != "skin.layer") or isinstance(place, list):
-        raise RigError(
-            unknown_key(".".join([*plain, parts[-1]])).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}.")
-        )
-    if (
-        parts[0] == "module"
-        and not key.endswith(("plate_J_per_K", "leg_nodes", "leg_capacity_J_per_K"))
-        and place.get(parts[-1]) != value
-    ):
+    generic = ".".join([*plain, parts[-1]])
+    if generic not in rig_keys() or isinstance(place, list):
+        raise RigError(unknown_key(generic).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}."))
+    own = key.endswith(("plate_J_per_K", "leg_nodes", "leg_capacity_J_per_K"))
+    if parts[0] == "module" and not own and place.get(parts[-1]) != value:
         document.get("source", {}).pop("module", None)
     if value is None:
         place.pop(parts[-1], None)
@@ -114,10 +102,7 @@ def _check_display(document: Mapping[str, Any], part: str, key: str) -> None:
     """Refuse a key of a module on a thermode rig, and a key of a thermode on a rig with a module."""
     if "thermode" in document and part in ("module", "heat_sink", "driver", "controller"):
         name = str(document.get("name", ""))
-        raise RigError(
-            f"{key}: rig {name} is a thermode: it has no {part.replace('_', ' ')}; change a key of [thermode], or use "
-            f"a rig with a module, such as thenar"
-        )
+        raise RigError(sentence("parts.no_module", key=key, name=name, part=part.replace("_", " ")))
     if "thermode" not in document and part == "thermode":
         raise RigError(f"{key}: this rig has a module and no thermode; use a rig with [thermode], such as tcs2")
 

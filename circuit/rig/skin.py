@@ -12,6 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..records import Table, load_records
+from .faults import sentence
 
 STRATUM_CORNEUM = "stratum corneum"
 """Name of the layer from whose base receptor depths may be counted; it must be a skin's first."""
@@ -38,9 +39,6 @@ class ReceptorDepths:
 
     `cold_mm`, `warm_mm` from the surface; `cold_below_corneum_mm`, `warm_below_corneum_mm` from the base of the stratum
     corneum, negative inside it, None where the skin does not begin with that layer.
-
-    >>> print(ReceptorDepths.counted(0.15, 0.30, corneum_mm=0.17))
-    cold 0.15 mm, warm 0.3 mm below the surface; cold 0.02 mm above, warm 0.13 mm below the base of the stratum corneum
     """
 
     cold_mm: float
@@ -103,14 +101,10 @@ class Skin:
             above, below = self.layers[0].thickness_m, f" below the {STRATUM_CORNEUM}"
         for name, depth in (("cold_receptor", self.cold_receptor_m), ("warm_receptor", self.warm_receptor_m)):
             if not 0 < depth < thickness - 1e-9:
-                raise ValueError(
-                    f"skin.{name}_mm = {(depth - above) * 1e3:g} mm{below}: must lie inside the skin, "
-                    f"which is {(thickness - above) * 1e3:g} mm deep{below}"
-                )
+                depth_mm, most_mm = (depth - above) * 1e3, (thickness - above) * 1e3
+                raise ValueError(sentence("parts.receptor", key=name, depth=depth_mm, most=most_mm, below=below))
         if self.elements is not None and len(self.elements) != len(self.layers):
-            raise ValueError(
-                f"skin.elements = {list(self.elements)}: must give one number for each of the {len(self.layers)} layers"
-            )
+            raise ValueError(sentence("parts.elements", given=list(self.elements), count=len(self.layers)))
 
     @property
     def thickness_m(self) -> float:
@@ -151,13 +145,7 @@ class Column:
             array.setflags(write=False)
 
     def steady_drop_K(self, flux_W_per_m2: float) -> float:
-        """Steady temperature of the face above the deep (and blood) temperature in K under a constant flux into it.
-
-        >>> layer = Layer("dermis", 2e-3, 0.45, 1060, 3300)
-        >>> column = column_of(Skin("test", 32, 1e-4, 2e-4, (layer,)), blood_capacity_J_per_m3K=4e6)
-        >>> round(column.steady_drop_K(-100.0), 6)  # −100 W/m² · 2 mm / 0.45 W/(m·K)
-        -0.444444
-        """
+        """Steady temperature of the face above the deep (and blood) temperature in K under a constant flux into it."""
         resistances, below = self.resistance_m2K_per_W.tolist(), 0.0  # of all that lies below a lump, in m²·K/W
         for perfusion, resistance in zip(self.perfusion_W_per_m2K[::-1].tolist(), resistances[:0:-1], strict=True):
             below = 1.0 / (perfusion + 1.0 / (resistance + below))

@@ -11,6 +11,7 @@ from functools import cache
 from importlib import resources
 
 from ..records import Table, load_records
+from .faults import sentence
 from .parts import Uncertainty
 from .rules import FEWEST_WORDS, SHORTEST_REASON, is_reason
 
@@ -33,42 +34,25 @@ def uncertainty_table() -> Table:
 
 
 def uncertainty_of(stated_values: Mapping[str, float], reason: str = "") -> Uncertainty:
-    """Return the uncertainty of a rig, with the shipped value of what is not given.
-
-    >>> uncertainty_of({"ambient_K": 5.0})
-    Uncertainty(contact_resistance_relative=0.3, ambient_K=5.0, gain_relative=0.1, heat_sink_K=1.0,
-                seebeck_relative=0.05, conductance_relative=0.1, plates_relative=0.2, reason='')
-    """
+    """Return the uncertainty of a rig, with the shipped value of what is not given."""
     return Uncertainty(**{**_shipped(), **stated_values}, reason=reason.strip())
 
 
 def uncertainty_faults(stated_values: Mapping[str, float], reason: str = "") -> list[str]:
-    """Return one sentence for each uncertainty that is smaller than the shipped one without a reason.
-
-    >>> uncertainty_faults({"gain_relative": 0.02}, "gain measured against a shunt, 2026-05-12")
-    []
-    """
+    """Return one sentence for each uncertainty that is smaller than the shipped one without a reason."""
     if is_reason(reason):
         return []
     faults = []
     for key, shipped in _shipped().items():
         value, unit = stated_values.get(key, shipped), " K" if key.endswith("_K") else ""
         if value < shipped:
-            faults.append(
-                f"uncertainty.{key} = {value:g}{unit}: is smaller than the shipped {shipped:g}{unit}, which loosens "
-                f"the gate of safety; give uncertainty.reason, a sentence of at least {SHORTEST_REASON} characters and "
-                f"{FEWEST_WORDS} different words on how this is known "
-                f"(--set 'uncertainty.reason=\"measured ...\"'), or use {shipped:g}{unit} or more"
-            )
+            least = {"letters": SHORTEST_REASON, "words": FEWEST_WORDS}
+            faults.append(sentence("faults.surer", key=key, value=value, unit=unit, shipped=shipped, **least))
     return faults
 
 
 def tightened(uncertainty: Uncertainty) -> tuple[str, ...]:
-    """A few words for each uncertainty that is smaller than shipped.
-
-    >>> tightened(uncertainty_of({"gain_relative": 0.02}))
-    ('gain ±2 % instead of ±10 %',)
-    """
+    """A few words for each uncertainty that is smaller than shipped."""
     return tuple(
         f"{words} ±{scale * getattr(uncertainty, key):g} {unit} instead of ±{scale * _shipped()[key]:g} {unit}"
         for key, (words, _, scale, unit) in WORDS.items()
@@ -77,11 +61,7 @@ def tightened(uncertainty: Uncertainty) -> tuple[str, ...]:
 
 
 def stated(uncertainty: Uncertainty) -> str:
-    """All uncertainties in words, for the heading of a verdict.
-
-    >>> stated(uncertainty_of({}))[:60]
-    'contact resistance ±30 %, ambient ±3 K, gain ±10 %, heat sin'
-    """
+    """All uncertainties in words, for the heading of a verdict."""
     return ", ".join(
         f"{words} ±{scale * getattr(uncertainty, key):g} {unit}" for key, (words, _, scale, unit) in WORDS.items()
     )

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..arrays import Array, Index
-from ..rig.load import refuse_load
+from ..rig.parts import refuse_load
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on

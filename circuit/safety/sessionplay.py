@@ -22,7 +22,7 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
 from ..cores import quiet_blas
-from ..rig.load import refuse_load
+from ..rig.parts import refuse_load
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..rig.load import LOAD_SITES, without_skin
+from ..rig.parts import LOAD_SITES, without_skin
 from ..rig.rigfile import RigError
 from ..rig.rules import Limits
 from ..solver.trace import Trace

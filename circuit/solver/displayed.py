@@ -16,9 +16,8 @@ import numpy as np
 from thermicon.icons import Icon
 
 from ..arrays import Array
-from ..rig.parts import Thermode
 from ..rig.rig import Rig
-from ..rig.rigfile import RigError
+from ..rig.rigfile import RigError, Thermode
 from .inverse import baseline_C, steps_at, target_at
 from .modes import FELT, SkinModes, modes_of, modes_on, shown
 from .network import skin_network_of

@@ -10,9 +10,8 @@ from thermicon.icons.model.corners import Corners
 from thermicon.icons.number_text import decimals, significant
 
 from ..rig.module import ZERO_C_IN_K
-from ..rig.parts import Thermode
 from ..rig.rig import Rig
-from ..rig.rigfile import RigError
+from ..rig.rigfile import RigError, Thermode
 from .displayed import refuse_current
 from .inverse import baseline_C
 from .modes import modes_of

@@ -35,10 +35,10 @@ class Gallery:
         return "\n".join("\n".join(self._set(entry, shipped[entry.name])) for entry in shipped.entries)
 
     def _set(self, entry: Any, icons: IconSet) -> Iterator[str]:
-        yield f"## {entry.name}\n\n{icons.title}. {entry.count} icon{'s' * (entry.count != 1)}; {entry.source}.\n"
+        yield f"## {entry.name}\n\n{icons.title}. {entry.icons} icon{'s' * (entry.icons != 1)}; {entry.source}.\n"
         self.write(f"gallery/{entry.name}.png", _png(icons.plot().figure))
         yield f"![Courses of the icons of {entry.name}](gallery/{entry.name}.png)\n"
-        if self.kept is not None and entry.count > 1:
+        if self.kept is not None and entry.icons > 1:
             yield from self._predicted(entry.name, icons, self.kept / entry.name)
         yield f":::{{dropdown}} Cue text of {entry.name}\n:icon: code\n:open:\n"
         yield f"```cue\n{_text_of(entry.name)}```\n:::\n"

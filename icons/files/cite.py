@@ -38,13 +38,6 @@ def methods(icons: IconSet, rig_about: str | None = None) -> str:
     """Return a paragraph for the methods section of a paper: the set, every icon, and the sources.
 
     ``rig_about`` describes the rig, as ``Rig.about`` does; None: no rig is described.
-
-    >>> from thermicon.icons import parse
-    >>> text = methods(parse("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }"))
-    >>> print(*text.split(". ")[:3], sep="\\n")
-    One thermal icon was used
-    It prescribes the temperature of the skin surface
-    It lasts 4 s
     """
     many, control = len(icons) > 1, icons.context.control
     title = f" of the set “{icons.title}”" if icons.title else ""
@@ -124,11 +117,7 @@ def _one_line(about: str) -> str:
 
 @cache
 def references() -> tuple[Reference, ...]:
-    """Return the bibliography that ships, one field a line in the file.
-
-    >>> next(each["doi"] for each in references() if each["key"] == "shani-lineykin-2025")
-    '10.3390/bioengineering12020209'
-    """
+    """Return the bibliography that ships, one field a line in the file."""
     text = resources.files("thermicon.icons").joinpath("data/references.bib").read_text(encoding="utf-8")
     entries = _ENTRY.finditer(text)
     return tuple({"key": each["key"], "type": each["type"], **dict(_FIELD.findall(each["fields"]))} for each in entries)
@@ -150,10 +139,6 @@ def cited(icons: IconSet) -> tuple[list[Reference], list[Source]]:
 
     A DOI names a publication; so do the first author's last name and a year in ``by``, or, without a year, the first
     two last names.
-
-    >>> from thermicon.icons import read_cue
-    >>> [each["key"] for each in cited(read_cue("six-icons"))[0]]
-    ['singhal-jones-2015', 'singhal-jones-2018']
     """
     found: dict[str, Reference] = {}
     unknown: list[Source] = []
@@ -189,10 +174,6 @@ def bibtex(icons: IconSet) -> str:
 
     A note names what is unverified. A source that the bibliography lacks becomes an ``@misc`` entry from the metadata
     of the set, and is marked.
-
-    >>> from thermicon.icons import read_cue
-    >>> [line for line in bibtex(read_cue("six-icons")).splitlines() if line.startswith("@")]
-    ['@inproceedings{singhal-jones-2015,', '@article{singhal-jones-2018,', '@misc{thermicon,']
     """
     known, unknown = cited(icons)
     entries = []

@@ -1,15 +1,164 @@
-"""Read cue files and the icon sets that ship with the package."""
+"""Files that people hand in, read with a limit, and the icon sets that ship with the package."""
 
+import errno
+import stat
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 from ..language.parse import parse
 from ..language.source import MOST_BYTES
 from ..model.errors import whole_file
-from ..model.iconset import IconSet
+from ..model.iconset import IconSet, UnknownIcon
 from ..model.words import nearest
-from .input_files import bytes_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+FileKind = Literal["folder", "device", "pipe", "socket"]
+
+
+class NotRegular(Exception):
+    """What is at a path cannot be read as a file; ``kind`` says what it is."""
+
+    def __init__(self, kind: FileKind) -> None:
+        super().__init__(f"this is a {kind}, not a file")
+        self.kind = kind
+
+
+class TooLarge(Exception):
+    """A file has more bytes than may be read; ``size`` is what the system says it has, or what was read of it."""
+
+    def __init__(self, size: int) -> None:
+        super().__init__(f"{size:,} bytes")
+        self.size = size
+
+
+def read_limited(path: Path, most_bytes: int) -> bytes:
+    """Return what is in a regular file of at most ``most_bytes``.
+
+    Devices and pipes are refused before they are opened, since they may have no end or never answer; of a file that
+    grows while it is read, no more than the limit is read. Raises NotRegular, TooLarge, and OSError or ValueError (a
+    zero byte in the path) as the system does.
+    """
+    found = path.stat()
+    if (kind := _kind(found.st_mode)) is not None:
+        raise NotRegular(kind)
+    if found.st_size > most_bytes:
+        raise TooLarge(found.st_size)
+    with path.open("rb") as file:
+        data = file.read(most_bytes + 1)
+    if len(data) > most_bytes:
+        raise TooLarge(len(data))
+    return data
+
+
+def bytes_of(path: Path, what: str, suffix: str, most_bytes: int, smaller: str) -> bytes | None:
+    """Return what is in a file of icons, or None when none has this name; raises CueErrors as `whole_file` makes them.
+
+    `what` it holds, the `suffix` of its name, and what makes it `smaller` are for the messages.
+    """
+    try:
+        return read_limited(path, most_bytes)
+    except NotRegular as found:
+        if found.kind == "folder":
+            help = f"name a {suffix} file in it, such as {path / f'my-{what}{suffix}'}"
+            raise whole_file("E002", str(path), f"a {what} is one file", help) from None
+        raise whole_file("E003", str(path), str(found), "save what it gives as a file, and name that") from None
+    except TooLarge as found:
+        raise whole_file("E004", str(path), str(found), smaller) from None
+    except (OSError, ValueError) as error:
+        if getattr(error, "errno", None) in (errno.ENOENT, errno.ENOTDIR, errno.ENAMETOOLONG):
+            return None
+        said = getattr(error, "strerror", None) or error
+        help = "check that it is there and that you may read it"
+        raise whole_file("E003", str(path), f"the system says: {said}", help) from None
+
+
+def _kind(mode: int) -> FileKind | None:
+    if stat.S_ISREG(mode):
+        return None
+    if stat.S_ISDIR(mode):
+        return "folder"
+    if stat.S_ISFIFO(mode):
+        return "pipe"
+    return "socket" if stat.S_ISSOCK(mode) else "device"
+
+
+@dataclass(frozen=True, slots=True)
+class Shipped:
+    """What the library says of a set; members of families count, and are not made."""
+
+    name: str
+    icons: int
+    title: str
+    intent: str
+    source: str
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Library(Mapping[str, IconSet]):
+    """Shipped sets by name; ``entries`` says of each what it is, and so does its table in a notebook."""
+
+    sets: tuple[tuple[str, IconSet], ...]
+
+    @property
+    def entries(self) -> tuple[Shipped, ...]:
+        """Name, number of icons, title, intent and source of every set."""
+        found = []
+        for name, icons in self.sets:
+            means = dict.fromkeys(filter(None, (entry.metadata.means for entry in icons.entries)))
+            source = "; ".join(filter(None, (icons.metadata.by, icons.metadata.doi))) or "not stated"
+            found.append(Shipped(name, len(icons), icons.title, icons.metadata.means or "; ".join(means), source))
+        return tuple(found)
+
+    def to_frame(self) -> "pd.DataFrame":
+        """Return a table with a row a set and the columns name, icons, title, intent, source."""
+        import pandas as pd
+
+        return pd.DataFrame(list(self.entries))
+
+    def __getitem__(self, name: str) -> IconSet:
+        found = dict(self.sets).get(name)
+        if found is None:
+            close = nearest(str(name), self)
+            hint = f"did you mean {close}? " if close else ""
+            raise UnknownIcon(f"no shipped set is called {name!r}; {hint}there are: {', '.join(self)}")
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, _ in self.sets)
+
+    def __len__(self) -> int:
+        return len(self.sets)
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{one.name:<20}{one.icons:>6,}  {one.title}" for one in self.entries)
+
+    def _repr_html_(self) -> str:
+        return str(self.to_frame().to_html(index=False))
+
+
+def library() -> Library:
+    """Return all shipped sets; in a notebook they appear as a table.
+
+    Returns
+    -------
+    Library
+        Sets by name; ``entries`` says what each is.
+
+    Examples
+    --------
+    >>> sets = library()
+    >>> sets["six-icons"]["cooling-step"].metadata.means
+    'a quick, strong cooling'
+    >>> [entry.icons for entry in sets.entries if entry.name == "six-icons"]
+    [6]
+    """
+    return Library(tuple((name, load_library(name)) for name in library_names()))
 
 
 def library_names() -> tuple[str, ...]:
@@ -19,11 +168,6 @@ def library_names() -> tuple[str, ...]:
     -------
     tuple of str
         Names that ``load_library`` and ``read_cue`` accept.
-
-    Examples
-    --------
-    >>> library_names()[:2]
-    ('calibration-drive', 'cooling-step-skin')
     """
     return tuple(
         sorted(entry.name.removesuffix(".cue") for entry in _folder().iterdir() if entry.name.endswith(".cue"))
@@ -96,9 +240,6 @@ def file_bytes(source: str | Path) -> bytes | None:
     """Return what is in a file, or None when there is not one of this name.
 
     Raises CueErrors when it is a folder (but not one with the name of a shipped set), unreadable or too large.
-
-    >>> file_bytes("six-icons") is None
-    True
     """
     name = str(source)
     path = Path(source)

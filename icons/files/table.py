@@ -90,11 +90,7 @@ class Table:
 
 
 def as_number(cell: str, mark: str = ",") -> float:
-    """Return the number in a cell, NaN where there is none; a decimal comma counts where ``mark`` is another.
-
-    >>> as_number("1.5"), as_number("1,5", ";"), as_number("1,5"), as_number("1_0")
-    (1.5, 1.5, nan, nan)
-    """
+    """Return the number in a cell, NaN where there is none; a decimal comma counts where ``mark`` is another."""
     plain = cell.replace(",", ".") if mark != "," and cell.count(",") == 1 and "." not in cell else cell
     try:
         return math.nan if "_" in plain else float(plain)

@@ -10,9 +10,9 @@ from ..model.check import ASSUMED_BASELINE_C, MOST_CORNERS, Problem, corner_coun
 from ..model.context import Context, Metadata
 from ..model.errors import MOST_ERRORS
 from ..model.family import FEWER, MOST_MEMBERS, Family
-from ..model.family_check import MOST_EFFORT, MOST_FAILING, FailedMember, MemberErrors, effort
 from ..model.icon import Icon
 from ..model.iconset import IconSet
+from ..model.members import MOST_EFFORT, MOST_FAILING, FailedMember, MemberErrors, effort
 from ..model.parameter import path_of, statement_at
 from ..model.statements import Broken, Repeat, Return, Statement
 from ..model.units import Control, exact

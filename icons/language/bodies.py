@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any, cast
 
 from ..model.context import Metadata
-from ..model.expand import HOLE
 from ..model.icon import Icon
+from ..model.members import HOLE
 from ..model.parameter import Parameter, Path, Slot, value_fault
 from ..model.statements import (
     Bound,

@@ -8,8 +8,8 @@ from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
+from ..atomic import NotPrivate, cache_folder, private_folder
 from ..model.errors import CueError, whole_file
-from ..userfolder import NotPrivate, cache_folder, private_folder
 
 if TYPE_CHECKING:
     from lark import Lark
@@ -78,11 +78,7 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """A text with its file name; newlines are ``\\n`` and the last line ends with one.
-
-    >>> Source("a.cue", "cue 1\\nicon").place(6)
-    (2, 1)
-    """
+    """A text with its file name; newlines are ``\\n`` and the last line ends with one."""
 
     file: str
     text: str
@@ -162,11 +158,7 @@ class Source:
 
 
 def decode(data: str | bytes, file: str) -> str:
-    """Return the text of a cue file; CueErrors when it is too large, empty, binary or not UTF-8.
-
-    >>> decode(b"cue 1", "a.cue")
-    'cue 1'
-    """
+    """Return the text of a cue file; CueErrors when it is too large, empty, binary or not UTF-8."""
     size = len(data)
     if size > MOST_BYTES:
         raise whole_file("E004", file, f"{size:,} bytes", f"a cue file has at most {MOST_BYTES:,} bytes; split the set")

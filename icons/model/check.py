@@ -61,12 +61,7 @@ class Survey:
 
 
 def corner_count(body: Sequence[Statement | Broken], known: dict[int, int] | None = None) -> int:
-    """Return how many corners a body can have at most once its repeats are written out.
-
-    >>> from thermicon.icons.model.statements import Hold
-    >>> corner_count([Repeat(1000, (Repeat(1000, (Hold(1),)),))])
-    1000000
-    """
+    """Return how many corners a body can have at most once its repeats are written out."""
     known = {} if known is None else known
     count = 0
     for part in body:

@@ -26,9 +26,6 @@ class Corners:
 
     ``steps`` lists the corners at which a step begins, to be made as fast as the driver can; it is written out over
     0.1 µs. Raises ValueError unless the times begin at 0 and rise strictly and all numbers are finite.
-
-    >>> Corners((0.0, 2.0, 6.0, 8.0), (32.0, 26.0, 26.0, 32.0), "temperature_C")
-    Corners(4 corners, 8 s, 26 to 32 °C, at most 3 °C/s)
     """
 
     time_s: tuple[float, ...]
@@ -91,11 +88,7 @@ class Corners:
     @overload
     def at(self, time_s: "Sequence[float] | NDArray[np.float64]") -> "NDArray[np.float64]": ...
     def at(self, time_s: "float | Sequence[float] | NDArray[np.float64]") -> "float | NDArray[np.float64]":
-        """Return the value at a time (s), or an array of values for an array; before and after, the end values.
-
-        >>> Corners((0.0, 2.0), (32.0, 26.0), "temperature_C").at(0.5)
-        30.5
-        """
+        """Return the value at a time (s), or an array of values for an array; before and after, the end values."""
         if not isinstance(time_s, int | float):
             import numpy as np
 

@@ -30,10 +30,6 @@ def statement_text(
     """Return one statement as cue text, without a newline at its end; repeats take several lines.
 
     ``holes`` names the parameter that stands in a field of the statement at a path; ``path`` is this statement's.
-
-    >>> from thermicon.icons.model.statements import Return
-    >>> statement_text(Repeat(2, (Ramp("warm", by_K=1, duration_s=0.5), Return(1))), "skin")
-    'repeat 2 {\\n  warm by 1 °C over 0.5 s\\n  return at 1 °C/s\\n}'
     """
     writer = _Writer(control, holes or {})
     return writer.statement(statement, indent, path)
@@ -116,11 +112,7 @@ def set_text(icons: "IconSet") -> str:
 
 
 def quoted(text: str) -> str:
-    """Return a text in quotation marks, with what stands in its way escaped.
-
-    >>> print(quoted('say "hot"'))
-    "say \\"hot\\""
-    """
+    """Return a text in quotation marks, with what stands in its way escaped."""
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
     return f'"{escaped}"'
 
@@ -157,11 +149,7 @@ def _file(set_lines: list[str], icons: "Iterable[Icon | Family]") -> str:
 
 
 def header_lines(head: str, parameters: Sequence[str], keys: Sequence[str]) -> list[str]:
-    """Return the header of an icon, its brace included: one line, or one for each part where that is too long.
-
-    >>> header_lines("icon dip", ["size in [3, 6] K"], ['means "{size} down"'])
-    ['icon dip(size in [3, 6] K) means "{size} down" {']
-    """
+    """Return the header of an icon, its brace included: one line, or one for each part where that is too long."""
     listed = f"{head}({', '.join(parameters)})" if parameters else head
     whole = " ".join([listed, *keys, "{"])
     if len(whole) <= WIDEST or len(parameters) + len(keys) < 2:

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import overload
 
-from ..drawn import Drawn
 from .context import Context, Metadata, name_fault, text_fault
 from .family import Family
-from .family_check import Summary, joined
 from .format import set_text
-from .icon import Icon, content_hash, played_icons
+from .icon import Drawn, Icon, content_hash, played_icons
+from .members import Summary
 from .units import quantity
 from .words import nearest
 
@@ -142,7 +141,7 @@ class IconSet(Drawn):
             else:
                 one = entry.corners(start)
                 found.append(Summary(one.duration_s, one.duration_s, one.lowest, one.highest, one.steepest_per_s))
-        return reduce(joined, found)
+        return reduce(Summary.joined, found)
 
     def __len__(self) -> int:
         return len(self.icons)

@@ -28,9 +28,6 @@ class Parameter:
     The unit is one of the language's (``degC`` becomes ``°C``), or ``""`` for a count. A span includes both ends, and
     its step must lead from one to the other. Raises ValueError for a bad name or unit, no value, one value twice, or a
     span that does not come out.
-
-    >>> Parameter("rate", "°C/s", span=(1, 3, 0.5)).texts()
-    ('1', '1.5', '2', '2.5', '3')
     """
 
     name: str
@@ -118,11 +115,7 @@ class Parameter:
 
 
 def span_fault(low: float, high: float, step: float) -> str | None:
-    """Return what keeps three numbers from being a range that can be counted out, or None.
-
-    >>> span_fault(1, 3, 0.7)
-    '3 is not reached from 1 in steps of 0.7'
-    """
+    """Return what keeps three numbers from being a range that can be counted out, or None."""
     a, b, by = (exact_number(decimal_text(value)) for value in (low, high, step))
     if by <= 0:
         return "a step is positive"

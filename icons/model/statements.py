@@ -21,9 +21,6 @@ class Ramp:
 
     The difference is signed for ``change``, which takes both directions, and positive for the others. Raises
     ValueError for a value outside the language's range.
-
-    >>> Ramp("cool", by_K=6, rate_K_per_s=3)
-    Ramp(direction='cool', by_K=6.0, to_C=None, rate_K_per_s=3.0, duration_s=None)
     """
 
     direction: Heading
@@ -44,11 +41,7 @@ class Ramp:
 
 @dataclass(frozen=True, slots=True)
 class Current:
-    """``to`` under control current: to a current (A), at a rate (A/s) or over a time (s); ValueError when out of range.
-
-    >>> Current(0.5, rate_A_per_s=1)
-    Current(to_A=0.5, rate_A_per_s=1.0, duration_s=None)
-    """
+    """``to`` under control current: to a current (A), at a rate (A/s) or over a time (s)."""
 
     to_A: float
     rate_A_per_s: float | None = None
@@ -63,11 +56,7 @@ class Current:
 
 @dataclass(frozen=True, slots=True)
 class Hold:
-    """``hold``: stay at the present level for a time (s); ValueError when it is not positive or over an hour.
-
-    >>> Hold(4)
-    Hold(duration_s=4.0)
-    """
+    """``hold``: stay at the present level for a time (s); ValueError when it is not positive or over an hour."""
 
     duration_s: float
     span: Span = field(default=None, compare=False, repr=False)
@@ -78,11 +67,7 @@ class Hold:
 
 @dataclass(frozen=True, slots=True)
 class Rest:
-    """``rest``: stay at baseline for a time (s); ValueError when it is not positive or over an hour.
-
-    >>> Rest(1)
-    Rest(duration_s=1.0)
-    """
+    """``rest``: stay at baseline for a time (s); ValueError when it is not positive or over an hour."""
 
     duration_s: float
     span: Span = field(default=None, compare=False, repr=False)
@@ -93,11 +78,7 @@ class Rest:
 
 @dataclass(frozen=True, slots=True)
 class Return:
-    """``return``: go back to baseline at a rate (K/s, or A/s under control current) or over a time (s).
-
-    >>> Return(3)
-    Return(rate_per_s=3.0, duration_s=None)
-    """
+    """``return``: go back to baseline at a rate (K/s, or A/s under control current) or over a time (s)."""
 
     rate_per_s: float | None = None
     duration_s: float | None = None
@@ -113,9 +94,6 @@ class Step:
     """``step``: to another level as fast as the driver can: by K or A, or to °C or A; it takes no time.
 
     With ``warm`` or ``cool`` a difference is positive and in K; with ``change`` it is signed. ValueError otherwise.
-
-    >>> Step("change", by_K=-6)
-    Step(direction='change', by_K=-6.0, to_C=None, by_A=None, to_A=None)
     """
 
     direction: Heading = "change"
@@ -135,11 +113,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Pulse:
-    """``pulse``: a step by K or A, held for a time (s), and a step back; signed unless ``warm`` or ``cool``.
-
-    >>> Pulse("cool", by_K=3, duration_s=0.5)
-    Pulse(direction='cool', by_K=3.0, by_A=None, duration_s=0.5)
-    """
+    """``pulse``: a step by K or A, held for a time (s), and a step back; signed unless ``warm`` or ``cool``."""
 
     direction: Heading = "change"
     by_K: float | None = None
@@ -162,9 +136,6 @@ class Wave:
 
     Unless ``cut``, the duration holds whole periods, so that the wave ends where it began. ``warm`` and ``up`` start
     upwards, ``cool`` and ``down`` downwards. Raises ValueError otherwise.
-
-    >>> Wave("sine", by_K=3, period_s=4, duration_s=12, start="cool")
-    Wave(shape='sine', by_K=3.0, by_A=None, period_s=4.0, duration_s=12.0, start='cool', cut=False)
     """
 
     shape: Shape
@@ -200,11 +171,7 @@ class Wave:
 
 @dataclass(frozen=True, slots=True)
 class Total:
-    """``total``: how long (s) the whole icon must last, exactly, at most or at least; checked, it moves nothing.
-
-    >>> Total(10, "at most")
-    Total(duration_s=10.0, bound='at most')
-    """
+    """``total``: how long (s) the whole icon must last, exactly, at most or at least; checked, it moves nothing."""
 
     duration_s: float
     bound: Bound = "exactly"
@@ -218,12 +185,7 @@ class Total:
 
 @dataclass(frozen=True, slots=True)
 class Play:
-    """``play``: all statements of another icon, which begins at baseline; ValueError for anything but an icon.
-
-    >>> from thermicon.icons import Icon
-    >>> Play(Icon("wait", (Rest(1),))).icon.name
-    'wait'
-    """
+    """``play``: all statements of another icon, which begins at baseline; ValueError for anything but an icon."""
 
     icon: "Icon"
     span: Span = field(default=None, compare=False, repr=False)
@@ -242,11 +204,7 @@ class Broken:
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """``repeat``: a body of statements, count times over; ValueError without a body or a positive whole count.
-
-    >>> Repeat(3, (Hold(1),))
-    Repeat(count=3, body=(Hold(duration_s=1.0),))
-    """
+    """``repeat``: a body of statements, count times over; ValueError without a body or a positive whole count."""
 
     count: int
     body: "tuple[Statement | Broken, ...]"

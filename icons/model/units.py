@@ -60,20 +60,13 @@ def to_si(number: str, unit: str, kind: Kind) -> float:
 
     Raises ValueError when the number is not finite, too large, too small or too long, KeyError for a unit of another
     kind.
-
-    >>> to_si("1", "°C/min", "rate")
-    0.016666666666666666
     """
     factor = UNITS[kind][unit]
     return float(exact_number(number) * factor)
 
 
 def exact_number(text: str) -> Fraction:
-    """Return the exact value of a decimal number as written; ValueError when it is outside what the language takes.
-
-    >>> exact_number("0.1")
-    Fraction(1, 10)
-    """
+    """Return the exact value of a decimal number as written; ValueError when it is outside what the language takes."""
     if len(text) > LONGEST_NUMBER:
         raise ValueError(f"a number has at most {LONGEST_NUMBER} characters")
     plain = text.replace("−", "-")
@@ -127,11 +120,7 @@ def quantity(value: float, kind: Kind) -> str:
 
 @lru_cache(maxsize=4096)
 def exact(value: float, kind: Kind) -> Fraction:
-    """Return the exact SI value that the canonical text of this float states: one sixtieth for ``1 °C/min``.
-
-    >>> exact(0.1, "time") * 30
-    Fraction(3, 1)
-    """
+    """Return the exact SI value that the canonical text of this float states: one sixtieth for ``1 °C/min``."""
     plain = decimal_text(value)
     if len(plain) <= _FEW_DIGITS:  # so few digits state one value, whatever unit they are written in
         return Fraction(plain)

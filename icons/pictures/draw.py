@@ -9,9 +9,8 @@ from html import escape
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
-from ..drawn import Drawn
 from ..model.family import Family
-from ..model.icon import Icon
+from ..model.icon import Drawn, Icon
 from ..model.iconset import IconSet
 
 if TYPE_CHECKING:
@@ -42,10 +41,6 @@ def plot(drawn: Drawn, ax: Axes | None = None) -> Axes:
     One icon is coloured by direction, its steps thinner than ramps. Of a family or a set up to 24 icons are drawn over
     one another; up to 8 have a colour and a dash each and a legend, more are coloured by direction. Without ``ax`` a
     new figure is made, outside of pyplot; nothing is shown or saved.
-
-    >>> from thermicon.icons import load_library
-    >>> plot(load_library("six-icons")["cooling-step"]).get_title()
-    'cooling-step'
     """
     if isinstance(drawn, Icon):
         return _overlay([drawn], [], drawn.name, ax)
@@ -87,23 +82,14 @@ def icon_count(count: int) -> str:
 
 
 def directions(corners: Corners) -> list[Direction]:
-    """Return, for every straight piece, whether it cools, warms or stays; under control current, more current cools.
-
-    >>> from thermicon.icons.model.corners import Corners
-    >>> directions(Corners((0.0, 2.0, 6.0), (32.0, 26.0, 26.0), "temperature_C"))
-    ['cool', 'stay']
-    """
+    """Return, for every straight piece, whether it cools, warms or stays; under control current, more current cools."""
     down: Direction = "cool" if corners.quantity == "temperature_C" else "warm"
     up: Direction = "warm" if down == "cool" else "cool"
     return ["stay" if b == a else down if b < a else up for a, b in pairwise(corners.value)]
 
 
 def evenly(count: int, most: int) -> list[int]:
-    """Return at most ``most`` places out of ``count``, evenly apart, the first and the last among them.
-
-    >>> evenly(10, 4), evenly(3, 4)
-    ([0, 3, 6, 9], [0, 1, 2])
-    """
+    """Return at most ``most`` places out of ``count``, evenly apart, the first and the last among them."""
     if count <= most:
         return list(range(count))
     return sorted({round(n * (count - 1) / (most - 1)) for n in range(most)})
@@ -113,9 +99,6 @@ def chosen(sizes: Sequence[int], most: int) -> list[int]:
     """Return at most ``most`` places among all combinations of as many values: the corners first, then evenly apart.
 
     Corners, where each value is the first or the last, are what a family's extremes mostly are.
-
-    >>> chosen((3, 3), 6), chosen((2, 2), 6)
-    ([0, 2, 3, 5, 6, 8], [0, 1, 2, 3])
     """
     count = math.prod(sizes)
     corners = {0, count - 1}

@@ -8,7 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
-from ..files.input_files import bytes_of
+from ..files.shipped import bytes_of
 from ..files.table import Table, read_table
 from ..language.source import utf8_of
 from ..model.context import Context, name_fault

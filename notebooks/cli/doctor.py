@@ -145,7 +145,7 @@ def check_extras() -> Iterator[Finding]:
 
 def check_cache() -> Iterator[Finding]:
     """Look whether compiled code can be kept, and how much is kept."""
-    from thermicon.icons.userfolder import NotPrivate, cache_folder, compiled_folder, private_folder
+    from thermicon.icons.atomic import NotPrivate, cache_folder, compiled_folder, private_folder
 
     cache = cache_folder()
     try:

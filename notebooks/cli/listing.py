@@ -53,7 +53,7 @@ def list_command(
 
 def cite_file(file: str, as_bibtex: bool, rig: RigOptions) -> None:
     """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
-    from thermicon.circuit.rig.rig_summary import rig_for_methods
+    from thermicon.circuit.rig.rig_words import rig_summary
     from thermicon.icons.files.cite import bibtex, methods
 
     icons = read_set([file])
@@ -63,7 +63,7 @@ def cite_file(file: str, as_bibtex: bool, rig: RigOptions) -> None:
     where = rig.load(module_matters=False) if rig.given else None
     if where is not None:
         warn_of_site(file, icons, where)
-    typer.echo(methods(icons, None if where is None else rig_for_methods(where)))
+    typer.echo(methods(icons, None if where is None else rig_summary(where, for_methods=True)))
 
 
 def copy_shipped(name: str, output: Path) -> None:

@@ -213,7 +213,7 @@ def tell(
 
 def unsafe(trace: Trace) -> list[str]:
     """Return one sentence per exceeded safety limit, or the reason why the run cannot be judged."""
-    from thermicon.circuit.rig.load import LOAD_SITES, without_skin
+    from thermicon.circuit.rig.parts import LOAD_SITES, without_skin
     from thermicon.circuit.safety.verdict import judge_safety
 
     if trace.site in LOAD_SITES:

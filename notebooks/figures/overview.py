@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from thermicon.circuit.rig.load import LOAD_SITES
+from thermicon.circuit.rig.parts import LOAD_SITES
 
 from .print_figure import write_figure
 from .style import COOL, GREY, INK, LIMIT, PLACES, SCREEN, TARGET, WARM, Look, key_beside, on_one_clock

@@ -190,7 +190,7 @@ def key_label(key: str) -> str:
     >>> key_label("contact.area_cm2"), key_label("module.seebeck_V_per_K"), key_label("age_years"), key_label("site")
     ('contact area (cm²)', 'module Seebeck coefficient (V/K)', 'age (years)', 'site')
     """
-    from thermicon.circuit.rig.keyunits import name_of, unit_of
+    from thermicon.circuit.rig.faults import name_of, unit_of
 
     unit = "years" if key.endswith("_years") else unit_of(key)
     words = name_of(key).removesuffix("_years").replace(".", " ").replace("_", " ")

@@ -10,7 +10,7 @@ from typing import Literal
 
 from thermicon.circuit.inputs import read_bytes
 from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.files.input_files import NotRegular, TooLarge, read_limited
+from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
 
 from .outputs import below_start, check_output
 from .versions import Version, Versions

@@ -53,7 +53,7 @@ def _current(trace: Trace) -> str:
 
 def describe(trace: Trace) -> str:
     """Summarise a run: outcome, drive, extremes and changes at the receptors."""
-    from thermicon.circuit.rig.load import LOAD_SITES
+    from thermicon.circuit.rig.parts import LOAD_SITES
 
     peaks = []
     for name, column in (("cold receptor", trace.cold_receptor_C), ("warm receptor", trace.warm_receptor_C)):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.circuit.records import Record
-from thermicon.circuit.rig.load import refuse_load
+from thermicon.circuit.rig.parts import refuse_load
 from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array

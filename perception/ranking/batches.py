@@ -22,8 +22,7 @@ import numpy as np
 from thermicon.circuit.cores import cores
 from thermicon.circuit.program import DRIVES
 from thermicon.circuit.program import code_digest as digest_of
-from thermicon.icons.atomic import MARK, OutputError, complete_or_absent
-from thermicon.icons.userfolder import remove_unused
+from thermicon.icons.atomic import MARK, OutputError, complete_or_absent, remove_unused
 
 from ..arrays import Array, own_arrays
 from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
-from thermicon.circuit.rig.load import refuse_load
+from thermicon.circuit.rig.parts import refuse_load
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, Variable, receptor_input, sign_of

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.circuit.rig.load import LOAD_SITES, without_skin
+from thermicon.circuit.rig.parts import LOAD_SITES, without_skin
 from thermicon.circuit.rig.rigfile import RigError
 
 from ..arrays import Array, as_rows

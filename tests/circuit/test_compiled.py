@@ -18,7 +18,7 @@ import numba
 import pytest
 
 from thermicon.circuit import compiled
-from thermicon.icons.userfolder import NotPrivate, private_folder
+from thermicon.icons.atomic import NotPrivate, private_folder
 
 POSIX = sys.platform != "win32"
 

@@ -5,11 +5,15 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from thermicon.circuit import Rig
+from thermicon.circuit import Drive, Rig, simulate_current
+from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.rig.rig import rig_names
+from thermicon.circuit.rig.rig_words import STEP_S
 from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.kernel import LONGEST_STEP_S
 
 THENAR = Rig.load("thenar")
 
@@ -159,3 +163,98 @@ def test_limits_that_make_no_sense_together_are_warned_of(case: dict[str, Any]) 
 def test_a_key_that_is_taken_away_is_missed() -> None:
     with pytest.raises(RigError, match=r"^rig thenar: module\.resistance_ohm is missing; add it, in Ω$"):
         THENAR.with_(**{"module.resistance_ohm": None})
+
+
+@pytest.mark.parametrize("name", rig_names())
+def test_a_saved_rig_reads_back_as_an_equal_rig(name: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    Rig.load(name).save(path)
+    assert Rig.load(path).document == Rig.load(name).document
+    assert Rig.load(path) == Rig.load(name)
+
+
+def test_changes_probes_sheets_and_odd_texts_survive(tmp_path: Path) -> None:
+    sheets = [{"i_max_A": 6.4, "v_max_V": 14.4, "dt_max_K": 66.0, "t_hot_C": 25.0}]
+    probe = [{"name": "pad", "place": "insulated skin", "lag_s": 0.1}]
+    rig = THENAR.with_(
+        title='"quotes", \\ and µ',
+        notes=["two\nlines"],
+        probe=probe,
+        contact={"area_cm2": 0.1},
+        module={"datasheet": sheets},
+    )
+    rig.save(tmp_path / "mine.toml")
+    again = Rig.load(tmp_path / "mine.toml")
+    assert again == rig
+    assert again.title == '"quotes", \\ and µ'
+    assert again.contact.area_m2 == rig.contact.area_m2
+
+
+def test_a_changed_copy_is_saved_by_a_name_of_its_own(tmp_path: Path) -> None:
+    THENAR.with_(contact={"area_cm2": 4}).save(tmp_path / "mine.toml", name="bench")
+    again = Rig.load(tmp_path / "mine.toml")
+    assert again.name == "bench" and again.contact.area_m2 == pytest.approx(4e-4)
+    with pytest.raises(RigError, match="name"):
+        THENAR.save(tmp_path / "other.toml", name="two\nlines")
+    assert not (tmp_path / "other.toml").exists()
+
+
+def test_what_cannot_be_saved_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(RigError, match=r"ends in \.toml; call it rig\.json\.toml"):
+        THENAR.save(tmp_path / "rig.json")
+    with pytest.raises(RigError, match="cannot write"):
+        THENAR.save(tmp_path / "no-folder" / "rig.toml")
+    with pytest.raises(RigError, match=r"ambient\.temperature_C"):
+        perturbed(THENAR, ambient_K=200.0).save(tmp_path / "rig.toml")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nested_tables_change_the_keys_that_they_name() -> None:
+    nested = THENAR.with_(skin={"layer": {"dermis": {"thickness_mm": 1.2}}}, contact={"area_cm2": 4})
+    assert nested == THENAR.with_(**{"skin.layer.dermis.thickness_mm": 1.2, "contact.area_cm2": 4})
+    assert nested.changes == ("skin.layer.dermis.thickness_mm=1.2", "contact.area_cm2=4")
+    assert THENAR.with_(controller={"kp_A_per_K": 1.0}).controller is not None
+    with pytest.raises(RigError, match=r"contact\.area: unknown key; did you mean contact\.area_cm2"):
+        THENAR.with_(contact={"area": 4})
+
+
+def test_a_folder_does_not_hide_a_shipped_rig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "thenar").mkdir()
+    (tmp_path / "mine").mkdir()
+    assert Rig.load("thenar") == THENAR
+    with pytest.raises(RigError, match="is a directory"):
+        Rig.load("mine")
+
+
+def test_a_limit_that_ten_volts_do_not_command_is_named_with_its_cure() -> None:
+    (said,) = Rig.load("fingertip").with_(**{"driver.current_limit_A": 2.0}).warnings
+    assert "driver.current_limit_A = 2 A takes 13.3 V of command" in said and "reach 1.5 A" in said
+    assert "set driver.transconductance_A_per_V to that of your driver (0.2 or more for 2 A)" in said
+    more_gain = {"driver.current_limit_A": 2.0, "driver.transconductance_A_per_V": 0.2}
+    assert Rig.load("fingertip").with_(**more_gain).warnings == ()
+
+
+def test_a_plate_faster_than_two_steps_of_the_solver() -> None:
+    """Time constants of 5 ms against steps of 10; with updates every 2.5 ms the steps are short enough."""
+    thenar = Rig.load("thenar")
+    assert STEP_S == LONGEST_STEP_S
+    (said,) = thenar.with_(**{"module.cold_plate_J_per_K": 0.01}).warnings
+    assert said.startswith("module.cold_plate_J_per_K = 0.01 J/K follows what it touches within 5.5 ms, under the 20 ")
+    assert said.endswith("give it 0.038 J/K or more, with what is fixed to it, or set driver.update_Hz to 382 or more")
+    assert thenar.with_(**{"module.cold_plate_J_per_K": 0.038}).warnings == ()
+    assert thenar.with_(**{"module.cold_plate_J_per_K": 0.01, "driver.update_Hz": 382}).warnings == ()
+    assert thenar.with_(**{"module.cold_plate_J_per_K": 0.01, "contact.area_cm2": 0.5}).warnings == ()
+
+
+def test_such_a_plate_is_off_in_a_drive_and_not_with_short_steps() -> None:
+    def display_C(rig: Rig, rows_Hz: float) -> np.ndarray:
+        times = np.arange(0.0, 2.0 + 1e-9, 1.0 / rows_Hz)
+        coarse = np.arange(0.0, 2.0 + 1e-9, 0.01)
+        amperes = np.interp(times, coarse, 0.5 * np.sin(2.0 * np.pi * coarse) + 0.3 * (coarse > 0.5))
+        return simulate_current(Drive(times, amperes), rig, rate_Hz=100.0).display_C
+
+    thenar = Rig.load("thenar")
+    for stored, least, most in ((0.01, 0.1, 0.3), (0.037, 0.0, 0.03)):
+        rig = thenar.with_(**{"module.cold_plate_J_per_K": stored})
+        assert least < np.abs(display_C(rig, 100.0) - display_C(rig, 5000.0)).max() < most

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.circuit.rig.datasheet import Datasheet, at_mean_C
+from thermicon.circuit.rig.module import Datasheet, Extraction, Peltier, at_mean_C
 from thermicon.circuit.rig.modules import build_of, load_module, module_names
 from thermicon.circuit.rig.rigfile import RigError
 
@@ -17,6 +17,11 @@ GIVEN = "seebeck_V_per_K = 0.0521\nresistance_ohm = 6.35\nthermal_resistance_K_p
 
 def _parameters(rig: Rig) -> tuple[float, float, float]:
     return (rig.module.seebeck_V_per_K, rig.module.resistance_ohm, rig.module.thermal_resistance_K_per_W)
+
+
+def made(found: Extraction) -> Peltier:
+    """The module of an extraction with the plates of the thenar rig."""
+    return Peltier(found.seebeck_V_per_K, found.resistance_ohm, found.thermal_resistance_K_per_W, 2.6, 2.6)
 
 
 def _without(*keys: str) -> dict[str, float]:
@@ -36,19 +41,19 @@ def test_a_data_sheet_in_a_rig_file(tmp_path: Path) -> None:
     text = path.read_text("utf-8").replace("[heat_sink]", sheet + "\n[heat_sink]")
     path.write_text(text, "utf-8")
     rig, found = Rig.load(path), Datasheet(**TEC).four_figures()
-    assert rig.module == found.peltier(2.6, 2.6)
+    assert rig.module == made(found)
     assert rig.module_source.startswith("data sheet given in the rig (TE-127-1.0-2.5, derived")
     assert rig.warnings == ()
 
 
 def test_a_whole_list_of_sheets_replaces_the_parameters() -> None:
     rig = THENAR.with_(**{"module.datasheet": [TEC]})
-    assert rig.module == Datasheet(**TEC).four_figures().peltier(2.6, 2.6)
+    assert rig.module == made(Datasheet(**TEC).four_figures())
     assert rig.module_source == (
         "data sheet given in the rig (no source stated): four figures with the hot side at 25 °C, Qmax reproduced."
     )
     assert rig.with_(**{"module.datasheet.0.q_max_W": 48}).module == (
-        Datasheet(6.4, 14.4, 66, 25, 48).four_figures().peltier(2.6, 2.6)
+        made(Datasheet(6.4, 14.4, 66, 25, 48).four_figures())
     )
     assert rig.with_(**{"module.hot_plate_J_per_K": 9}).module.hot_plate_J_per_K == 9
     assert THENAR.module_source.startswith("parameters given: TE-127-1.0-2.5, derived from its leg geometry")
@@ -58,7 +63,7 @@ def test_a_whole_list_of_sheets_replaces_the_parameters() -> None:
 
 
 def test_without_qmax_three_figures_and_on_demand_too() -> None:
-    three = Datasheet(**TEC).three_figures().peltier(2.6, 2.6)
+    three = made(Datasheet(**TEC).three_figures())
     silent = THENAR.with_(**{"module.datasheet": [_without("q_max_W")]})
     assert silent.module == three
     assert silent.module_source.endswith("three figures with the hot side at 25 °C, no Qmax to check them against.")

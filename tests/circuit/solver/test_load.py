@@ -12,7 +12,7 @@ from thermicon.circuit import Device, Drive, Rig, design, fit, gate, netlist, si
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.fitting.keys import FitError, fittable
 from thermicon.circuit.fitting.laboratory import synthetic_log
-from thermicon.circuit.rig.load import AIR_J_PER_M2K
+from thermicon.circuit.rig.parts import AIR_J_PER_M2K
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.icons import load_library

@@ -2,6 +2,7 @@
 
 import json
 from importlib import resources
+from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
@@ -23,44 +24,9 @@ from thermicon.icons.model.units import Kind, fault
 SCHEMA = json.loads(resources.files("thermicon.icons").joinpath("data/cue.schema.json").read_text(encoding="utf-8"))
 VALID = Draft202012Validator(SCHEMA)
 
-EVERYTHING = """cue 1
-set all "Every kind of statement, \\"quoted\\"" {
-  site thenar; control display; baseline 32.5 °C; by "A. Person"; doi "10.1234/x"; licence "MIT"; tags "a, b c"
-}
-icon ramps means "é\\n" tags "x" {
-  warm by 1 °C at 1 °C/min; cool to 31 °C over 1 min; change by 1.5 K at 3 K/s; change to 32 °C over 20 ms
-  hold for 1e-3 s; return at 0.1 °C/s; rest for 2 s; total at most 200 s
-}
-icon shapes {
-  step cool by 3 °C; hold for 1 s; step to 33 °C; hold for 1 s; step by -1.5 °C; hold for 1 s; return over 1 s
-  pulse warm by 1 °C for 200 ms; pulse by -1 °C for 1 s
-  repeat 2 {
-    sine by 1 °C every 2 s for 4 s
-    repeat 3 { square by 1 °C every 1 s for 1.5 s starting cool cut; return at 9 K/s }
-  }
-  triangle by 1 °C every 2 s for 2 s; sawtooth by 1 °C every 2 s for 2 s starting cool
-}
-icon later { play ramp_amount=-3_rate=1.5_pause=200_times=2; play shapes; total at least 3 s }
-icon ramp(amount in [-3, 3] K, rate in 1..3 step 0.5 °C/s, pause in [200, 400] ms, times in [1, 2]) means "{amount}" {
-  repeat times { change by amount at rate; hold for pause; repeat 2 { pulse by amount for pause }; return at rate }
-  total at least 1 s
-}
-icon sizes(size in [0.5, 1] °C, level in [33, 34] °C, pause in [0.5, 1] s) {
-  cool by size over pause; step warm by size; rest for 1 s; change to level at 1 °C/s; hold for pause
-  pulse cool by size for pause; sine by size every pause for pause starting cool
-  return over pause; step to level; hold for pause
-}
-"""
-AMPS = """cue 1
-set { control current }
-icon a {
-  to 0.5 A at 1 A/s; hold for 1 s; step by -100 mA; hold for 1 s; step to 1 A; pulse by 0.2 A for 1 s
-  sine by 0.1 A every 1 s for 2 s starting down; to 0 A over 1 s; to 0.2 A over 1 s; return at 0.5 A/s
-}
-icon b(size in [100, 200] mA, rate in [1, 2] A/s) {
-  to size at rate; sawtooth by size every 1 s for 1 s; return at rate
-}
-"""
+EVERYTHING, AMPS = (
+    Path(__file__).parents[1].joinpath(f"{name}.cue").read_text("utf-8") for name in ("everything", "current")
+)
 
 
 @pytest.mark.parametrize("name", library_names())

@@ -1,6 +1,8 @@
 """Shipped sets are what they say; files are found, or it is said why not."""
 
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -67,17 +69,6 @@ def test_the_published_steps() -> None:
     assert (SIX.context.control, load_library("cooling-step-skin").context.control) == ("display", "skin")
 
 
-def test_the_waves() -> None:
-    waves = load_library("wave-shapes")
-    for icon in waves:
-        corners = icon.corners()
-        assert (corners.duration_s, corners.lowest, corners.highest) == (8.0, 29.0, 35.0)
-    sine = waves["sine"].corners()
-    for time in [n / 1000 for n in range(8001)]:
-        assert sine.at(time) == pytest.approx(32 + 3 * math.sin(2 * math.pi * time / 4), abs=0.001001)
-    assert (waves["square"].corners().steps, len(waves["triangle"].corners())) == ((0, 2, 4, 6, 8), 6)
-
-
 def test_files_are_read_and_an_existing_path_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     text = "cue 1\nicon mine { hold for 1 s }\n"
     (tmp_path / "my.cue").write_text(text, encoding="utf-8")
@@ -123,3 +114,12 @@ def test_an_unreadable_file_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(Path, "open", refuse)
     with pytest.raises(CueErrors, match="E003 unreadable file\n  the system says: Permission denied"):
         read_cue(path)
+
+
+def test_parsing_imports_nothing_heavy() -> None:
+    code = (
+        "import sys; from thermicon.icons import read_cue; repr(read_cue('six-icons').icons[0].corners()); "
+        "print([name for name in ('numpy', 'pandas', 'numba', 'matplotlib', 'pydantic') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

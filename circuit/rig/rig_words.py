@@ -1,0 +1,185 @@
+"""A rig in words, for people who did not write its file: what to know before trusting it, and what is unusual."""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from thermicon.icons.number_text import signed
+
+from .faults import sentence
+from .modules import build_of, module_names
+from .parts import with_article
+from .settings import changed
+from .uncertainty import tightened
+
+if TYPE_CHECKING:
+    from .rig import Rig
+    from .rigfile import Thermode
+
+WIDTH = 118
+PLATE_KEYS = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
+PLATE_SHARE = 0.2
+"""Plates on record are assumed from the footprint, within 20 % for ceramics of 0.5 to 0.8 mm."""
+
+SAME_FACE = 0.01
+"""Share by which a contact in cm² may differ from the face of a module by rounding alone."""
+
+LIVING_C = (28.0, 38.5)
+"""Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
+
+USUAL_COMMAND_V = 10.0
+"""Analogue outputs of laboratories end here; larger commands need another output or more gain."""
+
+STEP_S, STEPS = 0.01, 2.0
+"""Longest step of the solver, and how many a plate must take to follow: with fewer it is some 0.03 K off, or more."""
+
+HIGH_RESTING_FLUX_W_PER_M2 = 150.0
+"""Bare skin in still air loses 40 to 120 W/m²; above this, the rig warns."""
+
+
+def rig_summary(rig: Rig, for_methods: bool = False) -> str:
+    """Return title, site, rest, receptor depths in both conventions, module, warnings and notes, as lines of text.
+
+    A methods section has the driver in place of warnings and notes; it leaves out a title where the module has a name,
+    since it may describe the module that was there before.
+    """
+    rows = _rows(rig)
+    named = for_methods and "name" in json.loads(rig.document).get("module", {})
+    if not for_methods:
+        rows += [*(("warning", text) for text in rig.warnings), *(("note", text) for text in rig.notes)]
+    elif rig.pump is not None:
+        low, driver = signed(rig.driver.current_min_A), rig.driver
+        limits = f"{low} … {driver.current_max_A:g} A, {driver.voltage_limit_V:g} V at most"
+        rows.append(("driver", f"{limits}, updated at {driver.update_Hz:g} Hz"))
+    head = f"{rig.name}: {rig.title}" if rig.title and not named else rig.name
+    lines = [line for label, text in rows for line in _wrapped(label, text.rstrip(".") if for_methods else text)]
+    return "\n".join([head, *lines])
+
+
+def _rows(rig: Rig) -> list[tuple[str, str]]:
+    """Site, skin or load, and module or thermode, with their labels."""
+    flux = -rig.resting_flux_W_per_m2
+    how = "from the heat balance" if rig.skin.deep_C is None else "given"
+    skin = [
+        (
+            "rest",
+            f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), "
+            f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin",
+        ),
+        ("receptors", str(rig.receptor_depths())),
+    ]
+    if (load := rig.bench_load) is not None:
+        words = f"{load.capacity_J_per_K:.3g} J/K, {load.conductance_W_per_K:.3g} W/K to a room of {rig.deep_C:g} °C"
+        skin = [("load", f"{with_article(load.site)} in place of skin: {words}; nothing is judged for people")]
+    return [
+        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
+        *skin,
+        ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
+    ]
+
+
+def _thermode(thermode: Thermode) -> str:
+    fine = f"set-points in steps of {thermode.resolution_K:g} K" if thermode.resolution_K else "set-points of any step"
+    return (
+        f"{thermode.lowest_C:g} … {thermode.highest_C:g} °C at up to {thermode.slew_K_per_s:g} K/s, {fine} at "
+        f"{thermode.update_Hz:g} Hz, followed with a lag of {thermode.lag_s:g} s; no module, no current"
+    )
+
+
+def _wrapped(label: str, text: str) -> list[str]:
+    return textwrap.wrap(text, WIDTH, initial_indent=f"  {label:<11}", subsequent_indent=" " * 13)
+
+
+@lru_cache(maxsize=512)
+def rig_warnings(rig: Rig) -> tuple[str, ...]:
+    """Return a sentence for everything unusual: heat loss, blood, loosened limits, origin of the module's numbers."""
+    skin = _skin(rig) if rig.bench_load is None else ()
+    if rig.pump is None:
+        return (*skin, *_limits(rig), *_site(rig))
+    return (*skin, *_limits(rig), *_driver(rig), *rig.pump.origin.warnings, *_module(rig), *_site(rig))
+
+
+def _skin(rig: Rig) -> Iterator[str]:
+    """Heat loss and blood."""
+    loss_W_per_m2 = -rig.resting_flux_W_per_m2
+    if loss_W_per_m2 > HIGH_RESTING_FLUX_W_PER_M2:
+        yield sentence("warnings.flux", loss=loss_W_per_m2, most=HIGH_RESTING_FLUX_W_PER_M2)
+    if rig.deep_C < rig.skin.rest_C:
+        yield sentence("warnings.cold_blood", rig=rig)
+    if not LIVING_C[0] <= rig.deep_C <= LIVING_C[1]:
+        yield sentence("warnings.living", rig=rig, low=LIVING_C[0], high=LIVING_C[1])
+
+
+def _limits(rig: Rig) -> Iterator[str]:
+    """Limits and uncertainties that are looser than shipped, void, or passed at rest."""
+    limits, rest_C = rig.limits, rig.skin.rest_C
+    if limits.loosened:
+        yield sentence("warnings.loosened", words="; ".join(limits.loosened), reason=limits.reason)
+    if claims := tightened(rig.uncertainty):
+        yield sentence("warnings.milder", words="; ".join(claims), reason=rig.uncertainty.reason)
+    for hard, soft in limits.hidden:
+        side, limit, soft_limit = "below" if hard.upper else "above", signed(hard.limit), signed(soft.limit)
+        yield sentence("warnings.hidden", hard=hard, soft=soft, side=side, limit=limit, soft_limit=soft_limit)
+    if (rule := limits.passed_at_rest(rest_C)) is not None:
+        side, colour = "above" if rule.upper else "below", "red" if rule.severity == "hard" else "amber"
+        limit = signed(rule.limit)
+        yield sentence("warnings.at_rest", rest=rest_C, rule=rule, side=side, limit=limit, colour=colour)
+
+
+def _driver(rig: Rig) -> Iterator[str]:
+    """A current limit that usual converters cannot command, and a plate that is faster than the solver."""
+    driver, stored = rig.driver, rig.module.cold_plate_J_per_K
+    gain, limit = driver.transconductance_A_per_V, max(driver.current_max_A, -driver.current_min_A)
+    reached = USUAL_COMMAND_V * gain
+    if limit > reached * (1.0 + 1e-9):
+        numbers = {"limit": limit, "gain": gain, "volts": limit / gain, "needed": limit / USUAL_COMMAND_V}
+        yield sentence("warnings.command", usual=USUAL_COMMAND_V, reached=reached, **numbers)
+    least_s = STEPS * min(STEP_S, 1.0 / driver.update_Hz)
+    through = rig.contact.area_m2 / rig.contact.resistance_m2K_per_W + 1.0 / rig.module.thermal_resistance_K_per_W
+    if stored < least_s * through:
+        numbers = {"lag": 1e3 * stored / through, "least": 1e3 * least_s, "enough": 1.05 * least_s * through}
+        yield sentence("warnings.fast_plate", stored=stored, rate=1.05 * STEPS * through / stored, **numbers)
+
+
+def _module(rig: Rig) -> Iterator[str]:
+    """What does not suit a shipped module: the face, what a former one left behind, plates without a source."""
+    document, stated = json.loads(rig.document), changed(rig.changes)
+    name = document.get("module", {}).get("name")
+    if name not in module_names():
+        return
+    build, area_cm2, keys = build_of(name), 1e4 * rig.contact.area_m2, " and ".join(PLATE_KEYS)
+    hot, cold, replaced = rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K, stated.get("module.name") == name
+    if replaced and build.plate_J_per_K is None and not set(PLATE_KEYS) <= set(stated):
+        yield sentence("warnings.plates_unknown", name=name, hot=hot, cold=cold, keys=keys)
+    face, stays = build.face_cm2, replaced and "contact.area_cm2" not in stated
+    if face is not None and area_cm2 > (1.0 + SAME_FACE) * face:
+        yield sentence("warnings.face_small", name=name, area=area_cm2, face=face)
+    elif stays and (face is None or area_cm2 < (1.0 - SAME_FACE) * face):
+        words = "not on record" if face is None else f"{face:g} cm²"
+        yield sentence("warnings.face_stays", name=name, area=area_cm2, face=words)
+    if replaced and rig.driver.current_max_A > build.i_max_A:
+        yield sentence("warnings.past_imax", name=name, limit=rig.driver.current_max_A, imax=build.i_max_A)
+    plate = build.plate_J_per_K
+    if {*document.get("source", {}), *stated} & set(PLATE_KEYS) or plate is None:
+        return
+    if any(abs(each - plate) > PLATE_SHARE * plate for each in (hot, cold)):
+        yield sentence("warnings.plates_other", name=name, hot=hot, cold=cold, plate=plate, keys=keys)
+
+
+def _site(rig: Rig) -> Iterator[str]:
+    """A change that names another site and leaves the skin as it was."""
+    from .rig import Rig, rig_names
+
+    stated = changed(rig.changes)
+    if "skin.site" not in stated or any(key.split(".")[:2] == ["skin", "layer"] for key in stated):
+        return
+    there = [shipped for name in rig_names() if (shipped := Rig.load(name)).site == rig.site]
+    if any(shipped.skin.layers == rig.skin.layers for shipped in there):
+        return
+    names = " or ".join(f"--rig {shipped.name}" for shipped in there)
+    cure = f"use {names}, or set skin.layer" if there else "use a rig file of that site, or set skin.layer"
+    yield sentence("warnings.site", rig=rig, cure=cure)
