@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import prod
 
+from ..drawn import Drawn
 from .context import Context, Metadata, name_fault
-from .icon import Drawn, Icon, rest_level
+from .icon import Icon, rest_level
 from .members import HOLE, Expander, Summary, check_family
 from .parameter import Parameter, Slot, in_order, slot_fault
 from .statements import Statement

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
+from ..drawn import Drawn
 from .check import ASSUMED_BASELINE_C, Problem, problems
 from .context import Context, Metadata, name_fault
 from .corners import Corners, Quantity, corners
@@ -15,26 +15,6 @@ from .format import icon_text, statement_text
 from .motion import TOLERANCE
 from .statements import LEAVES, Play, Repeat, Statement
 from .units import exact, fault
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-
-class Drawn:
-    """An icon, a family or a set, which the room of pictures can draw; that room loads when one is first made."""
-
-    __slots__ = ()
-
-    def plot(self, ax: "Axes | None" = None) -> "Axes":
-        """Draw against time, on the axes or on new ones, and return them; up to 24 icons over one another."""
-        from ..pictures.draw import plot
-
-        return plot(self, ax)
-
-    def _repr_html_(self) -> str:
-        from ..pictures.draw import as_svg
-
-        return as_svg(self.plot())
 
 
 @dataclass(frozen=True, slots=True, repr=False)

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from functools import reduce
 from typing import overload
 
+from ..drawn import Drawn
 from .context import Context, Metadata, name_fault, text_fault
 from .family import Family
 from .format import set_text
-from .icon import Drawn, Icon, content_hash, played_icons
+from .icon import Icon, content_hash, played_icons
 from .members import Summary
 from .units import quantity
 from .words import nearest

@@ -9,8 +9,9 @@ from html import escape
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
+from ..drawn import Drawn
 from ..model.family import Family
-from ..model.icon import Drawn, Icon
+from ..model.icon import Icon
 from ..model.iconset import IconSet
 
 if TYPE_CHECKING:

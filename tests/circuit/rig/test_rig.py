@@ -1,6 +1,7 @@
 """Rigs at the door: what is shipped, what can be changed, and how a bad rig is refused."""
 
 import json
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -68,19 +69,6 @@ def test_settings_from_the_command_line_are_toml_values() -> None:
     assert THENAR.with_set([]) is THENAR
 
 
-def test_another_site_alone_leaves_the_skin_and_says_so() -> None:
-    (warning,) = THENAR.with_set(["skin.site=forearm"]).warnings
-    assert warning.startswith("skin.site = forearm changes the name of the site")
-    assert (
-        "layers and receptor depths are still those of rig thenar: use --rig forearm or --rig tcs2, or set" in warning
-    )
-    (unknown,) = THENAR.with_set(["skin.site=sole"]).warnings
-    assert "use a rig file of that site, or set skin.layer" in unknown
-    assert THENAR.with_set(["skin.site=forearm", "skin.layer.0.thickness_mm=0.022"]).warnings == ()
-    assert THENAR.with_set(["skin.site=thenar"]).warnings == ()
-    assert Rig.load("shani2021").with_set(["contact.area_cm2=4"]).warnings == Rig.load("shani2021").warnings
-
-
 @pytest.mark.parametrize("setting", ["contact.area_cm2", "=4", "contact.area_cm2="])
 def test_a_setting_has_a_form(setting: str) -> None:
     with pytest.raises(RigError, match="a setting has the form KEY=VALUE"):
@@ -124,26 +112,11 @@ def test_files_that_are_no_rig(tmp_path: Path) -> None:
         Rig.load("thena")
 
 
-def test_an_unusual_rig_warns() -> None:
-    assert THENAR.warnings == ()
-    assert Rig.load("shani2021").warnings == (
-        "skin at rest loses 1046 W/m², over the 150 W/m² that bare skin in room air can lose",
-    )
-    warm_air = THENAR.with_(**{"ambient.temperature_C": 36.0})
-    assert "is colder than the resting surface at 32 °C" in warm_air.warnings[0]
-
-
 def test_a_changed_rig_knows_what_was_changed() -> None:
     assert THENAR.changes == ()
     once = THENAR.with_(**{"contact.area_cm2": 4, "driver.current_limit_A": 1.0})
     assert once.changes == ("contact.area_cm2=4", "driver.current_limit_A=1.0")
     assert once.with_(**{"contact.area_cm2": 5}).changes == ("contact.area_cm2=5", "driver.current_limit_A=1.0")
-
-
-def test_blood_that_no_limb_has_is_told() -> None:
-    hot = THENAR.with_(**{"skin.rest_C": 38.0})
-    assert hot.warnings[-1].endswith("of living limbs; check skin.rest_C and the ambient")
-    assert "blood at 42.5" in hot.warnings[-1]
 
 
 MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
@@ -155,9 +128,12 @@ def test_a_change_that_cannot_be_is_refused_in_words(case: dict[str, Any]) -> No
         Rig.load(case.get("rig", "thenar")).with_(**case["changes"])
 
 
-@pytest.mark.parametrize("case", MESSAGES["warned"], ids=lambda case: case["words"][:40])
-def test_limits_that_make_no_sense_together_are_warned_of(case: dict[str, Any]) -> None:
-    assert THENAR.with_(**case["changes"]).warnings == (case["words"],)
+@pytest.mark.parametrize("case", MESSAGES["warned"], ids=lambda case: f"{case['changes']}"[:50])
+def test_an_unusual_rig_warns(case: dict[str, Any]) -> None:
+    warnings = Rig.load(case.get("rig", "thenar")).with_(**case["changes"]).warnings
+    assert len(warnings) == len(case["words"]), warnings
+    for said, pattern in zip(warnings, case["words"], strict=True):
+        assert re.search(pattern, said), said
 
 
 def test_a_key_that_is_taken_away_is_missed() -> None:
@@ -227,34 +203,14 @@ def test_a_folder_does_not_hide_a_shipped_rig(tmp_path: Path, monkeypatch: pytes
         Rig.load("mine")
 
 
-def test_a_limit_that_ten_volts_do_not_command_is_named_with_its_cure() -> None:
-    (said,) = Rig.load("fingertip").with_(**{"driver.current_limit_A": 2.0}).warnings
-    assert "driver.current_limit_A = 2 A takes 13.3 V of command" in said and "reach 1.5 A" in said
-    assert "set driver.transconductance_A_per_V to that of your driver (0.2 or more for 2 A)" in said
-    more_gain = {"driver.current_limit_A": 2.0, "driver.transconductance_A_per_V": 0.2}
-    assert Rig.load("fingertip").with_(**more_gain).warnings == ()
-
-
-def test_a_plate_faster_than_two_steps_of_the_solver() -> None:
-    """Time constants of 5 ms against steps of 10; with updates every 2.5 ms the steps are short enough."""
-    thenar = Rig.load("thenar")
-    assert STEP_S == LONGEST_STEP_S
-    (said,) = thenar.with_(**{"module.cold_plate_J_per_K": 0.01}).warnings
-    assert said.startswith("module.cold_plate_J_per_K = 0.01 J/K follows what it touches within 5.5 ms, under the 20 ")
-    assert said.endswith("give it 0.038 J/K or more, with what is fixed to it, or set driver.update_Hz to 382 or more")
-    assert thenar.with_(**{"module.cold_plate_J_per_K": 0.038}).warnings == ()
-    assert thenar.with_(**{"module.cold_plate_J_per_K": 0.01, "driver.update_Hz": 382}).warnings == ()
-    assert thenar.with_(**{"module.cold_plate_J_per_K": 0.01, "contact.area_cm2": 0.5}).warnings == ()
-
-
-def test_such_a_plate_is_off_in_a_drive_and_not_with_short_steps() -> None:
+def test_a_plate_that_is_warned_of_is_off_in_a_drive_and_not_with_short_steps() -> None:
     def display_C(rig: Rig, rows_Hz: float) -> np.ndarray:
         times = np.arange(0.0, 2.0 + 1e-9, 1.0 / rows_Hz)
         coarse = np.arange(0.0, 2.0 + 1e-9, 0.01)
         amperes = np.interp(times, coarse, 0.5 * np.sin(2.0 * np.pi * coarse) + 0.3 * (coarse > 0.5))
         return simulate_current(Drive(times, amperes), rig, rate_Hz=100.0).display_C
 
-    thenar = Rig.load("thenar")
+    assert STEP_S == LONGEST_STEP_S
     for stored, least, most in ((0.01, 0.1, 0.3), (0.037, 0.0, 0.03)):
-        rig = thenar.with_(**{"module.cold_plate_J_per_K": stored})
+        rig = THENAR.with_(**{"module.cold_plate_J_per_K": stored})
         assert least < np.abs(display_C(rig, 100.0) - display_C(rig, 5000.0)).max() < most

@@ -148,25 +148,6 @@ def test_plates_on_record_are_alumina_over_the_footprint_with_half_the_legs() ->
         assert alumina + legs < build.plate_J_per_K / build.face_cm2 < 1.2 * (alumina + legs)  # the rest is copper
 
 
-def test_what_stays_from_another_module_is_said() -> None:
-    def said(name: str, rig: Rig = THENAR, **more: object) -> str:
-        return " ".join(rig.with_(**{"module.name": name, **more}).warnings)
-
-    assert said("CP1.0-127-06L") == ""  # of the same size
-    assert "its face is 16 cm², and contact.area_cm2 stays the 9 cm² of the rig; set it to what" in said(
-        "TM-127-1.4-4.0"
-    )
-    assert said("TM-127-1.4-4.0", **{"contact.area_cm2": 12}) == ""
-    wide = said("CP1.0-127-06L", **{"contact.area_cm2": 12})
-    assert "contact.area_cm2 = 12 cm² is more than its face of 9 cm²; set contact.area_cm2 to at most that" in wide
-    small = said("1MD04-003-08")
-    assert "its plates are unknown, so the rig keeps its own, 2.6 (hot) and 2.6 J/K (cold); set " in small
-    assert "its face is not on record, and contact.area_cm2 stays the 9 cm²" in small
-    assert "driver.current_limit_A = 1.5 A is above its Imax of 1 A" in small
-    known = {"module.hot_plate_J_per_K": 0.1, "module.cold_plate_J_per_K": 0.1, "contact.area_cm2": 0.2}
-    assert said("1MD04-003-08", **known, **{"driver.current_limit_A": 0.8}) == ""
-
-
 def test_a_name_from_the_command_line_and_a_wrong_one() -> None:
     assert THENAR.with_set(["module.name=CP60340"]).module_source.startswith("CP60340, maker's datasheet")
     with pytest.raises(RigError, match=r"rig thenar: module\.name = CP6034: no such module; did you mean CP60340\?"):
