@@ -58,12 +58,3 @@ def test_both_take_many_traces_and_count_up_from_0() -> None:
         assert (found[..., 0] == 0).all()
         assert (np.diff(found, axis=-1) >= 0).all()
         assert found[0, 0] == pytest.approx(measure(time, warm[0, 0]), rel=1e-14)
-
-
-def test_rows_that_do_not_fit_are_refused() -> None:
-    with pytest.raises(ValueError, match=r"\(3,\) temperatures do not fit \(2,\) times"):
-        cem43_min([0, 1], [30, 31, 32])
-    with pytest.raises(ValueError, match="times must increase"):
-        henriques([0, 1, 1], [30, 31, 32])
-    with pytest.raises(ValueError, match="finite numbers in °C"):
-        henriques([0, 1], [30, math.nan])
