@@ -147,7 +147,7 @@ def choose(
     """
     draws = ranking.model.draw_count(parameters, DRAWS)
     chooser = Chooser(ranking, asked)
-    found = chooser.best(asked.count, draws, step_counter(progress, 1 + draws))
+    found = chooser.best(asked.count, draws, step_counter(progress, 1 + draws), asked.objective == "worst")
     if found is None:
         raise ChoiceError(chooser.pool.nothing_fits(asked))
     return found
@@ -175,10 +175,10 @@ class Chooser:
                 self.d, self.crowd.lapse, self.pool.durations_s, job.seed, favour=favour
             )
 
-    def best(self, count: int, draws: int, step: Callable[[], None]) -> Choice | None:
+    def best(self, count: int, draws: int, step: Callable[[], None], one_by_one: bool = False) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
 
-        `step` is called once, and after each draw.
+        `step` is called once, and after each draw. Single people are asked `one_by_one` whether they would do better.
         """
         ranking, asked, pool, namings = self.ranking, self.asked, self.pool, self.namings
         job, felt, model = ranking.job, ranking.felt, ranking.model
@@ -188,7 +188,7 @@ class Chooser:
         chosen = [self.places[k] for k in picked.chosen]
         names, middle = [job.icons[k].name for k in chosen], felt.middle[np.ix_(chosen, chosen)]
         a, b = nearest_two(middle)
-        share, loss = self._for_people(picked) if asked.objective == "worst" else (None, None)
+        share, loss = self._for_people(picked) if one_by_one else (None, None)
         task = task_among(job.task, ranking.carry_over, chosen)
         own = appraise(
             [job.icons[k] for k in chosen],

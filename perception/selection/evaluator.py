@@ -8,19 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..arrays import Array
-from ..identification.laboratory import Nominal, new_laboratory
-from ..identification.laboratory_draws import EVERY, DrawnLaboratories
-from ..identification.laboratory_draws import PEOPLE as DRAWN_PEOPLE
-from ..identification.population import RATE_HZ, ReceptorTemperatures, memory_dprime, respond, run_end_s
+from ..identification.laboratory_draws import DrawnLaboratories
+from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import Norm, Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
+from ..ranking.rank import rank
 from .appraise import Appraisal, appraise
 from .goal import Goal, GoalPart
 from .pool import POOL_HZ, Pool
@@ -148,7 +147,7 @@ class FinalJudge:
 
     def merit(self, icons: Sequence[Icon], scores: Appraisal) -> tuple[float, ...]:
         """What the better set has more of: nearness to the goal, then values of its parts, then of the objective."""
-        persons = self._persons(icons, scores) if any(part.people is not None for part in self.parts) else {}
+        persons = self._persons(icons) if any(part.people is not None for part in self.parts) else {}
         means = {"correct": scores.proportion_correct, "bits": scores.information_bits, "d_prime": scores.d_prime}
         values = [
             means[part.quantity]
@@ -159,23 +158,15 @@ class FinalJudge:
         missing = [max(0.0, 1.0 - value / part.limit) for part, value in zip(self.parts, values, strict=True)]
         return (-max(missing, default=0.0), *values, scores.value(self.by.objective))
 
-    def _persons(self, icons: Sequence[Icon], scores: Appraisal) -> dict[str, Array]:
-        """Values of single people of all draws, laid about what all people reach, as in `rank`."""
-        from thermicon.circuit.solver.simulate import duration_s
+    def _persons(self, icons: Sequence[Icon]) -> dict[str, Array]:
+        """Values of single people of all draws, as in `rank`."""
+        from thermicon.icons import IconSet
 
-        by = self.by
-        end = run_end_s(duration_s(icon, by.rig) for icon in icons)
-        few = self.crowd.part(0, min(DRAWN_PEOPLE, len(self.crowd)))
-        met = ReceptorTemperatures.simulated(icons, few.rigs(by.rig), by.rig, end, RATE_HZ, by.tracking)
-        played = met.thinned(len(few), EVERY)
-        n = len(icons)
-        # Single people are laid about correct and bits alone; the rest of the prediction is not used.
-        predicted = Nominal(
-            scores.proportion_correct, scores.information_bits, np.zeros(n), np.zeros((n, n)), np.zeros(n)
-        )
-        return new_laboratory(
-            played, self.crowd, predicted, by.norm, model=self.model, draws=self.draws, seed=by.seed
-        ).persons
+        by, people = self.by, len(self.crowd)
+        members = IconSet("", "", icons[0].context, icons[0].metadata, tuple(icons))
+        how: dict[str, Any] = {"seed": by.seed, "tracking": by.tracking, "norm": by.norm, "observer": self.model}
+        found = rank(members, by.rig, people=people, parameters=self.draws, **how).new_laboratory
+        return {} if found is None else found.persons
 
 
 def in_words(part: GoalPart) -> str:

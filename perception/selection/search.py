@@ -215,5 +215,5 @@ def search(
 
 
 def _different(sets: Sequence[list[Candidate]]) -> list[list[Candidate]]:
-    """Each set once, by its icons."""
-    return list({tuple(candidate.icon.name for candidate in candidates): candidates for candidates in sets}.values())
+    """Each set once, by its icons in any order."""
+    return list({frozenset(each.icon.name for each in candidates): candidates for candidates in sets}.values())
