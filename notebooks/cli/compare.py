@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
 MOST_IN_A_SET = 30
-"""Larger sets are compared icon by icon alone; `thermicon.perception.selection.appraise.compare_sets` takes them."""
+"""Larger sets are compared icon by icon alone."""
+PEOPLE = 100
+"""Virtual people who identify both sets."""
 TABLES = (".csv", ".parquet")
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
 HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or .parquet"
@@ -56,7 +58,7 @@ def compare_command(
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
     .csv or .parquet files with time_s and columns of a trace. Of two sets, the icons with the same name are compared,
-    and which set is easier to distinguish is predicted.
+    and how well the icons of each set are identified is predicted.
     """
     kind, both = kind_of_both(first, second), (first, second)
     given = (file, icon, rig.rig, rig.changes, align)
@@ -145,7 +147,7 @@ def _named(text: str, option: str) -> Icon:
 
 
 def _sets(names: tuple[str, str], icon: str | None, rig: Rig) -> tuple[list[Comparison], str]:
-    """Compare the icons with the same name, or the one named, and predict which set is identified better."""
+    """Compare the icons with the same name, or the one named, and predict how well both sets are identified."""
     one, other = (read_set([name]) for name in names)
     if icon is not None:
         pair = (pick(one, icon)[0], pick(other, icon)[0])
@@ -161,9 +163,10 @@ def _sets(names: tuple[str, str], icon: str | None, rig: Rig) -> tuple[list[Comp
         if not made:
             raise LogError(f"{names[0]} and {names[1]}: no icon has the same name, and sets of 2 to 30 are compared")
         return made, ""
-    from thermicon.perception.selection.appraise import compare_sets
+    from thermicon.perception.selection.appraise import appraise
 
-    return made, comparison_line(compare_sets(one, other, rig))
+    first, second = (appraise(list(each), rig, people=PEOPLE) for each in (one, other))
+    return made, comparison_line(first, second, PEOPLE)
 
 
 def _played(title: str, icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig], names: tuple[str, str]) -> Comparison:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from thermicon.circuit import Session, Trace
-    from thermicon.perception.selection.appraise import SetComparison
+    from thermicon.perception.selection.appraise import Appraisal
 
 MOST_SHOWN = 60
 """Plays in the table of a session; all of them are in the JSON."""
@@ -234,22 +234,14 @@ def compare_report(made: Comparison) -> list[Block]:
     ]
 
 
-def comparison_line(found: SetComparison) -> str:
-    """Report how often A is identified better than B, and by how much.
+def comparison_line(one: Appraisal, other: Appraisal, people: int) -> str:
+    """Report how well the icons of two sets are identified by the same people.
 
-    >>> from thermicon.perception.selection.appraise import SetComparison
-    >>> comparison_line(SetComparison(0.93, 0.02, 0.41, 100))
-    'predicted: the icons of A are easier to distinguish than those of B in 93 % of 100 draws of person, contact, room \
-and rig; the d′ of its worst pair is larger by 0.4 (median)'
+    >>> from thermicon.perception.selection.appraise import Appraisal
+    >>> one, other = (Appraisal(("a", "b"), d, share, 1.0, 0.2, 0.5) for d, share in ((2.51, 0.9), (1.0, 0.7)))
+    >>> comparison_line(one, other, 100)
+    'predicted for 100 virtual people: A 90 % correct, d′ of the worst pair 2.5; B 70 % correct, d′ 1.0'
     """
-    share, better = (found.probability, "A") if found.probability >= 0.5 else (1.0 - found.probability, "B")
-    other = "B" if better == "A" else "A"
-    drawn = f"{found.draws} draws of person, contact, room and rig"
-    if share < 0.5 + 2.0 * found.standard_error:
-        return f"predicted: no difference between A and B in how well their icons are distinguished, within {drawn}"
-    gain = abs(found.gain)
-    return (
-        f"predicted: the icons of {better} are easier to distinguish than those of {other} in {percent(share)} of "
-        f"{drawn}; "
-        f"the d′ of its worst pair is larger by {number(gain)} (median)"
-    )
+    first, second = (f"{percent(each.proportion_correct)} correct, d′" for each in (one, other))
+    worst = f"of the worst pair {one.d_prime:.1f}"
+    return f"predicted for {people} virtual people: A {first} {worst}; B {second} {other.d_prime:.1f}"
