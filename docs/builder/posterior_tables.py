@@ -16,7 +16,7 @@ from evidence_tables import TABLES as INFERRED
 from table_text import UNITS, markdown, number, signed, span
 
 from thermicon.perception.arrays import Array
-from thermicon.perception.evidence.posterior import UNMOVED_SHIFT, Summary, summarise
+from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
 from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.observer.channels import VARIABLES, Variable
@@ -128,6 +128,46 @@ def stacking_weights(log_scores: Array, rounds: int = 2000) -> Array:
         shares = weights[:, None] * densities
         weights = (shares / shares.sum(axis=0)).mean(axis=1)
     return weights
+
+
+UNMOVED_SHIFT = 0.3
+"""A constant that keeps more than `UNMOVED_SD`, with its median moved by fewer SDs of the prior, was not moved."""
+EDGE = 1.96
+"""A median so many SDs of the prior away from its middle lies at the edge of the prior."""
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """One constant in its own unit: median and 95 % interval; `narrowed` and `shift` are in SDs of its prior."""
+
+    name: str
+    unit: str
+    median: float
+    low: float
+    high: float
+    narrowed: float
+    shift: float
+
+    @property
+    def unmoved(self) -> bool:
+        """Whether the posterior is the prior, as good as."""
+        return self.narrowed > UNMOVED_SD and abs(self.shift) < UNMOVED_SHIFT
+
+    @property
+    def at_edge(self) -> bool:
+        """Whether evidence and prior disagree so much that the median lies at the end of the prior's 95 %."""
+        return abs(self.shift) > EDGE
+
+
+def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
+    """Every constant of a posterior, in the order of the table."""
+    rows = []
+    for prior in Posterior(draws.variable).priors.each:
+        values = draws.values(prior.name)
+        places = (np.array([prior.to_place(value) for value in values.tolist()]) - prior.middle) / prior.sd
+        low, median, high = draws.interval(prior.name)
+        rows.append(Summary(prior.name, prior.unit, median, low, high, float(places.std()), float(np.median(places))))
+    return tuple(rows)
 
 
 def posterior_table() -> str:

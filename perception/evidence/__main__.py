@@ -22,7 +22,7 @@ from ..observer.draws_file import shipped_file, to_text
 from ..observer.priors import WITHIN_95
 from .calibrate import write_observer
 from .chains import CHAINS, require_extra
-from .posterior import LeftOut, Maximum, Posterior, leave_each_out, maximise, summarise
+from .posterior import LeftOut, Maximum, Posterior, leave_each_out, maximise
 from .results import CONSTANTS, PREDICTIONS, Constant, PredictedRow, write_rows
 from .sampling import LEAST_STEPS, Sampled, approximate_draws, sample
 
@@ -113,10 +113,9 @@ def sample_posterior(asked: argparse.Namespace) -> int:
     )
     sys.stderr.write("\n")
     draws = sampled.draws()
-    for each in summarise(draws):
-        remark = "at the edge of its prior" if each.at_edge else "not moved" if each.unmoved else ""
-        spans = f"{each.median:10.3g} {each.low:10.3g} {each.high:10.3g} {each.unit:<12} SD left {each.narrowed:.2f}"
-        sys.stdout.write(f"{each.name:<44} {spans} {remark}\n")
+    for name in draws.names:
+        low, median, high = draws.interval(name)
+        sys.stdout.write(f"{name:<44} {median:10.3g} {low:10.3g} {high:10.3g}\n")
     sys.stdout.write(f"{draws.header.status}; worst: {worst_text(sampled)}\n")
     if not sampled.diagnostics.converged:
         sys.stderr.write("nothing was written: give more --steps\n")

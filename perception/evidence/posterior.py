@@ -6,7 +6,6 @@ evidence is
     ln Z ≈ −½·Σ r² − ½·ln det(JᵀJ)
 
 for a vector in SDs of normal priors; what is left out is the same for every model of the same rows.
-What sampled draws say of each constant is a `Summary`: median, interval, and how far it is from its prior.
 """
 
 from __future__ import annotations
@@ -23,9 +22,7 @@ from ..arrays import Array
 from ..experiments.laboratory import Laboratory
 from ..experiments.published import Predictions, predict
 from ..observer.channels import Variable
-from ..observer.draws import PosteriorDraws
 from ..observer.priors import WITHIN_95, Priors, load_priors, priors_of
-from .results import UNMOVED_SD
 from .rows import Row, load_rows
 
 BoolArray = NDArray[np.bool_]
@@ -215,43 +212,3 @@ def prediction_sd(maximum: Maximum, rows: list[Row]) -> Array:
     gradient = np.stack(slopes, axis=1)
     variance: Array = np.einsum("ri,ij,rj->r", gradient, maximum.covariance, gradient)
     return np.sqrt(np.maximum(variance, 0.0))
-
-
-UNMOVED_SHIFT = 0.3
-"""A constant that keeps more than `UNMOVED_SD`, with its median moved by fewer SDs of the prior, was not moved."""
-EDGE = 1.96
-"""A median so many SDs of the prior away from its middle lies at the edge of the prior."""
-
-
-@dataclass(frozen=True, slots=True)
-class Summary:
-    """One constant in its own unit: median and 95 % interval; `narrowed` and `shift` are in SDs of its prior."""
-
-    name: str
-    unit: str
-    median: float
-    low: float
-    high: float
-    narrowed: float
-    shift: float
-
-    @property
-    def unmoved(self) -> bool:
-        """Whether the posterior is the prior, as good as."""
-        return self.narrowed > UNMOVED_SD and abs(self.shift) < UNMOVED_SHIFT
-
-    @property
-    def at_edge(self) -> bool:
-        """Whether evidence and prior disagree so much that the median lies at the end of the prior's 95 %."""
-        return abs(self.shift) > EDGE
-
-
-def summarise(draws: PosteriorDraws) -> tuple[Summary, ...]:
-    """Every constant of a posterior, in the order of the table."""
-    rows = []
-    for prior in Posterior(draws.variable).priors.each:
-        values = draws.values(prior.name)
-        places = (np.array([prior.to_place(value) for value in values.tolist()]) - prior.middle) / prior.sd
-        low, median, high = draws.interval(prior.name)
-        rows.append(Summary(prior.name, prior.unit, median, low, high, float(places.std()), float(np.median(places))))
-    return tuple(rows)

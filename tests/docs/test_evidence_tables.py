@@ -9,11 +9,12 @@ import pytest
 
 from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
 from thermicon.perception.evidence.rows import load_rows
+from thermicon.perception.observer.draws import PosteriorDraws
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "builder"))
 
 import evidence_tables as tables
-from posterior_tables import TABLES, load_left_out, stacking_weights, variant_weights
+from posterior_tables import TABLES, load_left_out, stacking_weights, summarise, variant_weights
 
 
 def body(table: str) -> list[list[str]]:
@@ -64,6 +65,13 @@ def test_left_out_predictions_by_draws_cover_and_beat_the_naive_baseline() -> No
     compared = [row for row in rows if not np.isnan(row.naive)]
     assert len(compared) > 15
     assert sum(row.log_score - row.naive for row in compared) > 0.0
+
+
+def test_summaries_say_what_was_not_moved() -> None:
+    found = {each.name: each for each in summarise(PosteriorDraws.load())}
+    assert found["softness of the limits"].unmoved
+    assert not found["warm threshold drive"].unmoved
+    assert found["warm threshold drive"].narrowed < 0.4
 
 
 @pytest.mark.parametrize("name", TABLES)

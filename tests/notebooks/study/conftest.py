@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import subprocess
 import sys
 from collections.abc import Callable
@@ -62,14 +63,19 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make(tmp_path_factory.mktemp("quick"), QUICK)
 
 
+def run_script(folder: Path, output: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
+    """Run the script of a study in a process of its own."""
+    command = [sys.executable, folder / "run_study.py", "--output", output, *arguments]
+    return subprocess.run(list(map(str, command)), capture_output=True, encoding="utf-8", timeout=120, check=False)
+
+
+def rows_of(path: Path, delimiter: str = ",") -> list[dict[str, str]]:
+    """Rows of a table."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file, delimiter=delimiter))
+
+
 @pytest.fixture
 def script(quick: Path, tmp_path: Path) -> Runner:
-    """``script("--participant", "A", "--simulate")`` runs the script of the study without thermicon on its path."""
-
-    def run(*arguments: object, folder: Path = quick, output: Path = tmp_path) -> subprocess.CompletedProcess[str]:
-        command = [sys.executable, folder / "run_study.py", "--output", output, *arguments]
-        return subprocess.run(
-            [str(each) for each in command], capture_output=True, encoding="utf-8", timeout=120, check=False
-        )
-
-    return run
+    """``script("--participant", "A", "--simulate")`` runs the script of the small study."""
+    return lambda *arguments, output=tmp_path: run_script(quick, output, *arguments)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import json
+import os
+import shutil
 import subprocess
 import sys
 from itertools import pairwise
@@ -13,14 +14,9 @@ import pytest
 
 from tests.builders import messages
 
-from .conftest import Runner
+from .conftest import Runner, rows_of, run_script
 
 COLUMNS = ["participant", "trial", "presented", "responded", "time_s"]
-
-
-def rows_of(path: Path, delimiter: str = ",") -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file, delimiter=delimiter))
 
 
 def answers(folder: Path, who: str = "A") -> list[dict[str, str]]:
@@ -31,22 +27,29 @@ def events(folder: Path, who: str = "A", run: int = 1) -> list[dict[str, str]]:
     return rows_of(folder / f"sub-{who}" / "beh" / f"sub-{who}_task-quick_run-{run}_events.tsv", "\t")
 
 
-@pytest.mark.slow
-def test_a_simulated_run_writes_answers_and_events(quick: Path, script: Runner, tmp_path: Path) -> None:
-    done = script("--participant", "A", "--simulate")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "A: done; 8 answers after" in done.stdout
+@pytest.fixture(scope="module")
+def done(quick: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the data of participants A, who answers by chance, and B, who is always right."""
+    folder = tmp_path_factory.mktemp("done")
+    for who, more in (("A", []), ("B", ["--correct", 1])):
+        ran = run_script(quick, folder, "--participant", who, "--simulate", *more)
+        assert (ran.returncode, ran.stderr) == (0, "")
+        assert f"{who}: done; 8 answers after" in ran.stdout
+    return folder
+
+
+def test_a_simulated_run_writes_answers_and_events(quick: Path, done: Path) -> None:
     conditions = rows_of(quick / "sub-A_task-quick_conditions.csv")
-    found = answers(tmp_path)
+    found, played = answers(done), events(done)
     assert list(found[0]) == COLUMNS
     assert [row["presented"] for row in found] == [row["icon"] for row in conditions if row["trial"] != "0"]
     assert [int(row["trial"]) for row in found] == list(range(1, 9))
     assert {row["responded"] for row in found} <= {"dip", "glow"}
     assert all(float(row["time_s"]) > 3.0 for row in found), "answers come after the icon, from whose start they count"
-    played = events(tmp_path)
+    assert all(row["presented"] == row["responded"] for row in answers(done, "B")), "a perfect person is always right"
     assert [row["trial_type"] for row in played] == [row["icon"] for row in conditions], "practice included"
-    assert all((tmp_path / "stimuli" / row["stim_file"]).is_file() for row in played)
-    columns = json.loads((tmp_path / "task-quick_events.json").read_text(encoding="utf-8"))
+    assert all((done / "stimuli" / row["stim_file"]).is_file() for row in played)
+    columns = json.loads((done / "task-quick_events.json").read_text(encoding="utf-8"))
     assert set(played[0]) <= set(columns)
 
 
@@ -57,9 +60,8 @@ def test_the_scripts_need_neither_thermicon_nor_psychopy_to_be_simulated(quick: 
         assert imported <= sys.stdlib_module_names
 
 
-def test_pauses_landings_and_breaks_are_kept(quick: Path, script: Runner, tmp_path: Path) -> None:
-    script("--participant", "A", "--simulate")
-    played = events(tmp_path)
+def test_pauses_landings_and_breaks_are_kept(quick: Path, done: Path) -> None:
+    played = events(done)
     onsets = [float(row["onset"]) for row in played]
     ends = [onset + float(row["duration"]) for onset, row in zip(onsets, played, strict=True)]
     assert onsets[0] >= 30.0, "the hand lands"
@@ -82,28 +84,18 @@ def test_equal_seeds_give_equal_answers(script: Runner, tmp_path: Path) -> None:
     assert one == two != three
 
 
-def test_a_perfect_person_is_always_right(script: Runner, tmp_path: Path) -> None:
-    script("--participant", "B", "--simulate", "--correct", 1)
-    assert all(row["presented"] == row["responded"] for row in answers(tmp_path, "B"))
-
-
-def test_answers_are_joined_in_the_form_that_observed_reads(script: Runner, tmp_path: Path) -> None:
-    for who in ("A", "B"):
-        script("--participant", who, "--simulate")
-    done = script("--collect")
-    assert "16 answers of 2 participants" in done.stdout
-    joined = rows_of(tmp_path / "answers.csv")
-    assert list(joined[0]) == COLUMNS
-    assert [row["participant"] for row in joined] == ["A"] * 8 + ["B"] * 8
-
-
-def test_nothing_is_overwritten(script: Runner, tmp_path: Path) -> None:
-    script("--participant", "A", "--simulate")
-    before = answers(tmp_path)
-    again = script("--participant", "A", "--simulate")
+def test_what_is_done_is_not_overwritten_and_is_joined(script: Runner, done: Path) -> None:
+    before, files = answers(done), sorted(done.rglob("*"))
+    again = script("--participant", "A", "--simulate", output=done)
     assert again.returncode == 1
     assert "has 8 answers already: --resume goes on after them" in again.stderr
-    assert answers(tmp_path) == before
+    again = script("--participant", "A", "--simulate", "--resume", output=done)
+    assert again.returncode == 0 and "A: done before, 8 answers; there is nothing to resume" in again.stdout
+    assert (answers(done), sorted(done.rglob("*"))) == (before, files)
+    assert "16 answers of 2 participants" in script("--collect", output=done).stdout
+    joined = rows_of(done / "answers.csv")
+    assert list(joined[0]) == COLUMNS
+    assert [row["participant"] for row in joined] == ["A"] * 8 + ["B"] * 8
 
 
 def test_the_stop_key_ends_after_the_trial_and_resume_goes_on(script: Runner, tmp_path: Path) -> None:
@@ -139,14 +131,6 @@ def test_a_reader_who_leaves_does_not_end_the_run(quick: Path, tmp_path: Path) -
     assert len(answers(tmp_path)) == 8
 
 
-def test_a_run_that_is_done_is_not_resumed_and_adds_nothing(script: Runner, tmp_path: Path) -> None:
-    script("--participant", "A", "--simulate")
-    before = sorted(tmp_path.rglob("*"))
-    again = script("--participant", "A", "--simulate", "--resume")
-    assert again.returncode == 0 and "A: done before, 8 answers; there is nothing to resume" in again.stdout
-    assert sorted(tmp_path.rglob("*")) == before
-
-
 def test_a_start_that_fails_or_ends_before_a_trial_leaves_no_data(
     script: Runner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -163,33 +147,27 @@ def test_a_start_that_fails_or_ends_before_a_trial_leaves_no_data(
     assert not (tmp_path / "data").exists()
     script("--participant", "A", "--simulate", "--press", "5:escape")
     assert not list(tmp_path.rglob("sub-*"))
-
-
-@pytest.mark.parametrize("at_s", [5, 32, 45, 60], ids=["landing", "a play", "a question or pause", "later"])
-def test_the_abort_key_ends_at_once_wherever_it_comes(at_s: float, script: Runner, tmp_path: Path) -> None:
-    done = script("--participant", "A", "--simulate", "--press", f"{at_s}:escape")
-    assert done.returncode == 3
-    assert "ABORTED by key; the display is off" in done.stdout
-    minutes = float(done.stdout.partition("answers after ")[2].split()[0])
-    assert minutes == pytest.approx(at_s / 60.0, abs=0.06)
-
-
-def test_keys_can_be_given(script: Runner) -> None:
-    done = script("--participant", "A", "--simulate", "--abort-key", "f1", "--press", "5:escape", "--press", "40:f1")
-    assert done.returncode == 3
-    minutes = float(done.stdout.partition("answers after ")[2].split()[0])
-    assert minutes == pytest.approx(40.0 / 60.0, abs=0.06)
-
-
-def test_an_unknown_participant_is_said(script: Runner) -> None:
     for arguments, words in (
         (("--participant", "C"), "there is no participant C; the study has A, B"),
         ((), "whose trials? give --participant LABEL, one of A, B"),
         (("--collect",), "there are no answers in"),
     ):
         done = script(*arguments)
-        assert done.returncode == 1
-        assert words in done.stderr
+        assert done.returncode == 1 and words in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("at_s", "words"),
+    [(5, ""), (32, ""), (45, ""), (60, ""), (40, "--abort-key f1 --press 5:escape")],
+    ids=["landing", "a play", "a question or pause", "later", "another key"],
+)
+def test_the_abort_key_ends_at_once_wherever_it_comes(at_s: float, words: str, script: Runner) -> None:
+    key = "f1" if words else "escape"
+    stopped = script("--participant", "A", "--simulate", *words.split(), "--press", f"{at_s}:{key}")
+    assert stopped.returncode == 3
+    assert "ABORTED by key; the display is off" in stopped.stdout
+    minutes = float(stopped.stdout.partition("answers after ")[2].split()[0])
+    assert minutes == pytest.approx(at_s / 60.0, abs=0.06)
 
 
 PSYCHOPY = {
@@ -240,10 +218,6 @@ LOG = __file__ + ".log"
 
 @pytest.mark.slow
 def test_with_psychopy_and_a_device_it_runs_in_real_time(quick: Path, tmp_path: Path) -> None:
-    import os
-    import shutil
-    import subprocess
-
     for name, text in PSYCHOPY.items():
         (tmp_path / "stubs" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "stubs" / name).write_text(text, encoding="utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import sys
 import threading
 import time
@@ -17,8 +18,6 @@ def bench_of(quick: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
     """The module of the study's folder that plays and waits."""
     monkeypatch.syspath_prepend(str(quick))
     monkeypatch.delitem(sys.modules, "study_bench", raising=False)
-    import importlib
-
     return importlib.import_module("study_bench")
 
 

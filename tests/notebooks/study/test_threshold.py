@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import importlib
 import json
 import math
@@ -14,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from .conftest import CHANGES, make
+from .conftest import CHANGES, make, rows_of, run_script
 
 THRESHOLD = f"""format = 1
 name = "cold"
@@ -41,13 +40,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(out: Path, folder: Path, *arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, out / "run_study.py", "--participant", "A", "--simulate", "--output", folder, *arguments]
-    return subprocess.run([str(each) for each in command], capture_output=True, encoding="utf-8", check=False)
-
-
-def rows_of(path: Path) -> list[dict[str, str]]:
-    with path.open(newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return run_script(out, folder, "--participant", "A", "--simulate", *arguments)
 
 
 @pytest.mark.slow

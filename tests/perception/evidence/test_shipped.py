@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from thermicon.perception.evidence.posterior import Posterior, summarise
+from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import (
     ABLATION,
     CONSTANTS,
@@ -96,13 +96,6 @@ def test_draws_lie_around_the_maximum_and_fit_as_well() -> None:
         residuals = posterior.residuals((places - priors.middle) / priors.sd)
         # Twice the negative log density of a draw is about that of the maximum plus the number of constants.
         assert 60.0 < float(np.square(residuals).sum()) < 190.0
-
-
-def test_summaries_say_what_was_not_moved() -> None:
-    found = {each.name: each for each in summarise(PosteriorDraws.load())}
-    assert found["softness of the limits"].unmoved
-    assert not found["warm threshold drive"].unmoved
-    assert found["warm threshold drive"].narrowed < 0.4
 
 
 def parted(text: str) -> tuple[dict[str, str], list[str], np.ndarray]:
