@@ -5,12 +5,14 @@ import math
 
 import pytest
 
+from thermicon.perception import Observer
 from thermicon.perception.evidence.conditioning import experiment_title, load_conditioning, suspected
 from thermicon.perception.evidence.results import EDGE, load_constants, load_predictions
 from thermicon.perception.evidence.rows import load_evidence
 from thermicon.perception.evidence.validate import ValidationReport
 from thermicon.perception.evidence.validate_file import conditioning_file, report_file
 from thermicon.perception.observer.observer import TURNED_OFF
+from thermicon.perception.observer.parts import conduction_s
 from thermicon.perception.observer.priors import WIDTH_95
 
 
@@ -34,7 +36,8 @@ def test_widths_are_factors_or_shares() -> None:
     assert limits.left_out * limits.half_width == pytest.approx(limits.left_out_high, rel=1e-4)
     widths = sorted(each.half_width for each in known.rows if each.log)
     assert known.median_half_width(log=True) == pytest.approx(widths[len(widths) // 2])
-    assert known.median_half_width(log=False) > 0.0
+    linear = next(each for each in known.rows if not each.log)
+    assert linear.half_width * abs(linear.published) == pytest.approx(linear.left_out_high - linear.left_out, rel=1e-3)
 
 
 def test_constants_and_offsets_are_parted() -> None:
@@ -70,10 +73,19 @@ def test_the_file_has_the_same_facts(validation_report: ValidationReport) -> Non
     assert sum(each["mechanism_suspected"] is not None for each in file["rows"]) == len(known.missed)
     assert [each["name"] for each in file["constants"] if each["at_edge"]] == [c.name for c in known.at_edge]
     assert len(file["onset_stages"]) == 6
+    person = Observer.load()
     for each in file["onset_stages"]:
         parts = [each[f"{part}_s"] for part in ("receptor", "nerve", "cord", "decision")]
         assert sum(parts) == pytest.approx(each["onset_s"])
+        delay_s = conduction_s(
+            each["channel"], person.receptor(each["channel"]).velocity_m_per_s, person.path_m("thenar")
+        )
+        assert each["nerve_s"] + each["cord_s"] == pytest.approx(delay_s)
+        assert each["decision_s"] == person.decision_s
+    assert file["summary"]["expected"] == pytest.approx(0.95 * 54)
+    assert (file["not_moved_above"], file["edge_below"]) == (0.9, 0.1)
     for each in file["magnitudes"]:
+        assert each["changes_K"] == [3.0, 10.0]
         assert each["just_noticeable_steps"] == int(each["peak_d_prime"][1])
         assert 1.0 < each["peak_d_prime"][0] < each["peak_d_prime"][1]
     assert experiment_title("E1") == "Choice reaction time by area"

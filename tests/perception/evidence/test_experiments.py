@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
+from thermicon.perception import Observer, draw_people
 from thermicon.perception.evidence.experiments import (
     first_and_return,
     limits,
@@ -19,7 +20,9 @@ from thermicon.perception.evidence.experiments import (
 )
 from thermicon.perception.evidence.predicted import Predicted
 from thermicon.perception.evidence.radiant import radiant_warming, whole_body_warmth
+from thermicon.perception.experiments.on_bench import method_of_limits
 from thermicon.perception.observer.channels import VARIABLES, Variable
+from thermicon.perception.sensation.bench import Bench
 
 
 def by(found: tuple[Predicted, ...], quantity: str, channel: str) -> Predicted:
@@ -46,7 +49,10 @@ def test_a_rate_curve_is_thresholds_and_their_ratios() -> None:
         assert change == pytest.approx(max(flat) / min(flat) - 1.0)
 
 
-@pytest.mark.parametrize("site", ["hand", "forearm"])
+RIGS = {"hand": ("hand-dorsum", 9.0), "forearm": ("forearm", 10.0)}
+
+
+@pytest.mark.parametrize("site", RIGS)
 def test_limits_have_people_and_parameters_and_rise_with_age(site: str) -> None:
     cold, warm = limits(site, people=30, draws=4)
     assert (cold.channel, warm.channel) == ("cold", "warm")
@@ -54,6 +60,9 @@ def test_limits_have_people_and_parameters_and_rise_with_age(site: str) -> None:
         assert one.value is not None and one.people is not None and one.low is not None and one.high is not None
         assert one.people[0] < one.value < one.people[1]
         assert one.low < one.high
+    bench = Bench(Rig.load(RIGS[site][0]).with_(**{"contact.area_cm2": RIGS[site][1]}), 32.0, "display")
+    each = method_of_limits(Observer.load(), bench, "cold", people=draw_people(30, 0))
+    assert (cold.people, cold.value) == (pytest.approx(tuple(np.quantile(each, [0.16, 0.84]))), np.median(each))
     assert cold.experiment == f"limits on the {site}"
     old = limits(site, people=30, age_years=70.0, draws=0)[0]
     assert (old.value or 0.0) > (cold.value or 0.0)

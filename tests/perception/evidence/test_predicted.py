@@ -89,5 +89,12 @@ def test_ranks_share_ties_and_few_draws_tell_nothing() -> None:
     assert correlation((1.0, 1.0), (1.0, 2.0)) is None
     assert correlation((1.0, 2.0, 3.0, 4.0), (1.0, 3.0, 2.0, 4.0)) == pytest.approx(0.8)
     assert trade_offs([answers("a", UP[:7], 3, 1), answers("b", UP[:7], 3, 1)]) == ()
-    weak = tuple(float(k) for k in np.random.default_rng(0).permutation(20))
-    assert trade_offs([answers("a", UP, 3, 1), answers("b", weak, 3, 1)])[0].against is None
+    for correlated, against in ((0.48, None), (0.52, False)):
+        # Two numbers in exchange for each other leave the rest in order.
+        swapped = min(
+            (tuple(UP[:k]) + tuple(DOWN[: 20 - k]) for k in range(20)),
+            key=lambda each: abs((correlation(UP, each) or 0.0) - correlated),
+        )
+        found = trade_offs([answers("a", UP, 3, 1), answers("b", swapped, 3, 1)])[0]
+        assert abs((found.correlation or 0.0) - correlated) < 0.2
+        assert (found.against is None) == (abs(found.correlation or 0.0) < 0.5) == (against is None)

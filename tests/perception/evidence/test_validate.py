@@ -17,6 +17,7 @@ from thermicon.perception.evidence.identified import GROUPS, SHAPES, WAVES, wave
 from thermicon.perception.evidence.targets import load_targets, published_for
 from thermicon.perception.evidence.validate import ValidationReport, answers, assemble, judged, validate
 from thermicon.perception.evidence.validate_file import report_file
+from thermicon.perception.identification.measures import proportion_correct
 from thermicon.perception.observer.channels import VARIABLES
 from thermicon.perception.observer.observer import load_thresholds
 
@@ -47,6 +48,10 @@ def test_six_icons_are_those_of_rank(report: ValidationReport) -> None:
     assert found["proportion correct"] == pytest.approx(ranking.proportion_correct, **near)
     assert found["plug-in information"] == pytest.approx(ranking.felt.plugin.mean(), **near)
     assert found["information"] == pytest.approx(ranking.information_bits, **near)
+    people = proportion_correct(report.evidence.six[0].probability)
+    low, high = (found[f"proportion correct, {end} end of people"] for end in ("lower", "upper"))
+    assert (low, high) == pytest.approx(tuple(np.percentile(people, [2.5, 97.5])))
+    assert whole["proportion correct"].people == pytest.approx(tuple(np.percentile(people, [16.0, 84.0])))
     intervals, laboratory = {name: (one.low, one.high) for name, one in whole.items()}, ranking.new_laboratory
     assert laboratory is not None
     assert intervals["proportion correct"] == pytest.approx(laboratory.proportion_correct, **near)
@@ -98,7 +103,9 @@ def test_which_does_better(report: ValidationReport) -> None:
     line = replace(line, judged=(missed, *line.judged[1:]))
     near, far = line.judged[0], replace(line.judged[1], verdict=replace(line.judged[1].verdict, miss=9.0))
     assert replace(line, judged=(near, far)).nearer == "neither, temperature nearer"
-    assert replace(line, judged=(near, near)).nearer == "neither"
+    for miss, said in ((1.52, "neither"), (1.56, "neither, temperature nearer")):
+        other = replace(near, verdict=replace(near.verdict, miss=miss))
+        assert replace(line, judged=(near, other)).nearer == said
     holds = replace(near, verdict=replace(near.verdict, holds=True))
     assert replace(line, judged=(holds, far)).nearer == "temperature"
     assert replace(line, judged=(far, holds)).nearer == "heat flow"

@@ -5,7 +5,8 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception.evidence.rows import load_evidence
-from thermicon.perception.experiments.measure import Condition, measure
+from thermicon.perception.experiments.measure import Condition, Setting, logs_of, measure
+from thermicon.perception.observer.draws import PosteriorDraws
 
 FOREARM = Rig.load("forearm").with_(**{"contact.area_cm2": 9.8})
 LIMITS, CHOICE, YES_NO = (
@@ -20,6 +21,18 @@ def test_limits_of_a_new_laboratory_cover_the_published_ones_with_its_scatter() 
     within = np.log(10.0) * known.find("E3", "within_sd_log10_median_person", "warm").value
     assert found.within == pytest.approx(within, rel=0.4)
     assert repr(found).startswith("Measurement(warm, limits, 1 K/s: ")
+
+
+def test_an_interval_is_that_of_new_laboratories_drawn_with_their_offsets() -> None:
+    found, known, setting = measure(LIMITS, FOREARM, draws=5, seed=3), PosteriorDraws.load(), Setting.of(FOREARM)
+    offsets = np.random.default_rng(3).standard_normal((5, 2))
+    logs = [
+        logs_of(setting.laboratory(known.draw(k), offset, "temperature"), setting, LIMITS)[0]
+        for k, offset in zip(np.linspace(0, 999, 5).round().astype(int).tolist(), offsets.tolist(), strict=True)
+    ]
+    low, middle, high = np.exp(np.percentile([each.mean() for each in logs], [2.5, 50.0, 97.5]))
+    assert (found.low, found.value, found.high) == pytest.approx((low, middle, high))
+    assert found.between == pytest.approx(np.median([each.std() for each in logs]))
 
 
 def test_methods_have_their_order() -> None:
