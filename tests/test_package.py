@@ -83,10 +83,7 @@ def test_the_wheel_holds_the_packages_and_nothing_else(archives: Archives) -> No
     held = {name for name in names if name.startswith("thermicon/")}
     assert held == {name if name.startswith("thermicon/") else f"thermicon/{name}" for name in shipped(ROOT)}
     others = {name.partition("/")[0] for name in names} - {"thermicon"}
-    assert {name.rpartition(".")[2] for name in others} == {"dist-info", "data"}
-    data = [name for name in names if ".data/" in name]
-    assert data
-    assert all("/data/share/jupyter/labextensions/" in name for name in data)
+    assert {name.rpartition(".")[2] for name in others} == {"dist-info"}
     assert any(name.endswith(".dist-info/licenses/LICENSE") for name in names)
 
 

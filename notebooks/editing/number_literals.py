@@ -1,10 +1,10 @@
-"""Numbers where they are written: found in the text of a statement, put anew in its unit; and edits of icons there."""
+"""Numbers where they are written: found in the text of a statement, put anew in its unit; and edits of whole icons."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -13,7 +13,6 @@ from thermicon.icons.model.statements import Current, Ramp, Repeat, Return, Tota
 from thermicon.icons.model.units import UNITS, Kind
 
 from .cue_check import read_text
-from .icon_edits import CannotEdit, block_of
 
 if TYPE_CHECKING:
     from thermicon.icons import Icon
@@ -27,6 +26,7 @@ _UNITS = "|".join(
 _AMOUNT = re.compile(rf"(?<![\w-])(by|to|at|over|for|every){_BLANK}({_NUMBER}){_BLANK}({_UNITS})(?![\w/])")
 _COUNT = re.compile(r"repeat\s+([0-9]+)")
 _END = re.compile(r"[;{}#\r\n]")
+_PIECE = re.compile(r'"(?:[^"\\\n]|\\.)*"|#[^\r\n]*|[{}]')
 _LINE = re.compile(r"\r\n|\r|\n")
 _WORD = re.compile(r"(?:(step|pulse)[ \t\u00a0\u202f]+)?(warm|cool)(?![\w-])")
 
@@ -38,6 +38,10 @@ _STEPS: dict[str, tuple[str, ...]] = {
 }
 _SMALL = 5
 _DIGITS = (2, 3, 4, 5)
+
+
+class CannotEdit(ValueError):
+    """An edit does not fit the text; the sentence says why, or what to do by hand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +226,7 @@ def _repeated(text: str, icon: Icon, count: int) -> str | None:
         return None
     begin = offset_of(text, parts[0].span)  # type: ignore[arg-type]
     checks = [part for part in icon.statements if isinstance(part, Total) and part.span is not None]
-    stop = offset_of(text, checks[0].span) if checks else block_of(text, icon.name).brace  # type: ignore[arg-type]
+    stop = offset_of(text, checks[0].span) if checks else _closing(text, begin)  # type: ignore[arg-type]
     head, body, tail = text[:begin], text[begin:stop], text[stop:]
     if "\n" not in body:
         return f"{head}repeat {count} {{ {body.strip().rstrip(';')} }}{'; ' if checks else ' '}{tail}"
@@ -231,3 +235,40 @@ def _repeated(text: str, icon: Icon, count: int) -> str | None:
     inner = "".join([f"{indent}  {lines[0]}", *(f"  {line}" if line.strip() else line for line in lines[1:])])
     between = body[len(body.rstrip()) :]
     return f"{head}repeat {count} {{\n{inner}\n{indent}}}{between}{tail}"
+
+
+def only(text: str, chosen: tuple[str, ...]) -> str:
+    """A text with the chosen icons alone, all else as it is written; raises CannotEdit where they cannot stand alone.
+
+    Where that is not enough, as for some members of a family, the set is written out, without comments.
+
+    >>> only("cue 1\\nicon a { hold for 1 s }\\nicon b { hold for 2 s } # two\\n", ("a",))
+    'cue 1\\nicon a { hold for 1 s }\\n'
+    """
+    icons = read_text(text).icons
+    if icons is None:
+        raise CannotEdit("the text has errors: mend them first")
+    shorter = text
+    for entry in icons.entries:
+        here = re.search(rf"(?:^|(?<=;))[ \t]*icon\s+{re.escape(entry.name)}(?![\w-])[^{{]*{{", shorter, re.MULTILINE)
+        if entry.name not in chosen and here is not None:
+            head, rest = shorter[: here.start()], shorter[_closing(shorter, here.end()) + 1 :]
+            line_end = "\n?" if head.endswith("\n") else ""
+            shorter = head + re.sub(rf"^[ \t;]*(#[^\n]*)?{line_end}", "", rest)
+    if sorted(read_text(shorter).names) == sorted(chosen):
+        return shorter
+    kept = [icon for name in chosen if (icon := icons.find(name)) is not None]
+    try:
+        return str(replace(icons, entries=tuple(kept)))
+    except ValueError as wrong:
+        raise CannotEdit(f"the chosen icons cannot stand alone: {wrong}") from None
+
+
+def _closing(text: str, begin: int) -> int:
+    """Offset of the brace that closes the block in which a place stands; the end of the text where there is none."""
+    depth = 1
+    for piece in _PIECE.finditer(text, begin):
+        depth += {"{": 1, "}": -1}.get(piece[0], 0)
+        if depth == 0:
+            return piece.start()
+    return len(text)

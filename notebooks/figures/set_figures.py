@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,41 +100,11 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look:
     for name, axes in drawn.items():
         figure: Any = axes.figure
         write_figure(figure, folder / f"{name}.{kind}", look)
-    names = [icon.name for icon in icons]
-    stems = distinct(names)
-    for icon, stem in zip(icons, stems, strict=True):
-        if stem != icon.name:
-            note(
-                f"warning: the overview of {icon.name} is overview-{stem}.{kind}, since some disks take {icon.name} "
-                f"and {names[[name.casefold() for name in names].index(icon.name.casefold())]} for the same name"
-            )
-        draw_overview(
-            simulate(icon, rig, tail_s=FELT_TAIL_S),
-            folder / f"overview-{stem}.{kind}",
-            rig.changes,
-            look=look,
-            settled=True,
-        )
+    for icon in icons:
+        trace, picture = simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{icon.name}.{kind}"
+        draw_overview(trace, picture, rig.changes, look=look, settled=True)
     count = "1 overview" if len(icons) == 1 else f"{len(icons)} overviews"
     note(f"wrote {', '.join(f'{name}.{kind}' for name in drawn)} and {count} into {folder}")
-
-
-def distinct(names: Sequence[str]) -> list[str]:
-    """Return names for files that differ in more than capitals: the later of two alike gets a number.
-
-    >>> distinct(["dip", "Dip", "dip-2"])
-    ['dip', 'Dip-3', 'dip-2']
-    """
-    own, taken = {name.casefold() for name in names}, set[str]()
-    found = []
-    for name in names:
-        stem, k = name, 1
-        while stem.casefold() in taken or (k > 1 and stem.casefold() in own):
-            k += 1
-            stem = f"{name}-{k}"
-        taken.add(stem.casefold())
-        found.append(stem)
-    return found
 
 
 def set_axes(ranking: Ranking, words: bool = True, width_mm: float | None = None) -> dict[str, Axes]:

@@ -3,9 +3,6 @@
 The module in ``canvas_parts/`` is plain JavaScript without a build step: its parts are joined here in order, so they
 import nothing; CodeMirror, bundled in ``codemirror/``, is carried in packed form. A frame goes out as one message with
 float32 buffers, never as a trait, so a saved notebook holds the module and no data.
-
-``python -m thermicon.notebooks.workbench.canvas`` writes the extension that colours ``.cue`` files in JupyterLab by the
-same tokens anew, after a change of the language; a test compares.
 """
 
 from __future__ import annotations
@@ -16,7 +13,6 @@ from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 from uuid import uuid4
 
@@ -46,7 +42,6 @@ PARTS = (
     "heat",
     "main",
 )
-LAB_ENTRY = "static/remoteEntry.js"
 STYLES = ("theme", "layout", "editor", "timeline", "heat")
 
 
@@ -95,21 +90,6 @@ def cue_words() -> dict[str, Any]:
         "units": sorted(SPELLINGS, key=lambda unit: (-len(unit), unit)),
         "next": completions(),
     }
-
-
-def lab_entry_text() -> str:
-    """Return the script that JupyterLab loads: the words of the language, the tokens, and the plugin.
-
-    >>> lab_entry_text().splitlines()[0]
-    '(() => {'
-    """
-    notebooks = files("thermicon.notebooks")
-    words = {name: value for name, value in cue_words().items() if name != "next"}
-    tokens = (notebooks / "canvas_parts" / "highlight.js").read_text(encoding="utf-8")
-    tokens = tokens[tokens.index("const NUMBER_PATTERN") : tokens.index("/** Where a column")]
-    plugin = (notebooks / "labextension" / "entry.js").read_text(encoding="utf-8")
-    constant = f"const CUE_WORDS = {json.dumps(words, ensure_ascii=False)};"
-    return "\n".join(("(() => {", constant, tokens.strip(), plugin.strip(), "})();", ""))
 
 
 class Canvas(anywidget.AnyWidget):
@@ -164,7 +144,3 @@ class Canvas(anywidget.AnyWidget):
             return
         meta, arrays = self._newest
         self.send(meta, buffers=arrays)
-
-
-if __name__ == "__main__":
-    Path(str(files("thermicon.notebooks") / "labextension" / LAB_ENTRY)).write_text(lab_entry_text(), encoding="utf-8")

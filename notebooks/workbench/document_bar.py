@@ -12,7 +12,7 @@ from thermicon.icons.atomic import OutputError
 from thermicon.icons.files.shipped import library_names
 
 from ..files.document import Document
-from ..report.blocks import Bullets, Heading, fragment, shown
+from ..report.blocks import fragment
 from .live_view import button
 from .panels import LogPanel, document_of, help_html
 
@@ -157,14 +157,11 @@ class DocumentBar:
 
     def _open_panel(self) -> widgets.Widget:
         self.files = widgets.Select(options=[], rows=9, description="open", layout={"width": "330px"})
-        self.preview = widgets.HTML(layout={"flex": "1 1 260px", "min_width": "0"})
         self.path = widgets.Text(placeholder="or its path", description="file", layout={"width": "250px"})
         for control in (self.files, self.path):
             control.style.description_width = "36px"
-        self.files.observe(lambda change: self._safely(lambda: self._preview(change["new"])), "value")
         go = self._button("Open it", "open what is selected or typed", self._open_selected)
-        left = widgets.VBox([self.files, widgets.Box([self.path, go])])
-        return widgets.Box([left, self.preview]).add_class("thermicon-row")
+        return widgets.VBox([self.files, widgets.Box([self.path, go])])
 
     def _save_panel(self) -> widgets.Widget:
         self.name = widgets.Text(placeholder="alerts.cue", description="file", layout={"width": "320px"})
@@ -190,19 +187,6 @@ class DocumentBar:
             self.design.show_text(found.text, found.icon)
             self.discard()
             self._after("the unsaved text is in the editor; Undo takes it back out")
-
-    def _preview(self, name: str | None) -> None:
-        """What a shipped set holds, or where a file is."""
-        if not name:
-            return
-        if not name.startswith(SHIPPED):
-            self._set(self.preview, fragment("block", str(self.document.folder / name), "th-soft"))
-            return
-        from thermicon.icons import load_library
-
-        icons = load_library(name.removeprefix(SHIPPED))
-        lines = [f"{each.name}: {each.metadata.means}" if each.metadata.means else each.name for each in icons.entries]
-        self._set(self.preview, shown(Heading(icons.title or icons.name), Bullets(tuple(lines))))
 
     def _open_selected(self) -> None:
         source = self.path.value.strip() or self.files.value
@@ -245,7 +229,6 @@ class DocumentBar:
         self.shown = name
         if name == "open":
             self.files.options = [*self._files("*.cue")[:MOST_FILES], *(f"{SHIPPED}{name}" for name in library_names())]
-            self._preview(self.files.value)
         elif name == "save" and not self.name.value:
             self.name.value = f"{self.document.name.removesuffix('.cue')}.cue"
         elif name == "log":

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 import ipywidgets as widgets
 
 from ..editing.cue_check import read_text
-from ..editing.icon_edits import only
-from ..editing.number_literals import with_edit
+from ..editing.number_literals import only, with_edit
 from ..figures.print_figure import themed_svg
 from ..report.blocks import Bullets, fragment, shown
 from ..report.choices import NAMES

@@ -10,7 +10,7 @@ import pytest
 from thermicon.icons.language.source import grammar
 from thermicon.notebooks.editing.completions import CONTEXTS, completions
 from thermicon.notebooks.editing.cue_check import read_text
-from thermicon.notebooks.editing.icon_edits import CannotEdit, only, without
+from thermicon.notebooks.editing.number_literals import CannotEdit, only
 
 TEXT = """cue 1
 
@@ -31,17 +31,10 @@ def names(text: str) -> tuple[str, ...]:
     return reading.names
 
 
-def test_an_icon_goes_with_its_comment_unless_it_is_played() -> None:
-    assert names(without(TEXT, "d")) == ("a", "b", "c")
-    rest = without(TEXT, "b", "a")
-    assert names(rest) == ("c", "d")
-    assert "# about a" not in rest
-    assert "# the end" in rest
-    with pytest.raises(CannotEdit, match="a is played by another icon"):
-        without(TEXT, "a")
-
-
 def test_the_chosen_stay_and_a_family_is_written_out() -> None:
+    kept = only(TEXT, ("a", "c"))
+    assert names(kept) == ("a", "c")
+    assert [words in kept for words in ("# about a", 'means "x } icon b"', "# the end")] == [True] * 3
     assert names(only(TEXT, ("a", "d"))) == ("a", "d")
     family = "cue 1\nicon ramp(x in [1, 2, 3] K) { cool by x at 1 K/s; return at 1 K/s }\nicon b { hold for 1 s }\n"
     assert names(only(family, ("ramp_x=2", "b"))) == ("ramp_x=2", "b")

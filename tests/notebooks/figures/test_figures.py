@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -18,7 +17,7 @@ from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview
 from thermicon.notebooks.figures.overview import MOST_LINES, end_when_settled, scene_figure
 from thermicon.notebooks.figures.print_figure import COLORBAR, restyle
-from thermicon.notebooks.figures.set_figures import set_figure, write_figures
+from thermicon.notebooks.figures.set_figures import set_figure
 from thermicon.notebooks.figures.style import COOL, WARM
 from thermicon.notebooks.figures.sweep_figure import COOLS, WARMS, measure_figure, sweep_map
 from thermicon.notebooks.timeline.scene import scene
@@ -72,24 +71,6 @@ def test_the_maps_of_one_icon_are_one_cell() -> None:
     icons = parse("cue 1\nset s { control display }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }")
     ranking = rank(icons, Rig.load("thenar"), people=1)
     assert [len(ax.texts) for ax in set_figure(ranking).axes] == [1, 1]
-
-
-@pytest.mark.slow
-def test_overviews_of_names_that_differ_in_capitals_do_not_overwrite_each_other(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    icons = parse(
-        "cue 1\nset s { control display }\nicon a-b { cool by 2 °C at 1 °C/s; hold for 1 s }\n"
-        "icon A-B { warm by 2 °C at 1 °C/s; hold for 1 s }\nicon a-b-2 { warm by 1 °C at 1 °C/s; hold for 1 s }"
-    )
-    rig = Rig.load("thenar")
-    write_figures(rank(icons, rig, people=1), icons, rig, tmp_path)
-    found = sorted(path.name for path in tmp_path.glob("overview-*.png"))
-    assert found == ["overview-A-B-3.png", "overview-a-b-2.png", "overview-a-b.png"]
-    assert (
-        "warning: the overview of A-B is overview-A-B-3.png, since some disks take A-B and a-b for the same name"
-        in capsys.readouterr().err
-    )
 
 
 def test_an_overview_ends_when_everything_has_come_to_rest() -> None:

@@ -1,10 +1,9 @@
-"""The canvas widget without a browser: what it sends, what it keeps, what it hands on; and JupyterLab's extension."""
+"""The canvas widget without a browser: what it sends, what it keeps, what it hands on."""
 
 import base64
 import gzip
 import json
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -12,18 +11,15 @@ import numpy
 import pytest
 
 from thermicon.notebooks.workbench.canvas import (
-    LAB_ENTRY,
     PARTS,
     STYLES,
     Canvas,
     codemirror_text,
-    lab_entry_text,
     module_text,
     style_text,
 )
 
-ROOT = Path(__file__).parents[3]
-FOLDER = ROOT / "notebooks" / "canvas_parts"
+FOLDER = Path(__file__).parents[3] / "notebooks" / "canvas_parts"
 
 
 @pytest.fixture
@@ -94,15 +90,3 @@ def test_codemirror_is_packed_whole_with_its_licences():
     assert {path.name for path in folder.iterdir()} == {
         "LICENSES.txt", "build.sh", "codemirror.js", "entry.js", "package.json"
     }  # fmt: skip
-
-
-def test_the_extension_for_jupyterlab_knows_the_words_and_is_installed_where_it_looks() -> None:
-    folder = ROOT / "notebooks" / "labextension"
-    assert (folder / LAB_ENTRY).read_text(encoding="utf-8") == lab_entry_text()
-    assert '"sawtooth"' in lab_entry_text()
-    placed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["data-files"]
-    named = json.loads((folder / "package.json").read_text(encoding="utf-8"))
-    place = f"share/jupyter/labextensions/{named['name']}"
-    assert f"notebooks/labextension/{named['jupyterlab']['_build']['load']}" in placed[f"{place}/static"]
-    assert "notebooks/labextension/package.json" in placed[place]
-    assert all((ROOT / file).is_file() for files in placed.values() for file in files)

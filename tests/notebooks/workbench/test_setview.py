@@ -12,8 +12,7 @@ from tests.builders import few_draws, missing
 from tests.notebooks.workbench.openbench import SAID
 from thermicon.circuit import Rig
 from thermicon.icons import parse
-from thermicon.notebooks.editing.icon_edits import CannotEdit
-from thermicon.notebooks.editing.number_literals import with_edit
+from thermicon.notebooks.editing.number_literals import CannotEdit, with_edit
 from thermicon.notebooks.report.rank_details import number_points
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import BackgroundWorker, Job, Superseded
