@@ -19,8 +19,6 @@ from .measured import DOTS, Measured, beside, shown_curves
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from thermicon.circuit.fitting.overlay import Overlay
-
     from .scene import Drawing, Scene
 
     Floats = NDArray[np.float32]
@@ -118,39 +116,31 @@ def frame_of(scene: Scene, measured: Measured | None = None, points: int = MOST_
     >>> [panel["key"] for panel in made.meta["panels"]], made.meta["time"]["n"], len(made.buffers)
     (['temperature', 'heat', 'current', 'sensation'], 1401, 11)
     """
-    meta = {"type": "frame", "view": "design", "seq": 0, "text": scene.text, **_said(scene)}
-    if scene.drawing is None:
-        empty = {"time": {"t0": 0.0, "dt": 0.0, "n": 0}, "panels": [], "handles": []}
-        return CanvasFrame({**meta, **empty, "can_undo": False, "can_redo": False, "ms": 0.0}, ())
-    laid = None
-    if measured is not None:
-        laid, meta["measured"] = beside(measured, scene.drawing.trace)
-    drawn = traces_of(scene.drawing, laid, points)
-    handles = [] if scene.stale else _handles(scene.drawing)
-    return CanvasFrame(
-        {**meta, **drawn.meta, "handles": handles, "can_undo": False, "can_redo": False, "ms": 0.0}, drawn.buffers
-    )
-
-
-def traces_of(drawing: Drawing, laid: Overlay | None = None, points: int = MOST_POINTS) -> CanvasFrame:
-    """Return clock, panels and arrays of one drawing, with what was measured beside it."""
     from thermicon.perception.sensation.percept import uniform_clock
 
-    trace, percept = drawing.trace, drawing.percept
+    own = {"handles": [], "can_undo": False, "can_redo": False, "ms": 0.0}
+    meta = {"type": "frame", "view": "design", "seq": 0, "text": scene.text, **_said(scene), **own}
+    if (drawing := scene.drawing) is None:
+        return CanvasFrame({**meta, "time": {"t0": 0.0, "dt": 0.0, "n": 0}, "panels": []}, ())
+    trace = drawing.trace
     dt, rows = uniform_clock(trace.time_s)
     every = max(1, math.ceil((rows - 1) / points))
     curves = _Curves(slice(0, rows, every))
     panels = [_temperature(drawing, curves), _heat(drawing, curves)]
-    if drawing.trace.has_current:  # a thermode has none
+    if trace.has_current:  # a thermode has none
         panels.append(_current(drawing, curves))
-    if len(percept.psi_cold) >= rows:
+    if len(drawing.percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
+    laid = None
+    if measured is not None:
+        laid, meta["measured"] = beside(measured, trace)
     for panel, key, label, role, values in () if laid is None else shown_curves(laid, trace.time_s):
         for each in panels:
             if each["key"] == panel:
                 each["series"].append(curves.take(key, label, values, role, *DOTS))
-    time = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
-    return CanvasFrame({"time": time, "panels": panels}, tuple(curves.buffers))
+    meta["time"] = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
+    meta["handles"] = [] if scene.stale else _handles(drawing)
+    return CanvasFrame({**meta, "panels": panels}, tuple(curves.buffers))
 
 
 def _said(scene: Scene) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import ipywidgets as widgets
@@ -13,8 +14,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from thermicon.circuit import Rig
-    from thermicon.circuit.fitting.log import Log
 
+    from ..timeline.frames import CanvasFrame
     from .design_model import DesignModel
 
 SHARED = "globalThis.thermiconCanvas"
@@ -47,7 +48,6 @@ class DesignView:
         self.canvas.on_message(self._receive)
         self.sliders: dict[str, Any] = {}
         self._labels: dict[str, widgets.HTML] = {}
-        self._quiet = False
         self.on_page: dict[str, Callable[[Mapping[str, Any]], None]] = {}
         self.reset = widgets.Button(description="Reset", tooltip="all sliders back to the rig's values")
         self.reset.layout = widgets.Layout(width="68px", height="26px", margin="0")
@@ -56,32 +56,16 @@ class DesignView:
         self.knobs = widgets.Box([]).add_class("thermicon-knobs")
         self._make_knobs()
         self.box = widgets.VBox([self.knobs, self.canvas]).add_class("thermicon-design")
-        self.refresh()
+        self.send(design.frame())
 
-    def refresh(self) -> None:
-        """Send the frame as it is, with the text: after Python changed something."""
-        self._send(self.design.frame())
-
-    def show_text(self, text: str, icon: str | None = None) -> None:
-        """Put another text into the editor, as one step that can be undone."""
-        self._send(self.design.show_text(text, icon))
-
-    def step(self, kind: str) -> None:
-        """Undo or redo, from wherever it is asked for."""
-        self._send(self.design.receive({"type": kind}))
+    def send(self, frame: CanvasFrame) -> None:
+        """Show a frame that ``design`` returned."""
+        self.canvas.frame(frame.meta, frame.buffers)
 
     def take_rig(self, rig: Rig) -> None:
         """Show the icons on another rig, with knobs of its own."""
-        self._send(self.design.take_rig(rig))
+        self.send(self.design.take_rig(rig))
         self._make_knobs()
-
-    def take_log(self, log: Log | None) -> None:
-        """Lay a measured log over the curves, or take it away; raises LogError and ValueError."""
-        self._send(self.design.take_log(log))
-
-    def shift_log(self, shift_s: float | None) -> None:
-        """Shift the log by so many s; None aligns it anew."""
-        self._send(self.design.shift_log(shift_s))
 
     def _make_knobs(self) -> None:
         self.sliders, self._labels = {}, {}
@@ -90,12 +74,9 @@ class DesignView:
     def _receive(self, message: Mapping[str, Any]) -> None:
         if (act := self.on_page.get(str(message.get("type")))) is not None:
             act(message)
-            self._send(self.design.receive({"type": "hello", "seq": message.get("seq", 0)}))
+            self.send(self.design.receive({"type": "hello", "seq": message.get("seq", 0)}))
             return
-        self._send(self.design.receive(message))
-
-    def _send(self, frame: Any) -> None:
-        self.canvas.frame(frame.meta, frame.buffers)
+        self.send(self.design.receive(message))
 
     def _knob(self, knob: Knob) -> widgets.VBox:
         label = widgets.HTML()
@@ -107,28 +88,19 @@ class DesignView:
         return widgets.VBox([label, made]).add_class("thermicon-knob")
 
     def _turned(self, key: str, value: float | str) -> None:
-        if self._quiet:
-            return
-        self._send(self.design.turn({key: value}))
+        self.send(self.design.turn({key: value}))
         self._tell(next(knob for knob in knobs_of(self.design.nominal) if knob.key == key))
 
     def _reset(self) -> None:
-        self._quiet = True
-        try:
-            for knob in knobs_of(self.design.nominal):
-                self.sliders[knob.key].value = knob.value
-        finally:
-            self._quiet = False
-        self._send(self.design.reset())
-        for knob in knobs_of(self.design.nominal):
-            self._tell(knob)
+        self.send(self.design.reset())
+        self._make_knobs()
 
     def _tell(self, knob: Knob) -> None:
         """The knob's name, and what the rig has where that is another value."""
         changed = knob.key in self.design.values
         unit = f" ({knob.unit})" if knob.unit else ""
         said = f"{knob.label}{unit}" + (f" · rig {knob.shown(knob.value)}" if changed else "")
-        text = f'<span class="{"changed" if changed else ""}" title="{_quoted(knob.what)}">{_quoted(said)}</span>'
+        text = f'<span class="{"changed" if changed else ""}" title="{escape(knob.what)}">{escape(said)}</span>'
         if self._labels[knob.key].value != text:
             self._labels[knob.key].value = text
 
@@ -148,9 +120,3 @@ def _control(knob: Knob) -> Any:
         continuous_update=True,
         layout=layout,
     )
-
-
-def _quoted(text: str) -> str:
-    from html import escape
-
-    return escape(text, quote=True)

@@ -211,13 +211,13 @@ class DocumentBar:
         self._after(f"saved {path}")
 
     def _step(self, kind: str) -> None:
-        self.view.step(kind)
+        self.view.send(self.design.receive({"type": kind}))
         self.renew()
 
     def _after(self, said: str) -> None:
         """Close the panel, send the text to the page, and say what was done."""
         self._open(None)
-        self.view.refresh()
+        self.view.send(self.design.frame())
         self.renew()
         if said and not self.document.warning():
             self.say(said)

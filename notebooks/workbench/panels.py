@@ -153,7 +153,7 @@ class LogPanel:
         self._take(read_measured(self._place(self.path.value.strip())))
 
     def _take(self, log: Log | None) -> None:
-        self.view.take_log(log)
+        self.view.send(self.view.design.take_log(log))
         self.renew()
         self._done("" if log is None else " · ".join(log.notes))
 
@@ -162,7 +162,7 @@ class LogPanel:
             self._safely(lambda: self._shift(shift_s))
 
     def _shift(self, shift_s: float | None) -> None:
-        self.view.shift_log(shift_s)
+        self.view.send(self.view.design.shift_log(shift_s))
         self.renew()
 
 

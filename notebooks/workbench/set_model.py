@@ -12,7 +12,8 @@ import numpy as np
 from ..cli.options import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
 from ..report.set_report import SetReport
-from ..timeline.frames import CanvasFrame, terms_of, traces_of
+from ..timeline.frames import MOST_POINTS, CanvasFrame, terms_of
+from ..timeline.scene import draw
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -29,6 +30,11 @@ QUICK, WELL = (6, 0), (200, 128)
 MOST_RANKED = 60
 STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
 """Dashes and width of the first curve and the second, which distinguish them in grey too."""
+PANELS = (
+    ("skin", "skin (°C)", 1.2, "ink"),
+    ("cold", "felt as cold (d′)", 1.0, "cool"),
+    ("warm", "felt as warm (d′)", 1.0, "warm"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,33 +168,29 @@ def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) ->
 
 def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
     """Two icons over each other on one clock: skin, sensation of cold and of warmth; one icon alone where a is b."""
-    names = [a] if a == b else [a, b]
-    parts = [_traces(made, name) for name in names]
-    step = max(part.meta["time"]["dt"] for part in parts)
-    rows = max(round(part.meta["time"]["dt"] * (part.meta["time"]["n"] - 1) / step) for part in parts) + 1
-    clock = step * np.arange(rows)
+    from thermicon.perception import Observer
+
+    nominal, reading = Observer.load() if made.observer is None else made.observer.nominal, read_text(made.text)
+    icons = {icon.name: icon for icon in made.icons}
+    drawn = {name: draw(icons[name], made.rig, nominal, reading) for name in dict.fromkeys((a, b))}
+    clock = max((each.trace.time_s for each in drawn.values()), key=lambda time_s: time_s[-1])
+    clock = clock[:: -(-len(clock) // MOST_POINTS)]
     buffers: list[Any] = []
     panels = []
-    for key, title, height in PANELS:
+    for key, title, height, role in PANELS:
         series = []
-        for part, name, style in zip(parts, names, STYLES, strict=False):
-            values = _values_on(part, "temperature" if key == "skin" else "sensation", key, clock)
-            if values is not None:
-                role = {"skin": "ink", "cold": "cool", "warm": "warm"}[key]
-                about = {"key": f"{key} {name}", "label": name, "buffer": len(buffers), "role": role}
-                series.append({**about, "dash": style[0], "width": style[1], "step": False})
-                buffers.append(values)
+        for (name, each), (dash, width) in zip(drawn.items(), STYLES, strict=False):
+            values = {"skin": each.trace.skin_C, "cold": each.percept.psi_cold, "warm": each.percept.psi_warm}[key]
+            about = {"key": f"{key} {name}", "label": name, "buffer": len(buffers), "role": role}
+            series.append({**about, "dash": dash, "width": width, "step": False})
+            rows = min(len(values), len(each.trace.time_s))
+            on_clock = np.interp(clock, each.trace.time_s[:rows], values[:rows], right=np.nan)
+            buffers.append(on_clock.astype(np.float32))
         felt = key != "skin"
         about = {"digits": 1 if felt else 2, "terms": terms_of("d′", "sensation ψ") if felt else []}
         panels.append({"key": key, "label": title, "height": height, "series": series, **about})
-    meta = {
-        "type": "frame",
-        "view": "traces",
-        "seq": 0,
-        "time": {"t0": 0.0, "dt": step, "n": rows},
-        "panels": panels,
-        "notes": [],
-    }
+    time = {"t0": 0.0, "dt": float(clock[1] - clock[0]), "n": len(clock)}
+    meta = {"type": "frame", "view": "traces", "seq": 0, "time": time, "panels": panels, "notes": []}
     return CanvasFrame(meta, tuple(buffers))
 
 
@@ -205,26 +207,3 @@ def distinct(names: Sequence[str]) -> list[str]:
         if len(set(made)) == len(names):
             return made
     return list(names)
-
-
-PANELS = (("skin", "skin (°C)", 1.2), ("cold", "felt as cold (d′)", 1.0), ("warm", "felt as warm (d′)", 1.0))
-
-
-def _traces(made: RankedSet, name: str) -> CanvasFrame:
-    from thermicon.perception import Observer
-
-    from ..timeline.scene import draw
-
-    icon = next(icon for icon in made.icons if icon.name == name)
-    nominal = Observer.load() if made.observer is None else made.observer.nominal
-    return traces_of(draw(icon, made.rig, nominal, read_text(made.text)))
-
-
-def _values_on(part: CanvasFrame, panel: str, key: str, clock: Any) -> Any:
-    """The values of a curve of the design view on another clock; NaN behind its end, None where there is no such."""
-    for each in part.meta["panels"]:
-        for series in each["series"]:
-            if each["key"] == panel and series["key"] == key:
-                own = part.meta["time"]["dt"] * np.arange(part.meta["time"]["n"])
-                return np.interp(clock, own, part.buffers[series["buffer"]], right=np.nan).astype(np.float32)
-    return None

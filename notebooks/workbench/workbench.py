@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from html import escape
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -88,6 +89,7 @@ class Workbench:
         observer: str | Path | None = None,
     ) -> None:
         from thermicon.circuit import Rig
+        from thermicon.perception.selection.goal import Goal
 
         source = text if text is not None else os.environ.get(FILE) or None
         chosen = rig if rig is not None else os.environ.get(RIG) or "thenar"
@@ -101,7 +103,7 @@ class Workbench:
         if measured is not None:
             self._design.take_log(read_measured(Path(measured)))
         self._folder = Path(folder)
-        self._goal = _goal_text(goal)
+        self._goal = "" if goal is None else (Goal.parse(goal) if isinstance(goal, str) else goal).text
         self._ranked: tuple[object, Ranking] | None = None
         self._page: Any = None
         self.design_view: DesignView | None = None
@@ -127,9 +129,9 @@ class Workbench:
 
     @text.setter
     def text(self, text: str) -> None:
-        self._design.show_text(text)
+        frame = self._design.show_text(text)
         if self.design_view is not None:
-            self.design_view.refresh()
+            self.design_view.send(frame)
 
     @property
     def document(self) -> Document:
@@ -183,10 +185,7 @@ class Workbench:
             raise ValueError(f"{many}: narrow the family")
         asked = (self.text, self.rig, people)
         if self._ranked is None or self._ranked[0] != asked:
-            self._ranked = (
-                asked,
-                rank(self.icons, self.rig, people=people, observer=self._design.model),
-            )
+            self._ranked = asked, rank(self.icons, self.rig, people=people, observer=self._design.model)
         return self._ranked[1]
 
     def figure(self, view: View = "design") -> Figure:
@@ -228,27 +227,32 @@ class Workbench:
         from .set_view import SetView
         from .versions_view import VersionsView
 
-        style = widgets.HTML(f"<style>{style_text()}</style>").add_class("thermicon-style")
+        sheet = (files("thermicon.notebooks") / "workbench.css").read_text(encoding="utf-8")
+        style = widgets.HTML(f"<style>{sheet}</style>").add_class("thermicon-style")
         self.design_view = design = DesignView(self._design)
-        self.set_view = ranked = SetView(self._design, design.show_text)
+
+        def show_text(text: str, icon: str | None = None) -> None:
+            design.send(self._design.show_text(text, icon))
+
+        self.set_view = ranked = SetView(self._design, show_text)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = DocumentBar(design)
-        self.versions_view = versions = VersionsView(self._design, design.show_text)
+        self.versions_view = versions = VersionsView(self._design, show_text)
         ranked.goal.text.value = self._goal
         design.on_page = {"save": bar.saved_by_key, "left": bar.take_left}
         views = [design.box, ranked.box, export.box, versions.box]
         tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))
 
+        live: tuple[SetView | ExportView | VersionsView, ...] = (ranked, export, versions)
+
         def shown(change: Any) -> None:
             bar.beside(design=change["new"] == 0)
-            ranked.shown = change["new"] == 1
-            export.shown = change["new"] == 2
-            versions.shown = change["new"] == 3
-            for view in (ranked, export, versions):
+            for place, view in enumerate(live, 1):
+                view.shown = change["new"] == place
                 view.renew(0.0)  # who opens a tab has finished typing
 
         def changed() -> None:
-            for view in (ranked, export, versions):
+            for view in live:
                 view.renew()
 
         if has_kernel():
@@ -268,20 +272,11 @@ class Workbench:
         try:
             light["text/html"] = self.icons._repr_html_()
         except CueErrors as wrong:
-            light["text/html"] = f"<pre>{_escaped(str(wrong))}</pre>"
+            light["text/html"] = f"<pre>{escape(str(wrong))}</pre>"
         return {**light, **self.page._repr_mimebundle_(include=include, exclude=exclude), "text/plain": repr(self)}
 
     def __repr__(self) -> str:
         return f"Workbench{repr(self.scene).removeprefix('Scene')}"
-
-
-def _goal_text(goal: Goal | str | None) -> str:
-    """A goal in canonical form, or as it was typed if that can be read; raises GoalError otherwise."""
-    from thermicon.perception.selection.goal import Goal
-
-    if goal is None:
-        return ""
-    return Goal.parse(goal).text if isinstance(goal, str) else goal.text
 
 
 def _observer_of(file: str | Path | None) -> ObserverModel | None:
@@ -294,11 +289,6 @@ def _observer_of(file: str | Path | None) -> ObserverModel | None:
     return ObserverModel.load(chosen)
 
 
-def style_text() -> str:
-    """The style sheet of the page around the canvases."""
-    return (files("thermicon.notebooks") / "workbench.css").read_text(encoding="utf-8")
-
-
 def has_kernel() -> bool:
     """Whether there is a kernel whose front end could show widgets."""
     try:
@@ -307,9 +297,3 @@ def has_kernel() -> bool:
         return False
     shell = get_ipython()
     return getattr(shell, "kernel", None) is not None
-
-
-def _escaped(text: str) -> str:
-    from html import escape
-
-    return escape(text)

@@ -47,7 +47,7 @@ def test_a_version_comes_back_with_its_icon_as_a_step_that_can_be_undone() -> No
     view.back.click()
     assert (bench.text, bench.scene.icon) == (TEXT, "b")
     assert "Undo takes it back out" in said(view, "status")
-    bench.design_view.step("undo")
+    bench.design_view._receive({"type": "undo"})
     assert (bench.text, bench.scene.icon) == (TYPED, "a")
 
 
