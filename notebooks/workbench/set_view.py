@@ -37,7 +37,7 @@ icon glow { warm by 2 K at 2 K/s; return at 2 K/s }
 icon beat { repeat 2 { pulse cool by 2 K for 1 s; rest for 1 s } }
 """
 """A set that calls what a first ranking of any set calls: three icons, since two are easier to place."""
-MAP_INCHES = (4.6, 3.8)
+MAP_INCHES = (3.7, 3.3)
 WIDE, BESIDE = "1 1 500px", 6
 """Table and heat maps are side by side for at most this number of icons."""
 

@@ -101,7 +101,8 @@ def test_the_set_is_compared_and_an_edit_applied(bench: Page, shot: Shot) -> Non
     click_a_confusion(bench)
     bench.get_by_role("button", name="Apply edit").click()
     open_tab(bench, "Design")
-    assert text_of(bench) != TWO
+    edited = "text => document.querySelector('.thermicon .tm-editor').editor.text !== text"
+    bench.wait_for_function(edited, arg=TWO)
     assert "# as far as is pleasant" in text_of(bench)
 
 
