@@ -42,6 +42,29 @@ def test_intervals_over_participants_cover() -> None:
     assert 0.9 <= np.mean(correct) <= 0.99
 
 
+def test_half_widths_are_wilsons_and_the_jackknifes() -> None:
+    assert wilson(18.0, 20.0) == pytest.approx((0.69897, 0.97214), abs=1e-4)
+    hits = np.array([10.0, 6.0, 2.0])
+    counts = np.zeros((3, 2, 2))
+    counts[:, 0, 0], counts[:, 0, 1] = hits, 10.0 - hits
+    share, without = 0.6, (18.0 - hits) / 20.0
+    half = 4.302653 * math.sqrt(2.0 / 3.0 * float(np.square(without - without.mean()).sum()))
+    found = score_pooled(Trials(("a", "b"), ("P1", "P2", "P3"), counts)).proportion_interval
+    assert found == pytest.approx((max(share - half, 0.0), min(share + half, 1.0)), abs=1e-6)
+    # Over trials: leaving out one of n answers, n times.
+    alone = score_person(drawn(np.random.default_rng(5), 1, 20), 0)
+    counts = drawn(np.random.default_rng(5), 1, 20).counts[0]
+    cells = [(a, b) for a, b in np.argwhere(counts > 0).tolist() for _ in range(int(counts[a, b]))]
+    left = []
+    for cell in cells:
+        fewer = counts.copy()
+        fewer[tuple(cell)] -= 1.0
+        bits, bias = plugin_information(fewer)
+        left.append(bits - bias)
+    half = 1.96 * math.sqrt((len(left) - 1) / len(left) * float(np.square(np.array(left) - np.mean(left)).sum()))
+    assert alone.bits_interval == pytest.approx((alone.bits - half, alone.bits + half), abs=1e-4)
+
+
 def test_participants_who_happen_to_be_alike_leave_an_interval() -> None:
     alike = np.zeros((2, 3, 3))
     alike[:, range(3), range(3)] = 4.0

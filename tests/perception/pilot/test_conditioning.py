@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from tests.weights import weighted_quantile
+from thermicon.perception.pilot import conditioning
 from thermicon.perception.pilot.conditioning import Answered, condition, systematic
+from thermicon.perception.pilot.laboratory_file import off_middle
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
 from thermicon.perception.pilot.playing import Confusions
 from thermicon.perception.pilot.prediction import compare
@@ -114,6 +116,14 @@ def test_weights_quantiles_and_resampling() -> None:
     assert weighted_quantile(np.array([3.0, 1.0, 2.0]), np.full(3, 1 / 3), (0.5,)) == (2.0,)
     chosen = np.bincount(systematic(weights, 1000, np.random.default_rng(0)), minlength=3)
     assert np.abs(chosen - 1000 * weights).max() <= 1
+
+
+def test_weights_are_used_from_sixty_effective_laboratories_on_or_a_quarter() -> None:
+    assert (conditioning.LEAST_EFFECTIVE, conditioning.LEAST_SHARE) == (60.0, 0.25)
+    logs = np.linspace(-4.0, 0.0, 100)
+    assert effective(conditioning._tempered(logs, 25.0)) >= 25.0
+    assert np.allclose(conditioning._tempered(logs, 1.0), normalised_weights(logs))
+    assert off_middle(np.array([[0.0], [1.0], [5.0]])).argmin() == 1
 
 
 def test_fit_finds_a_pair_that_was_missed_and_nothing_where_all_is_as_predicted() -> None:

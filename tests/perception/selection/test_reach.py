@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
@@ -48,11 +49,23 @@ def test_what_changes_nothing_gains_nothing(monkeypatch: pytest.MonkeyPatch) -> 
     assert advice.helpful == ()
 
 
-def test_a_thermode_has_no_driver_to_change() -> None:
-    assert {change.split("=")[0] for change, *_ in reach._rigs(Rig.load("tcs2"), Goal.parse("count 2"))} <= {
-        "contact.area_cm2",
-        "contact.resistance_m2K_per_W",
-    }
+def test_changes_are_those_of_the_rig_and_of_totals(rig: Rig) -> None:
+    goal = Goal.parse("time <= 3 s, energy <= 2 J, count 2")
+    changes = dict(change.split("=") for change, *_ in reach._rigs(rig, goal))
+    keys = ("driver.current_limit_A", "driver.voltage_limit_V", "heat_sink.resistance_K_per_W")
+    own = (rig.driver.current_max_A, rig.driver.voltage_limit_V, rig.heat_sink.resistance_K_per_W)
+    assert [float(changes[key]) for key in keys] == pytest.approx(np.multiply(own, (1.5, 1.5, 0.5)), rel=1e-5)
+    assert float(changes["contact.area_cm2"]) == pytest.approx(2e4 * rig.contact.area_m2)
+    assert [change for change, *_ in reach._relaxed(rig, goal)] == ["time <= 4.5 s", "energy <= 3 J"]
+    thermode = {change.split("=")[0] for change, *_ in reach._rigs(Rig.load("tcs2"), goal)}
+    assert thermode == {"contact.area_cm2", "contact.resistance_m2K_per_W"}
+
+
+def test_a_change_helps_from_one_percent_on() -> None:
+    result = GoalResult(Goal.parse("count 2"), ())
+    little, more = (reach.Trial("key", "words", met=False, gain=gain, result=result) for gain in (0.0099, 0.0101))
+    advice = reach.Advice(result, 0.0, (more, little))
+    assert (advice.helpful, advice.idle) == ((more,), (little,))
 
 
 def test_shortfall_is_that_of_the_part_that_misses_most() -> None:
