@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, cast, overload
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -177,7 +177,7 @@ def _row(cells: Mapping[str, str], where: str, rig: Rig) -> tuple[tuple[str, Con
     """Who and under which condition, and what was found: value, standard error, trials."""
     kind = cast("Kind", _one_of(cells["kind"], "kind", tuple(METHODS), where))
     channel = cast("Channel", _one_of(cells["channel"], "channel", CHANNELS, where))
-    methods = METHODS[kind]
+    methods, what = METHODS[kind], kind.replace("_", " ")
     method = cells.get("method", "")
     if not method and kind == "threshold":
         raise TrialsError(
@@ -185,23 +185,23 @@ def _row(cells: Mapping[str, str], where: str, rig: Rig) -> tuple[tuple[str, Con
             f"column method with {', '.join(methods)}"
         )
     method = _one_of(method, "method", methods, where) if method else methods[0]
-    factor = FACTORS[kind][_one_of(cells["unit"], "unit", tuple(FACTORS[kind]), where, f" of a {_words(kind)}")]
+    factor = FACTORS[kind][_one_of(cells["unit"], "unit", tuple(FACTORS[kind]), where, f" of a {what}")]
     low, high, cure = RANGES[kind]
     value = factor * _number(cells["value"], "value", where)
     if not low <= value <= high:
         raise TrialsError(
-            f"{where}: value is {quoted(cells['value'])} {cells['unit']}, a {_words(kind)} lies within {low:g} to "
+            f"{where}: value is {quoted(cells['value'])} {cells['unit']}, a {what} lies within {low:g} to "
             f"{high:g} {UNITS[kind]}; {cure}"
         )
     condition = _condition(cells, kind, method, channel, where, rig)
-    if method == "limits" and condition.size_K is not None and value > condition.size_K:
+    if method == "limits" and value > (condition.size_K or 0.0):
         raise TrialsError(
             f"{where}: value is {value:g} K, and the ramp ends at {condition.size_K:g} K; give size_K, where the ramp "
             "really ended"
         )
-    error = (
-        factor * _number(cells["standard_error"], "standard_error", where) if cells.get("standard_error") else math.nan
-    )
+    error = math.nan
+    if cells.get("standard_error"):
+        error = factor * _number(cells["standard_error"], "standard_error", where)
     if not math.isnan(error) and not 0.0 < error <= 2.0 * value:
         raise TrialsError(
             f"{where}: standard_error is {quoted(cells['standard_error'])}, for a value of {cells['value']}; it "
@@ -214,27 +214,20 @@ def _row(cells: Mapping[str, str], where: str, rig: Rig) -> tuple[tuple[str, Con
 
 
 def _condition(cells: Mapping[str, str], kind: Kind, method: str, channel: Channel, where: str, rig: Rig) -> Condition:
-    adaptive = method in ADAPTIVE
-    size = _within(cells, "size_K", LIMIT_K if method == "limits" else None, where)
-    if adaptive and size is not None:
+    size = _within(cells, "size_K", LIMIT_K if method == "limits" else math.nan, where)
+    if method in ADAPTIVE and not math.isnan(size):
         raise TrialsError(f"{where}: size_K belongs to limits, reaction times and ratings; leave it empty for {method}")
-    if not adaptive and size is None:
+    if method not in ADAPTIVE and math.isnan(size):
         raise TrialsError(
             f"{where}: size_K is missing: give the change of the display in K, without sign, that was "
             f"{'timed' if kind == 'reaction_time' else 'rated'}"
         )
-    rate = _within(cells, "rate_K_per_s", RATES.get(method, 1.0), where)
-    if size is not None and size / rate > LONGEST_RAMP_S:
+    rate, hold = _within(cells, "rate_K_per_s", RATES.get(method, 1.0), where), HOLDS.get(method, 0.0)
+    if size / rate > LONGEST_RAMP_S:
         raise TrialsError(f"{where}: a ramp of {size:g} K at {rate:g} K/s takes more than {LONGEST_RAMP_S:g} s")
-    return Condition(
-        kind,
-        method,
-        channel,
-        _within(cells, "baseline_C", rig.skin.rest_C, where),
-        size,
-        rate,
-        _within(cells, "hold_s", HOLDS.get(method, 0.0), where),
-    )
+    baseline = _within(cells, "baseline_C", rig.skin.rest_C, where)
+    found = None if math.isnan(size) else size
+    return Condition(kind, method, channel, baseline, found, rate, _within(cells, "hold_s", hold, where))
 
 
 def _one_of(text: str, column: str, known: tuple[str, ...], where: str, of: str = "") -> str:
@@ -256,11 +249,7 @@ def _number(text: str, column: str, where: str) -> float:
     return value
 
 
-@overload
-def _within(cells: Mapping[str, str], column: str, default: float, where: str) -> float: ...
-@overload
-def _within(cells: Mapping[str, str], column: str, default: float | None, where: str) -> float | None: ...
-def _within(cells: Mapping[str, str], column: str, default: float | None, where: str) -> float | None:
+def _within(cells: Mapping[str, str], column: str, default: float, where: str) -> float:
     text = cells.get(column, "")
     if not text:
         return default
@@ -269,7 +258,3 @@ def _within(cells: Mapping[str, str], column: str, default: float | None, where:
         hint = "; that looks like kelvin" if column == "baseline_C" and 280.0 < value < 320.0 else ""
         raise TrialsError(f"{where}: {column} is {text}, outside {low:g} to {high:g} {unit}{hint}".rstrip())
     return value
-
-
-def _words(kind: Kind) -> str:
-    return kind.replace("_", " ")
