@@ -14,7 +14,7 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
-from .options import MOST_ICONS, RigOptions, flag, opt, sets_like, warn_of_site
+from .options import MOST_ICONS, RigOptions, flag, opt, sets_like, warn_of_frames
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -129,7 +129,7 @@ def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
     """One message for everything in this set that the rig cannot do; another site is only a warning on stderr."""
     from thermicon.circuit.solver.static import check_static
 
-    warn_of_site(file, icons, rig)
+    warn_of_frames([file], icons, rig)
     count = len(icons)
     chosen: Sequence[Icon] = icons.icons
     if count > MOST_ICONS:

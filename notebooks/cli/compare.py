@@ -89,11 +89,7 @@ def compare_command(
 
 
 def kind_of(text: str, option: str) -> str:
-    """Return what an argument names, a rig, icon, set or table; a usage error if that is not clear.
-
-    >>> [kind_of(text, "A") for text in ("thenar", "my.toml", "six-icons:double-dip", "my.cue", "log.csv")]
-    ['rig', 'rig', 'icon', 'set', 'table']
-    """
+    """Return what an argument names, a rig, icon, set or table; a usage error if that is not clear."""
     from thermicon.circuit.rig.rig import rig_names
     from thermicon.icons.files.shipped import library_names
 

@@ -9,12 +9,11 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
-from dataclasses import asdict, dataclass
 from importlib import resources
 from importlib.metadata import PackageNotFoundError, version
 from math import nan
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
 import typer
 
@@ -41,9 +40,8 @@ PIP_ENDS_S, SELF_TEST_ENDS_S = 120.0, 600.0
 REINSTALL = "install thermicon again in a new environment; if that does not help, report it with doctor --json"
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """What a check found: one line, and the cure exactly where the state is not ``ok``.
+class Finding(NamedTuple):
+    """What a check found: one line, and the cure where the state is not ``ok``.
 
     A note costs something that can be done without; a fault keeps thermicon from working or from being right.
     """
@@ -52,10 +50,6 @@ class Finding:
     state: Literal["ok", "note", "fault"]
     text: str
     cure: str | None = None
-
-    def __post_init__(self) -> None:
-        if (self.cure is None) != (self.state == "ok"):
-            raise ValueError(f"{self.check}: {self.state} {'without' if self.cure is None else 'with'} a cure")
 
     @property
     def line(self) -> str:
@@ -78,7 +72,11 @@ def doctor_command(
             typer.echo(finding.line)
     faults, notes = (sum(each.state == state for each in findings) for state in ("fault", "note"))
     if json:
-        found = {PROGRAM: installed_version(PROGRAM), "ok": not faults, "findings": list(map(asdict, findings))}
+        found = {
+            PROGRAM: installed_version(PROGRAM),
+            "ok": not faults,
+            "findings": [each._asdict() for each in findings],
+        }
         typer.echo(json_text.dumps(found, indent=1))
     elif faults:
         typer.echo(
@@ -103,13 +101,9 @@ def examine() -> Iterator[Finding]:
 
 
 def check_python() -> Iterator[Finding]:
-    """State the Python that runs, and on what."""
+    """State the Python that runs, and on what; and the installed thermicon."""
     text = f"{platform.python_version()} ({sys.executable}) on {platform.platform(terse=True)} {platform.machine()}"
     yield Finding("Python", "ok", text)
-
-
-def check_program() -> Iterator[Finding]:
-    """Look for the installed thermicon."""
     here, found = Path(__file__).parents[1], installed_version(PROGRAM)
     if found is None:
         cure = f"in the folder of its pyproject.toml: {PIP} install -e ."
@@ -224,7 +218,6 @@ def check_self_test() -> Iterator[Finding]:
 
 CHECKS: dict[str, Callable[[], Iterator[Finding]]] = {
     "Python": check_python,
-    PROGRAM: check_program,
     "packages": check_required,
     "extras": check_extras,
     "cache": check_cache,

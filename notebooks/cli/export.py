@@ -19,7 +19,7 @@ from ..messages import BAD_INPUT, REFUSED, Missing, note, progress_bar, usage
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, steps_of
 from ..report.terminal import show
-from .options import IconName, NoFile, RigOptions, Tail, flag, opt, out, pick, read_set, warn_of_site
+from .options import IconName, NoFile, RigOptions, Tail, flag, opt, out, pick, read_set
 
 if TYPE_CHECKING:
     from thermicon.circuit import Export
@@ -81,10 +81,9 @@ def export_command(
 
     where, form = rig.load(), load_format(to)
     check_export_folder(folder, replace=force)
-    whole = read_set([file])
+    whole = read_set([file], where)
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
-    warn_of_site(file, whole, where)
     warned: list[str] = []
     with progress_bar("simulating") as progress:
         felt = felt_beside(others(whole, chosen), warned.append, tail)

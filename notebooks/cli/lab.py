@@ -82,8 +82,8 @@ def lab_command(
         serve_file(file, shown, no_browser, port)
         return
     written, kept = copy_notebooks(folder, force)
-    cure = " (--force replaces them)" if kept else ""
-    note(f"{folder}: {len(written)} notebooks written, {len(kept)} there already{cure}")
+    there = f", {len(kept)} there already (--force replaces them)" if kept else ""
+    note(f"{folder}: wrote {len(written)} notebooks{there}")
     if not files_only:
         command = command_of(folder, page, no_browser, port)
         serve([*command, *(["--allow-root"] if allow_root else [])], program, shown if page else {})
@@ -121,11 +121,6 @@ def copy_notebooks(folder: Path, force: bool = False) -> tuple[list[str], list[s
 
     All that are not there are written, or none; with ``force``, those too that are there. Raises OutputError where the
     folder cannot be used.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as made:
-    ...     [[len(names) for names in copy_notebooks(Path(made))] for _ in range(2)]
-    [[9, 0], [0, 9]]
     """
     check_folder(folder)
     shipped = shipped_notebooks()
@@ -146,11 +141,7 @@ def copy_notebooks(folder: Path, force: bool = False) -> tuple[list[str], list[s
 
 
 def shipped_notebooks() -> dict[str, bytes]:
-    """The notebooks of this version by name, in order.
-
-    >>> list(shipped_notebooks())[0], PAGE in shipped_notebooks()
-    ('01_first_icon.ipynb', True)
-    """
+    """The notebooks of this version by name, in order."""
     found = [path for path in resources.files("thermicon.notebooks").iterdir() if path.name.endswith(".ipynb")]
     return {path.name: path.read_bytes() for path in sorted(found, key=lambda path: path.name)}
 
@@ -159,9 +150,6 @@ def command_of(folder: Path, page: bool, no_browser: bool, port: int | None) -> 
     """The command that opens JupyterLab on the first notebook, or the page's server on the workbench, in a folder.
 
     With -P, Python imports nothing from the folder that it is started in.
-
-    >>> command_of(Path("/mine"), True, False, 9000)[1:]
-    ['-P', '-m', 'thermicon.notebooks.cli.page_server', '/mine/workbench.ipynb', '--port=9000']
     """
     module, notebook = ("thermicon.notebooks.cli.page_server", PAGE) if page else ("jupyterlab", FIRST)
     words = [sys.executable, "-P", "-m", module, str(folder.resolve() / notebook)]

@@ -14,7 +14,7 @@ from ..files.outputs import check_output
 from ..messages import usage
 from ..report.blocks import grid
 from ..report.terminal import show
-from .options import RigOptions, flag, opt, read_set, warn_of_site, write_text
+from .options import RigOptions, flag, opt, read_set, write_text
 
 
 def list_command(
@@ -56,13 +56,11 @@ def cite_file(file: str, as_bibtex: bool, rig: RigOptions) -> None:
     from thermicon.circuit.rig.rig_words import rig_summary
     from thermicon.icons.files.cite import bibtex, methods
 
-    icons = read_set([file])
+    where = rig.load(module_matters=False) if rig.given else None
+    icons = read_set([file], where)
     if as_bibtex:
         typer.echo(bibtex(icons), nl=False)
         return
-    where = rig.load(module_matters=False) if rig.given else None
-    if where is not None:
-        warn_of_site(file, icons, where)
     typer.echo(methods(icons, None if where is None else rig_summary(where, for_methods=True)))
 
 

@@ -158,9 +158,6 @@ def program(words: Sequence[str] = ()) -> typer.Typer:
     """The program with the one command that a command line begins with, otherwise with all.
 
     Importing all of them, and reading their options, takes longer than checking a file.
-
-    >>> [command.name for command in program(["check"]).registered_commands]
-    ['check']
     """
     made = typer.Typer(
         name="thermicon",

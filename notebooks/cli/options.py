@@ -97,11 +97,7 @@ class Options:
     """A group of options: a frozen dataclass whose fields carry their options."""
 
     def words(self, *, paths: bool = False) -> list[str]:
-        """What repeats the group on a command line: options other than the default; paths as given, or names alone.
-
-        >>> CrowdOptions(people=20, observer=Path("a/lab.csv")).words()
-        ['--observer', 'lab.csv', '--people', '20']
-        """
+        """What repeats the group on a command line: options other than the default; paths as given, or names alone."""
         own: tuple[Field[Any], ...] = fields(self)  # type: ignore[arg-type]
         words: list[str] = []
         for field in own:
@@ -139,11 +135,7 @@ class RigOptions(Options):
         return load_rig(self.rig, self.changes, module_matters=module_matters)
 
     def words(self, *, paths: bool = False) -> list[str]:
-        """As for any group; the usual rig is left out.
-
-        >>> RigOptions("rigs/mine.toml", ["contact.area_cm2=4"]).words()
-        ['--rig', 'mine.toml', '--set', 'contact.area_cm2=4']
-        """
+        """As for any group; the usual rig is left out."""
         name = None if self.rig == DEFAULT_RIG else self.rig if paths or self.rig is None else Path(self.rig).name
         return super(RigOptions, replace(self, rig=name)).words(paths=paths)
 
@@ -262,15 +254,16 @@ class Joined:
         return "\n".join(map(str, self.sets))
 
 
-def read_set(files: Sequence[str]) -> IconSet:
-    """Read files and join their icons into one set; JoinError when two icons share a name."""
+def read_set(files: Sequence[str], rig: Rig | None = None) -> IconSet:
+    """Read files and join their icons into one set, and warn of what does not fit a rig.
+
+    JoinError when two icons share a name.
+    """
     from thermicon.icons import read_cue
 
     sets = [read_cue(file) for file in files]
-    if len(sets) == 1:
-        return sets[0]
     owner: dict[str, str] = {}
-    for file, each in zip(files, sets, strict=True):
+    for file, each in zip(files, sets, strict=True) if len(sets) > 1 else ():
         for icon in each:
             if icon.name in owner:
                 raise JoinError(
@@ -278,7 +271,10 @@ def read_set(files: Sequence[str]) -> IconSet:
                     f"names must differ within a set, so rename one of them"
                 )
             owner[icon.name] = file
-    return cast("IconSet", Joined(tuple(sets), tuple(files)))
+    joined = sets[0] if len(sets) == 1 else cast("IconSet", Joined(tuple(sets), tuple(files)))
+    if rig is not None:
+        warn_of_frames(files, joined, rig)
+    return joined
 
 
 def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> tuple[str, ...]:
@@ -287,24 +283,16 @@ def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> tuple[str,
     sets = icons.sets if isinstance(icons, Joined) else (icons,)
     levels: dict[float, list[str]] = {}
     for file, each in zip(files, sets, strict=True):
-        warnings += warn_of_site(file, each, rig)
+        if each.context.site not in (None, rig.site):
+            warnings.append(f"{file} is for the site {each.context.site}, the rig {rig.name} is for {rig.site}")
         own = each.context.baseline_C
         levels.setdefault(rig.skin.rest_C if own is None else own, []).append(Path(file).name)
     if len(levels) > 1:
         told = ", ".join(f"{number(level, 2)} °C in {' and '.join(names)}" for level, names in levels.items())
         warnings.append(f"baselines differ: {told}; between them the skin must adapt again, which the model leaves out")
-        note(f"warning: {warnings[-1]}")
+    for warning in warnings:
+        note(f"warning: {warning}")
     return tuple(warnings)
-
-
-def warn_of_site(file: str, icons: IconSet, rig: Rig) -> tuple[str, ...]:
-    """Warn on stderr when a set is for another site than the rig's; return the warning, if there is one."""
-    site = icons.context.site
-    if site is None or site == rig.site:
-        return ()
-    warning = f"{file} is for the site {site}, the rig {rig.name} is for {rig.site}"
-    note(f"warning: {warning}")
-    return (warning,)
 
 
 def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:

@@ -21,7 +21,6 @@ from .options import (
     opt,
     out,
     read_set,
-    warn_of_frames,
     write_text,
 )
 from .ranking import command_text
@@ -119,10 +118,9 @@ def pilot_command(
     from ..report.plan_report import plan_report
     from ..report.terminal import show
 
-    sets, where = [read_set([name]) for name in files], rig.load()
+    where = rig.load()
+    sets = [read_set([name], where) for name in files]
     model = crowd.load(where, NEEDS)
-    for name, each in zip(files, sets, strict=True):
-        warn_of_frames([name], each, where)
     with progress_bar("simulating experiments") as progress:
         found = plan(
             sets[0],
@@ -169,7 +167,8 @@ def condition(
     from ..report.pilot_report import observed_report
     from ..report.terminal import show
 
-    (icons, *others), where = [read_set([name]) for name in files], rig.load()
+    where = rig.load()
+    icons, *others = (read_set([name], where) for name in files)
     model = crowd.load(where, NEEDS)
     data: Trials | Measurements
     if is_measurements(answers):
@@ -178,7 +177,6 @@ def condition(
         data = read_trials(answers, [icon.name for icon in icons])
         for warning in data.warnings:
             note(f"warning: {warning}")
-    warn_of_frames(files[:1], icons, where)
     with progress_bar("simulating laboratories") as progress:
         found = observed(
             data, icons, where, others=others, draws=draws, observer=model, progress=progress, **crowd.asked

@@ -231,11 +231,7 @@ def _following(ranking: Ranking, icons: IconSet, files: Sequence[str], rig: RigO
 
 
 def read_workers(text: str | None) -> int | str | None:
-    """Number of cores, or address of a cluster.
-
-    >>> read_workers("2"), read_workers("tcp://10.0.0.1:8786")
-    (2, 'tcp://10.0.0.1:8786')
-    """
+    """Number of cores, or address of a cluster."""
     if text is None or not text.lstrip("-").isdecimal():
         return text
     if not 1 <= int(text) <= MOST_WORKERS:
@@ -257,9 +253,6 @@ def command_text(files: Sequence[str], *groups: Options, paths: bool = False, co
     """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
 
     Files are named without their folders, or, with ``paths``, as they were given.
-
-    >>> command_text(["/home/a/two icons.cue"], RigOptions(), CrowdOptions(people=20))
-    "thermicon rank 'two icons.cue' --people 20"
     """
     words = ["thermicon", command, *(name if paths else Path(name).name for name in files)]
     return shlex.join([*words, *(word for group in groups for word in group.words(paths=paths))])

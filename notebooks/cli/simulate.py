@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Mapping, Sequence
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -19,8 +21,10 @@ from ..files.outputs import (
     check_output,
     check_separate,
 )
-from ..messages import note, usage
-from ..report.run_report import describe, headline
+from ..messages import note, progress_bar, usage
+from ..report.gate_words import CAUTION
+from ..report.run_report import describe, headline, session_report
+from ..report.terminal import show
 from .options import (
     LARGEST_SEED,
     LONGEST_TAIL_S,
@@ -34,15 +38,16 @@ from .options import (
     out,
     pick,
     read_set,
-    warn_of_site,
     write_text,
 )
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig, Trace
+    from thermicon.circuit import Rig, Session, Trace
+    from thermicon.icons import IconSet
 
 LONGEST_GAP_S, MOST_PLAYS = 3600.0, 5000
 """Those of `thermicon.circuit.SessionPlan`, repeated here to avoid its imports."""
+NUMBERS, ORDER = ".json", ".txt"
 NGSPICE = ".sp"
 """The ending of a netlist that makes ngspice write all probes; LTspice does not read that."""
 
@@ -122,8 +127,6 @@ def simulate_command(
     elif file is not None and circuit and output is not None:
         netlist_file(file, icon, rig.load(), tail or 0.0, output)
     elif file is not None and session:
-        from .session import session_file
-
         session_file(file, rig.load(), order, random, 10.0 if gap is None else gap, seed or 0, tracking, output, figure)
     elif file is not None:
         simulate_file(file, icon, rig.load(), rate, tail, output, figure)
@@ -148,13 +151,11 @@ def simulate_file(
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
 
-    whole = read_set([file])
-    icons = pick(whole, icon)
+    icons = pick(read_set([file], rig), icon)
     pictures = [] if figure.figure is None else [figure.figure]
     if figure.figure is not None and len(icons) > 1:
         pictures = [figure.figure.with_stem(f"{figure.figure.stem}-{each.name}") for each in icons]
     _check_outputs(file, output, pictures)
-    warn_of_site(file, whole, rig)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
@@ -245,9 +246,8 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     check_output(output, NETLIST_SUFFIXES, "a netlist")
     record = f"{output.stem}.txt" if output.suffix.lower() == NGSPICE else None
     check_separate([file], [output])
-    icons = read_set([file])
+    icons = read_set([file], rig)
     played = only(icons, icon, file)
-    warn_of_site(file, icons, rig)
     trace = simulate(played, rig, tail_s=tail_s)
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"
@@ -259,3 +259,57 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     if record is not None:
         how = f"ngspice -b {output.name} writes the probes into {record}"
     write_text(text, output, f"; {how}", "ascii")
+
+
+def session_file(
+    file: str,
+    rig: Rig,
+    order: Path | None,
+    repeats: int | None,
+    gap_s: float,
+    seed: int,
+    tracking: str | None,
+    output: Path | None,
+    figure: FigureOptions,
+) -> None:
+    """Simulate a session with the icons of a file, in the order of a file or shuffled; print and write the report."""
+    from thermicon.circuit import SessionPlan, play_session
+    from thermicon.circuit.safety.session import check_repeats, order_text, read_order
+
+    if output is not None:
+        check_output(output, (*TRACE_SUFFIXES, NUMBERS, ORDER), "a session")
+    check_separate([file] if order is None else [file, order], (output, figure.figure))
+    icons = read_set([file], rig)
+    if order is not None:
+        plan = SessionPlan(read_order(order, icons), gap_s)
+    else:
+        check_repeats(repeats or 1, len(icons), "icons")
+        plan = SessionPlan.shuffled([icon.name for icon in icons], repeats or 1, seed=seed, gap_s=gap_s)
+    with progress_bar("worst case") as progress:
+        played = [icons[name] for name in plan.names]
+        session = play_session(played, plan, rig, tracking=tracking or "replay", progress=progress)
+    if output is not None and output.suffix == ORDER:
+        write_text(order_text(plan), output)
+    elif output is not None and output.suffix == NUMBERS:
+        write_text(session_text(session, icons, rig), output)
+    elif output is not None:
+        write_traces([session.trace], output)
+        note(f"wrote {output}")
+    if figure.figure is not None:
+        from ..figures.session_figure import session_figure
+
+        figure.write(session_figure(session))
+    show(session_report(session))
+    note(CAUTION)
+
+
+def session_text(session: Session, icons: IconSet, rig: Rig) -> str:
+    """The session as JSON text; missing values are null."""
+    facts = {
+        "thermicon": version("thermicon"),
+        "content_hash": icons.content_hash,
+        **session.to_dict(),
+        "rig_changes": list(rig.changes),
+        "rig_text": rig.document,
+    }
+    return json.dumps(facts, indent=1, ensure_ascii=False, allow_nan=False) + "\n"

@@ -29,7 +29,6 @@ from .options import (
     opt,
     pick,
     read_set,
-    warn_of_site,
     write_frame,
 )
 
@@ -248,8 +247,8 @@ def sweep_command(
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a sweep")
     check_separate([file], [output, figure.figure])
-    icons, where = pick(whole := read_set([file]), icon), rig.load()
-    warn_of_site(file, whole, where)
+    where = rig.load()
+    icons = pick(whole := read_set([file], where), icon)
     first, *others = varied
     with progress_bar("sweep") as progress:
         frame = sweep(

@@ -127,11 +127,7 @@ def grid(
     names: Sequence[str] = (),
     apart: int = 0,
 ) -> Grid:
-    """Make a table from texts and cells.
-
-    >>> grid(("a", "b"), [("1", Cell("2", "strong"))]).rows
-    ((Cell(text='1', kind=''), Cell(text='2', kind='strong')),)
-    """
+    """Make a table from texts and cells."""
     cells = tuple(tuple(cell if isinstance(cell, Cell) else Cell(cell) for cell in row) for row in rows)
     return Grid(tuple(columns), cells, tuple(numbers), tuple(names), apart)
 
@@ -166,11 +162,7 @@ def environment() -> Environment:
 
 
 def as_html(blocks: Sequence[Block], title: str) -> str:
-    """Render the page as one HTML file.
-
-    >>> "<p>5 &lt; 6</p>" in as_html([Text("5 < 6")], "A page")
-    True
-    """
+    """Render the page as one HTML file."""
 
     def address(picture: Picture) -> str:
         return f"data:image/{picture.media};base64,{base64.b64encode(picture.data).decode('ascii')}"
@@ -179,11 +171,7 @@ def as_html(blocks: Sequence[Block], title: str) -> str:
 
 
 def shown(*blocks: Block) -> str:
-    """Render single blocks for the workbench, in its style; the `kind` of a text is one of its classes `th-…`.
-
-    >>> shown(Heading("5 < 6"), Text("so it is", "soft"))
-    '<div class="th-head">5 &lt; 6</div>\\n<div class="th-soft">so it is</div>'
-    """
+    """Render single blocks for the workbench, in its style; the `kind` of a text is one of its classes `th-…`."""
     return fragment("shown", blocks)
 
 

@@ -60,11 +60,7 @@ def goal_value(part: dict[str, Any]) -> tuple[str, str]:
 
 
 def laboratory(observer: str, own: bool) -> str:
-    """Which laboratory an interval is for: a new one, or the one whose draws an observer's file holds.
-
-    >>> laboratory("lab.csv", True)
-    'your laboratory, lab.csv'
-    """
+    """Which laboratory an interval is for: a new one, or the one whose draws an observer's file holds."""
     return f"your laboratory, {observer}" if own else "a new laboratory"
 
 

@@ -22,16 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SetReport:
-    """A ranking, the icons chosen of it, the goal as set or choice meet it, edits by the names of pairs, and warnings.
-
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.icons import read_cue
-    >>> from thermicon.perception import rank
-    >>> from thermicon.perception.selection.goal_result import judge_goal
-    >>> ranking = rank(read_cue("six-icons"), Rig.load("thenar"), people=4, parameters=0)
-    >>> SetReport(ranking, goal=judge_goal("correct >= 50 %", ranking)).to_dict(mapped=False)["goal"]["met"]
-    True
-    """
+    """A ranking, the icons chosen of it, the goal as set or choice meet it, edits by the names of pairs, warnings."""
 
     ranking: Ranking
     choice: Choice | None = None

@@ -59,11 +59,7 @@ def _predicted(line: Line, one: Judged) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """Format the unit that follows a number; empty for pure numbers and proportions.
-
-    >>> unit_text("s"), unit_text("proportion")
-    (' s', '')
-    """
+    """Format the unit that follows a number; empty for pure numbers and proportions."""
     return "" if unit in ("", "1", "proportion") else f" {unit}"
 
 

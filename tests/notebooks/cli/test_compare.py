@@ -10,7 +10,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from thermicon.notebooks.figures.compare_figure import compare_figure
 from thermicon.notebooks.files.trace_files import Curves, LogError, align, differences
 
 Cli = Callable[..., Any]
@@ -35,22 +34,6 @@ def test_two_rigs_play_the_cooling_step_unless_told(cli: Cli) -> None:
     assert float(skin[1]) == pytest.approx(0.993, abs=0.01)  # 0.763 with a current that reaches
     assert lines[-1] == "compared at 801 times, 0–8 s"
     assert max(map(len, lines)) <= 80
-
-
-def test_two_rigs_a_file_and_a_change(cli: Cli, two: Path, tmp_path: Path) -> None:
-    from importlib.resources import files
-
-    mine = tmp_path / "mine.toml"
-    shipped = (files("thermicon.circuit") / "rigs" / "thenar.toml").read_text(encoding="utf-8")
-    mine.write_text(shipped.replace("area_cm2 = 9.0", "area_cm2 = 4.0"), encoding="utf-8")
-    said = cli("compare", "thenar", mine, "--file", two, "--figure", tmp_path / "a.png")
-    assert said.exit_code == 0, said.stderr
-    assert said.stdout.startswith("cool-step\nA  thenar: 8 s, reached")
-    assert "\nwarm-step\n" in said.stdout
-    assert said.stderr == f"wrote {tmp_path / 'a.png'}\n"
-    assert (tmp_path / "a.png").stat().st_size > 20_000
-    same = cli("compare", "thenar", mine, "--file", two, "--icon", "warm-step", "--set", "contact.area_cm2=4")
-    assert row(same, "skin")[1:3] == ["0", "K"]
 
 
 def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> None:
@@ -162,16 +145,3 @@ def test_what_was_not_measured_is_left_out() -> None:
     assert (row["rows"], row["mean"]) == (2, 1.0)
     with pytest.raises(LogError, match="no column with values in both"):
         align(curves("a", [0, 1], skin_C=[np.nan] * 2), curves("b", [0, 1], skin_C=[1.0] * 2))
-
-
-def test_the_figure_has_a_panel_of_differences_below_each_of_curves() -> None:
-    a = curves("a", [0, 1], skin_C=[30.0, 31.0], warm_receptor_C=[32.0, 32.0], heat_flow_skin_W_per_m2=[0.0, 500.0])
-    b = curves("b", [0, 1], skin_C=[30.0, 32.0], warm_receptor_C=[32.0, 32.0], heat_flow_skin_W_per_m2=[0.0, 900.0])
-    figure = compare_figure([("", align(a, b))])
-    labels = [ax.get_ylabel() for ax in figure.axes]
-    assert labels == ["°C", "°C", "kW/m²", "B − A (K)", "B − A (K)", "B − A (kW/m²)"]
-    assert [ax.get_title() for ax in figure.axes[:3]] == ["skin", "warm receptor", "heat flow, skin"]
-    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["A  a", "B  b"]
-    assert figure.axes[5].get_lines()[-1].get_ydata()[-1] == pytest.approx(0.4)
-    assert figure.axes[1].get_lines()[-1].get_color() == "#e08214"
-    assert np.ptp(figure.axes[4].get_ylim()) >= 0.01  # equal curves do not fill the panel with rounding

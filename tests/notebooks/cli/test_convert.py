@@ -22,13 +22,6 @@ def test_a_set_is_written_as_json_and_as_cue_text_over_what_was_there(cli: Cli, 
     assert as_cue.read_text(encoding="utf-8") == str(load_library("six-icons"))
 
 
-def test_what_a_played_icon_needs_comes_along(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "a.cue"
-    path.write_text("cue 1; icon a { hold for 1 s }; icon b { play a; hold for 1 s }; icon c { rest for 1 s }")
-    assert cli("convert", path, "--icon", "b", "-o", tmp_path / "b.cue").exit_code == 0
-    assert [icon.name for icon in read_cue(tmp_path / "b.cue")] == ["a", "b"]
-
-
 def test_lost_comments_are_told(cli: Cli, tmp_path: Path) -> None:
     path = tmp_path / "a.cue"
     path.write_text('cue 1 # version\nicon a means "no # comment" { hold for 1 s }\n')

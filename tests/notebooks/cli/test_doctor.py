@@ -32,12 +32,6 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     return give
 
 
-@pytest.mark.parametrize(("arguments", "words"), [(("x", "fault", "y"), "without"), (("x", "ok", "y", "z"), "ok with")])
-def test_a_finding_has_a_cure_exactly_where_one_is_needed(arguments: tuple[Any, ...], words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        Finding(*arguments)
-
-
 def test_the_stored_numbers_are_those_of_this_program() -> None:
     case = doctor.stored()
     computed = doctor.compute(case)
@@ -98,14 +92,6 @@ def test_requirements_are_what_pip_says(
     found = list(doctor.check_required())
     assert [each.state for each in found] == states
     assert words in found[0].text
-
-
-def test_an_extra_that_is_missing_is_a_note_with_what_it_is_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doctor, "EXTRAS", {"page": ("no-lib", "pages"), "study": ("numpy", "studies")})
-    page, study = doctor.check_extras()
-    assert (page.state, page.text) == ("note", "not installed, for pages")
-    assert (page.cure or "").endswith('-m pip install "thermicon[page]"')
-    assert (study.state, study.text) == ("ok", "for studies")
 
 
 def test_every_extra_has_its_package_and_a_purpose() -> None:

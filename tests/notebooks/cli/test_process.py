@@ -124,12 +124,3 @@ def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tup
     assert run.returncode == 0
     for name in files:
         assert (two.parent / name).stat().st_size > 0, name
-
-
-def test_text_that_looks_like_markup_is_shown_as_it_is(capsys: pytest.CaptureFixture[str]) -> None:
-    from thermicon.notebooks.report.blocks import grid
-    from thermicon.notebooks.report.terminal import show
-
-    show([grid(["icon"], [["[red]loud[/red]"]]), "[b]plain[/b]"])
-    assert "[b]plain[/b]" in (said := capsys.readouterr().out)
-    assert "[red]loud[/red]" in said

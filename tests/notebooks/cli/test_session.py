@@ -94,18 +94,6 @@ def test_an_unsafe_session_is_a_report_and_leaves_with_0(cli: Cli, tmp_path: Pat
     assert (found["plays"][0]["verdict"], found["plays"][-1]["verdict"]) == ("amber", "red")
 
 
-def test_the_rig_can_be_changed_and_the_display_tracked(cli: Cli, two: Path, order: Path, tmp_path: Path) -> None:
-    out = tmp_path / "display.json"
-    asked = ("simulate", two, "--order", order, "--rig", "forearm", "--set", "contact.area_cm2=8", "-o", out)
-    said = cli(*asked, "--tracking", "display", "--figure", tmp_path / "a.png")
-    assert said.exit_code == 0
-    assert "is for the site thenar" in said.stderr
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
-    found = json.loads(out.read_text(encoding="utf-8"))
-    assert (found["rig"], found["tracking"]) == ("forearm", "display")
-    assert any("contact.area_cm2" in change for change in found["rig_changes"])
-
-
 def test_the_figure_shows_plays_limits_and_dose(two: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     session = play_session(read_cue(two), SessionPlan(("cool-step", "warm-step")), Rig.load("thenar"))
     figure = session_figure(session)

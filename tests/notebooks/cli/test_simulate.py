@@ -98,12 +98,6 @@ def test_a_designed_drive_replays_exactly_when_held(cli: Cli, two: Path, tmp_pat
     assert 1e-3 < miss["linear"] < 0.5
 
 
-@pytest.mark.slow
-def test_a_figure_an_icon(cli: Cli, two: Path, tmp_path: Path) -> None:
-    assert cli("simulate", two, "--figure", tmp_path / "over.png").exit_code == 0
-    assert sorted(path.name for path in tmp_path.glob("*.png")) == ["over-cool-step.png", "over-warm-step.png"]
-
-
 class TestNetlist:
     """``-o OUT.cir``: the file as a lab gets it, and what the command says."""
 

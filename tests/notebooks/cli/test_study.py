@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -55,21 +54,6 @@ def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) 
     assert said.exit_code == 1
     assert "sub-A_task-quick_conditions.csv: is not the file that was exported with study.json" in said.stderr
     assert "run_study.py: is missing; it was exported with study.json" in said.stderr
-
-
-@pytest.mark.slow
-def test_the_report_and_the_same_bytes_again(out: Path, tmp_path: Path, cli: Cli) -> None:
-    said = cli("study", write_study(tmp_path, QUICK), "-o", tmp_path / "made")
-    assert said.exit_code == 0
-    for words in (
-        *("2 participants, 10 plays each, balanced order, seed", "gap       10 s: given", "landing   30 s, given: "),
-        *("drives    2 green, repeated in any order for the device ni", "session   A: green in 3 scenarios"),
-    ):
-        assert words in said.stdout
-    assert "wrote 21 files into" in said.stderr
-    assert "not a medical or ethical clearance" in said.stderr
-    one, other = ({path.name: path.read_bytes() for path in each.iterdir()} for each in (out, tmp_path / "made"))
-    assert one == other
 
 
 def refused(cli: Cli, folder: Path, text: str) -> str:
@@ -135,19 +119,6 @@ def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli) -> None:
     (out / "data" / "sub-A_task-quick_answers.csv").write_text("participant\n", encoding="utf-8")
     said = cli("study", tmp_path / "study.toml", "-o", out)
     assert "holds the answers of 1 participant (data/) already and was kept" in " ".join(said.stderr.split())
-
-
-def test_a_read_only_folder_is_said_before_anything_is_simulated(
-    tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    closed = tmp_path / "closed"
-    closed.mkdir()
-    allowed = os.access
-    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != closed and allowed(path, mode))
-    monkeypatch.setattr("thermicon.notebooks.study.build.make_plan", None)
-    said = cli("study", write_study(tmp_path, QUICK), "-o", closed / "out")
-    assert said.exit_code == 1
-    assert "is not writable" in said.stderr
 
 
 @pytest.mark.parametrize(

@@ -122,15 +122,6 @@ class TestFigure:
         assert all("(" in ax.get_ylabel() for ax in figure.axes)
         assert figure.axes[0].get_xscale() == "log"
 
-    def test_where_all_is_the_same_it_is_drawn_flat_and_not_as_its_last_digits(self, two: Path) -> None:
-        figure = sweep_figure(swept(two, AREA, [4.0, 4.0 + 1e-9]), AREA)
-        assert len(figure.axes) == 9
-        peak = figure.axes[5]
-        low, high = peak.get_ylim()
-        assert high - low > 0.1
-        figure.draw_without_rendering()
-        assert peak.yaxis.get_offset_text().get_text() == ""
-
 
 class TestPeople:
     """What people perceive stands beside what the rig does."""

@@ -233,9 +233,3 @@ class TestCommand:
         done = cli("export", "--verify", out)
         assert done.exit_code == 1
         assert not {"\x07", "\x1b"} & set(done.stdout + done.stderr)
-
-    def test_an_export_that_was_ended_between_two_renames_is_told(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "out.before").mkdir()
-        done = cli("export", "--verify", tmp_path / "out")
-        assert done.exit_code == 1
-        assert "there is no such folder; an export was interrupted, and the folder as it was is" in done.stderr
