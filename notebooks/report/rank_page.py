@@ -142,6 +142,7 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance, plot_places
     from thermicon.perception.plots.draw_map import plot_map
+    from thermicon.perception.plots.draw_roc import plot_roc
 
     yield Heading("Pictures of the set")
     confused = "Rows: the icon presented. Columns: the response. The diagonal is correct. Similar icons are adjacent."
@@ -158,6 +159,10 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     if ranking.spread is not None and ranking.people > 1:
         places = "Each person ranks the icons by how often they are named correctly; ties share their ranks."
         yield _drawn(plot_places(ranking), "probability of each place for each icon", places)
+    worst = next((pair for pair in ranking.pairs if (pair.a, pair.b) == ranking.worst_pair), None)
+    if worst is not None:
+        roc = "Hits against false alarms for the pair that is confused most often, whatever the criterion."
+        yield _drawn(plot_roc(worst), "receiver operating characteristic of the worst pair", roc)
 
 
 def _drawn(axes: Axes, said: str, caption: str) -> Picture:

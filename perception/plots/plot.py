@@ -12,11 +12,13 @@ from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 
 from ..identification.map import PerceptualMap
 from ..ranking.ranking import Ranking
+from ..ranking.scores import PairScore
 from ..ranking.sensitivity import Sensitivity
 from ..selection.frontier import Frontier
 from ..sensation.percept import Percept
 from .draw_heat import plot_confusion
 from .draw_map import plot_map
+from .draw_roc import plot_roc
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,12 +34,12 @@ MOST = 16
 
 @singledispatch
 def plot(result: object, ax: Axes | None = None) -> Axes:
-    """Draw a result: a percept as its sensations, a ranking as its confusion matrix.
+    """Draw a result: a percept as its sensations, a ranking as its confusion matrix, one of its pairs as its ROC.
 
     Parameters
     ----------
     result
-        A Percept, Ranking, Sensitivity, Frontier or PerceptualMap.
+        A Percept, Ranking, PairScore, Sensitivity, Frontier or PerceptualMap.
     ax
         Axes to draw on; None: new ones.
 
@@ -55,9 +57,9 @@ def plot(result: object, ax: Axes | None = None) -> Axes:
     --------
     >>> plot([1.0, 2.0])
     Traceback (most recent call last):
-    TypeError: a list has no picture; a Percept, Ranking, Sensitivity, Frontier or PerceptualMap has
+    TypeError: a list has no picture; a Percept, Ranking, PairScore, Sensitivity, Frontier or PerceptualMap has
     """
-    names = "Percept, Ranking, Sensitivity, Frontier or PerceptualMap"
+    names = "Percept, Ranking, PairScore, Sensitivity, Frontier or PerceptualMap"
     raise TypeError(f"a {type(result).__name__} has no picture; a {names} has")
 
 
@@ -135,6 +137,7 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
 
 plot.register(Percept, plot_sensation)
 plot.register(Ranking, plot_confusion)
+plot.register(PairScore, plot_roc)
 plot.register(Sensitivity, plot_sensitivity)
 plot.register(Frontier, plot_frontier)
 plot.register(PerceptualMap, plot_map)

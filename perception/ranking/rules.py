@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 DISTINGUISHABLE = "distinguishable"
 OURS = ("direction", "peak", "rate ratio", "onset")
 """Rules of this project on a pair; one that passes makes it distinguishable."""
+SAID = {"rate at the receptor": "rate of change (ROC) at the receptor"}
+"""What a rule is called in its sentence, where the source paper has a name of its own."""
 KEYS = ("rule", "passed", "value", "margin", "threshold", "threshold_low", "unit", "source", "text", "from_model")
 """Fields of a result in the order of the ranking file."""
 
@@ -75,7 +77,7 @@ class RuleResult:
 
 @lru_cache(maxsize=1)
 def load_rules() -> Table:
-    """The rules as records; `get("statement")`, `get("scope")` and `get("basis")` say what each is about."""
+    """The rules as records; `statement`, `scope` and `basis` say what each is about."""
     return load_records(DATA / "rules.toml", extra=("statement", "scope", "basis"))
 
 
@@ -206,7 +208,8 @@ def _at_least(record: Record, channel: Channel, value: float) -> RuleResult:
     limit, unit = record.central, _unit(record)
     said = "passes" if value >= limit else "fails"
     shown, least = significant(value, limit)
-    text = f"{record.quantity} ({channel}): {shown}{unit} against at least {least}{unit}: {said}"
+    name = SAID.get(record.quantity, record.quantity)
+    text = f"{name} ({channel}): {shown}{unit} against at least {least}{unit}: {said}"
     return _result(record, channel, value >= limit, value, value - limit, limit, text)
 
 

@@ -43,7 +43,7 @@ def test_a_clear_cooling_passes(cue: Any, observer: Observer) -> None:
 def test_a_small_slow_warming_fails(cue: Any, observer: Observer) -> None:
     found = scored(cue, observer, change=0.15, rate=0.05)
     assert found["change at the receptor (warm)"].margin == pytest.approx(-0.05)
-    text = "rate at the receptor (warm): 0.05 K/s against at least 0.1 K/s: fails"
+    text = "rate of change (ROC) at the receptor (warm): 0.05 K/s against at least 0.1 K/s: fails"
     assert found["rate at the receptor (warm)"].text == text
     assert not any(name.startswith("latency") for name in found)  # the window is for rates over 0.1 K/s
 
