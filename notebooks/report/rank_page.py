@@ -142,7 +142,7 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance, plot_places
     from thermicon.perception.plots.draw_map import plot_map
-    from thermicon.perception.plots.draw_roc import plot_roc
+    from thermicon.perception.plots.plot import plot_roc
 
     yield Heading("Pictures of the set")
     confused = "Rows: the icon presented. Columns: the response. The diagonal is correct. Similar icons are adjacent."

@@ -76,9 +76,6 @@ def clustered_order(distances: Array) -> NDArray[np.intp]:
     """Order of icons in which near ones are side by side: average linkage, its leaves ordered at best.
 
     The first icon of the file is in the first half, so that the order does not flip at a touch.
-
-    >>> clustered_order(np.array([[0.0, 5, 1], [5, 0, 5], [1, 5, 0]])).tolist()
-    [0, 2, 1]
     """
     icons = len(distances)
     if icons < 3:
@@ -146,20 +143,12 @@ def light_map() -> Colormap:
 
 
 def cell_text(value: float) -> str:
-    """Two digits at most.
-
-    >>> cell_text(99.96), cell_text(9.94), cell_text(0.04)
-    ('100', '9.9', '0')
-    """
+    """Two digits at most, as in 100, 9.9 and 0."""
     return f"{value:.0f}" if value >= 9.95 or value < 0.05 else f"{value:.1f}"
 
 
 def short(name: str, most: int = LONGEST_LABEL) -> str:
-    """A name that fits beside a figure: the middle of a very long one is left out.
-
-    >>> short("abcdefghij", 7)
-    'abc…hij'
-    """
+    """A name that fits beside a figure: the middle of a very long one is left out."""
     if len(name) <= most:
         return name
     half = (most - 1) // 2

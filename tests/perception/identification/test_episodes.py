@@ -233,10 +233,7 @@ def test_a_set_is_compared_with_itself_as_with_any_other(observer: Observer) -> 
     icons = [(bump(k * 0.7, 4.0 + k), bump(6.0 - k, 5.0)) for k in range(5)] + [(NOTHING, NOTHING)]
     found = episodes(*icons, observer=observer)
     again = Episodes(found.features.copy(), found.counts.copy())
-    own, other = (
-        episode_distances(found, found, observer, "episodes"),
-        episode_distances(found, again, observer, "episodes"),
-    )
+    own, other = (episode_distances(found, each, observer, "episodes") for each in (found, again))
     assert np.allclose(own, other, rtol=1e-12, atol=1e-12)
     assert (own == own.transpose(0, 2, 1)).all()
     for i in range(6):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import information_bits
+from thermicon.perception.identification.laboratory_draws import Uncertain, latin, memory_parameters
 from thermicon.perception.identification.measures import plugin_bits, proportion_correct
 
 
@@ -24,6 +25,7 @@ def test_known_information() -> None:
     assert information_bits(np.full((6, 6), 1 / 6)) == pytest.approx(0.0, abs=1e-12)
     assert information_bits(spread(0.91)) == pytest.approx(1.94, abs=0.005)
     assert information_bits(paired(0.91)) == pytest.approx(2.15, abs=0.005)
+    assert proportion_correct(np.stack([spread(0.8), np.eye(6)])) == pytest.approx([0.8, 1.0])
     assert information_bits(np.stack([np.eye(4), np.full((4, 4), 0.25)])) == pytest.approx([2.0, 0.0], abs=1e-12)
 
 
@@ -36,12 +38,28 @@ def test_plugin_of_forty_eight_trials_is_biased_as_known() -> None:
 def test_plugin_loses_its_bias_and_repeats() -> None:
     assert plugin_bits(spread(0.91), 60_000, experiments=20) == pytest.approx(1.94, abs=0.01)
     assert plugin_bits(spread(0.8), 50, seed=3) == plugin_bits(spread(0.8), 50, seed=3)
-
-
-def test_proportion_correct_is_the_mean_of_the_diagonal() -> None:
-    assert proportion_correct(np.stack([spread(0.8), np.eye(6)])) == pytest.approx([0.8, 1.0])
-
-
-def test_messages() -> None:
     with pytest.raises(ValueError, match=r"at least one trial, not 0"):
         plugin_bits(np.eye(2), 0)
+
+
+def test_what_of_memory_is_uncertain_depends_on_the_norm() -> None:
+    common = {"share of the scatter of ratings", "bar of an episode", "memory noise (episodes)"}
+    assert {each.name for each in memory_parameters("episodes")} == common
+    assert {each.name for each in memory_parameters("naming")} == common | {"cost of a missing episode"}
+
+
+def test_wide_intervals_are_drawn_in_logarithms() -> None:
+    for low, high, middle in ((1.0, 100.0, 10.0), (1.0, 1.4, 1.2), (-1.0, 3.0, 1.0)):
+        between = Uncertain("t", low, high)
+        assert between.at(0.5) == pytest.approx(middle)
+        assert between.share(middle) == pytest.approx(0.5)
+    with pytest.raises(ValueError, match=r"t: 1 to 1 is not an interval"):
+        Uncertain("t", 1.0, 1.0)
+
+
+def test_a_latin_hypercube_has_one_draw_a_stratum() -> None:
+    shares = latin(3, 8, seed=4)
+    assert shares.shape == (8, 3)
+    assert (np.sort((shares * 8).astype(int), axis=0) == np.arange(8)[:, None]).all()
+    assert (shares == latin(3, 8, seed=4)).all()
+    assert (shares != latin(3, 8, seed=5)).any()

@@ -79,21 +79,6 @@ def test_a_file_comes_back_as_it_was_written(posterior: PosteriorDraws, tmp_path
     np.testing.assert_allclose(draws, posterior.draws[:5], rtol=1e-5)
 
 
-def test_an_unknown_constant_names_the_nearest(posterior: PosteriorDraws) -> None:
-    with pytest.raises(ValueError, match=r"no constant 'cold limt'.*cold limit"):
-        posterior.values("cold limt")
-
-
-def test_what_is_no_table_of_draws_is_refused(tmp_path: Path) -> None:
-    refused(
-        tmp_path,
-        "a,b\n1,2\n",
-        r"mine.csv, line 1: this is not a table of posterior draws.*thermicon.perception.evidence sample",
-    )
-    with pytest.raises(RecordError, match=r"absent.csv: no such table of posterior draws"):
-        PosteriorDraws.load(tmp_path / "absent.csv")
-
-
 @pytest.mark.parametrize(
     ("name", "value", "words"),
     [
@@ -113,23 +98,31 @@ def test_a_number_that_no_person_has_is_refused_in_every_draw(
     refused(tmp_path, "\n".join([*lines[:-1], ",".join(cells)]), words)
 
 
-def test_draws_are_read_from_files_alone(tmp_path: Path) -> None:
-    with pytest.raises(RecordError, match="this is a device, not a file"):
-        PosteriorDraws.load("/dev/null")
-    with pytest.raises(RecordError, match="this is a device, not a file"):
-        Observer.load("/dev/zero")
+@pytest.mark.parametrize(
+    ("was", "now", "words"),
+    [
+        ("# form: 1", "# form: 9", r"line 2: form 9 .*reads.* 1"),
+        (current_inputs(), "0123456789abcdef", r"made from evidence and priors 0123"),
+        ("model: adapting", "model: ring-de-dear", r"draws of the receptor model 'ring-de-dear', not adapting"),
+        ("# sampler:", "# simpler:", r"the header has no line 'sampler'"),
+        ("cold limit,", "cold limt,", r"'cold limt' is not a constant.*cold limit"),
+        ("cold limit,", "warm limit,", r"two columns have one name"),
+    ],
+)
+def test_a_table_of_another_kind_is_refused(tmp_path: Path, text: str, was: str, now: str, words: str) -> None:
+    refused(tmp_path, text.replace(was, now, 1), words)
 
 
-def test_another_version_is_refused(tmp_path: Path, text: str) -> None:
-    refused(tmp_path, text.replace("# form: 1", "# form: 9"), r"line 2: form 9 .*reads.* 1")
-    refused(tmp_path, text.replace(current_inputs(), "0123456789abcdef", 1), r"made from evidence and priors 0123")
-
-
-def test_missing_and_unknown_columns_are_named(tmp_path: Path, text: str) -> None:
-    refused(tmp_path, text.replace("cold limit,", "cold limt,"), r"'cold limt' is not a constant.*cold limit")
-    refused(tmp_path, text.replace("cold limit,", "warm limit,", 1), r"two columns have one name")
-    refused(tmp_path, text.replace("# sampler:", "# simpler:"), r"the header has no line 'sampler'")
+def test_what_is_no_table_of_draws_is_refused(tmp_path: Path, text: str) -> None:
     refused(tmp_path, "\n".join(text.splitlines()[:-3]) + "\n", r"the table has no draws")
+    refused(tmp_path, "a,b\n1,2\n", r"mine.csv, line 1: this is not a table of posterior draws.*evidence sample")
+    for path, words in ((tmp_path / "absent.csv", "absent.csv: no such table"), ("/dev/null", "a device, not a file")):
+        with pytest.raises(RecordError, match=words):
+            PosteriorDraws.load(path)
+    with pytest.raises(ValueError, match=r"no constant 'cold limt'.*cold limit"):
+        PosteriorDraws.load().values("cold limt")
+    with pytest.raises(ValueError, match=r"no variant 'heat': choose one of temperature, heat-flow"):
+        variant_named("heat")
 
 
 def test_numbers_that_are_none_are_refused_with_their_place(tmp_path: Path, text: str) -> None:
@@ -139,18 +132,6 @@ def test_numbers_that_are_none_are_refused_with_their_place(tmp_path: Path, text
     refused(tmp_path, "\n".join(lines), rf"line {head + 3}, cold conduction velocity: 'x.*' is not a finite number")
     lines[head + 2] = "1,2"
     refused(tmp_path, "\n".join(lines), rf"line {head + 3}: 2 numbers for 52 constants")
-
-
-def test_variants_have_names() -> None:
-    with pytest.raises(ValueError, match=r"no variant 'heat': choose one of temperature, heat-flow"):
-        variant_named("heat")
-
-
-def test_draws_of_a_receptor_model_that_is_gone_are_refused(tmp_path: Path) -> None:
-    text = shipped_file("temperature").read_text(encoding="utf-8")
-    (tmp_path / "old.csv").write_text(text.replace("model: adapting", "model: ring-de-dear", 1), encoding="utf-8")
-    with pytest.raises(RecordError, match=r"old.csv: draws of the receptor model 'ring-de-dear', not adapting"):
-        PosteriorDraws.load(tmp_path / "old.csv")
 
 
 def test_draws_of_another_variant_are_refused(tmp_path: Path) -> None:
@@ -169,8 +150,6 @@ def test_draws_that_did_not_converge_warn(posterior: PosteriorDraws, tmp_path: P
 
 
 def test_a_table_that_was_changed_after_it_was_written_is_refused(tmp_path: Path) -> None:
-    from thermicon.perception.observer.draws_file import to_text
-
     drawn = PosteriorDraws.load()
     text = to_text(drawn.header, drawn.names, drawn.draws[:5])
     path = tmp_path / "draws.csv"

@@ -9,7 +9,7 @@ import pytest
 from thermicon.circuit.records import RecordError, Table, dump_records, load_records
 from thermicon.perception import Observer
 from thermicon.perception.observer.channels import VARIABLES, Variable
-from thermicon.perception.observer.observer_file import NEEDED, NEEDED_OF, SHIPPED, check_complete
+from thermicon.perception.observer.observer_file import NEEDED, NEEDED_OF, SHIPPED
 
 
 def without(quantity: str, instead: str | None = None) -> Table:
@@ -39,10 +39,6 @@ def test_whatever_is_needed_is_asked_for(variable: Variable) -> None:
         kept = tuple(r for r in load_records(SHIPPED) if not r.quantity.startswith(quantity))
         with pytest.raises(RecordError, match=rf"missing: .*'{quantity}'"):
             Observer.from_table(Table("x", kept), variable=variable)
-
-
-def test_the_shipped_file_is_complete() -> None:
-    check_complete(load_records(SHIPPED), "temperature", "")
 
 
 def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError
-from thermicon.icons import load_library
+from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, draw_people, frontier, rank, search
 from thermicon.perception.observer.observer import DATA
 from thermicon.perception.observer.observer_model import ObserverModel
@@ -79,24 +79,10 @@ def test_a_ranking_with_other_draws_follows_them_throughout(draws_file: Path) ->
     assert numb.to_dict()["observer"] == "numb.csv"
 
 
-def test_a_search_with_another_observer_appraises_with_it(draws_file: Path) -> None:
-    from thermicon.icons import parse
-
+def test_a_search_and_a_frontier_follow_another_observer(draws_file: Path) -> None:
     text = "cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow(k in 1..4 step 1 K) { warm by k at 2 K/s }"
-    rig = Rig.load("thenar")
-    usual = search(parse(text), rig, evaluations=10, people=4)
-    numb = search(parse(text), rig, evaluations=10, people=4, observer=draws_file)
-    assert numb.before.d_prime < usual.before.d_prime
-
-
-def test_a_frontier_with_other_draws_follows_them(draws_file: Path) -> None:
     six, rig = load_library("six-icons"), Rig.load("thenar")
-    usual, numb = (
-        frontier(six, rig, people=8, most=2, objective="worst", observer=observer) for observer in (None, draws_file)
-    )
-    assert numb.points[0].d_prime < usual.points[0].d_prime
-
-
-def test_no_more_draws_than_there_are() -> None:
-    with pytest.raises(ValueError, match="1500 draws of the parameters were asked for; shipped has 1000"):
-        rank(load_library("six-icons"), Rig.load("thenar"), people=4, parameters=1500)
+    searched = [search(parse(text), rig, evaluations=10, people=4, observer=each) for each in (None, draws_file)]
+    assert searched[1].before.d_prime < searched[0].before.d_prime
+    chosen = [frontier(six, rig, people=8, most=2, objective="worst", observer=each) for each in (None, draws_file)]
+    assert chosen[1].points[0].d_prime < chosen[0].points[0].d_prime

@@ -22,11 +22,8 @@ def test_every_parameter_has_a_source_or_says_that_it_has_none() -> None:
     assert {prior.name for prior in ALL if "no source" in prior.source} >= {"softness of the limits", "gain noise"}
 
 
-def test_two_parameters_of_one_name_are_refused() -> None:
+def test_two_parameters_of_one_name_and_one_without_width_are_refused() -> None:
     with pytest.raises(ValueError, match="one name"):
         Priors((ALL[0], ALL[0]))
-
-
-def test_a_prior_without_width_is_refused() -> None:
     with pytest.raises(ValueError, match="cold limit: a prior needs"):
         Prior("cold limit", "degC", "linear", 33.0, 0.0, "quality", "none")

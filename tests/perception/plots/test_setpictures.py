@@ -1,5 +1,6 @@
 from dataclasses import replace
 from itertools import combinations
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -7,7 +8,7 @@ from matplotlib.axes import Axes
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception import Ranking, rank
+from thermicon.perception import Percept, Ranking, plot, rank
 from thermicon.perception.identification.map import (
     MOST_PEOPLE,
     PersonSpread,
@@ -27,6 +28,7 @@ from thermicon.perception.plots.draw_heat import (
 )
 from thermicon.perception.plots.draw_map import label_offsets, plot_map, text_width
 from thermicon.perception.plots.draw_table import plot_ranking
+from thermicon.perception.plots.plot import plot_roc
 
 
 @pytest.fixture(scope="module")
@@ -86,11 +88,7 @@ def test_many_icons_have_a_colour_bar_instead_of_numbers() -> None:
     axes = heat(names, names, np.ones((31, 31)))
     assert not axes.texts
     assert len(axes.figure.axes) == 2
-
-
-def test_very_long_names_lose_their_middle() -> None:
-    axes = heat(["x"], ["a" * 30 + "b" * 30], np.ones((1, 1)))
-    (label,) = axes.get_yticklabels()
+    (label,) = heat(["x"], ["a" * 30 + "b" * 30], np.ones((1, 1))).get_yticklabels()
     assert label.get_text() == "a" * 22 + "…" + "b" * 21
 
 
@@ -131,6 +129,8 @@ def test_places_are_probabilities(ranking: Ranking) -> None:
     held = ranking.spread.place_probability
     assert held.sum(axis=0) == pytest.approx(1.0)
     assert held.sum(axis=1) == pytest.approx(1.0)
+    shared = place_probability(np.array([[0.931, 0.929, 0.5]]))
+    assert shared.tolist() == [[0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [0.0, 0.0, 1.0]]
     axes = plot_places(ranking)
     best = sorted(ranking.icons, key=lambda icon: (-icon.proportion_correct, icon.name))
     assert [label.get_text() for label in axes.get_yticklabels()] == [icon.name for icon in best]
@@ -138,11 +138,6 @@ def test_places_are_probabilities(ranking: Ranking) -> None:
     assert axes.get_title() == "place of each icon, % of 8 people"
     with pytest.raises(ValueError, match="no results of single people: rank the icons again"):
         plot_places(replace(ranking, spread=None))
-
-
-def test_equal_icons_share_their_places() -> None:
-    shared = place_probability(np.array([[0.931, 0.929, 0.5]]))
-    assert shared.tolist() == [[0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [0.0, 0.0, 1.0]]
 
 
 def test_few_people_are_kept_of_many() -> None:
@@ -170,3 +165,17 @@ def test_the_ranking_as_a_picture(ranking: Ranking) -> None:
     ruled = [t.get_text() for t in plot_ranking(replace(ranking, by="rules")).texts]
     assert "rules passed" in ruled
     assert "onset" not in ruled
+
+
+def test_hits_against_false_alarms_follow_d_prime(ranking: Ranking) -> None:
+    pair, cdf = ranking.pairs[0], NormalDist().cdf
+    chance, curve = plot(pair).get_lines()
+    alarms, hits = (np.asarray(each) / 100.0 for each in curve.get_data())
+    place = int(np.abs(alarms - (1.0 - cdf(0.5 * pair.d_prime))).argmin())
+    assert hits[place] == pytest.approx(cdf(0.5 * pair.d_prime), abs=0.02)
+    assert abs(np.trapezoid(hits, alarms)) == pytest.approx(cdf(pair.d_prime / 2**0.5), abs=1e-3)
+    assert chance.get_linestyle() == ":"
+    felt = Percept(np.array([1.0, 2.5, 1.0]), np.zeros(3), 0.01, None, None, 0.0, icon="dip")
+    axes = plot_roc(felt)
+    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["chance", "cold: d′ 1.50, area 0.856"]
+    assert axes.get_title() == "dip"

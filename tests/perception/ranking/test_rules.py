@@ -2,7 +2,8 @@ from typing import Any
 
 import pytest
 
-from thermicon.circuit import Rig
+from thermicon.circuit import Rig, simulate
+from thermicon.icons import parse
 from thermicon.perception import Observer, perceive
 from thermicon.perception.ranking.rules import (
     DISTINGUISHABLE,
@@ -12,6 +13,7 @@ from thermicon.perception.ranking.rules import (
     pair_rules,
     rig_rules,
 )
+from thermicon.perception.ranking.scores import counted, icon_score, pair_margin
 
 
 def by_name(results: tuple[RuleResult, ...]) -> dict[str, RuleResult]:
@@ -28,50 +30,36 @@ def pair(cue: Any, a: dict[str, Any], b: dict[str, Any]) -> dict[str, RuleResult
     return by_name(pair_rules(one, two))
 
 
-def test_a_clear_cooling_passes(cue: Any, observer: Observer) -> None:
+def test_a_rule_says_value_limit_margin_and_source(cue: Any, observer: Observer) -> None:
     found = scored(cue, observer, change=-6.0)
-    change = found["change at the receptor (cold)"]
+    change, zone = found["change at the receptor (cold)"], found["neutral zone (cold)"]
     assert (change.passed, change.threshold, change.unit) == (True, 0.11, "K")
     assert change.threshold_low is change.to_dict()["threshold_low"] is None
-    assert change.value == pytest.approx(6.0)
-    assert change.margin == pytest.approx(5.89)
+    assert (change.value, change.margin) == (pytest.approx(6.0), pytest.approx(5.89))
     assert change.text == "change at the receptor (cold): 6 K against at least 0.11 K: passes"
     assert "Stevens & Choo 1998" in change.source
     assert "change at the receptor (warm)" not in found
-
-
-def test_a_small_slow_warming_fails(cue: Any, observer: Observer) -> None:
-    found = scored(cue, observer, change=0.15, rate=0.05)
-    assert found["change at the receptor (warm)"].margin == pytest.approx(-0.05)
+    assert (zone.passed, zone.value, zone.margin, zone.threshold_low, zone.threshold) == (True, 32.0, 2.0, 30.0, 36.0)
+    slow = scored(cue, observer, change=0.15, rate=0.05)
+    assert slow["change at the receptor (warm)"].margin == pytest.approx(-0.05)
     text = "rate of change (ROC) at the receptor (warm): 0.05 K/s against at least 0.1 K/s: fails"
-    assert found["rate at the receptor (warm)"].text == text
-    assert not any(name.startswith("latency") for name in found)  # the window is for rates over 0.1 K/s
-
-
-def test_an_icon_that_is_not_felt_has_no_latency(cue: Any, observer: Observer) -> None:
-    latency = scored(cue, observer, change=0.15)["latency (warm)"]
-    assert (latency.passed, latency.value, latency.margin) == (False, None, None)
-    assert (latency.threshold_low, latency.threshold) == (0.5, 0.9)
-    assert (
-        latency.text
-        == "latency: the nominal person does not feel the icon, so it has no onset to compare with 0.5 to 0.9 s"
-    )
+    assert slow["rate at the receptor (warm)"].text == text
 
 
 def test_latency_is_held_against_its_window(cue: Any, observer: Observer) -> None:
-    latency = scored(cue, observer, change=6.0)["latency (warm)"]
-    assert latency.value is not None
-    assert latency.value > 1.4 + 0.2
-    assert (latency.passed, latency.threshold_low, latency.threshold) == (False, 0.5, 0.9)
-    assert (latency.to_dict()["threshold_low"], latency.to_dict()["threshold"]) == (0.5, 0.9)
-    assert latency.margin == pytest.approx(0.9 - latency.value)
-    assert "against 0.5 to 0.9 s: fails" in latency.text
-
-
-def test_neutral_zone(cue: Any, observer: Observer) -> None:
-    zone = scored(cue, observer, change=-6.0)["neutral zone (cold)"]
-    assert (zone.passed, zone.value, zone.margin) == (True, 32.0, 2.0)
-    assert (zone.threshold_low, zone.threshold) == (30.0, 36.0)
+    late = scored(cue, observer, change=6.0)["latency (warm)"]
+    assert late.value is not None and late.value > 1.4 + 0.2
+    assert (late.passed, late.threshold_low, late.threshold) == (False, 0.5, 0.9)
+    assert (late.to_dict()["threshold_low"], late.to_dict()["threshold"]) == (0.5, 0.9)
+    assert late.margin == pytest.approx(0.9 - late.value)
+    assert "against 0.5 to 0.9 s: fails" in late.text
+    unfelt = scored(cue, observer, change=0.15)["latency (warm)"]
+    assert (unfelt.passed, unfelt.value, unfelt.margin) == (False, None, None)
+    assert unfelt.text == (
+        "latency: the nominal person does not feel the icon, so it has no onset to compare with 0.5 to 0.9 s"
+    )
+    for changes in ({"change": 0.15, "rate": 0.05}, {"change": 5.0, "rate": 0.09, "hold": 1.0, "end_s": 130.0}):
+        assert not any(name.startswith("latency") for name in scored(cue, observer, **changes))  # rates over 0.1 K/s
 
 
 @pytest.mark.parametrize(("change", "said"), [(-0.10999, "fails"), (-0.11001, "passes")])
@@ -124,29 +112,23 @@ def test_rules_are_records_that_say_whose_they_are() -> None:
         assert str(record.get("statement"))
     ours = [r for r in load_rules() if r.source.startswith("this project")]
     assert {r.quantity for r in ours} == {"depth", "direction", "peak", "rate ratio", "onset", DISTINGUISHABLE}
-
-
-def test_every_rule_of_the_design_is_there() -> None:
     said = {(r.quantity, r.channel): (r.low, r.value, r.high) for r in load_rules()}
-    assert said["change at the receptor", "warm"][1] == 0.2
-    assert said["change at the receptor", "cold"][1] == 0.11
-    assert said["rate at the receptor", "both"][1] == 0.1
-    assert said["latency", "cold"] == (0.3, None, 0.5)
-    assert said["latency", "warm"] == (0.5, None, 0.9)
-    assert said["amplitude difference", "cold"] == (0.02, 0.07, 0.07)
-    assert said["amplitude difference", "warm"] == (0.03, 0.09, 0.09)
-    assert said["neutral zone", "both"] == (30.0, None, 36.0)
-    assert (said["depth", "cold"][1], said["depth", "warm"][1]) == (0.10, 0.21)
-    assert ("felt peak", "cold") in said
-    assert ("felt peak", "warm") in said
-    assert (said["peak", "cold"][1], said["peak", "warm"][1], said["rate ratio", "both"][1]) == (0.07, 0.09, 1.43)
-    assert (said["onset", "cold"][1], said["onset", "warm"][1]) == (0.2, 0.4)
-
-
-def test_a_slow_icon_that_is_felt_has_no_latency_window(cue: Any, observer: Observer) -> None:
-    slow = scored(cue, observer, change=5.0, rate=0.09, hold=1.0, end_s=130.0)
-    assert not slow["rate at the receptor (warm)"].passed
-    assert not any(name.startswith("latency") for name in slow)
+    expected = {
+        "change at the receptor": [("cold", 0.11), ("warm", 0.2)],
+        "rate at the receptor": [("both", 0.1)],
+        "latency": [("cold", (0.3, None, 0.5)), ("warm", (0.5, None, 0.9))],
+        "amplitude difference": [("cold", (0.02, 0.07, 0.07)), ("warm", (0.03, 0.09, 0.09))],
+        "neutral zone": [("both", (30.0, None, 36.0))],
+        "depth": [("cold", 0.10), ("warm", 0.21)],
+        "felt peak": [("cold", 0.0), ("warm", 0.0)],
+        "peak": [("cold", 0.07), ("warm", 0.09)],
+        "rate ratio": [("both", 1.43)],
+        "onset": [("cold", 0.2), ("warm", 0.4)],
+    }
+    for quantity, limits in expected.items():
+        for channel, limit in limits:
+            found = said[quantity, channel]
+            assert (found if isinstance(limit, tuple) else found[1]) == limit
 
 
 def test_felt_peaks_are_held_against_the_published_signs(cue: Any, observer: Observer) -> None:
@@ -189,3 +171,34 @@ def test_margins_are_compared_in_shares_of_their_threshold(cue: Any, observer: O
     assert found["change at the receptor (cold)"].normalised_margin == pytest.approx(1.0)
     assert found["neutral zone (cold)"].normalised_margin == pytest.approx(2.0 / 3.0)
     assert scored(cue, observer, change=-0.05)["latency (cold)"].normalised_margin is None
+
+
+def test_a_score_is_the_share_passed_without_those_of_the_model(cue: Any, observer: Observer) -> None:
+    trace = cue(change=-0.05)
+    rules = icon_rules(trace, perceive(trace, observer))
+    own = counted(rules)
+    assert {r.quantity for r in rules} - {r.quantity for r in own} == {"latency", "felt peak"}
+    assert [r.passed for r in own] == [False, True, True]
+    share, margin = icon_score(rules, [(True, 0.3), (False, -0.2)])
+    assert (share, margin) == (pytest.approx(3 / 5), pytest.approx(0.05 / 0.11 - 1.0))
+    assert icon_score(rules, [(True, None)])[0] == pytest.approx(3 / 4)
+
+
+def test_the_margin_of_a_pair_is_that_of_its_safest_rule(cue: Any) -> None:
+    alike, apart = (pair_rules(cue(change=4.0), cue(change=other)) for other in (4.045, 4.18))
+    assert pair_margin(alike) == pytest.approx(-0.3, abs=0.001)  # the rates, a factor 1 against 1.43
+    assert pair_margin(apart) == pytest.approx(1.0)
+    assert pair_margin(pair_rules(cue(change=4.0), cue(change=-4.0))) is None
+    assert pair_margin(pair_rules(cue(change=4.0), cue(change=0.15))) is None  # only one passes a threshold
+    assert pair_margin([]) == -1.0
+
+
+def test_directions_that_nobody_feels_tell_nothing_apart() -> None:
+    text = "cue 1\nset s { control display; baseline 32 °C }\n" + "".join(
+        f"icon {name} {{ {way} by {size} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n"
+        for name, way, size in (("up", "warm", 0.02), ("down", "cool", 0.02), ("strong", "cool", 2))
+    )
+    up, down, strong = (simulate(icon, Rig.load("thenar"), tail_s=5.0) for icon in parse(text))
+    assert not pair_rules(up, down)[-1].passed
+    assert "directions differ below the threshold alone" in pair_rules(up, down)[0].text
+    assert pair_rules(up, strong)[-1].passed

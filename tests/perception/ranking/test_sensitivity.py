@@ -51,18 +51,9 @@ def test_effects_are_ordered_and_measurements_too(found: Sensitivity) -> None:
     assert f"measure first: {first.measurement}" in repr(found)
     low, high = found.proportion_correct_interval
     assert low < found.proportion_correct < high
-
-
-def test_a_constant_that_hurts_memory_lowers_the_prediction(found: Sensitivity) -> None:
     (memory,) = (each for each in found.effects if each.constant == "memory noise (episodes)")
-    assert memory.low < memory.high
-    assert memory.at_low > memory.at_high
-
-
-def test_offsets_of_published_laboratories_are_left_out(found: Sensitivity) -> None:
-    offsets = PosteriorDraws.load().header.offsets
-    assert offsets
-    assert not {each.constant for each in found.effects} & set(offsets)
+    assert memory.low < memory.high and memory.at_low > memory.at_high
+    assert not {each.constant for each in found.effects} & set(PosteriorDraws.load().header.offsets)
 
 
 def test_every_constant_has_its_measurement() -> None:
@@ -118,11 +109,12 @@ def test_temperatures_between_the_nodes_are_those_of_a_run(rig: Rig) -> None:
 
 
 def test_messages(rig: Rig) -> None:
-    icons = load_library("six-icons")
-    with pytest.raises(ValueError, match=r"needs 64 to 1000 draws of the posterior, not 1001"):
-        sensitivity(icons, rig, draws=1001)
-    with pytest.raises(ValueError, match=r"there is no norm 'mean'"):
-        sensitivity(icons, rig, norm="mean")
     one = parse("cue 1\nset s { control skin }\nicon a { cool by 2 °C at 1 °C/s }")
-    with pytest.raises(ValueError, match=r"needs at least two icons"):
-        sensitivity(one, rig)
+    for icons, told, said in (
+        (load_library("six-icons"), {"draws": 1001}, r"needs 64 to 1000 draws of the posterior, not 1001"),
+        (load_library("six-icons"), {"draws": 63}, r"needs 64 to 1000 draws of the posterior, not 63"),
+        (load_library("six-icons"), {"norm": "mean"}, r"there is no norm 'mean'"),
+        (one, {}, r"needs at least two icons"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            sensitivity(icons, rig, **told)  # type: ignore[arg-type]

@@ -43,18 +43,12 @@ def test_a_smooth_pulse_lies_on_its_curve() -> None:
     assert played.time_s[played.surface_C("display")[0].argmax()] == pytest.approx(3.0, abs=0.02)
 
 
-def test_a_curve_may_pause() -> None:
-    assert curve(np.array([1.0, 1.0, 0.0]), 0.5) == "warm by 1 K over 0.5 s\nhold for 0.5 s\ncool by 1 K over 0.5 s"
-
-
-def test_what_is_out_of_reach_is_said() -> None:
-    said = repr(Bench(Rig.load("thenar")).play([ramp("cold", 20.0, 20.0)], 2.0))
-    assert said == "Stimulus(1 on thenar, 2 s, 1 not reached)"
-
-
 def test_messages(bench: Bench) -> None:
     with pytest.raises(ValueError, match=r"a course of 3 s does not end by 2 s"):
         bench.play([ramp("cold", 1.0, 1.0, 2.0)], 2.0)
+    assert curve(np.array([1.0, 1.0, 0.0]), 0.5) == "warm by 1 K over 0.5 s\nhold for 0.5 s\ncool by 1 K over 0.5 s"
+    said = repr(bench.play([ramp("cold", 20.0, 20.0)], 2.0))
+    assert said == "Stimulus(1 on thenar, 2 s, 1 not reached)"
     wrong: Any = "deep"
     with pytest.raises(ValueError, match=r"prescribed at skin or display, not at 'deep'"):
         Bench(bench.rig, surface=wrong)

@@ -1,7 +1,6 @@
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
@@ -9,10 +8,6 @@ from thermicon.icons import parse
 from thermicon.perception import rank
 from thermicon.perception.observer.observer import load_thresholds
 from thermicon.perception.sensation.coverage import load_coverage, outside_data, outside_site
-
-
-def test_an_ordinary_icon_is_inside(cue: Any) -> None:
-    assert outside_data(cue(change=-6.0)) == ()
 
 
 @pytest.mark.parametrize(
@@ -37,18 +32,12 @@ def test_fast_changes(cue: Any) -> None:
     (said,) = outside_data(cue(change=-6.0, rate=12.0))
     assert said.startswith("the skin changes at 12 K/s (")
     assert said.endswith("; data end at 10 K/s")
-    assert outside_data(cue(change=-6.0, rate=9.9)) == ()
+    assert outside_data(cue(change=-6.0, rate=9.9)) == outside_data(cue(change=-6.0)) == ()
 
 
 @pytest.mark.parametrize("site", ["thenar", "left thenar", "hand-dorsum", "Hand dorsum", "forearm", "wrist"])
 def test_sites_with_data(site: str) -> None:
     assert outside_site(site) == ()
-
-
-def test_a_site_without_data(cue: Any) -> None:
-    trace = replace(cue(change=-3.0), site="fingertip")
-    said = "no detection threshold is on record for the fingertip: those of the thenar are used"
-    assert outside_data(trace) == (said,)
 
 
 def test_counts_of_records_are_those_of_the_table() -> None:
@@ -61,15 +50,9 @@ def test_counts_of_records_are_those_of_the_table() -> None:
     assert {r.site for r in table} == {record.get("recorded") for record in sites}
 
 
-def test_shipped_rigs_are_covered_or_say_so() -> None:
-    outside = {name for name in ("thenar", "fingertip", "forearm", "hand-dorsum") if outside_site(Rig.load(name).site)}
-    assert outside == {"fingertip"}
-
-
 def test_a_ranking_carries_it() -> None:
     text = "cue 1\nset s { control skin }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }"
     ranking = rank(parse(text), Rig.load("fingertip"), people=1, parameters=0)
     said = ["no detection threshold is on record for the fingertip: those of the thenar are used"]
     assert list(ranking.icons[0].outside_data) == said
     assert ranking.to_dict()["icons"][0]["outside_data"] == said
-    assert np.isfinite(ranking.proportion_correct)

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,13 +19,6 @@ def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:
     assert not percept.psi_cold.flags.writeable
 
 
-def test_nothing_is_not_felt(cue: Any, observer: Observer) -> None:
-    percept = perceive(cue(change=0.0), observer)
-    assert (percept.onset_s, percept.channel) == (None, None)
-    assert percept.detected_probability == pytest.approx(0.0, abs=1e-6)
-    assert "nominal person: not felt, p 0.000" in repr(percept)
-
-
 def test_the_words_follow_from_the_probability(cue: Any, observer: Observer) -> None:
     """Just below and just above one half, found by bisection of the size of a cooling."""
     low, high = 0.05, 4.0
@@ -35,7 +29,10 @@ def test_the_words_follow_from_the_probability(cue: Any, observer: Observer) -> 
     assert unfelt.detected_probability < 0.5 <= felt.detected_probability < 0.52
     assert unfelt.summary == f"not felt, p {unfelt.detected_probability:.3f}"
     assert felt.summary == f"felt at {felt.onset_s:.2f} s by cold, p {felt.detected_probability:.3f}"
-    assert (unfelt.onset_s, unfelt.channel) == (None, None)
+    nothing = perceive(cue(change=0.0), observer)
+    for percept in (unfelt, nothing):
+        assert (percept.onset_s, percept.channel) == (None, None)
+    assert nothing.detected_probability == pytest.approx(0.0, abs=1e-6)
 
 
 def test_a_percept_cannot_contradict_its_probability() -> None:
@@ -49,19 +46,11 @@ def test_a_percept_cannot_contradict_its_probability() -> None:
 
 def test_a_larger_area_and_a_shorter_path_are_felt_sooner(cue: Any, observer: Observer) -> None:
     trace = cue(change=1.0)
-    hand, forearm = perceive(trace, observer).onset_s, perceive(_at(trace, "forearm"), observer).onset_s
+    hand, forearm = perceive(trace, observer).onset_s, perceive(replace(trace, site="forearm"), observer).onset_s
     large = perceive(trace, observer, area_m2=36e-4).onset_s
-    assert hand is not None
-    assert forearm is not None
-    assert large is not None
+    assert hand is not None and forearm is not None and large is not None
     assert hand - forearm == pytest.approx(0.15 / 0.5, abs=5e-3)
     assert large < hand
-
-
-def _at(trace: Any, site: str) -> Any:
-    from dataclasses import replace
-
-    return replace(trace, site=site)
 
 
 def test_felt_peaks_are_later_by_conduction(cue: Any, observer: Observer) -> None:
@@ -88,18 +77,12 @@ def test_a_percept_says_that_it_is_outside_the_data(cue: Any, observer: Observer
     assert repr(far).endswith("receptor clock, outside the data)")
 
 
-def test_plot_returns_axes(cue: Any, observer: Observer) -> None:
+def test_the_onset_says_that_it_is_on_another_clock(cue: Any, observer: Observer) -> None:
     percept = perceive(cue(change=-4.0, name="dip"), observer)
     axes = percept.plot()
-    assert axes.get_ylabel() == "sensation (d′)"
-    assert axes.get_xlabel() == "time (s), receptor clock"
-    assert axes.get_title() == "dip"
-    assert percept._repr_html_().startswith("<svg")
-
-
-def test_the_onset_says_that_it_is_on_another_clock(cue: Any, observer: Observer) -> None:
-    percept = perceive(cue(change=-4.0), observer)
-    labels = [text.get_text() for text in percept.plot().get_legend().get_texts()]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s), receptor clock", "sensation (d′)")
+    assert axes.get_title() == "dip" and percept._repr_html_().startswith("<svg")
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
     said = f"reported as cold at {percept.onset_s:.2f} s by the nominal person\n"
     said += "(response clock: with conduction and decision)"
     assert labels == ["cold", "warm", said]
@@ -109,17 +92,24 @@ def test_the_onset_says_that_it_is_on_another_clock(cue: Any, observer: Observer
     ]
 
 
-def test_clock_and_shape_messages() -> None:
-    with pytest.raises(ValueError, match=r"needs a uniform clock: simulate at one rate"):
-        uniform_clock([0.0, 0.1, 0.3, 0.4])
-    with pytest.raises(ValueError, match=r"a trace of at least two rows"):
-        uniform_clock([0.0])
-    with pytest.raises(ValueError, match=r"psi_cold has 3 samples and psi_warm 4"):
-        Percept(np.zeros(3), np.zeros(4), 0.01, None, None, 0.0)
-    with pytest.raises(ValueError, match=r"psi_warm must be one trace of finite numbers"):
-        Percept(np.zeros(3), np.full(3, np.nan), 0.01, None, None, 0.0)
-    with pytest.raises(ValueError, match=r"dt_s = 0 s must be above 0"):
-        Percept(np.zeros(3), np.zeros(3), 0.0, None, None, 0.0)
+@pytest.mark.parametrize(
+    ("cold", "warm", "dt_s", "said"),
+    [
+        (np.zeros(3), np.zeros(4), 0.01, "psi_cold has 3 samples and psi_warm 4"),
+        (np.zeros(3), np.full(3, np.nan), 0.01, "psi_warm must be one trace of finite numbers"),
+        (np.zeros(3), np.zeros(3), 0.0, "dt_s = 0 s must be above 0"),
+    ],
+)
+def test_a_percept_is_two_finite_traces(cold: Any, warm: Any, dt_s: float, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Percept(cold, warm, dt_s, None, None, 0.0)
+
+
+def test_clocks() -> None:
+    assert uniform_clock([0.0, 0.5, 1.0, 1.2]) == (0.5, 3)
+    for clock, said in (([0.0, 0.1, 0.3, 0.4], "needs a uniform clock: simulate at one"), ([0.0], "at least two rows")):
+        with pytest.raises(ValueError, match=said):
+            uniform_clock(clock)
 
 
 def test_a_shorter_percept_is_held_at_its_end() -> None:
