@@ -68,8 +68,7 @@ def report_of(
     `draws` are those of an interval, `how` other arguments of `rank`.
     """
     from thermicon.perception import choose, rank
-    from thermicon.perception.kernels.parallel import beside
-    from thermicon.perception.progress import step_counter
+    from thermicon.perception.kernels.parallel import beside, step_counter
     from thermicon.perception.ranking.rank import with_intervals
     from thermicon.perception.selection.edit import cheapest_edits
     from thermicon.perception.selection.goal_result import judge_goal

@@ -8,9 +8,9 @@ from functools import partial
 
 from thermicon.circuit import Rig
 
+from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import VARIABLES, Variable
 from ..observer.people import OLD_YEARS
-from ..progress import Progress, step_counter
 from .experiments import first_and_return, limits, methods, peak_lead, rate_curve, reaction_times
 from .identified import (
     WAVES,

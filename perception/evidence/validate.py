@@ -22,7 +22,7 @@ from .targets import PAIRED, Published, Row, Target, combined, load_targets, pub
 from .verdicts import Verdict, judge_row
 
 if TYPE_CHECKING:
-    from ..progress import Progress
+    from ..kernels.parallel import Progress
     from .shown import Evidence
 
 PEOPLE, TRIALS = 200, 48

@@ -94,10 +94,6 @@ def _superpose(unit: Any, dt: float, starts: Any, slopes: Any, course: Any) -> N
 
 
 DRAWS_AT_ONCE = 512
-SIDE_BY_SIDE = 64
-"""Largest values are kept side by side, each of every 64th value: for a single one LLVM uses no vectors."""
-TALLIES = 4
-"""Counts that take turns: adding to one number waits for the addition before, and most answers are the same."""
 
 
 def _sensation(drive: Any, scale: Any, a: float, p: float, b: float, psi: Any) -> None:
@@ -125,52 +121,24 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
     """Counts of the nearest point (presented, answer) for one person; the innermost loops run over draws.
 
     `nearness` (answer, presented) speaks for an answer without noise; `projected` (answer, draw) is what noise adds.
-    Both are in single precision, of which the processor's vectors hold twice as many. In a block of draws, an answer
-    whose best score is below the worst score of another cannot win and is left out; rounding keeps the order of sums,
-    so that no count changes.
+    Both are in single precision, of which the processor's vectors hold twice as many.
     """
     icons, draws = projected.shape
     score, best = np.empty(DRAWS_AT_ONCE, dtype=np.float32), np.empty(DRAWS_AT_ONCE, dtype=np.int32)
-    most, least = np.empty(SIDE_BY_SIDE, dtype=np.float32), np.empty(SIDE_BY_SIDE, dtype=np.float32)
-    highest, lowest = np.empty(icons, dtype=np.float32), np.empty(icons, dtype=np.float32)
-    tally = np.zeros((TALLIES, icons, icons), dtype=np.int32)
     for start in range(0, draws, DRAWS_AT_ONCE):
         count = min(DRAWS_AT_ONCE, draws - start)
-        for j in range(icons):
-            first = projected[j, start]
-            for k in range(SIDE_BY_SIDE):
-                most[k] = first
-                least[k] = first
-            for begin in range(start, start + count, SIDE_BY_SIDE):
-                noise = projected[j, begin : min(begin + SIDE_BY_SIDE, start + count)]
-                for k in range(noise.size):
-                    most[k] = noise[k] if noise[k] > most[k] else most[k]
-                    least[k] = noise[k] if noise[k] < least[k] else least[k]
-            highest[j], lowest[j] = first, first
-            for k in range(SIDE_BY_SIDE):
-                highest[j], lowest[j] = max(highest[j], most[k]), min(lowest[j], least[k])
         for i in range(icons):
-            sure = nearness[0, i] + lowest[0]
-            for j in range(1, icons):
-                sure = max(sure, nearness[j, i] + lowest[j])
             for s in range(count):
                 score[s], best[s] = -np.inf, 0
             for j in range(icons):
-                name, near = np.int32(j), nearness[j, i]
-                if near + highest[j] < sure:
-                    continue
-                noise = projected[j, start : start + count]
+                name, near, noise = np.int32(j), nearness[j, i], projected[j, start : start + count]
                 for s in range(count):
                     value = near + noise[s]
                     nearer = value > score[s]
                     best[s] = name if nearer else best[s]
                     score[s] = value if nearer else score[s]
             for s in range(count):
-                tally[s % TALLIES, i, best[s]] += 1
-    for i in range(icons):
-        for j in range(icons):
-            for k in range(TALLIES):
-                counts[i, j] += tally[k, i, j]
+                counts[i, best[s]] += 1.0
 
 
 Loop = Callable[..., None]

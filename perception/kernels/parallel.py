@@ -1,4 +1,4 @@
-"""Work spread over the machine's cores; the result does not depend on how many."""
+"""Work spread over the machine's cores, whose number does not change the result, and its steps counted."""
 
 from __future__ import annotations
 
@@ -79,3 +79,26 @@ def beside(work: Callable[[], Result], threads: int | None = None) -> Callable[[
     result = pool.submit(copy_context().run, work)
     pool.shutdown(wait=False)
     return result.result
+
+
+Progress = Callable[[int, int], None]
+"""Called with (steps done, steps in all)."""
+
+
+def step_counter(progress: Progress | None, total: int) -> Callable[[], None]:
+    """What is called after each of `total` steps; where there are more after all, the total grows.
+
+    >>> step = step_counter(lambda done, total: print(f"{done} of {total}"), 2)
+    >>> step(); step()
+    1 of 2
+    2 of 2
+    """
+    done = 0
+
+    def step() -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done, max(done, total))
+
+    return step

@@ -13,10 +13,10 @@ import numpy as np
 from thermicon.circuit.program import own_version
 
 from ..experiments.measure import Setting
+from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
 from ..observer.observer_model import ObserverModel
-from ..progress import Progress, step_counter
 from .conditioning import Answered, Conditioned, Measured, condition
 from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements_file import Measurements

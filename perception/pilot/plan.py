@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from thermicon.circuit.program import own_version
 
 from ..arrays import Array
+from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.observer_model import ObserverModel
-from ..progress import Progress, step_counter
 from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
 from .prediction import SetPrediction, Three, three

@@ -211,21 +211,6 @@ def run(job: Job, number: int) -> BatchResult:
 
 
 @dataclass(frozen=True, slots=True)
-class Execution:
-    """Where batches are computed and kept: threads of this process (None: one per core) or a cluster; a folder to keep.
-
-    Raises `ValueError` for fewer than one worker.
-    """
-
-    workers: int | str | None = None
-    keep: Path | None = None
-
-    def __post_init__(self) -> None:
-        if isinstance(self.workers, int) and self.workers < 1:
-            raise ValueError(f"at least one worker is needed, not {self.workers}")
-
-
-@dataclass(frozen=True, slots=True)
 class PooledResult:
     """Responses of all people to m icons.
 
@@ -278,8 +263,11 @@ class PooledResult:
         return matrix
 
 
-def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) -> PooledResult:
-    """Compute or read every batch; `step` is called after each. Place and order of work do not change the result."""
+def collect_batches(job: Job, workers: int | str | None, keep: Path | None, step: Callable[[], None]) -> PooledResult:
+    """Compute or read every batch, as `rank` has the keywords; `step` is called after each.
+
+    Place and order of work do not change the result.
+    """
     from thermicon.circuit.solver.simulate import rows_until
 
     people = job.people
@@ -287,7 +275,7 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
     pooled: dict[int, Array] = {}
     reported: dict[int, Array] = {}
     blur = 0.0
-    for number, found in _each_batch(job, execution):
+    for number, found in _each_batch(job, workers, keep):
         pooled[number], reported[number] = found.confusion.sum(axis=0), found.reported[0]
         blur = max(blur, _sampling_error(job, found.confusion))
         # Confusions and response times are most of a batch, and are needed only as their sum.
@@ -323,8 +311,8 @@ def collect_batches(job: Job, execution: Execution, step: Callable[[], None]) ->
     )
 
 
-def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResult]]:
-    store = None if execution.keep is None else BatchStore.of(job.key, execution.keep)
+def _each_batch(job: Job, workers: int | str | None, keep: Path | None) -> Iterator[tuple[int, BatchResult]]:
+    store = None if keep is None else BatchStore.of(job.key, keep)
     missing = []
     for number in range(job.batches):
         arrays = None if store is None else store.get(number)
@@ -334,13 +322,13 @@ def _each_batch(job: Job, execution: Execution) -> Iterator[tuple[int, BatchResu
             yield number, BatchResult(**arrays)
     if not missing:
         return
-    if isinstance(execution.workers, str):
+    if isinstance(workers, str):
         from .cluster import on_cluster
 
-        results = on_cluster(job, missing, execution.workers)
+        results = on_cluster(job, missing, workers)
     else:
         # At most two batches per thread are in memory.
-        each = in_order(lambda number: run(job, number), missing, execution.workers or cores())
+        each = in_order(lambda number: run(job, number), missing, workers or cores())
         results = iter(zip(missing, each, strict=True))
     for number, result in results:
         if store is not None:

@@ -15,12 +15,12 @@ from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.map import spread_over_people
 from ..identification.population import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
+from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from ..progress import Progress, step_counter
 from ..sensation.percept import perceive
-from .batches import Execution, Job, collect_batches
+from .batches import Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
 from .scores import assemble, disagreements, objection, playable_pairs, worst_by_rules, worst_of
@@ -118,7 +118,8 @@ def rank(
         raise ValueError(f"a ranking is by {' or '.join(RANKED_BY)}, not by {by!r}")
     model = ObserverModel.of(observer)
     draws = model.draw_count(parameters, DRAWS) * (by == "model")
-    execution = Execution(workers, keep)
+    if isinstance(workers, int) and workers < 1:
+        raise ValueError(f"at least one worker is needed, not {workers}")
     nominal = model.nominal
     model.people(people, seed)  # refuses fewer than one person before anything is simulated
     durations = [duration_s(icon, rig) for icon in members]
@@ -131,9 +132,9 @@ def rank(
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
 
-    felt = collect_batches(job, execution, report)
-    made = assemble(members, traces, durations, percepts, felt, chosen, nominal)
-    counted = playable_pairs(made)
+    felt = collect_batches(job, workers, keep, report)
+    scored, pairs = assemble(members, traces, durations, percepts, felt, chosen, nominal)
+    counted = playable_pairs(scored, pairs)
     ranking = Ranking(
         version=own_version(),
         content_hash=_hash(icons, rig, model),
@@ -141,11 +142,11 @@ def rank(
         model=model,
         felt=felt,
         by=by,
-        icons=made.icons,
-        pairs=made.pairs,
+        icons=scored,
+        pairs=pairs,
         worst_pair=worst_of(counted) if by == "model" else worst_by_rules(counted),
         rules=rig_rules(rig),
-        rules_disagree=disagreements(made.icons, made.pairs),
+        rules_disagree=disagreements(scored, pairs),
         spread=spread_over_people(felt.d_prime, felt.each_correct),
         carry_over=left,
     )

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..identification.doubt import doubts
+from .assumptions import doubts
 
 if TYPE_CHECKING:
     from ..identification.laboratory import Interval, NewLaboratory

@@ -177,14 +177,6 @@ def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tup
     return tuple(found)
 
 
-@dataclass(frozen=True, slots=True)
-class Assembled:
-    """Scores of all icons and of all pairs, in file order."""
-
-    icons: tuple[IconScore, ...]
-    pairs: tuple[PairScore, ...]
-
-
 def assemble(
     icons: Sequence[Icon],
     traces: Sequence[Trace],
@@ -193,8 +185,8 @@ def assemble(
     all_: PooledResult,
     norm: Norm,
     observer: Observer,
-) -> Assembled:
-    """Score every icon and every pair."""
+) -> tuple[tuple[IconScore, ...], tuple[PairScore, ...]]:
+    """Scores of all icons and of all pairs, in file order."""
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
     onsets, channels = all_.detection.onset_s, all_.detection.channel
     pairs = []
@@ -246,7 +238,7 @@ def assemble(
                 energy_J=energy_J(trace, lasting),
             )
         )
-    return Assembled(tuple(scored), tuple(pairs))
+    return tuple(scored), tuple(pairs)
 
 
 def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
@@ -282,10 +274,10 @@ def energy_J(trace: Trace, until_s: float) -> float:
     return float((trace.voltage_V[:-1] * trace.current_A[:-1] * steps).sum())
 
 
-def playable_pairs(made: Assembled) -> tuple[PairScore, ...]:
+def playable_pairs(icons: Sequence[IconScore], pairs: tuple[PairScore, ...]) -> tuple[PairScore, ...]:
     """The pairs of icons that can be played; all pairs where there is none of them."""
-    fine = {icon.name for icon in made.icons if icon.playable}
-    return tuple(pair for pair in made.pairs if pair.a in fine and pair.b in fine) or made.pairs
+    fine = {icon.name for icon in icons if icon.playable}
+    return tuple(pair for pair in pairs if pair.a in fine and pair.b in fine) or pairs
 
 
 def worst_of(pairs: Sequence[PairScore]) -> tuple[str, str] | None:

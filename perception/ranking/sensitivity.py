@@ -23,14 +23,14 @@ import numpy as np
 
 from ..arrays import Array
 from ..drawn import Drawn
-from ..identification.doubt import explained, explained_together, scores_of
 from ..identification.laboratory_draws import LaboratoryDraws, Uncertain, laboratory_draws, latin
 from ..identification.population import ReceptorTemperatures, run_end_s
+from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import DATA, check_norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, people_records
-from ..progress import Progress, step_counter
+from .assumptions import explained, explained_together, scores_of
 from .ranking import with_changes
 
 if TYPE_CHECKING:

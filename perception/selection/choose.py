@@ -16,7 +16,7 @@ import numpy as np
 from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
-from ..progress import Progress, step_counter
+from ..kernels.parallel import Progress, step_counter
 from .appraise import Appraisal, appraise, nearest_two
 from .goal import Goal
 from .max_min_subset import SubsetChoice, max_min_subset, nearest_pair

@@ -14,9 +14,9 @@ import numpy as np
 
 from ..drawn import Drawn
 from ..identification.laboratory import DRAWS
+from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import USUAL_NORM
 from ..observer.observer_model import ObserverModel
-from ..progress import Progress, step_counter
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
 from .appraise import REACHED_BY

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import ObserverModel
-from ..progress import Progress, step_counter
 from ..ranking.rank import rank
 from .goal import Goal
 from .goal_result import GoalPartResult, GoalResult, judge_goal

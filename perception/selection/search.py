@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..identification.laboratory import DRAWS
+from ..kernels.parallel import Progress
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from ..progress import Progress
 from .appraise import Appraisal
 from .candidates import Candidate, at_ends, found_set, names_of
 from .evaluator import Evaluator, FinalJudge, in_words

@@ -8,7 +8,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, rank
-from thermicon.perception.identification.doubt import doubts, explained
+from thermicon.perception.ranking.assumptions import doubts, explained
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from thermicon.icons import load_library
 from thermicon.icons.atomic import MARK
 from thermicon.perception import rank
 from thermicon.perception.ranking import batches as under_test
-from thermicon.perception.ranking.batches import BatchResult, BatchStore, BatchStoreError, Execution, Job, run
+from thermicon.perception.ranking.batches import BatchResult, BatchStore, BatchStoreError, Job, run
 
 RIG = Rig.load("thenar")
 ICONS = load_library("six-icons")
@@ -119,7 +119,7 @@ def test_messages(tmp_path: Path) -> None:
     with pytest.raises(BatchStoreError, match=r"cannot keep finished parts in .*file: Not a directory"):
         BatchStore.of(work().key, tmp_path / "file")
     with pytest.raises(ValueError, match=r"at least one worker is needed, not 0"):
-        Execution(workers=0)
+        rank(ICONS, RIG, people=2, parameters=0, workers=0)
     with pytest.raises(ValueError, match=r"at least one person is needed, not 0"):
         rank(ICONS, RIG, people=0, parameters=0)
 
