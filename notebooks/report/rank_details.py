@@ -10,7 +10,7 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 from .blocks import Block, Bullets, Heading
 from .choices import laboratory
 
-MOST_EDITS, SAME_DPRIME = 20, 0.05
+MOST_EDITS = 20
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
 DETECTED = (
     "Detected is the share of these people's trials that end in a report; onset is the median time of those reports, "
@@ -163,8 +163,7 @@ def carried_points(icons: Sequence[dict[str, Any]]) -> Iterator[str]:
 
 
 def worst_points(result: Mapping[str, Any]) -> Iterator[str]:
-    """Yield which pair is confused most often, why, what would separate it, and the nearest pair if different."""
-    pairs, fine = result["pairs"], {icon["name"] for icon in playable(result["icons"])}
+    """Yield which pair is confused most often, why, and what would separate it."""
     worst = worst_pair(result)
     confused = percent(worst["confused_probability"])
     head = f"Worst pair: {worst['a']} and {worst['b']}"
@@ -172,14 +171,6 @@ def worst_points(result: Mapping[str, Any]) -> Iterator[str]:
     yield from worst["why"]
     if edit := edit_text(worst):
         yield edit
-    nearest = min((p for p in pairs if not fine or {p["a"], p["b"]} <= fine), key=lambda p: p["d_prime"], default=worst)
-    if nearest["d_prime"] < worst["d_prime"] - SAME_DPRIME:
-        share = percent(nearest["confused_probability"])
-        yield (
-            f"nearest in d′: {nearest['a']} and {nearest['b']}, d′ {number(nearest['d_prime'])}, confused in {share} "
-            "of trials: d′ compares these two alone, answers are spread over all names, and missed icons get any of "
-            "them"
-        )
 
 
 def worst_pair(result: Mapping[str, Any]) -> dict[str, Any]:

@@ -80,16 +80,6 @@ def test_bad_files_are_told_together_and_stay_as_they_are(cli: Cli, tmp_path: Pa
     assert good.read_text(encoding="utf-8") == TIDY
 
 
-def test_line_ends_stay_and_a_byte_order_mark_goes(cli: Cli, tmp_path: Path) -> None:
-    path = written(tmp_path / "a.cue", b"\xef\xbb\xbf" + LOOSE.replace("\n", "\r\n").encode())
-    assert cli("check", "--fix", path).exit_code == 0
-    assert path.read_bytes() == TIDY.replace("\n", "\r\n").encode()
-    assert cli("check", "--fix", path).stderr == ""
-    old = written(path, TIDY.replace("\n", "\r").encode())
-    assert cli("check", "--fix", old).exit_code == 0
-    assert old.read_bytes() == TIDY.encode()
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="modes and links of POSIX")
 def test_the_mode_of_a_file_stays_and_a_link_is_followed(cli: Cli, tmp_path: Path) -> None:
     path = written(tmp_path / "a.cue", LOOSE)

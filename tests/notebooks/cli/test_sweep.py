@@ -12,7 +12,6 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Rig, simulate
-from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.verdict import summarise
 from thermicon.icons import read_cue
 from thermicon.notebooks import sweep
@@ -81,14 +80,6 @@ def test_two_keys_make_a_grid(cli: Cli, two: Path, tmp_path: Path) -> None:
     assert row["skin_min_C"] == pytest.approx(alone.skin_min_C, rel=1e-8)
     assert "of 6 combinations" in said.stderr
     assert figure.stat().st_size > 20_000
-
-
-def test_a_layer_of_the_skin_can_be_swept(two: Path) -> None:
-    frame = swept(two, "skin.layer.stratum corneum.thickness_mm", [0.1, 0.4])
-    peaks = frame.loc[frame["icon"] == "cool-step", "warm_receptor_peak_change_K"]
-    assert len(peaks.unique()) == 2
-    with pytest.raises(RigError, match="unknown key"):
-        swept(two, "contact.area", [1.0])
 
 
 @pytest.mark.slow

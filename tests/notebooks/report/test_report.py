@@ -17,13 +17,10 @@ from thermicon.circuit import Rig
 from thermicon.icons import IconSet, load_library, parse
 from thermicon.notebooks.cli.options import CrowdOptions, RigOptions
 from thermicon.notebooks.cli.ranking import TaskOptions, command_text
-from thermicon.notebooks.report.blocks import as_html
 from thermicon.notebooks.report.rank_page import LIMITS, SAFETY, report
 from thermicon.notebooks.report.set_report import SetReport
-from thermicon.perception import Ranking, choose, rank
+from thermicon.perception import Ranking, rank
 from thermicon.perception.selection.edit import cheapest_edits
-from thermicon.perception.selection.goal_result import judge_goal
-from thermicon.perception.selection.request import Selection
 
 Cli = Callable[..., Any]
 NASTY = """cue 1
@@ -178,13 +175,6 @@ def test_what_is_unsafe_or_outside_the_data_is_warned_of(rig: Rig) -> None:
 
 
 @pytest.mark.slow
-def test_the_choice_is_told(rig: Rig, three: IconSet) -> None:
-    ranking = rank(three, rig, people=4, parameters=0)
-    chosen = choose(ranking, Selection(2), parameters=0)
-    assert "<h3>Best 2 of 3, by the worst pair: " in report(SetReport(ranking, chosen), three, rig)
-
-
-@pytest.mark.slow
 def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "report.html"
     options = ("--people", 3, "--intervals", 0, "--set", "contact.area_cm2=4")
@@ -200,22 +190,6 @@ def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path
     assert again.read_bytes() == out.read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("out", "code", "told"),
-    [
-        ("report.pdf", 1, "a report is written as .html or .htm or .md, not .pdf"),
-        ("no/report.html", 1, "does not exist; make it first"),
-        ("-", 2, "- is not a file; give the name of a page, such as report.html"),
-    ],
-)
-def test_a_page_that_cannot_be_written_is_said_at_once(
-    cli: Cli, two: Path, tmp_path: Path, out: str, code: int, told: str
-) -> None:
-    said = cli("rank", two, "--people", 100_000, "--report", out if out == "-" else tmp_path / out)
-    assert said.exit_code == code
-    assert told in " ".join(said.stderr.replace("│", " ").split())
-
-
 def test_the_command_can_be_given_again() -> None:
     assert command_text(["six-icons"], RigOptions(), CrowdOptions()) == "thermicon rank six-icons"
     changed = RigOptions("/home/x/watch.toml", ["driver.current_limit_A=1.2"])
@@ -226,23 +200,3 @@ def test_the_command_can_be_given_again() -> None:
         "--tracking ideal --norm naming --observer lab.csv --task gap=8 --task bias=0.5"
     )
     assert "--observer /home/x/lab.csv" in command_text(["six-icons"], asked, paths=True)
-
-
-def test_a_page_escapes_its_title() -> None:
-    assert "<title>a &lt;b&gt;</title>" in as_html([], "a <b>")
-
-
-@pytest.mark.slow
-def test_a_page_holds_goal_warnings_and_the_whole_rig() -> None:
-    from thermicon.icons import load_library
-    from thermicon.perception import rank
-
-    rig = Rig.load("thenar").with_(**{"contact.area_cm2": 4.0})
-    six = load_library("six-icons")
-    ranking = rank(six, rig, people=4, parameters=0)
-    reached = judge_goal("correct >= 99 %", ranking)
-    page = report(SetReport(ranking, goal=reached, warnings=("for another site",)), six, rig)
-    assert "Goal: NOT met" in page
-    assert "✗ correct &gt;= 99 %" in page
-    assert "warning: for another site" in page
-    assert "area_cm2 = 4.0" in page

@@ -8,7 +8,6 @@ from collections import Counter
 import pytest
 
 from thermicon.icons import load_library
-from thermicon.icons.files.shipped import library_names
 from thermicon.notebooks.report.blocks import Grid, grid
 from thermicon.notebooks.report.terminal import lines as rendered
 
@@ -46,24 +45,3 @@ def test_at_80_columns_the_names_of_shipped_sets_stay_on_one_line() -> None:
 def test_a_pipe_gets_one_line_per_row() -> None:
     made, _ = ranked()
     assert len(rendered([made], 40, is_terminal=False)) == 2 + 12
-
-
-@pytest.mark.parametrize("width", [80, 60])
-def test_listings_fit(width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    from thermicon.notebooks.cli.listing import show_icons, show_rigs
-
-    monkeypatch.setenv("COLUMNS", str(width))
-    show_icons()
-    show_rigs()
-    said = capsys.readouterr().out
-    compact = re.sub(r"\s", "", said)
-    for name in library_names():
-        assert f"{name}:" in said
-        assert all(entry.name in compact for entry in load_library(name).entries)
-
-
-@pytest.mark.parametrize("width", [80, 60])
-def test_a_session_keeps_every_heading(width: int) -> None:
-    row = ("12", "triangle-unipolar-8s", "1234.25 s", "29.5–33.8 °C", "28.5–34.8 °C", "−0.25 K", "amber")
-    made = grid(SESSION, [row], ("play", "start", "baseline"), ("icon",))
-    assert letters("".join(rendered([made], width))) == letters("".join((*SESSION, *row)))
