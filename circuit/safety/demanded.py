@@ -19,7 +19,7 @@ from .checks import CutOff, Demands, PolarityCheck, Scenario, SingleFault, colou
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
 from .repeated import PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
-from .single_faults import Faulty
+from .single_faults import Faulty, around_C
 from .tally import HOTTEST_C, WATCHED, Tally, cem43_min
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def demanded(
         if not any(within_s):
             return True
         faulty = after(pause_s)[number].at(hardest[number])
-        cut = CutOff(*faulty.around_C(reach_of(pause_s)), within_s[1])
+        cut = CutOff(*around_C(repeating.limits, reach_of(pause_s)), within_s[1])
         return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
 
     longest_s, numbers, practical = max(shortest_s, *recovered_s), range(len(singles)), (PRACTICAL_S, PRACTICAL_S)

@@ -22,7 +22,7 @@ from .checks import CutOff, Demands, SingleFault, worst_of
 from .corners import contact_corners
 from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, Future, Plant, Stretch, left_s
 from .playmap import PlayMap, least_bound
-from .single_faults import BEYOND_K, MARGIN
+from .single_faults import MARGIN, around_C
 from .tally import WATCHED, Tally
 
 if TYPE_CHECKING:
@@ -252,10 +252,7 @@ class _Faults:
         """What the device itself must prevent, where its display is between two temperatures without a fault."""
         watchdog, react = (min(time for _, time in each) for each in (self.hangs, self.stuck))
         watchdog = watchdog if watchdog >= ENDING_S else round(MARGIN * watchdog, 2)
-        rules = [rule for rule in limits.rules if rule.quantity == "display" and rule.above_C is None]
-        hard = {rule.upper: rule.limit for rule in rules if rule.severity == "hard"}
-        low, high = max(hard[False], shown_C[0] - BEYOND_K), min(hard[True], shown_C[1] + BEYOND_K)
-        cut = CutOff(round(low, 1), round(high, 1), round(MARGIN * react, 3))
+        cut = CutOff(*around_C(limits, shown_C), round(MARGIN * react, 3))
         levels, ends = ([level for level, _ in each] for each in (self.hangs, self.stuck))
         hang = {"levels_C": levels, "watchdog_s": watchdog}
         stuck = {"levels_C": ends, "passed_s": react, "cut_off": cut}

@@ -92,7 +92,9 @@ class SessionPlan:
         >>> plan, plan.order.count("dip")
         (SessionPlan(6 plays of 2 icons, 10 s apart, shuffled with seed 1), 3)
         """
-        check_repeats(repeats, len(names), "icons")
+        if repeats < 1:
+            raise SessionError(f"{repeats} repeats are not possible; there must be at least 1")
+        _check_count(len(names) * repeats, f"{repeats:,} repeats of {len(names):,} icons")
         places = np.random.default_rng(seed).permutation(len(names) * repeats)
         return SessionPlan(tuple(names[place % len(names)] for place in places.tolist()), gap_s, seed)
 
@@ -133,13 +135,6 @@ def check_length(durations_s: Sequence[float], gap_s: float) -> float:
             f"fewer, shorten the gap, or split the session"
         )
     return total
-
-
-def check_repeats(repeats: int, entries: int, what: str) -> None:
-    """Raise SessionError for fewer than one repeat, and for more plays in all than a session may have."""
-    if repeats < 1:
-        raise SessionError(f"{repeats} repeats are not possible; there must be at least 1")
-    _check_count(entries * repeats, f"{repeats:,} repeats of {entries:,} {what}")
 
 
 def _words(text: str) -> Iterator[tuple[int, str]]:

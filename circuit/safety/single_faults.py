@@ -117,7 +117,7 @@ class Faulty:
         """Corners that are worst in some fault at a few instants, if a watchdog and a cut-off act within a time."""
         few = np.linspace(1, len(self._stuck_at()) - 1, 4).astype(int)
         moments = replace(self, instants=tuple(few.tolist())).moments()
-        far_K = self.beyond_K(moments, within_s, CutOff(*self.around_C(reach_C), within_s))
+        far_K = self.beyond_K(moments, within_s, CutOff(*around_C(self.limits, reach_C), within_s))
         lanes = far_K.reshape(len(far_K), len(few), -1).argmax(axis=2)
         return [int(corner) for corner in np.unique(moments.rigs[lanes])]
 
@@ -179,7 +179,7 @@ class Faulty:
         """The cut-off around the display temperatures reached without a fault, and its reaction time with the driver
         at its limit; with `hangs` also with a current that hangs.
         """
-        low, high = self.around_C(display_C)
+        low, high = around_C(self.limits, display_C)
         moments, harms, slowest = moments or self.moments(), [], REACTIONS_S[-1]
         for full_A in self.ends_A:
             stuck = moments.stuck_at(full_A)
@@ -197,13 +197,6 @@ class Faulty:
         limit_A = self._limit_A(moments, low, high, most_A) if slowest == 0.0 else None
         told = {"harms": tuple(harms), "cut_off": cut, "most_A": most_A, "limit_A": limit_A}
         return cut, SingleFault("stuck", "red" if harms else "green", told)
-
-    def around_C(self, display_C: tuple[float, float]) -> tuple[float, float]:
-        """Where a cut-off acts that lets the display pass between two temperatures in °C."""
-        hard = [rule for rule in self.limits.rules if rule.quantity == "display" and rule.severity == "hard"]
-        limit = {rule.upper: rule.limit for rule in hard if rule.above_C is None}
-        low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
-        return round(low, 1), round(high, 1)
 
     @property
     def ends_A(self) -> tuple[float, float]:
@@ -229,6 +222,14 @@ class Faulty:
         late_s = [_late_s(moments, display, low, high, time_s) for time_s in REACTIONS_S]
         safe = bisect_left(late_s, 1, key=lambda cut_s: int(self._cut_K(moments, cut_s)[1].max() > 0.0))
         return (0.0, *REACTIONS_S)[safe]
+
+
+def around_C(limits: Limits, display_C: tuple[float, float]) -> tuple[float, float]:
+    """Where a cut-off acts that lets the display pass between two temperatures in °C."""
+    hard = [rule for rule in limits.rules if rule.quantity == "display" and rule.severity == "hard"]
+    limit = {rule.upper: rule.limit for rule in hard if rule.above_C is None}
+    low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
+    return round(low, 1), round(high, 1)
 
 
 def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_s: float) -> Array:

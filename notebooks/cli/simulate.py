@@ -274,7 +274,7 @@ def session_file(
 ) -> None:
     """Simulate a session with the icons of a file, in the order of a file or shuffled; print and write the report."""
     from thermicon.circuit import SessionPlan, play_session
-    from thermicon.circuit.safety.session import check_repeats, order_text, read_order
+    from thermicon.circuit.safety.session import order_text, read_order
 
     if output is not None:
         check_output(output, (*TRACE_SUFFIXES, NUMBERS, ORDER), "a session")
@@ -283,7 +283,6 @@ def session_file(
     if order is not None:
         plan = SessionPlan(read_order(order, icons), gap_s)
     else:
-        check_repeats(repeats or 1, len(icons), "icons")
         plan = SessionPlan.shuffled([icon.name for icon in icons], repeats or 1, seed=seed, gap_s=gap_s)
     with progress_bar("worst case") as progress:
         played = [icons[name] for name in plan.names]
