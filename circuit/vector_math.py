@@ -4,7 +4,7 @@ Cody and Waite's reduction with a Taylor polynomial for the exponential, and the
 tangent for the logarithm: both are within 5 units in the last place, which tests compare with the standard library.
 """
 
-# mypy: disable-error-code="no-untyped-call,misc,no-any-return,import-untyped"
+# mypy: disable-error-code="no-untyped-call,misc,no-any-return,import-untyped,untyped-decorator"
 # numba's decorators have no types.
 from __future__ import annotations
 
@@ -48,8 +48,12 @@ def _double_of(context: Any, bits: Any) -> Any:
 bits_of: Any = intrinsic(_bits_of)
 double_of: Any = intrinsic(_double_of)
 
+# Reassociation would take the rounder away again.
+vectorised: Any = kernel(nogil=True, error_model="numpy", fastmath={"contract", "nsz"})
 
-def _reduced(x: float) -> tuple[float, float, float]:
+
+@vectorised
+def reduced(x: float) -> tuple[float, float, float]:
     """X = n·ln 2 + r with |r| ≤ ln 2/2: r, (e^r − 1 − r)/r², and n with the rounder; held at e^−708 and e^709."""
     x = min(max(x, LOWEST_EXP), HIGHEST_EXP)
     rounded = x * LOG2_E + ROUNDER
@@ -59,21 +63,24 @@ def _reduced(x: float) -> tuple[float, float, float]:
     return r, ((p * r + E4) * r + E3) * r + E2, rounded
 
 
-def _exp(x: float) -> float:
+@vectorised
+def exp(x: float) -> float:
     """e^x = 2^n · e^r."""
     r, p, rounded = reduced(x)
     p = (p * r + 1.0) * r + 1.0
     return double_of(bits_of(p) + (bits_of(rounded) << FRACTION_BITS))
 
 
-def _expm1(x: float) -> float:
+@vectorised
+def expm1(x: float) -> float:
     """e^x − 1 = 2^n · (e^r − 1) + (2^n − 1), accurate near 0."""
     r, p, rounded = reduced(x)
     whole = double_of((bits_of(rounded) << FRACTION_BITS) + EXPONENT_BIAS)
     return (p * r * r + r) * whole + (whole - 1.0)
 
 
-def _log_of(above: float, n: float) -> float:
+@vectorised
+def log_of(above: float, n: float) -> float:
     """Logarithm of (1 + above) · 2^n = 2·artanh(s) + n·ln 2 with s = above/(2 + above), |s| < 0.172."""
     s = above / (2.0 + above)
     z = s * s
@@ -82,7 +89,8 @@ def _log_of(above: float, n: float) -> float:
     return (2.0 * s + 2.0 * s * z * p) + n * LN2_LOW + n * LN2_HIGH
 
 
-def _log(x: float) -> float:
+@vectorised
+def log(x: float) -> float:
     """Logarithm of a normal positive double."""
     bits = bits_of(x)
     n = np.uint64(bits + FROM_SQRT_HALF) >> np.uint64(FRACTION_BITS)  # 1024 too large; x = m·2^n with m from √½ to √2
@@ -90,20 +98,11 @@ def _log(x: float) -> float:
     return log_of(above, double_of(np.int64(n | TWO_52_BITS)) - TWO_52_AND_1024)
 
 
-def _log1p(x: float) -> float:
+@vectorised
+def log1p(x: float) -> float:
     """Logarithm of 1 + x, of a number that is not negative, accurate near 0."""
     bits = bits_of(1.0 + x)
     n = np.uint64(bits + FROM_SQRT_HALF) >> np.uint64(FRACTION_BITS)
     above = double_of(bits - np.int64(n << np.uint64(FRACTION_BITS)) + EXPONENT_ZERO) - 1.0
     above = x if 1.0 + x < SQRT_TWO else above
     return log_of(above, double_of(np.int64(n | TWO_52_BITS)) - TWO_52_AND_1024)
-
-
-# Reassociation would take the rounder away again.
-vectorised: Any = kernel(nogil=True, error_model="numpy", fastmath={"contract", "nsz"})
-reduced: Any = vectorised(_reduced)
-log_of: Any = vectorised(_log_of)
-exp: Any = vectorised(_exp)
-expm1: Any = vectorised(_expm1)
-log: Any = vectorised(_log)
-log1p: Any = vectorised(_log1p)

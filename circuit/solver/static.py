@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from thermicon.icons import Icon
 from thermicon.icons.model.corners import Corners
@@ -79,11 +79,7 @@ def _on_thermode(icon: Icon, rig: Rig, thermode: Thermode) -> tuple[str, ...]:
                 f"icon {icon.name}: {level:g} °C on the {control} needs a display of {needed:.{digits}f} °C, outside "
                 f"the {thermode.lowest_C:g} … {thermode.highest_C:g} °C of thermode {rig.name}; use a smaller change"
             )
-    points = zip(corners.time_s, corners.value, strict=True)
-    for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
-        if control == "skin" or place in corners.steps:
-            continue
-        rate = (to - level) / (later - time)
+    for time, _, rate in _ramps(corners) if control == "display" else ():
         if abs(rate) > thermode.slew_K_per_s * (1 + 1e-9):
             reasons.append(
                 f"icon {icon.name}: {abs(rate):.3g} °C/s of {'cooling' if rate < 0 else 'warming'} at {time:g} s is "
@@ -144,11 +140,7 @@ def _within(current: float, allowed: Callable[[float], bool]) -> float:
 def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
     """Sentences for the ramps that are steeper than the driver can begin them from rest at their first level."""
     reasons = []
-    points = zip(corners.time_s, corners.value, strict=True)
-    for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
-        if place in corners.steps:  # as fast as the driver can, whatever that is
-            continue
-        rate = (to - level) / (later - time)
+    for time, level, rate in _ramps(corners):
         limit = _steepest(rig, level, cooling=rate < 0)
         if abs(rate) > limit:
             wanted, possible = significant(abs(rate), limit)
@@ -157,6 +149,14 @@ def _too_fast(icon: Icon, rig: Rig, corners: Corners) -> list[str]:
                 f"is more than the {possible} °C/s that rig {rig.name} can begin with at {level:g} °C; slow it down"
             )
     return reasons
+
+
+def _ramps(corners: Corners) -> Iterator[tuple[float, float, float]]:
+    """Start in s, first level and rate of each ramp; a step is as fast as the driver can, whatever that is."""
+    points = zip(corners.time_s, corners.value, strict=True)
+    for place, ((time, level), (later, to)) in enumerate(itertools.pairwise(points)):
+        if place not in corners.steps:
+            yield time, level, (to - level) / (later - time)
 
 
 def _steepest(rig: Rig, level_C: float, cooling: bool) -> float:
