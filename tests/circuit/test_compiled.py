@@ -149,7 +149,7 @@ def test_the_digest_covers_all_that_is_compiled_and_its_constants() -> None:
                 module = (node.module or "").removeprefix("thermicon.").replace(".", "/")
                 constants = [alias.name for alias in node.names if alias.name.isupper()]
                 assert not constants or above / f"{module}.py" in covered, f"{path} takes {constants} from {module}"
-    assert compiling > 12
+    assert compiling > 9
 
 
 class Evil:
