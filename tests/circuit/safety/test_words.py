@@ -21,7 +21,7 @@ rig = Rig.load("thenar").with_(**{
 hot = gate(Drive([0, 1, 3, 4], [0.08, -3.0, -3.0, 0.08]), rig)
 shown = gate_shown([[DisplayCourse("at once", 0.01, np.linspace(32.0, 36.0, 200))]], rig, stuck_C=(5.0, 45.0))
 told = (hot.colour, hot.safe, hot.mended_by_pause, bool(hot.findings), len(hot.demands.faults), shown[0].colour)
-words = [name for name in sys.modules if "words" in name and name.startswith("thermicon.circuit")]
+words = [name for name in sys.modules if "words" in name and name.startswith("thermicon.circuit.safety")]
 print(told, words, sep="\\n")
 """
 
