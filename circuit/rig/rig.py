@@ -265,18 +265,7 @@ class Rig:
 
 
 def rig_names() -> tuple[str, ...]:
-    """Return the names of the shipped rigs, the default first.
-
-    Returns
-    -------
-    tuple of str
-        Names that `Rig.load` accepts.
-
-    Examples
-    --------
-    >>> rig_names()[0]
-    'thenar'
-    """
+    """Return the names of the shipped rigs, which `Rig.load` accepts, the default first."""
     names = [path.name.removesuffix(".toml") for path in _rig_folder().iterdir() if path.name.endswith(".toml")]
     return tuple(sorted(names, key=lambda name: (name != "thenar", name)))
 

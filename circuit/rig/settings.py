@@ -118,17 +118,7 @@ def _item(items: list[dict[str, Any]], part: str, key: str) -> int:
 
 
 def toml_text(document: Mapping[str, Any]) -> str:
-    """Return a document of numbers, texts, lists and tables as TOML.
-
-    >>> print(toml_text({"name": "a", "skin": {"rest_C": 32.0, "layer": [{"name": "dermis"}]}}), end="")
-    name = "a"
-    <BLANKLINE>
-    [skin]
-    rest_C = 32.0
-    <BLANKLINE>
-    [[skin.layer]]
-    name = "dermis"
-    """
+    """Return a document of numbers, texts, lists and tables as TOML."""
     return "\n".join(_table(document, ())).lstrip("\n") + "\n"
 
 

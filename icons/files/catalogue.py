@@ -35,16 +35,7 @@ def catalogue() -> dict[str, Entry]:
 
 
 def explain(code: str) -> str:
-    """Return the entry for a code as plain text; ValueError, with the nearest codes, for one that does not exist.
-
-    >>> print(explain("E205").split("\\n\\n")[0])
-    E205 rest away from baseline
-    `rest` is a pause at baseline, and the icon is at another level. To stay at a level, write `hold`.
-    >>> explain("missing units")
-    Traceback (most recent call last):
-      ...
-    ValueError: there is no error missing units; the nearest are E102 missing unit, E117 missing text
-    """
+    """Return the entry for a code as plain text; ValueError, with the nearest codes, for one that does not exist."""
     wanted = code.strip().upper()
     wanted = f"E{wanted}" if wanted.isdigit() else wanted
     entries = catalogue()

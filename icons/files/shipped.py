@@ -162,13 +162,7 @@ def library() -> Library:
 
 
 def library_names() -> tuple[str, ...]:
-    """Return the names of the shipped sets, sorted.
-
-    Returns
-    -------
-    tuple of str
-        Names that ``load_library`` and ``read_cue`` accept.
-    """
+    """Return the names of the shipped sets, which ``load_library`` and ``read_cue`` accept, sorted."""
     return tuple(
         sorted(entry.name.removesuffix(".cue") for entry in _folder().iterdir() if entry.name.endswith(".cue"))
     )

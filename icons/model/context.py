@@ -82,26 +82,10 @@ def text_fault(text: str) -> str | None:
 
 @dataclass(frozen=True, slots=True)
 class Context:
-    """What icons prescribe, and where on the body.
+    """What icons prescribe (a temperature in °C, or under ``current`` a current in A), and where on the body.
 
-    Parameters
-    ----------
-    control
-        ``skin`` or ``display`` (a temperature in °C), or ``current`` (in A).
-    baseline_C
-        Temperature in °C from which icons start, −10 to 60 °C; None: that of the rig.
-    site
-        Body site, such as ``thenar``.
-
-    Raises
-    ------
-    ValueError
-        For an unknown control, a baseline outside its range, or a site that is not a name.
-
-    Examples
-    --------
-    >>> Context("display", 32)
-    Context(control='display', baseline_C=32.0, site=None)
+    ``baseline_C`` is the temperature from which icons start, −10 to 60 °C; None: that of the rig. ``site`` is a name,
+    such as ``thenar``. Raises ValueError for anything else.
     """
 
     control: Control = "skin"
@@ -122,30 +106,9 @@ class Context:
 
 @dataclass(frozen=True, slots=True)
 class Metadata:
-    """What is known about an icon or a set, apart from its course.
+    """What is known about an icon or a set: what it ``means`` to say, by whom, DOI, licence, words for finding it.
 
-    Parameters
-    ----------
-    means
-        What it is meant to say.
-    by
-        Author or source.
-    doi
-        DOI of the source.
-    licence
-        Licence of the file.
-    tags
-        Words for finding it, each once.
-
-    Raises
-    ------
-    ValueError
-        For an empty text, control characters, and a tag with a comma.
-
-    Examples
-    --------
-    >>> Metadata(means="turn left", tags=("alert",)).means
-    'turn left'
+    Raises ValueError for an empty text, control characters, and a tag with a comma.
     """
 
     means: str | None = None

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.circuit.rig.corner import perturbed
+from thermicon.circuit.rig.corner import perturbed, with_gain
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import contact_corners, corners_of
@@ -42,7 +42,13 @@ def test_inside_the_bounds_of_a_file_a_corner_is_what_with_gives(name: str) -> N
 
 
 def test_nothing_perturbed_is_the_rig_itself() -> None:
-    assert perturbed(THENAR) is THENAR
+    assert perturbed(THENAR) is with_gain(THENAR, 0.0) is THENAR
+
+
+def test_a_source_of_another_gain_saturates_at_other_currents() -> None:
+    driver = with_gain(THENAR, 0.1).driver
+    assert (driver.current_min_A, driver.current_max_A) == pytest.approx((-1.65, 1.65))
+    assert driver.transconductance_A_per_V == THENAR.driver.transconductance_A_per_V
 
 
 def test_a_corner_may_lie_beyond_what_a_file_may_say() -> None:

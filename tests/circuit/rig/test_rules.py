@@ -6,7 +6,7 @@ import pytest
 
 from thermicon.circuit import Drive, Limits, Rig, gate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError, SafetyTable
-from thermicon.circuit.rig.rules import limit_table, safety_keys
+from thermicon.circuit.rig.rules import is_reason, limit_table, safety_keys
 from thermicon.circuit.safety.verdict import judge_safety
 
 THENAR = Rig.load("thenar")
@@ -133,3 +133,9 @@ def test_a_smaller_uncertainty_carries_its_reason_everywhere() -> None:
     assert isinstance(said, dict)
     assert (said["reason"], said["smaller_than_shipped"]) == (MEASURED, ["gain ±2 % instead of ±10 %"])
     assert "SMALLER" not in gate(Drive([0, 1], [0.08, 0.08]), THENAR).text
+
+
+def test_a_reason_is_a_sentence_of_twenty_letters_and_four_words() -> None:
+    assert is_reason("we all know shunts ok")
+    assert not is_reason("we all know shunts!")  # 19 characters
+    assert not is_reason("measured measured shunts here") and not is_reason("x" * 20)
