@@ -100,12 +100,12 @@ def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:
 
 
 def test_a_file_with_the_plates_of_another_module_warns(tmp_path: Path) -> None:
-    text = THENAR.with_(**{"module.name": "TEC1-12706", "contact.area_cm2": 16}).toml.replace("= 4.6", "= 2.6")
+    text = THENAR.with_(**{"module.name": "TEC1-12706", "contact.area_cm2": 16}).toml.replace("= 4.6", "= 3.6")
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
     mine = Rig.load(tmp_path / "mine.toml")
     (plates,) = (text for text in mine.warnings if "plate_J_per_K" in text)
     assert plates.startswith(
-        "module TEC1-12706: module.hot_plate_J_per_K and module.cold_plate_J_per_K are 2.6 and 2.6"
+        "module TEC1-12706: module.hot_plate_J_per_K and module.cold_plate_J_per_K are 3.6 and 3.6"
     )
     assert "those on record for it 4.6 J/K each: set both to that, or state in [source]" in plates
     sourced = text.replace("[source]", '[source]\n"module.hot_plate_J_per_K" = "weighed"')

@@ -117,7 +117,7 @@ def test_the_default_tolerance_is_a_millikelvin() -> None:
 
 def test_steps_are_marked_and_take_a_tenth_of_a_microsecond() -> None:
     corners = corners_of("hold for 1 s; step by 3 °C; hold for 1 s; step by -1 °C")
-    assert corners.steps == (1, 3)
+    assert (STEP_S, corners.steps) == (1e-7, (1, 3))
     assert corners.time_s == (0.0, 1.0, 1.0 + STEP_S, 2.0 - STEP_S, 2.0)
     assert corners.duration_s == 2.0
     assert corners.steepest_per_s == 0.0
