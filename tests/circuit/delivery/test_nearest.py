@@ -17,7 +17,6 @@ def test_a_reached_cue_has_none() -> None:
 
 def test_the_nearest_is_reached_and_a_little_more_is_not() -> None:
     nearest = nearest_reachable(STEP, WEAK)
-    assert nearest is not None
     assert simulate(nearest.icon, WEAK).reachable
     assert nearest.slower == 1.0
     assert not simulate(changed(STEP, 32.0, smaller=nearest.smaller * 1.03), WEAK).reachable
@@ -57,7 +56,6 @@ def test_the_number_as_printed_is_reached(body: str, control: str, changes: dict
     rig = THENAR.with_(**changes)
     icon = parse(f"cue 1\nset s {{ control {control} }}\nicon x {{ {body} }}").icons[0]
     nearest = nearest_reachable(icon, rig)
-    assert nearest is not None
     printed = float(f"{nearest.smaller:.3g}")
     assert printed == pytest.approx(nearest.smaller, rel=1e-12)
     assert simulate(changed(icon, 32.0, slower=float(f"{nearest.slower:.3g}"), smaller=printed), rig).reachable

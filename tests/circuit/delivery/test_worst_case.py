@@ -128,7 +128,6 @@ class TestRefusals:
     def test_a_current_beyond_the_driver_names_the_driver(self) -> None:
         icon = parse("cue 1\nset s { control current }\nicon amp { step by -2 A\n hold for 0.5 s\n step to 0 A }\n")
         narrowed = deliver(icon["amp"], RIG, Device.load("dac-16")).narrowed
-        assert narrowed is not None
         assert "driver gives −1.5 … 1.5 A (driver.current_limit_A)" in narrowed.text
         assert "transconductance" not in narrowed.text
 
@@ -167,7 +166,6 @@ class TestFollowedSetPoints:
         delivery = by_controller("warm by 3 °C at 2 °C/s; hold for 1 s", small)
         found, used = worst_case(delivery), delivery.delivered.current_A
         assert found.safe, found.reason
-        assert found.demands.current_limit_A is not None
         least, most = found.demands.current_limit_A
         assert -1.4 < least <= used.min() < used.max() <= most <= 1.5
 

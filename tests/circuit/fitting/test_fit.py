@@ -271,7 +271,6 @@ def test_the_plot_of_a_trace_shows_what_was_measured(log: Log, trace: Trace) -> 
     plain, both = trace.plot(), trace.plot(measured=log)
     assert len(both.lines) == len(plain.lines) + 1
     legend = both.get_legend()
-    assert legend is not None
     texts = [text.get_text() for text in legend.get_texts()]
     assert any(text.startswith("display, measured\nrms 0.") and "largest" in text for text in texts)
     assert both.get_title().startswith("synthetic.csv, shifted by ")

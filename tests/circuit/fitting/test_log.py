@@ -13,7 +13,7 @@ from thermicon.circuit.fitting.fit import fit
 from thermicon.circuit.fitting.forward import runs_of
 from thermicon.circuit.fitting.keys import FitError, fittable, free_keys, value_of
 from thermicon.circuit.fitting.log import Log, LogError, read_log
-from thermicon.circuit.fitting.overlay import check_sensors
+from thermicon.circuit.fitting.overlay import aligned, check_clocks, check_sensors
 from thermicon.circuit.fitting.problem import Problem
 
 CONTACT = ["contact.resistance_m2K_per_W"]
@@ -251,3 +251,18 @@ def test_each_rig_offers_its_own_keys(thenar: Rig) -> None:
     assert {"thermode.lag_s", "thermode.slew_K_per_s"} < set(fittable(thermode))
     assert not any(key.startswith(("module", "driver")) for key in fittable(thermode))
     assert all(value_of(thenar, key) is not None for key in fittable(thenar))
+
+
+def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
+    alone = Log.of("drive.csv", {"time_s": TIME, "current_A": PLAIN["current_A"]})
+    sensor = Log.of("meter.csv", {"time_s": TIME, "display_C": PLAIN["display_C"]})
+    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([alone, sensor], thenar, True))
+    drift = [item.kind for item in problem.unknowns].index("drift")
+    theta = problem.first.copy()
+    theta[drift] = 0.0019
+    check_clocks(problem, theta)
+    theta[drift] = -0.0021
+    with pytest.raises(LogError, match=r"meter.csv: its clock drifts, 0.21 % fast against drive.csv; correct its"):
+        check_clocks(problem, theta)
+    with pytest.raises(LogError, match="meter.csv: does not fit in time to drive.csv, which lasts 9.9 s: no shift"):
+        aligned(problem)

@@ -133,7 +133,6 @@ def test_intervals_hold_the_truth_on_ten_rigs_of_other_skin(spread: str) -> None
         truth = {}
         for key in free_keys(FREE, rig):
             value = value_of(rig, key.key)
-            assert value is not None
             truth[key.key] = value * math.exp(0.1 * random.normal()) if key.log else value + random.normal()
         log = synthetic_log(rig.with_(**skin, **truth), seed=100 + seed, rate_Hz=10.0)
         with quiet_blas():

@@ -29,7 +29,6 @@ ICON = load_library("six-icons")["cooling-step"]
 
 def played(format_name: str, device: str | None = None) -> tuple[DeliveredDrive, Samples]:
     found = deliver(ICON, RIG, Device.load(device or load_format(format_name).device))
-    assert isinstance(found.played, Samples)
     return found, found.played
 
 
@@ -163,7 +162,6 @@ class TestWav:
             ):
                 load_format("wav").write(found)
             return
-        assert isinstance(found.played, Samples)
         form = load_format("wav")
         with wave.open(io.BytesIO(form.write(found))) as sound:
             assert sound.getframerate() == frame_rate
@@ -171,7 +169,6 @@ class TestWav:
             assert sound.getnframes() / frame_rate == pytest.approx(len(found.played.codes) / found.played.rate_Hz)
         assert (pcm == pcm[:, :1]).all(), "held, not resampled"
         assert pcm[:, 0] / 32768 * 10.0 == pytest.approx(found.played.command, abs=1e-12)
-        assert form.facts is not None
         assert form.facts(found) == {"frames_per_second": frame_rate, "frames_per_update": each}
 
 

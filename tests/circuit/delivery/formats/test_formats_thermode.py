@@ -42,7 +42,6 @@ def read_profile(text: str) -> tuple[float, list[tuple[float, float]]]:
     assert re.fullmatch(r"Om\d{3}", most)
     assert (enabled, start) == ("Ue11111", "L")
     head = re.match(r"Uw11111(\d{3})", profile)
-    assert head is not None
     body = profile[len(head[0]) :]
     assert len(body) == 6 * int(head[1])
     pairs = [(int(body[k : k + 3]) / 100, int(body[k + 3 : k + 6]) / 10) for k in range(0, len(body), 6)]
