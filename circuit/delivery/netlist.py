@@ -242,7 +242,7 @@ def _skin(rig: Rig, net: Network) -> tuple[list[str], list[str]]:
     if not in_face:
         lines.append(f"Rface skin {names[2]} {resistance[0] - contact!r}")
     lines += _section("skin" if rig.bench_load is None else rig.bench_load.site)
-    ends, layer = _layer_ends_m(rig), -1
+    ends, layer = np.cumsum([layer.thickness_m for layer in rig.skin.layers]).tolist(), -1
     for i in range(count):
         depth = float(rig.column.depth_m[i])
         while rig.bench_load is None and layer + 1 < len(ends) and (layer < 0 or depth >= ends[layer] - 1e-9):
@@ -255,14 +255,6 @@ def _skin(rig: Rig, net: Network) -> tuple[list[str], list[str]]:
             lines.append(f"Rblood_{name} {name} blood {1 / float(net.perfusion_W_per_K[i])!r}")
         lines.append(f"R{name}_{below} {name} {below} {resistance[i + 1]!r}")
     return names, [*lines, f"Vdeep deep 0 {net.deep_C!r}", f"Vblood blood 0 {net.deep_C!r}"]
-
-
-def _layer_ends_m(rig: Rig) -> list[float]:
-    ends, depth = [], 0.0
-    for layer in rig.skin.layers:
-        depth += layer.thickness_m
-        ends.append(depth)
-    return ends
 
 
 def _probes(net: Network, names: list[str]) -> Iterator[str]:

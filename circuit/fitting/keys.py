@@ -123,11 +123,10 @@ def free_keys(keys: Sequence[str], rig: Rig) -> tuple[FitKey, ...]:
     known = fittable(rig)
     if faults := [_fault(name, rig, known) for name in names if name not in known]:
         raise FitError("\n".join(faults))
-    return tuple(_KEYS.get(name) or _probe_key(name) for name in names)
-
-
-def _probe_key(name: str) -> FitKey:
-    return FitKey(name, f"lag of the thermistor {name.split('.')[1]}", False, 30.0, 0.1, "", _LAG)
+    lag = "lag of the thermistor {}"
+    return tuple(
+        _KEYS.get(name) or FitKey(name, lag.format(name.split(".")[1]), False, 30.0, 0.1, "", _LAG) for name in names
+    )
 
 
 def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:

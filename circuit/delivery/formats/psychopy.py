@@ -104,10 +104,6 @@ def _drive(delivery: DeliveredDrive) -> Format:
     return by_kind.get(delivery.device.driven_by, CSV)
 
 
-def _suffix(delivery: DeliveredDrive) -> str:
-    return _drive(delivery).suffix
-
-
 FORMAT = Format(
     name="psychopy",
     title="conditions file of PsychoPy with drives and a player",
@@ -118,7 +114,7 @@ FORMAT = Format(
     how="name conditions.csv in a loop, import play_icons in a code component, and play drive_file",
     write=write,
     columns=columns,
-    suffix_by=_suffix,
+    suffix_by=lambda delivery: _drive(delivery).suffix,
     player=set_files,
     set_files=SET_FILES,
 )
