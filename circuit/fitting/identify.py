@@ -152,12 +152,12 @@ def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: 
     return problem.again(problem.rig, problem.keys, tuple[Run, ...](runs))
 
 
-def expected_sd(problem: Problem, theta: Array, noise_K: float = NOISE_K, noise_V: float = NOISE_V) -> Array:
+def expected_sd(problem: Problem, theta: Array) -> Array:
     """Standard deviations of the keys to expect from a problem's channels with white noise."""
     count = len(problem.keys)
     point = problem.first.copy()
     point[:count] = theta[:count]
-    sigma = [noise_K if channel.temperature else noise_V for _, _, channel in problem.channels()]
+    sigma = [NOISE_K if channel.temperature else NOISE_V for _, _, channel in problem.channels()]
     covariance = covariance_of(problem, problem.jacobian(point, sigma), [1.0] * len(sigma))
     return np.sqrt(np.diag(covariance)[:count])
 

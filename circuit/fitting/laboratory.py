@@ -98,38 +98,25 @@ class Expected:
 
 
 def plan(
-    rig: Rig,
-    free: Sequence[str],
-    *,
-    icon: Icon | None = None,
-    rate_Hz: float = 10.0,
-    noise_K: float = NOISE_K,
-    noise_V: float = NOISE_V,
-    offset_K: float = OFFSET_SD_K,
-    fixed_skin: bool = False,
+    rig: Rig, free: Sequence[str], *, offset_K: float = OFFSET_SD_K, fixed_skin: bool = False
 ) -> tuple[Expected, ...]:
-    """Return how well each choice of sensors will identify parameters of a rig.
+    """Return how well each choice of sensors, the least first, will identify keys of a rig by the calibration drive.
 
-    From the curvature of the sum of squares at the rig as given, with white noise: what is left out of the rig adds to
-    it.
+    From the curvature of the sum of squares at the rig as given, with ten rows a second of white noise: what is left
+    out of the rig adds to it. `offset_K` is the SD of a sensor's zero; `fixed_skin` takes the layers as known.
     """
-    keys = free_keys(free, rig)
-    log = synthetic_log(
-        rig, seed=0, icon=icon or calibration_icon(), columns=["display_C"], noise_K=0.0, offset_sd_K=0.0,
-        rate_Hz=rate_Hz,
-    )  # fmt: skip
-    problem = Problem.of(rig, keys, runs_of([log], rig, False), offset_sd_K=offset_K, fixed_skin=fixed_skin)
+    log = synthetic_log(rig, seed=0, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=10.0)
+    runs = runs_of([log], rig, False)
+    problem = Problem.of(rig, free_keys(free, rig), runs, offset_sd_K=offset_K, fixed_skin=fixed_skin)
     choices = CHOICES if rig.thermode is None else THERMODE_CHOICES
-    return tuple(_expected(problem, columns, noise_K, noise_V) for columns in choices)
+    return tuple(_expected(problem, columns) for columns in choices)
 
 
-def _expected(problem: Problem, columns: tuple[str, ...], noise_K: float, noise_V: float) -> Expected:
-    sd = expected_sd(with_channels(problem, problem.first, columns, only=True), problem.first, noise_K, noise_V)
-    return Expected(
-        columns, problem.keys,
-        tuple(half_width(key.log, float(value)) for key, value in zip(problem.keys, sd, strict=True)),
-        tuple(is_identified(key.log, float(value), key.usual) for key, value in zip(problem.keys, sd, strict=True)),
-    )  # fmt: skip
+def _expected(problem: Problem, columns: tuple[str, ...]) -> Expected:
+    deviations = expected_sd(with_channels(problem, problem.first, columns, only=True), problem.first)
+    each = [(key, float(sd)) for key, sd in zip(problem.keys, deviations, strict=True)]
+    widths = tuple(half_width(key.log, sd) for key, sd in each)
+    return Expected(columns, problem.keys, widths, tuple(is_identified(key.log, sd, key.usual) for key, sd in each))
 
 
 def plan_frame(expected: Sequence[Expected]) -> pd.DataFrame:
