@@ -31,33 +31,36 @@ from .samples import Samples, current_of, led, rate_of, sample, within
 from .setpoints import Setpoints, closed, display_of, setpoints_of
 from .temperatures import deliver_temperatures, designed_until, follow_samples
 
+ROWS_HZ = 100.0
+"""Rows of a thermode's traces per second, as those of `simulate_current`."""
+
 BRIDGE_ROUNDS = 3
 """Iterations between a bridge's duty and its hot plate; each leaves under a tenth of the previous error."""
 
 
-def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0, rate_Hz: float = 100.0) -> DeliveredDrive:
+def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0) -> DeliveredDrive:
     """Return what a device delivers of a cue on a rig."""
     refuse_load(rig, "safety for people")
     refuse_landing(rig, "what a device delivers is judged for a hand that rests on the display")
     if device.driven_by == "set-points":
-        return deliver_setpoints(icon, rig, device, tail_s, rate_Hz)
+        return deliver_setpoints(icon, rig, device, tail_s)
     if device.driven_by == "temperatures":
-        return deliver_temperatures(icon, rig, device, tail_s, rate_Hz)
+        return deliver_temperatures(icon, rig, device, tail_s)
     end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
     best = plan if narrow is rig else design(icon, narrow, end)
     possible = led(best, end, rate)
-    model = simulate_current(possible, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
+    model = simulate_current(possible, rig, start_C=plan.start_C)
     samples, warnings = _sampled(device, rig, possible, rate, model)
     narrowed = _narrowed(device, rig, narrow, plan, best)
     if narrowed is not None:
         warnings = (narrowed.text, *warnings)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
-    model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
+    model = simulate_current(designed, rig, start_C=plan.start_C)
     delivered, start = current_of(device, rig, samples), _start_of(device, rig, samples)
-    trace = simulate_current(delivered, rig, rate_Hz=rate_Hz, start_C=start)
+    trace = simulate_current(delivered, rig, start_C=start)
     return DeliveredDrive(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome,
         warnings, None, narrowed,
@@ -87,17 +90,17 @@ def _start_of(device: Device, rig: Rig, samples: Samples) -> Array | None:
     return steady_of(rig, float(samples.command[0]), device.bridge_A)
 
 
-def traces_until(delivery: DeliveredDrive, end_s: float, rate_Hz: float = 100.0) -> tuple[Trace, Trace]:
+def traces_until(delivery: DeliveredDrive, end_s: float) -> tuple[Trace, Trace]:
     """Return the traces (designed, delivered) until a time in s on the clock of the files, ending at rest."""
     rig, played = delivery.rig, delivery.played
     if isinstance(played, Setpoints):
-        designed, delivered, _ = traces_of_setpoints(delivery.icon, rig, delivery.device, played, end_s, rate_Hz)
+        designed, delivered, _ = traces_of_setpoints(delivery.icon, rig, delivery.device, played, end_s)
         return designed, delivered
-    designed = simulate_current(designed_until(delivery.designed, end_s), rig, rate_Hz=rate_Hz)
+    designed = simulate_current(designed_until(delivery.designed, end_s), rig)
     until = played.until(end_s)
     by_loop = delivery.device.driven_by == "temperatures"
     drive = _cut(follow_samples(rig, until) if by_loop else current_of(delivery.device, rig, until), end_s)
-    return designed, simulate_current(drive, rig, rate_Hz=rate_Hz, start_C=_start_of(delivery.device, rig, played))
+    return designed, simulate_current(drive, rig, start_C=_start_of(delivery.device, rig, played))
 
 
 def _cut(drive: Drive, end_s: float) -> Drive:
@@ -140,7 +143,7 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
     return Narrowed(text, most, best.outcome)
 
 
-def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
+def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float) -> DeliveredDrive:
     """Return a cue as a thermode delivers it; its clock begins with the start command.
 
     Raises DeviceError where the cue prescribes a current, or set-points that the thermode cannot take.
@@ -159,7 +162,7 @@ def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
     outcome = judge_display(
         icon, modes_of(rig), base, step, prescribed, device.interval("set-point range"), device.most("ramp rate")
     )
-    designed, trace, undelayed = traces_of_setpoints(icon, rig, device, setpoints, end, rate_Hz)
+    designed, trace, undelayed = traces_of_setpoints(icon, rig, device, setpoints, end)
     rate = 1.0 / setpoints.tick_s
     return DeliveredDrive(
         icon, rig, device, rate, rate, 0.0, setpoints, None, designed, trace, outcome, (), undelayed
@@ -167,10 +170,10 @@ def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_
 
 
 def traces_of_setpoints(
-    icon: Icon, rig: Rig, device: Device, setpoints: Setpoints, end_s: float, rate_Hz: float
+    icon: Icon, rig: Rig, device: Device, setpoints: Setpoints, end_s: float
 ) -> tuple[Trace, Trace, Trace]:
     """Return the traces until a time in s: as designed, as delivered, and as delivered without the device's lag."""
-    rows, base = rows_until(end_s, rate_Hz), baseline_C(icon, rig)
+    rows, base = rows_until(end_s, ROWS_HZ), baseline_C(icon, rig)
     step, display = display_of(setpoints, device, lagged=True, end_s=end_s)
     _, prompt = display_of(setpoints, device, lagged=False, end_s=end_s)
     times: Array = np.arange(len(display), dtype=np.float64) * step

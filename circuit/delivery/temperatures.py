@@ -39,7 +39,7 @@ from .samples import Samples, led, rate_of
 from .setpoints import check_level
 
 
-def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, rate_Hz: float) -> DeliveredDrive:
+def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) -> DeliveredDrive:
     """Return a cue as a controller around the rig's module delivers it.
 
     Raises DeviceError where the cue prescribes a current, or a temperature beyond the controller.
@@ -56,8 +56,8 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float, ra
     samples = _sampled(icon, rig, device, end, rate)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     delivered = follow_samples(rig, samples)
-    model = simulate_current(designed, rig, rate_Hz=rate_Hz, start_C=plan.start_C)
-    trace = simulate_current(designed_until(delivered, float(designed.time_s[-1])), rig, rate_Hz=rate_Hz)
+    model = simulate_current(designed, rig, start_C=plan.start_C)
+    trace = simulate_current(designed_until(delivered, float(designed.time_s[-1])), rig)
     return DeliveredDrive(
         icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome, ()
     )  # fmt: skip

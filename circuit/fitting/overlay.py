@@ -101,12 +101,10 @@ def overlay(trace: Trace, log: Log, *, shift_s: float | None = None) -> Overlay:
     return Overlay(log.name, float(shift_s), tuple(columns))
 
 
-def best_shift_s(
-    reference_s: Array, reference: Array, time_s: Array, values: Array, most_s: float = np.inf
-) -> tuple[float, float]:
+def best_shift_s(reference_s: Array, reference: Array, time_s: Array, values: Array) -> tuple[float, float]:
     """Return what to add to `time_s` so that `values` fit a reference best, and the correlation there.
 
-    `most_s` limits the shift. NaN are left out. Where either has no number or no change, shift and correlation are 0.
+    NaN are left out. Where either has no number or no change, shift and correlation are 0.
     """
     there, other = np.isfinite(reference), np.isfinite(values)
     if not (there.any() and other.any()):
@@ -121,9 +119,6 @@ def best_shift_s(
     origin = float(reference_s[0] - time_s[0])
     fewest = int(LEAST_SHARE * min(len(a), len(b)))
     lags = np.arange(-(len(b) - fewest), len(a) - fewest + 1)
-    lags = lags[np.abs(lags * step + origin) <= most_s]
-    if not len(lags):
-        return 0.0, 0.0
     alike = np.array([_alike(a, b, int(lag)) for lag in lags])
     best = int(np.argmax(alike))
     beyond = 0.0
