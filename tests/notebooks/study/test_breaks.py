@@ -12,7 +12,7 @@ from thermicon.circuit import Drive, Export, Rig, SessionPlan, simulate_current
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.safety.sessionplay import SessionDrive, drive_of, worst_case_of
 from thermicon.icons import load_library
-from thermicon.notebooks.study.judging import Judged, Refused, judge_sessions
+from thermicon.notebooks.study.judging import Judged, Refused, _extreme, _farthest, judge_sessions
 from thermicon.notebooks.study.schedule import Course, Trial
 from thermicon.notebooks.study.timing import Gap
 
@@ -111,6 +111,19 @@ def test_a_block_from_rest_that_is_not_safe_refuses_the_study(between_C: float) 
         judged(course("A", WARM, COLD), rig)
     with pytest.raises(Refused, match=r"^session of participant A: NOT SAFE: skin surface reaches [^\n]*$"):
         judged(course("A", COLD, WARM), rig)
+
+
+def test_a_run_counts_with_its_blocks_and_the_outermost_of_many_are_judged() -> None:
+    assert _farthest((30.0, 34.0, 1.0, 0.2), [(29.0, 33.0, 0.75, 0.0), (31.0, 35.0, 0.5, 0.0)]) == (
+        29.0,
+        35.0,
+        1.25,
+        0.2,
+    )
+    runs = {str(k): (30.0 - k, 33.0 + k, 0.0, 0.1 * k) for k in range(9)}
+    assert _extreme(runs) == {"0", "8"}
+    assert _extreme(dict(list(runs.items())[:4])) == set("0123")
+    assert _extreme(dict(list(runs.items())[:5])) == {"0", "4"}
 
 
 def test_the_participants_judged_in_all_corners_are_chosen_by_blocks_from_rest_too() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.builders import messages, missing
-from tests.notebooks.study.conftest import QUICK, write_study
+from tests.notebooks.study.conftest import CUES, QUICK, write_study
 from thermicon.icons.model.errors import CueErrors
 from thermicon.notebooks.study.build import read_materials
 from thermicon.notebooks.study.schedule import courses_of, seed_of
@@ -40,6 +40,13 @@ def test_members_of_a_large_family_can_be_named(tmp_path: Path) -> None:
     assert [icon.name for icon in read_materials(path).chosen] == ["glow", "sink_depth=2_rate=1"]
     path.write_text(path.read_text(encoding="utf-8").replace('"glow"', '"snk"'), encoding="utf-8")
     with pytest.raises(StudyError, match=r"there is no icon snk; did you mean sink\?"):
+        read_materials(path)
+    path.write_text(
+        QUICK.replace('icons = ["dip", "glow"]\n', "").replace("repetitions = 2", "repetitions = 1"), "utf-8"
+    )
+    text = CUES + large.replace("2..6 step 0.1", "2..6 step 0.2").replace("1..3 step 0.02", "1..1.3 step 0.3") + "\n"
+    cues.write_text(text, encoding="utf-8")
+    with pytest.raises(StudyError, match=r"the set has \d\d icons, and a person can be asked for 30; name some"):
         read_materials(path)
 
 

@@ -60,6 +60,7 @@ def test_a_landing_ends_where_the_skin_has_settled(held: bool) -> None:
     after = times >= landing.landing_s
     assert away[after].max() <= 0.1 < away[times == landing.landing_s - 1.0][0]
     assert landing.left_K == pytest.approx(away[times == landing.landing_s][0])
+    assert landing.left_at_10_s_K == pytest.approx(away[times == 10.0][0])
 
 
 def test_nothing_that_corrects_makes_a_landing_longer() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from thermicon.perception.evidence import chains as chains_module
 from thermicon.perception.evidence import sampling
-from thermicon.perception.evidence.chains import Diagnostics, Reference, begin, diagnose, extend
+from thermicon.perception.evidence.chains import Chain, Diagnostics, Reference, begin, diagnose, extend
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.sampling import in_the_middle, sample, shipped_vector
 from thermicon.perception.evidence.surrogate import LimitFeatures, Surrogate, fit_surrogate
@@ -83,6 +83,8 @@ def test_chains_apart_have_not_converged() -> None:
     assert not found.converged
     assert found.worst == "far"
     assert "not converged, worst far" in repr(found)
+    chain = Chain(np.zeros((101, 2)), np.zeros(101), ())
+    assert sampling._kept([chain] * 4, Reference(np.zeros(2), np.eye(2))).shape == (4, 90, 2), "a tenth is left out"
     for r_hat, ess, converged in ((1.009, 401.0, True), (1.011, 401.0, False), (1.009, 399.0, False)):
         assert Diagnostics(("a",), np.array([r_hat]), np.array([ess])).converged == converged
 

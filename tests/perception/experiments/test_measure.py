@@ -51,6 +51,14 @@ def test_a_larger_change_is_faster_and_stronger(kind: str) -> None:
     assert (large.value < small.value) == (kind == "reaction_time")
 
 
+def test_who_does_not_answer_counts_a_second_beyond_the_end() -> None:
+    setting, known = Setting.of(FOREARM), PosteriorDraws.load()
+    numb = setting.laboratory(known.draw(0), (-40.0, -40.0), "temperature")
+    timed = Condition("reaction_time", "simple", "warm", 32.0, 1.0, 1.0, 0.0)
+    assert np.exp(logs_of(numb, setting, timed)[0].max()) == pytest.approx(1.0 + 3.0 + 1.0)
+    assert np.exp(logs_of(numb, setting, LIMITS)[0].max()) == pytest.approx(12.0 + 1.0)
+
+
 def test_messages() -> None:
     with pytest.raises(ValueError, match=r"an interval needs at least 2 laboratories, not 1"):
         measure(LIMITS, FOREARM, draws=1)

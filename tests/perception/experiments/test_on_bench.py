@@ -77,6 +77,12 @@ def test_levels_are_drawn_from_a_seed(person: Observer, bench: Bench) -> None:
     assert len(found[0]) == 20
 
 
+def test_a_staircase_ends_within_its_last_step() -> None:
+    draws = np.random.default_rng(0)
+    found = [on_bench._staircase(lambda level, at=at: float(level >= at), 8.0, draws) for at in (1.03, 0.37, 2.7)]  # type: ignore[misc]
+    assert found == [1.0625, 0.3125, 2.6875]
+
+
 def test_reaction_time_falls_with_area_and_cold_is_first(person: Observer) -> None:
     small, large = (Bench(Rig.load("forearm").with_(**{"contact.area_cm2": a}), 31.0, "display") for a in (2.5, 10.0))
     cold, warm = (choice_reaction_time(person, large, channel) for channel in CHANNELS)
