@@ -25,22 +25,8 @@ MAP_HEIGHT = 0.85
 
 
 def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
-    """Draw who is confused with whom: distances (d′) and predicted confusions of one set, side by side.
+    """Draw distances (d′) and predicted confusions of one set side by side; stacked in a narrow column, as asked.
 
-    Parameters
-    ----------
-    ranking
-        The ranking of the set.
-    stacked
-        Whether the second stands below the first, as in a narrow column.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        A figure that is not shown.
-
-    Examples
-    --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import load_library
     >>> from thermicon.perception import rank
