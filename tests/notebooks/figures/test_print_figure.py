@@ -60,17 +60,7 @@ def test_a_column_has_letters_and_one_key_below() -> None:
     assert max(sizes) <= 9.0 and min(sizes) >= 5.5
 
 
-def test_in_print_the_title_is_left_to_the_caption() -> None:
-    figure = two_panels()
-    restyle(figure, 85.0)
-    assert figure.get_suptitle() == ""
-    one = Figure()
-    one.add_subplot(title="one panel")
-    restyle(one, 85.0)
-    assert one.axes[0].get_title() == ""
-
-
-def test_without_titles_panels_say_what_they_show_and_no_more() -> None:
+def test_the_title_is_left_to_the_caption_and_panels_say_what_they_show_and_no_more() -> None:
     figure = two_panels()
     for ax, title in zip(
         figure.axes, ("Predicted d′ (episodes norm)", "Answers, % (diagonal correct: 85 %)"), strict=True
@@ -79,6 +69,11 @@ def test_without_titles_panels_say_what_they_show_and_no_more() -> None:
     restyle(figure, 85.0)
     titles = [ax.get_title().partition("$  ")[2] for ax in figure.axes]
     assert titles == ["Predicted d′", "Answers, %"]
+    assert figure.get_suptitle() == ""
+    one = Figure()
+    one.add_subplot(title="one panel")
+    restyle(one, 85.0)
+    assert one.axes[0].get_title() == ""
 
 
 def test_a_long_label_goes_on_in_another_line_and_the_key_names_a_line_once() -> None:

@@ -9,8 +9,10 @@ from pathlib import Path
 import pytest
 
 from tests.circuit.surerig import sure_rig
+from thermicon.circuit import export
 from thermicon.icons import parse
 from thermicon.icons.atomic import OutputError
+from thermicon.notebooks.files.exporting import felt_beside
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.export_view import ExportView
 from thermicon.perception import rank
@@ -127,3 +129,10 @@ def test_a_text_with_errors_is_not_exported(tmp_path: Path) -> None:
     bench.design.receive({"type": "text", "text": TWO})
     bench.wait()
     assert not bench.view.button.disabled
+
+
+def test_preparing_tells_how_far_it_is() -> None:
+    steps: list[tuple[int, int]] = []
+    made = export(parse(TWO), sure_rig(), felt=felt_beside(), step=lambda done, total: steps.append((done, total)))
+    assert steps == [(1, 2), (2, 2)]
+    assert [change.icon for change in made.felt] == ["dip", "glow"]
