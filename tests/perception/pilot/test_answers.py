@@ -44,13 +44,13 @@ def test_intervals_over_participants_cover() -> None:
 
 def test_half_widths_are_wilsons_and_the_jackknifes() -> None:
     assert wilson(18.0, 20.0) == pytest.approx((0.69897, 0.97214), abs=1e-4)
-    hits = np.array([10.0, 6.0, 2.0])
-    counts = np.zeros((3, 2, 2))
+    hits = np.array([9.0, 9.0, 9.0, 4.0, 4.0, 4.0])
+    counts = np.zeros((6, 2, 2))
     counts[:, 0, 0], counts[:, 0, 1] = hits, 10.0 - hits
-    share, without = 0.6, (18.0 - hits) / 20.0
-    half = 4.302653 * math.sqrt(2.0 / 3.0 * float(np.square(without - without.mean()).sum()))
-    found = score_pooled(Trials(("a", "b"), ("P1", "P2", "P3"), counts)).proportion_interval
-    assert found == pytest.approx((max(share - half, 0.0), min(share + half, 1.0)), abs=1e-6)
+    without = (39.0 - hits) / 50.0
+    half = 2.570582 * math.sqrt(5.0 / 6.0 * float(np.square(without - without.mean()).sum()))
+    found = score_pooled(Trials(("a", "b"), tuple("PQRSTU"), counts)).proportion_interval
+    assert found == pytest.approx((0.65 - half, 0.65 + half), abs=1e-6)
     # Over trials: leaving out one of n answers, n times.
     alone = score_person(drawn(np.random.default_rng(5), 1, 20), 0)
     counts = drawn(np.random.default_rng(5), 1, 20).counts[0]

@@ -14,7 +14,7 @@ from thermicon.perception.pilot.conditioning import Answered, condition, systema
 from thermicon.perception.pilot.laboratory_file import off_middle
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights, walk
 from thermicon.perception.pilot.playing import Confusions
-from thermicon.perception.pilot.prediction import compare
+from thermicon.perception.pilot.prediction import changed, compare, median_three, three
 from thermicon.perception.pilot.states import Laboratories
 from thermicon.perception.pilot.trials import Trials
 
@@ -124,6 +124,15 @@ def test_weights_are_used_from_sixty_effective_laboratories_on_or_a_quarter() ->
     assert effective(conditioning._tempered(logs, 25.0)) >= 25.0
     assert np.allclose(conditioning._tempered(logs, 1.0), normalised_weights(logs))
     assert off_middle(np.array([[0.0], [1.0], [5.0]])).argmin() == 1
+
+
+def test_intervals_are_of_95_percent_and_constants_change_by_more_than_chance() -> None:
+    assert three(np.arange(1001.0)) == (500.0, 25.0, 975.0)
+    assert median_three(np.arange(1001.0)) == (500.0, 25.0, 975.0)
+    before = np.random.default_rng(0).standard_normal((400, 1)) @ np.ones((1, 2))
+    # 6 (1/400 + 1/400) bits are the gain of a shift of 0.204 SD.
+    after = before + before.std() * np.array([0.195, 0.213])
+    assert [each.name for each in changed(["a", "b"], before, after, 400.0, ["", ""])] == ["b"]
 
 
 def test_fit_finds_a_pair_that_was_missed_and_nothing_where_all_is_as_predicted() -> None:

@@ -12,6 +12,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
+from thermicon.perception.experiments.tasks import DISCREPANCY
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.pilot.conditioning import Conditioned, Measured, condition
@@ -48,6 +49,8 @@ def test_the_likelihood_is_that_of_one_normal_vector(prior: LaboratoryPrior) -> 
     values[0, 1], errors[2, 0], errors[3, 2] = np.nan, 0.2, 4.0
     some = Measurements(conditions, made.participants, values, errors, made.trials)
     each = predicted(prior, prior.first(3, 0), Setting.of(RIG), conditions)
+    assert shared_covariance(some)[2, 2] == pytest.approx(DISCREPANCY**2 + 0.7**2)
+    assert person_covariance(some, np.zeros((3, 3)))[2, 2] == pytest.approx(0.4**2, abs=1e-5)
     found = log_likelihood(some, each)
     people, which = np.nonzero(some.given)
     expected = []

@@ -59,6 +59,7 @@ def test_a_table_of_measurements_is_recognised_by_its_header(tmp_path: Path) -> 
         ("P1,threshold,limits,cold,2,3,K,,,", "the ramp ends at 2 K"),
         ("P1,threshold,yes_no,cold,2,3,K,,,", "size_K belongs to limits"),
         ("P1,threshold,limits,cold,,1,K,-0.1,,", "standard_error is '-0.1'.*above 0"),
+        ("P1,threshold,limits,cold,,1,K,2.1,,", "standard_error is '2.1'.*in the unit of the value"),
         ("P1,threshold,limits,cold,,1,K,,2.5,", "trials is '2.5', not a whole number"),
         ("P1,threshold,limits,cold,,1,K,,,305", "baseline_C is 305, outside 10 to 45 °C; that looks like kelvin"),
         (",threshold,limits,cold,,1,K,,,", "participant is empty"),

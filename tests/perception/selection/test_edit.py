@@ -9,8 +9,9 @@ from thermicon.circuit.solver.simulate import duration_s
 from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import cheapest_edit, draw_people, rank
 from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
+from thermicon.perception.selection import candidate_edits
 from thermicon.perception.selection.appraise import population_dprime
-from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number
+from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number, worse
 from thermicon.perception.selection.edit import Edit, NoEdit
 
 PEOPLE = 40
@@ -103,6 +104,12 @@ def test_a_repeat_is_an_edit(rig: Rig) -> None:
     edit = cheapest_edit(rank(icons, rig, people=8, parameters=0), "x", "y")
     assert isinstance(edit, Edit)
     assert edit.d_prime >= DISTINGUISHABLE_DPRIME
+
+
+def test_what_makes_a_pair_worse_and_what_a_second_costs() -> None:
+    before, after = np.array([3.0, 3.0, 9.0, 9.0]), np.array([2.89, 2.91, 5.11, 5.13])
+    assert worse(before, after, 2.56).tolist() == [True, False, True, False]
+    assert (candidate_edits.PER_SECOND, candidate_edits.MOST_LONGER_S) == (0.1, 30.0)
 
 
 def test_numbers_are_found_and_changed_within_repeats(six: IconSet) -> None:

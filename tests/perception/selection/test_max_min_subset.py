@@ -90,6 +90,7 @@ def test_totals_are_decided_or_said_to_be_open(monkeypatch: pytest.MonkeyPatch) 
     tight = Limits(costs[None], (float(np.sort(costs)[:5].sum()),))
     found = max_min_subset(points(2, 60), 5, (), tight)
     assert found is not None and found.chosen == tuple(sorted(np.argsort(costs)[:5].tolist()))
+    assert tight.kept(found.chosen) and not Limits(costs[None], (tight.most[0] - 1e-6,)).kept(found.chosen)
     # No four of 0 and 0.3 add up to between 1.0 and 1.05.
     few = np.array([0.0, 0.3, 0.0, 0.3, 0.3, 0.0, 0.3, 0.0])
     limits = Limits(np.stack([few, -few]), (1.05, -1.0))
