@@ -102,7 +102,7 @@ def test_the_page_stands_alone(made: str) -> None:
     assert "url(" not in made
     assert 'name="viewport"' in made
     assert "@media print" in made
-    assert reader.seen.count("img") == 4 + 2 * 3  # the set's pictures, then course and overview of each icon
+    assert reader.seen.count("img") == 5 + 2 * 3  # the set's pictures, then course and overview of each icon
     assert all(re.search(r'alt="[^"]+"', image) for image in re.findall(r"<img[^>]{0,200}", made))
 
 
