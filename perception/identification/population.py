@@ -19,7 +19,6 @@ from .task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.circuit.solver.batch import Batch
     from thermicon.icons import Icon
 
 TAIL_S, RATE_HZ = 10.0, 100.0
@@ -50,12 +49,6 @@ class ReceptorTemperatures:
     names: tuple[str, ...]
 
     @classmethod
-    def of_batch(cls, batch: Batch, icons: Sequence[Icon], rig: Rig) -> ReceptorTemperatures:
-        """What a batch of icons on the rigs of people has simulated."""
-        names = tuple(icon.name for icon in icons)
-        return cls(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2, names)
-
-    @classmethod
     def simulated(
         cls, icons: Sequence[Icon], rigs: Sequence[Rig], rig: Rig, end_s: float, rate_Hz: float, tracking: str | None
     ) -> ReceptorTemperatures:
@@ -63,7 +56,8 @@ class ReceptorTemperatures:
         from thermicon.circuit import simulate_many
 
         batch = simulate_many(icons, rigs, nominal=rig, end_s=end_s, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
-        return cls.of_batch(batch, icons, rig)
+        names = tuple(icon.name for icon in icons)
+        return cls(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2, names)
 
     def of(self, icons: Sequence[int]) -> ReceptorTemperatures:
         """Some of the icons."""

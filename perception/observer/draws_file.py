@@ -38,8 +38,6 @@ LABORATORY_LINE = "# written by thermicon observed from inputs "
 """How the draws of one laboratory begin."""
 CURE = "write it again with python -m thermicon.perception.evidence sample -o FILE"
 CONSTANTS = DATA / "constants.csv"
-VARIANT_NAMES: Mapping[str, Variable] = {variable.replace(" ", "-"): variable for variable in VARIABLES}
-"""Variants by the names of the command line and of files."""
 APPROXIMATE = "normal approximation"
 RECEPTOR_MODEL = "adapting"
 """The receptor model that a file names; there is one."""
@@ -107,13 +105,6 @@ LABELS: Mapping[str, str] = {
 """Names of the header's lines by field; `inputs` ends the first line."""
 OF_LABORATORY: Mapping[str, str] = {"resampled": "resampled", "rig": "rig"}
 """Further lines of one laboratory's draws."""
-
-
-def variant_named(name: str) -> Variable:
-    """The variant by the name that the command line gives it; a ValueError lists the names."""
-    if name not in VARIANT_NAMES:
-        raise ValueError(f"there is no variant {name!r}: choose one of {', '.join(VARIANT_NAMES)}")
-    return VARIANT_NAMES[name]
 
 
 def shipped_file(variable: Variable) -> Path:

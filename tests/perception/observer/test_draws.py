@@ -13,7 +13,7 @@ from thermicon.perception import Observer
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import inputs_digest
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.observer.draws_file import current_inputs, read_draws, shipped_file, to_text, variant_named
+from thermicon.perception.observer.draws_file import current_inputs, read_draws, shipped_file, to_text
 from thermicon.perception.observer.observer import variant_records
 from thermicon.perception.observer.observer_model import ObserverModel
 
@@ -121,8 +121,6 @@ def test_what_is_no_table_of_draws_is_refused(tmp_path: Path, text: str) -> None
             PosteriorDraws.load(path)
     with pytest.raises(ValueError, match=r"no constant 'cold limt'.*cold limit"):
         PosteriorDraws.load().values("cold limt")
-    with pytest.raises(ValueError, match=r"no variant 'heat': choose one of temperature, heat-flow"):
-        variant_named("heat")
 
 
 def test_numbers_that_are_none_are_refused_with_their_place(tmp_path: Path, text: str) -> None:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermicon.circuit import Device, Rig, simulate, simulate_many
+from thermicon.circuit import Device, Rig, simulate
 from thermicon.circuit.delivery.deliver import deliver, traces_until
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import parse
 from thermicon.perception import Observer, Ranking, draw_people, perceive, rank
 from thermicon.perception.identification.delivered import detected_as_delivered
-from thermicon.perception.identification.population import PROBES, ReceptorTemperatures, population_detection, run_end_s
+from thermicon.perception.identification.population import ReceptorTemperatures, population_detection, run_end_s
 from thermicon.perception.observer.people import People
 from thermicon.perception.ranking import batches
 
@@ -44,8 +44,7 @@ def test_one_nominal_person_is_the_percept(monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_of_many_it_is_the_mean_over_them(ranking: Ranking) -> None:
     crowd = draw_people(PEOPLE, 0)
-    batch = simulate_many(list(ICONS), crowd.rigs(RIG), nominal=RIG, end_s=END_S, probes=PROBES)
-    met = ReceptorTemperatures.of_batch(batch, ICONS, RIG)
+    met = ReceptorTemperatures.simulated(list(ICONS), crowd.rigs(RIG), RIG, END_S, 100.0, None)
     each = population_detection(met, crowd, Observer.load()).probability
     assert each.shape == (PEOPLE, 2)
     assert [icon.detected_probability for icon in ranking.icons] == pytest.approx(each.mean(axis=0), rel=1e-9)
