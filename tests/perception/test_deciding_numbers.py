@@ -10,12 +10,13 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception import Observer, draw_people, rank
-from thermicon.perception.identification.episodes import Episodes
-from thermicon.perception.identification.laboratory_draws import LaboratoryDraws
+from thermicon.perception import Observer, draw_people, perceive, rank
+from thermicon.perception.identification.episodes import Episodes, dprime_from_memory, remembered
+from thermicon.perception.identification.laboratory_draws import LaboratoryDraws, people_for_intervals
 from thermicon.perception.identification.population import run_end_s
 from thermicon.perception.kernels.episodes import LENGTH, PAUSE
 from thermicon.perception.ranking.assumptions import assumptions_of, doubts, explained
+from thermicon.perception.ranking.reasons import DistanceComponent, pair_reasons
 from thermicon.perception.ranking.sensitivity import Reduction, Sensitivity
 from thermicon.perception.sensation.features import directions
 
@@ -103,3 +104,19 @@ def test_features_of_an_episode_and_its_shortest(observer: Observer, lasting_s: 
     u = (np.expm1(psi / observer.a) / math.expm1(1.0 / observer.a)) ** (1.0 / observer.p)
     assert math.exp(row[LENGTH]) == pytest.approx(DT * (u >= 0.5 * u.max()).sum(), abs=0.011)
     assert math.exp(row[PAUSE]) == pytest.approx(DT * int((psi >= 0.5).argmax()) + 0.5)
+
+
+@pytest.mark.parametrize(("wanted", "said"), [(0.28, "remembered alike: d′ 0.3"), (0.32, "mostly distinguished by")])
+def test_a_feature_is_named_from_three_tenths_on(cue: Any, observer: Observer, wanted: float, said: str) -> None:
+    one, low, high = cue(change=-4.0, name="a"), 0.0, 1.0
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        other = cue(change=-4.0 - middle, name="b")
+        both = perceive(one, observer), perceive(other, observer)
+        low, high = (low, middle) if dprime_from_memory(*both, observer) > wanted else (middle, high)
+    assert said in pair_reasons(one, other, both, observer, "episodes", remembered(both, observer), (0, 1))[0]
+
+
+def test_what_is_noticeable_and_how_many_judge() -> None:
+    assert [DistanceComponent("rate", value).above for value in (0.99, 1.0)] == [False, True]
+    assert [people_for_intervals(icons) for icons in (6, 40, 64)] == [24, 19, 12]
