@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, Trace, simulate
-from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon, load_library, parse
 
@@ -124,8 +123,3 @@ def test_a_slower_driver_still_holds() -> None:
     changes = np.flatnonzero(np.diff(trace.current_A) != 0) + 1
     assert set(changes % 5) == {0}, "the current changes only at the driver's updates"
     assert np.abs(trace.display_C - trace.target_C)[(trace.time_s > 3) & (trace.time_s < 5.9)].max() < 5e-3
-
-
-def test_a_baseline_out_of_reach_is_an_error_before_any_run() -> None:
-    with pytest.raises(RigError, match="a baseline of 32 °C on the skin cannot be held"):
-        simulate(step("skin"), THENAR.with_(**{"driver.current_limit_A": 0.01}))

@@ -1,13 +1,18 @@
-"""Probes: where they sit, how they lag, what they add to a trace, and how a bad one is refused."""
+"""Probes, where they sit, how they lag and what they add to a trace; temperature and heat flow at any depth."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from tests.circuit.solver.watching import watch
 from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
+from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.inverse import design
+from thermicon.circuit.solver.network import flow_weights, places_of, stacked, temperature_weights
 from thermicon.circuit.solver.probes import reading_of
 from thermicon.circuit.solver.trace import COLUMNS, write_trace
 from thermicon.icons import load_library
@@ -65,6 +70,12 @@ def test_columns_follow_those_of_the_contract(trace: Trace, tmp_path: Path) -> N
         trace.probe("pad")[0] = 0.0
 
 
+def test_a_picture_has_the_probes_on_demand(trace: Trace) -> None:
+    shown = [[line.get_label() for line in trace.plot(probes=asked).get_lines()] for asked in (False, True)]
+    assert shown[1] == [*shown[0], *(f"probe {name}" for name, _ in trace.probes)]
+    assert len(shown[1]) == len(shown[0]) + 8
+
+
 def test_probes_change_nothing_else(trace: Trace) -> None:
     plain = simulate(STEP, THENAR)
     for name in COLUMNS[1:]:
@@ -118,3 +129,50 @@ def test_a_run_too_long_for_its_probes_is_refused() -> None:
     rig = THENAR.with_(probe=[probe("pad", "insulated skin")])
     with pytest.raises(RigError, match=r"its probes need 4\.9e\+08 values over 100000 s; the limit is 2e\+08: shorten"):
         simulate_current(Drive([0, 1e5], [0.1, 0.1]), rig)
+
+
+@dataclass
+class Depths:
+    """A run at k depths: temperature in °C and heat flow in W/m² into the skin (k, rows)."""
+
+    temperature_C: Array
+    heat_flow_W_per_m2: Array
+    trace: Trace
+
+
+def probe_depths(rig: Rig, depths_m: list[float], rate_Hz: float = 100.0) -> Depths:
+    place, contact = places_of(rig), rig.contact.resistance_m2K_per_W
+    at = [contact + rig.skin.resistance_to_m2K_per_W(float(depth)) for depth in depths_m]
+    rows = [temperature_weights(here, place) for here in at]
+    rows += [
+        flow_weights(here if depth > 0 else 0.5 * contact, place) for here, depth in zip(at, depths_m, strict=True)
+    ]
+    plan = design(STEP, rig, 8.0)
+    trace, values = watch(plan.drive, rig, stacked(rows), rate_Hz=rate_Hz, start_C=plan.start_C)
+    return Depths(values[: len(at)], values[len(at) :], trace)
+
+
+def test_heat_flow_at_a_lump_is_the_mean_of_its_faces_and_between_lumps_the_faces() -> None:
+    k = 20
+    lumps = THENAR.column.depth_m
+    above, below = (lumps[k - 1] + lumps[k]) / 2, (lumps[k] + lumps[k + 1]) / 2
+    flow = probe_depths(THENAR, [above, lumps[k], below]).heat_flow_W_per_m2
+    assert flow[1] == pytest.approx((flow[0] + flow[2]) / 2, abs=1e-9)
+    conductivity = 0.45  # the lump lies in the dermis
+    temperature = probe_depths(THENAR, [lumps[k - 1], lumps[k]]).temperature_C
+    expected = conductivity * (temperature[0] - temperature[1]) / (lumps[k] - lumps[k - 1])
+    assert flow[0] == pytest.approx(expected, abs=1e-6)
+
+
+def test_heat_is_kept_between_two_depths() -> None:
+    # What enters at the surface less what leaves at 1 mm is what the lumps between have stored (and blood has brought).
+    rig = THENAR.with_(**{"skin.layer.dermis.perfusion_per_s": 0.0})
+    lumps = rig.column.depth_m
+    last = int(np.searchsorted(lumps, 1e-3))
+    bottom = (lumps[last] + lumps[last + 1]) / 2
+    seen = probe_depths(rig, [0.0, bottom, *lumps[: last + 1]], rate_Hz=2000)
+    steps = np.diff(seen.trace.time_s)
+    net = seen.heat_flow_W_per_m2[0] - seen.heat_flow_W_per_m2[1]
+    kept = float(np.sum(steps * (net[1:] + net[:-1]) / 2))
+    change = seen.temperature_C[2:, -1] - seen.temperature_C[2:, 0]
+    assert kept == pytest.approx(float(rig.column.capacity_J_per_m2K[: last + 1] @ change), rel=2e-3)

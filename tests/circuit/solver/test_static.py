@@ -1,12 +1,17 @@
-"""What `check --rig` can say without a run."""
+"""What a rig can play: said without a run, steps judged when they arrive, and the nearest shape within reach."""
 
+import math
+
+import numpy as np
 import pytest
 
-from thermicon.circuit import Rig, simulate
+from thermicon.circuit import Rig, nearest_reachable, simulate
 from thermicon.circuit.solver.static import check_static
+from thermicon.circuit.solver.trace import judge
 from thermicon.icons import Icon, load_library, parse
 
 THENAR = Rig.load("thenar")
+A = "driver.current_limit_A"
 
 
 def icon(body: str, control: str = "display", baseline: float = 32) -> Icon:
@@ -19,28 +24,31 @@ def test_shipped_sets_are_possible(name: str) -> None:
         assert check_static(one, THENAR) == ()
 
 
-def test_a_baseline_that_cannot_be_held() -> None:
-    weak = THENAR.with_(**{"driver.current_limit_A": 0.05})
-    (message,) = check_static(icon("cool by 1 °C at 1 °C/s"), weak)
-    assert "icon x: rig thenar: a baseline of 32 °C on the display cannot be held" in message
-
-
-def test_a_level_beyond_the_rig_and_one_within() -> None:
-    hot_sink = THENAR.with_(**{"driver.current_limit_A": 0.3})
-    (message,) = check_static(icon("cool to 4 °C at 0.2 °C/s"), hot_sink)
-    assert "icon x: 4 °C on the display is outside the" in message
-    assert "that rig thenar can hold; use a smaller change or a higher driver.current_limit_A" in message
-    assert check_static(icon("cool to 20 °C at 0.2 °C/s"), hot_sink) == ()
-
-
-def test_what_is_just_beyond_the_rig_reads_as_beyond() -> None:
-    weak = THENAR.with_(**{"driver.current_limit_A": 0.3})
-    (message,) = check_static(icon("cool to 15.88 °C at 0.2 °C/s"), weak)
-    assert "15.88 °C on the display is outside the 15.90 … " in message
-    (message,) = check_static(icon("cool by 6 °C at 5.927 °C/s"), THENAR)
-    assert "5.927 °C/s of cooling at 0 s is more than the 5.926 °C/s that" in message
-    (message,) = check_static(icon("cool to 0.08 °C at 3 °C/s"), Rig.load("tcs2"))
-    assert "0.08 °C on the display needs a display of 0.08 °C, outside the 0.1 … 60 °C of thermode tcs2" in message
+@pytest.mark.parametrize(
+    ("name", "changes", "body", "words"),
+    [
+        ("thenar", {A: 0.05}, "cool by 1 °C at 1 °C/s",
+         ["icon x: rig thenar: a baseline of 32 °C on the display cannot be held"]),
+        ("thenar", {A: 0.3}, "cool to 4 °C at 0.2 °C/s",
+         ["icon x: 4 °C on the display is outside the",
+          "that rig thenar can hold; use a smaller change or a higher driver.current_limit_A"]),
+        ("thenar", {A: 0.3}, "cool to 20 °C at 0.2 °C/s", []),
+        ("thenar", {A: 0.3}, "cool to 15.88 °C at 0.2 °C/s", ["15.88 °C on the display is outside the 15.90 … "]),
+        ("thenar", {A: 0.3}, "step to 0 °C; hold for 2 s", ["can hold"]),
+        ("thenar", {}, "step by -3 °C; hold for 2 s", []),
+        ("thenar", {}, "cool by 3 °C over 10 ms; hold for 2 s", ["slow it down"]),
+        ("thenar", {}, "cool by 6 °C at 5.927 °C/s",
+         ["5.927 °C/s of cooling at 0 s is more than the 5.926 °C/s that"]),
+        ("thenar", {}, "warm by 4 °C at 15 °C/s", ["15 °C/s of warming at 0 s is more than the"]),
+        ("thenar", {"driver.voltage_limit_V": 2.0}, "cool by 4 °C at 3 °C/s", ["of cooling at 0 s is more than the"]),
+        ("tcs2", {}, "cool to 0.08 °C at 3 °C/s",
+         ["0.08 °C on the display needs a display of 0.08 °C, outside the 0.1 … 60 °C of thermode tcs2"]),
+    ],
+)  # fmt: skip
+def test_what_a_rig_cannot_do_is_said(name: str, changes: dict[str, object], body: str, words: list[str]) -> None:
+    said = check_static(icon(body), Rig.load(name).with_(**changes))
+    assert len(said) == bool(words)
+    assert all(word in said[0] for word in words)
 
 
 def test_a_rate_beyond_the_rig_is_one_that_the_run_misses() -> None:
@@ -52,13 +60,90 @@ def test_a_rate_beyond_the_rig_is_one_that_the_run_misses() -> None:
     assert not outcome.reached
 
 
-def test_warming_too_fast_and_voltage() -> None:
-    (message,) = check_static(icon("warm by 4 °C at 15 °C/s"), THENAR)
-    assert "15 °C/s of warming at 0 s is more than the" in message
-    weak = THENAR.with_(**{"driver.voltage_limit_V": 2.0})
-    assert "of cooling at 0 s is more than the" in check_static(icon("cool by 4 °C at 3 °C/s"), weak)[0]
-
-
 def test_currents_beyond_the_driver() -> None:
     (message,) = check_static(icon("to 2 A at 1 A/s", "current"), THENAR)
     assert "icon x: 2 A is outside the driver's -1.5 … 1.5 A" in message
+
+
+def cue(body: str, control: str = "display") -> Icon:
+    return parse(f"cue 1; set {{ control {control}; baseline 32 °C }}; icon x {{ {body} }}")["x"]
+
+
+ENDS = 0.01 * np.arange(1, 801)
+
+
+def after(begin: float) -> np.ndarray:
+    return (begin + 1e-9 < ENDS).astype(float)
+
+
+@pytest.mark.parametrize(
+    ("count", "target", "reached", "steps_s", "late_s"),
+    [
+        (400, after(1.0), np.clip(2.0 * (ENDS - 1.0), 0.0, 1.0), [(1.0, 4.0)], ()),
+        (400, after(1.0) - after(1.3), np.clip(ENDS - 1.0, 0.0, 1.0) * (ENDS <= 1.3), [(1.0, 1.3), (1.3, 4.0)], (1.0,)),
+        (800, np.ones(800), np.full(800, 0.5), [(0.0, math.inf)], (0.0,)),  # a level that is never held
+        (300, 1.0 - after(2.9), np.ones(800), [(2.9, math.inf)], ()),  # no time is left to arrive
+    ],
+    ids=["arrives", "too late for the next", "never held", "at the end"],
+)
+def test_until_a_step_arrives_nothing_is_missed(
+    count: int, target: np.ndarray, reached: np.ndarray, steps_s: list[tuple[float, float]], late_s: tuple[float, ...]
+) -> None:
+    found = judge(target[:count], reached[:count], 0.01, (), tuple(steps_s))
+    assert (found.reached, found.late_s) == (not late_s, late_s)
+    if steps_s == [(1.0, 4.0)]:
+        assert found.slowest_step_s == pytest.approx(0.45, abs=0.011)  # 0.1 K before the end of half a second
+        assert not judge(target[:count], reached[:count], 0.01, ()).reached
+    if late_s == (1.0,):
+        assert found.largest_miss_K == pytest.approx(-0.7)
+        assert found.reason == "misses its target by 0.70 K at 1.30 s; its step at 1.00 s does not arrive in time"
+
+
+def test_a_square_wave_is_reached_and_its_slowest_step_told() -> None:
+    trace = simulate(cue("square by 3 °C every 4 s for 8 s"), THENAR)
+    assert trace.reachable
+    assert trace.outcome is not None
+    assert 0.5 < (trace.outcome.slowest_step_s or 0.0) < 1.5
+    # At the driver's limit on the way, at the level behind it.
+    assert trace.current_A.min() == -1.5
+    assert trace.display_C[390] == pytest.approx(29.0, abs=0.1)
+    ramp = simulate(cue("cool by 3 °C at 3 °C/s; hold for 1 s"), THENAR).outcome
+    assert ramp is not None and ramp.slowest_step_s is None
+
+
+def test_a_square_wave_too_fast_for_the_module_says_so() -> None:
+    trace = simulate(cue("square by 3 °C every 500 ms for 2 s"), THENAR)
+    assert not trace.reachable
+    assert "does not arrive in time" in (trace.reason or "")
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "pulse by -4 °C for 300 ms; rest for 2 s; total 2.3 s",
+        "sine by 4 °C every 1 s for 4 s starting cool",
+        "step to 20 °C; hold for 400 ms; return at 3 °C/s",
+        "repeat 2 { square by 4 °C every 1 s for 2 s; rest for 1 s }",
+    ],
+)
+def test_a_shape_out_of_reach_has_a_nearest_one(body: str) -> None:
+    icon = cue(body)
+    near = nearest_reachable(icon, THENAR)
+    assert near is not None
+    assert simulate(near.icon, THENAR).reachable
+    assert parse(str(near.icon))["x"] == near.icon
+
+
+def test_an_icon_that_plays_another_has_a_nearest_one() -> None:
+    text = "cue 1; set { control display; baseline 32 °C }; icon a { pulse by -4 °C for 300 ms; rest for 2 s }"
+    near = nearest_reachable(parse(text + "; icon b { play a; rest for 1 s; play a }")["b"], THENAR)
+    assert near is not None
+    assert near.icon.corners().duration_s == pytest.approx(5.6)
+
+
+def test_waves_of_current_are_played_as_written() -> None:
+    icon = cue("square by 0.5 A every 2 s for 4 s starting up; step to 0.2 A; hold for 1 s", "current")
+    trace = simulate(icon, THENAR)
+    assert float(icon.corners().value[0]) == 0.0
+    assert trace.reachable
+    assert trace.current_A[50] - trace.current_A[150] == pytest.approx(1.0)
