@@ -1,13 +1,15 @@
-"""A tally of rules over stretches of rows: pieces are the whole, and doses add up over plays."""
+"""A tally of rules over stretches of rows: pieces are the whole, doses add up and are those of closed forms."""
 
+import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 from thermicon.circuit import Limits
 from thermicon.circuit.safety.checks import Check, Scenario, worst_of
-from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally, worst_of_lanes
+from thermicon.circuit.safety.tally import HOTTEST_C, WATCHED, Tally, cem43_min, henriques, worst_of_lanes
 
 LIMITS = Limits.shipped()
 TIME = np.linspace(0.0, 20.0, 2001)
@@ -74,12 +76,13 @@ def test_a_drift_is_held_against_hard_limits_only() -> None:
 
 def test_a_fork_goes_on_by_itself_under_another_name() -> None:
     tally = Tally(LIMITS, ["a"])
-    tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 32.0))
+    tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 33.0))
     fork = tally.fork("zero current")
+    before = check_of(fork, "skin surface")
+    assert (before.value, before.scenario) == (33.0, "a, then zero current"), "it has the state so far"
     fork.add(np.array([2.0, 3.0]), np.full((4, 1, 2), 44.0))
     assert tally.passes()
     assert not fork.passes()
-    assert check_of(fork, "skin surface").scenario == "a, then zero current"
 
 
 def test_changes_count_from_where_it_began() -> None:
@@ -120,19 +123,59 @@ def test_the_worst_of_lanes_is_the_worst_of_each_lane_by_itself() -> None:
 
 def test_a_run_that_diverges_fails_as_the_hottest() -> None:
     values = np.full((4, 1, 3), 32.0)
-    values[0, 0, 1:] = np.nan, np.inf
+    values[:, 0, 1:] = np.nan, np.inf
     tally = Tally(LIMITS, ["a"])
     tally.add(np.array([0.0, 1.0, 2.0]), values)
     assert not tally.passes()
+    broken = {check.quantity for check in tally.checks() if not check.passed}
+    assert {"skin surface", "display", "cold-receptor depth", "hot plate", "thermal dose"} <= broken
     assert check_of(tally, "skin surface").value == HOTTEST_C
     assert check_of(tally, "skin surface").since_s == 1.0
     assert check_of(tally, "Henriques integral").value > 1.0
 
 
-def test_a_tally_forks_with_its_state_into_an_ending() -> None:
-    tally = Tally(LIMITS, ["a"])
-    tally.add(np.array([0.0, 1.0]), np.full((4, 1, 2), 44.0))
-    other = tally.fork("power off")
-    tally.add(np.array([2.0, 3.0]), np.full((4, 1, 2), 50.0))
-    check = check_of(other, "skin surface")
-    assert (check.value, check.scenario) == (44.0, "a, then power off")
+A, EA, GAS = 3.1e98, 6.28e5, 8.31446261815324
+
+
+def burn_rate(celsius: float) -> float:
+    return math.exp(math.log(A) - EA / (GAS * (celsius + 273.15)))
+
+
+@pytest.mark.parametrize(
+    ("celsius", "minutes"), [(36.999, 0.0), (37, 0.25**6), (40, 1 / 64), (42, 0.25), (43, 1.0), (44, 2.0), (46, 8.0)]
+)
+def test_a_minute_of_constant_temperature(celsius: float, minutes: float) -> None:
+    assert cem43_min([0.0, 20.0, 60.0], [celsius] * 3)[-1] == pytest.approx(minutes, rel=1e-12)
+
+
+@pytest.mark.parametrize(("low", "high"), [(30, 36), (36, 38), (38, 42), (42, 44), (43, 47), (30, 47), (47, 35)])
+def test_a_ramp_of_two_rows_has_the_exact_dose(low: float, high: float) -> None:
+    def rate(celsius: float) -> float:
+        return 0.0 if celsius < 37 else (0.5 if celsius >= 43 else 0.25) ** (43 - celsius)
+
+    ends = sorted((low, high))
+    kinks = [kink for kink in (37.0, 43.0) if ends[0] < kink < ends[1]]
+    mean = quad(rate, ends[0], ends[1], points=kinks or None, epsabs=1e-14)[0] / (ends[1] - ends[0])
+    assert cem43_min([0.0, 90.0], [low, high])[-1] == pytest.approx(1.5 * mean, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("celsius", [20.0, 32.0, 43.0, 44.0, 50.0, 70.0])
+def test_the_burn_integral_of_a_constant_temperature(celsius: float) -> None:
+    assert henriques([0.0, 5.0, 600.0], [celsius] * 3)[-1] == pytest.approx(600 * burn_rate(celsius), rel=1e-12)
+
+
+@pytest.mark.parametrize(("low", "high"), [(32, 32.01), (32, 32.04), (40, 40.06), (40, 42), (30, 55), (55, 30)])
+def test_the_burn_integral_of_a_ramp_of_two_rows(low: float, high: float) -> None:
+    known = quad(lambda share: burn_rate(low + share * (high - low)), 0, 1, epsrel=1e-12)[0]
+    assert henriques([0.0, 3.0], [low, high])[-1] == pytest.approx(3 * known, rel=1e-8)
+
+
+def test_both_take_many_traces_and_count_up_from_0() -> None:
+    time = np.array([0.0, 1.0, 3.0])
+    warm = np.array([[[30.0, 40.0, 44.0], [44.0, 44.0, 44.0]]])
+    for measure in (cem43_min, henriques):
+        found = measure(time, warm)
+        assert found.shape == (1, 2, 3)
+        assert (found[..., 0] == 0).all()
+        assert (np.diff(found, axis=-1) >= 0).all()
+        assert found[0, 0] == pytest.approx(measure(time, warm[0, 0]), rel=1e-14)

@@ -1,4 +1,4 @@
-"""The gate for displays that are prescribed: cycles, bounds, recovery and faults of a thermode against brute force."""
+"""What a thermode shows, with a pencil; cycles, bounds, recovery and faults of its displays against brute force."""
 
 import numpy as np
 import pytest
@@ -7,11 +7,13 @@ from tests.circuit.delivery.one_drive import worst_case
 from thermicon.circuit import Device, Limits, Rig
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.delivery.deliver import deliver
+from thermicon.circuit.delivery.setpoints import Setpoints, display_of, lag_of
 from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
 from thermicon.circuit.safety.display import DisplayCourse, DisplayPlant
 from thermicon.circuit.safety.gate import Gate, gate_shown
 from thermicon.circuit.safety.plant import left_s, recovery_s
 from thermicon.circuit.safety.tally import WATCHED
+from thermicon.circuit.solver.modes import shown
 from thermicon.icons import parse
 
 THENAR, TCS = Rig.load("thenar"), Device.load("qst-tcs2")
@@ -20,14 +22,43 @@ STUCK = (0.1, 60.0)
 UNDER = DisplayPlant.of(THENAR, STUCK)
 
 
-def shown(levels: list[float], times: list[float], way: str = "as told", settling_s: float = 0.0) -> DisplayCourse:
+SHOWN: dict[str, tuple[Setpoints, float | None, list[float]]] = {
+    "pulses of one tick": (Setpoints(0.01, 0.1, 320, ((1, 300), (1, 320), (3, 320))), None, [32.0, 30.0, *[32.0] * 4]),
+    "no faster than 300 K/s": (Setpoints(0.01, 0.1, 320, ((1, 220),)), 0.05, [32.0, 29.0, 26.0, 23.0, 22.0, 22.0]),
+    "held until the end": (Setpoints(0.01, 0.1, 320, ((1, 310),)), 1.0, [32.0, *[31.0] * 100]),
+    "a long tick in equal parts": (Setpoints(0.25, 0.1, 320, ((1, 310),)), None, np.linspace(32.0, 31.0, 26).tolist()),
+}
+
+
+@pytest.mark.parametrize(("points", "end_s", "display_C"), SHOWN.values(), ids=SHOWN)
+def test_a_device_shows_its_set_points(points: Setpoints, end_s: float | None, display_C: list[float]) -> None:
+    step, display = display_of(points, TCS, lagged=False, end_s=end_s)
+    assert step == pytest.approx(0.01)
+    assert display == pytest.approx(np.array(display_C))
+
+
+def test_a_steady_ramp_runs_behind_its_set_points_by_the_lag() -> None:
+    points = Setpoints(0.01, 0.1, 320, ((300, 170),))  # 5 K/s for 3 s
+    _, display = display_of(points, TCS, lagged=True)
+    assert display[-1] - 17.0 == pytest.approx(5.0 * lag_of(TCS), rel=1e-5)
+
+
+def test_a_lag_answers_a_ramp_as_the_closed_form_does_on_any_grid() -> None:
+    tau, rate = 0.21, 4.0
+    for step in (0.01, 0.1):
+        times = np.arange(0.0, 1.0 + step / 2, step)
+        answer = 32.0 - rate * (times - tau * (1.0 - np.exp(-times / tau)))
+        assert shown(32.0 - rate * times, step, tau) == pytest.approx(answer, abs=1e-9)
+
+
+def course(levels: list[float], times: list[float], way: str = "as told", settling_s: float = 0.0) -> DisplayCourse:
     rows = np.arange(round(times[-1] / STEP_S) + 1) * STEP_S
     return DisplayCourse(way, STEP_S, np.interp(rows, times, levels), settling_s)
 
 
-COOL = shown([32, 26, 26, 32], [0, 1, 3, 4])
-WARM = shown([32, 38, 38, 32], [0, 2, 3, 5])
-QUICK = shown([32, 29, 32], [0, 0.5, 1])
+COOL = course([32, 26, 26, 32], [0, 1, 3, 4])
+WARM = course([32, 38, 38, 32], [0, 2, 3, 5])
+QUICK = course([32, 29, 32], [0, 0.5, 1])
 
 
 def lumps_of(states: list[Array]) -> Array:
@@ -67,7 +98,7 @@ def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float) -> None:
 
 
 def test_what_is_left_of_a_pause_begins_after_the_display_has_settled() -> None:
-    late = shown([32, 26, 26, 32], [0, 1, 3, 4], "late", settling_s=1.5)
+    late = course([32, 26, 26, 32], [0, 1, 3, 4], "late", settling_s=1.5)
     assert (left_s(late, 5.0), left_s(late, 1.0)) == (3.5, 0.0)
     held = UNDER.after(late, 5.0, UNDER.steady(32.0))
     assert lumps_of(held) == pytest.approx(lumps_of(UNDER.after(COOL, 3.5, UNDER.steady(32.0))))
@@ -75,7 +106,7 @@ def test_what_is_left_of_a_pause_begins_after_the_display_has_settled() -> None:
 
 @pytest.mark.parametrize("settling_s", [0.0, 1.5])
 def test_recovery_is_when_the_skin_is_back_in_every_corner(settling_s: float) -> None:
-    one = shown([32, 26, 26, 32], [0, 1, 3, 4], settling_s=settling_s)
+    one = course([32, 26, 26, 32], [0, 1, 3, 4], settling_s=settling_s)
     ((_, ended),) = UNDER.play(one, UNDER.steady(32.0))
     found = recovery_s(UNDER, one, UNDER.rest(one), ended)
     assert found is not None
@@ -87,13 +118,13 @@ def test_recovery_is_when_the_skin_is_back_in_every_corner(settling_s: float) ->
 
 
 def test_a_display_that_does_not_return_never_recovers() -> None:
-    one = shown([32, 28], [0, 1])
+    one = course([32, 28], [0, 1])
     ((_, ended),) = UNDER.play(one, UNDER.steady(32.0))
     assert recovery_s(UNDER, one, UNDER.rest(one), ended) is None
 
 
 def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
-    hot = shown([32, 40.5, 40.5, 32], [0, 1, 5, 6])
+    hot = course([32, 40.5, 40.5, 32], [0, 1, 5, 6])
     (alone,) = gate_shown([[hot]], THENAR, stuck_C=STUCK, pause_s=600.0)
     once = max(one.value for one in alone.checks if one.quantity == "skin surface" and one.upper)
     limits = Limits.of({"skin_highest_C": round(once + 0.3, 2), "skin_highest_soft_C": 38.0})
@@ -113,7 +144,7 @@ def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
 
 
 def test_what_it_demands_holds_when_simulated() -> None:
-    hot = shown([32, 44.9, 32], [0, 5, 10])
+    hot = course([32, 44.9, 32], [0, 5, 10])
     (found,) = gate_shown([[hot]], THENAR, stuck_C=STUCK, pause_s=60.0)
     hang, stuck = found.demands.faults
     assert (hang.colour, stuck.colour) == ("red", "red")
