@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import numba
 import pytest
@@ -138,6 +139,8 @@ def test_the_digest_covers_all_that_is_compiled_and_its_constants() -> None:
     compiling = 0
     for path in (path for package in ("circuit", "perception") for path in (root / package).rglob("*.py")):
         text = path.read_text(encoding="utf-8")
+        own = path.name == "compiled.py" or ("njit" not in text and "cache=True" not in text)
+        assert own, f"{path}: use thermicon.circuit.compiled.kernel"
         if "compiled" not in text and "vectorised" not in text:
             continue
         imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]
@@ -183,21 +186,21 @@ def test_what_others_can_write_is_never_read(run: Run, sources: Path, cache: Pat
     assert len(said.splitlines()) == 1
 
 
-def test_a_folder_that_cannot_be_written_is_not_used(
-    monkeypatch: pytest.MonkeyPatch, cache: Path, caplog: pytest.LogCaptureFixture
+@pytest.mark.parametrize(
+    ("where", "value", "said"),
+    [
+        (os, lambda *_: False, "compiled code cannot be stored, so that every run compiles it again: "),
+        (compiled, os.fsdecode(b"/Gr\xff/circuit/compiled.py"), "that this locale cannot read; set PYTHONUTF8=1"),
+    ],
+    ids=["not written", "not readable"],
+)
+def test_a_folder_without_a_safe_place_is_not_used(
+    monkeypatch: pytest.MonkeyPatch, cache: Path, caplog: pytest.LogCaptureFixture, where: Any, value: Any, said: str
 ) -> None:
-    monkeypatch.setattr(os, "access", lambda *_: False)  # to root every folder of a test is writable
+    monkeypatch.setattr(where, "access" if where is os else "__file__", value)  # to root every folder is writable
     monkeypatch.setenv("THERMICON_CACHE", str(cache))
     assert compiled.kept_in.__wrapped__() is None
-    assert "compiled code cannot be stored, so that every run compiles it again: " in caplog.text
-
-
-def test_a_path_that_the_locale_cannot_read_is_told(
-    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    monkeypatch.setattr(compiled, "__file__", os.fsdecode(b"/Gr\xff/circuit/compiled.py"))
-    assert compiled.kept_in.__wrapped__() is None
-    assert "has letters that this locale cannot read; set PYTHONUTF8=1" in caplog.text
+    assert said in caplog.text
 
 
 def test_other_users_of_numba_keep_their_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -220,14 +223,6 @@ def test_without_a_place_it_is_compiled_in_memory_and_said_once(run: Run, source
     assert (value, hits) == (7.0, 0)
     assert said.startswith("compiled code cannot be stored, so that every run compiles it again: ")
     assert len(said.splitlines()) == 1
-
-
-def test_all_kernels_of_the_project_are_kept_this_way() -> None:
-    root = Path(compiled.__file__).parents[1]
-    for path in [*(root / "circuit").rglob("*.py"), *(root / "perception").rglob("*.py")]:
-        if path.name != "compiled.py":
-            text = path.read_text(encoding="utf-8")
-            assert "njit" not in text and "cache=True" not in text, f"{path}: use thermicon.circuit.compiled.kernel"
 
 
 @pytest.mark.skipif(not POSIX, reason="owners and modes are those of POSIX")

@@ -62,29 +62,24 @@ def test_wrong_records_are_refused(tmp_path: Path, change: str, message: str) ->
         table_of(tmp_path, GOOD.replace(*json.loads(change), 1), "tissue")
 
 
-def test_wrong_files_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(RecordError, match=r"numbers.toml: not a valid TOML file: "):
-        table_of(tmp_path, "[[record")
-    with pytest.raises(RecordError, match=r"numbers.toml: a table of records has \[\[record\]\] blocks"):
-        table_of(tmp_path, "records = 1")
-    with pytest.raises(RecordError, match=r"numbers.toml: record 1 is not a block"):
-        table_of(tmp_path, "record = [1]")
+@pytest.mark.parametrize(("text", "message"), messages(__file__)["file"].items())
+def test_wrong_files_are_refused(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(RecordError, match=message):
+        table_of(tmp_path, text)
+
+
+def test_what_is_not_there_or_not_known_is_refused(tmp_path: Path) -> None:
     with pytest.raises(RecordError, match=r"missing.toml: no such table of records"):
         load_records(tmp_path / "missing.toml")
     with pytest.raises(RecordError, match=r"unknown key 'tissue'"):
         table_of(tmp_path, GOOD)
 
 
-def test_look_up_names_the_nearest(tmp_path: Path) -> None:
-    table = table_of(tmp_path, GOOD, "tissue")
-    with pytest.raises(RecordError, match=r"no quantity 'velocty'; did you mean velocity\?"):
-        table.one("velocty")
-    with pytest.raises(RecordError, match=r"'velocity' has no record with channel = 'cool'; did you mean cold\?"):
-        table.one("velocity", channel="cool")
-    with pytest.raises(RecordError, match=r"2 records match 'velocity': say which channel, site or method"):
-        table.one("velocity")
-    with pytest.raises(RecordError, match=r"velocity: no column 'tisue'; did you mean tissue\?"):
-        table.records[1].get("tisue")
+@pytest.mark.parametrize(("asked", "message"), messages(__file__)["look up"].items())
+def test_look_up_names_the_nearest(tmp_path: Path, asked: str, message: str) -> None:
+    quantity, _, channel = asked.partition(" ")
+    with pytest.raises(RecordError, match=message):
+        table_of(tmp_path, GOOD, "tissue").one(quantity, channel=channel)
 
 
 def test_a_channel_also_finds_what_holds_for_both() -> None:
@@ -97,5 +92,7 @@ def test_a_channel_also_finds_what_holds_for_both() -> None:
 def test_a_record_may_hold_only_further_numbers() -> None:
     record = Record("tissue", "mixed", "Jiang et al. 2002", extra=(("thickness_mm", 2.0),))
     assert record.get("thickness_mm") == 2.0
+    with pytest.raises(RecordError, match=r"tissue: no column 'thicknes_mm'; did you mean thickness_mm\?"):
+        record.get("thicknes_mm")
     with pytest.raises(RecordError, match=r"tissue: only its further columns have numbers"):
         _ = record.central

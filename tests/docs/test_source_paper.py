@@ -1,8 +1,16 @@
-"""The source paper's results beside ours; what it prints is in a table of records, what we find is computed here."""
+"""The source paper beside ours: what it prints is in a table of records, ours is computed; its notebook runs."""
 
+from __future__ import annotations
+
+from pathlib import Path
+
+import nbformat
 import numpy as np
 import pytest
+from nbclient import NotebookClient
 
+from source_paper.depths import resembles
+from source_paper.dermis_course import dermis_course
 from source_paper.paper import (
     coldest_display_C,
     controlled_cue,
@@ -12,11 +20,11 @@ from source_paper.paper import (
     printed,
     thermistors,
 )
-from source_paper.paper_differences import paper_differences
-from source_paper.studydraw import stacked_figure
+from source_paper.paper_differences import paper_differences, paper_table
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current
+from thermicon.icons import load_library
 
 
 def test_whichever_is_controlled_is_the_clean_step() -> None:
@@ -109,6 +117,62 @@ def test_the_account_is_made_of_sentences_with_numbers() -> None:
         assert all(text.endswith(".") for text in (point.paper, point.ours, point.why)), point
 
 
-def test_panels_stack() -> None:
-    figure = stacked_figure(miss_by_limit(limits_A=[1.5, 1.85]).plot, dermis_change().plot)
-    assert len(figure.axes) == 2
+def test_the_last_depth_changes_as_much_as_the_paper_says() -> None:
+    course = dermis_course()
+    largest = np.abs(course.change_K).max(axis=1)
+    assert largest[-1] == pytest.approx(1.0, rel=0.05) and course.depth_m[-1] == pytest.approx(1.5e-3, rel=0.1)
+    assert (np.diff(largest) < 0).all() and np.ptp(course.insulated_K) < largest[-1]
+    assert len(course.plot().get_lines()) == 5
+
+
+def test_the_table_has_every_claim_with_its_verdict() -> None:
+    table, points = paper_table(), paper_differences()
+    assert list(table["claim"]) == [point.topic for point in points]
+    assert list(table["verdict"] == "agrees") == [point.agrees for point in points]
+    assert table["ours"].str[0].str.upper().equals(table["ours"].str[0])
+
+
+STEP = load_library("six-icons")["cooling-step"]
+THENAR = Rig.load("thenar")
+
+
+def test_closely_joined_skin_resembles_its_own_depth() -> None:
+    for depth_mm in (0.4, 1.1, 3.0):
+        pad = {"name": "pad", "place": "insulated skin", "lateral_mm": 0.02, "depth_mm": depth_mm}
+        like = resembles(STEP, THENAR.with_(probe=[pad]), "pad", tail_s=10)
+        assert like.depth_m == pytest.approx(depth_mm * 1e-3, rel=0.02)
+        assert like.residual_K < 0.02
+
+
+def test_likeness_is_said_with_its_residual() -> None:
+    rig = THENAR.with_(probe=[{"name": "pad", "place": "insulated skin"}, {"name": "plate", "place": "display"}])
+    assert repr(resembles(STEP, rig, "pad")) == (
+        "Likeness(probe 'pad' is most like 2.49 mm, residual 0.059 K rms of 0.11 K)"
+    )
+    assert resembles(STEP, rig, "plate").depth_m == 0.0
+
+
+NOTEBOOK = Path(__file__).resolve().parents[2] / "docs/explain/06_the_papers_figures.ipynb"
+
+
+def test_it_is_thin_and_has_no_outputs() -> None:
+    cells = nbformat.read(NOTEBOOK, as_version=4).cells
+    code = [cell for cell in cells if cell.cell_type == "code"]
+    assert all(not cell.outputs and cell.execution_count is None for cell in code)
+    assert all(len(cell.source.splitlines()) <= 7 for cell in code)
+    assert "def " not in "".join(cell.source for cell in code)
+
+
+@pytest.mark.slow
+def test_every_cell_runs_and_shows_something() -> None:
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    resources = {"metadata": {"path": str(NOTEBOOK.parent)}}
+    NotebookClient(notebook, timeout=60, kernel_name="python3", resources=resources).execute()
+    code = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    kinds = [{kind for output in cell.outputs for kind in output.get("data", {"text": 1})} for cell in code]
+    assert kinds[0] == set()
+    assert [("image/png" in kind) for kind in kinds[1:]] == [*[True] * 7, False, False]
+    assert "text/html" in kinds[8]
+    table = code[9].outputs[0]["data"]["text/html"]
+    assert all(words in table for words in ("change at the receptors", "mm from skin", "claim", "why", "differs"))
+    assert len(nbformat.writes(notebook)) < 300_000
