@@ -127,15 +127,6 @@ def test_messages(d_prime: Any, told: dict[str, Any], said: str) -> None:
         confuse(d_prime, **told)
 
 
-def test_icons_that_nobody_can_tell_apart_share_their_answers_equally() -> None:
-    apart = 3.0 * (1.0 - np.eye(4))
-    apart[1, 2] = apart[2, 1] = 0.0
-    named = confuse(np.repeat(apart[None], 5, axis=0), lapse=0.0).pooled
-    assert named[1, 1] == pytest.approx(named[1, 2], abs=1e-12)
-    assert named[1] == pytest.approx(named[2], abs=1e-12)
-    assert named.sum(axis=1) == pytest.approx(1.0)
-
-
 def test_icons_that_one_person_does_not_feel_are_named_alike_in_any_order() -> None:
     felt = 3.0 * (1.0 - np.eye(4))
     faint = felt.copy()

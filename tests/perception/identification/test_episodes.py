@@ -129,6 +129,8 @@ def test_distances_follow_their_formulas(observer: Observer) -> None:
     assert np.diagonal(apart) == pytest.approx(0.0)
     shares = distance_shares(found, 0, found, 1, observer, "episodes")
     assert sum(shares.values()) == pytest.approx(apart[0, 1] ** 2)
+    other = Episodes(found.features.copy(), found.counts.copy())
+    assert apart == pytest.approx(episode_distances(found, other, observer, "episodes")[0], abs=1e-12)
     one, other = (found.listed(0, k)[0] for k in (0, 1))
     b = 1.0 / math.expm1(1.0 / observer.a)
     noises = [(b + each.peak**2) / (observer.a * 2.0 * each.peak**2) for each in (one, other)]
@@ -227,16 +229,3 @@ def test_messages(observer: Observer) -> None:
             replace(observer.memory, **{field: value})
     with pytest.raises(ValueError, match=r"must have shape \(people, icons, n_time\), not \(2, 10\)"):
         Episodes.of(np.zeros((2, 10)), np.zeros((2, 10)), DT, observer)
-
-
-def test_a_set_is_compared_with_itself_as_with_any_other(observer: Observer) -> None:
-    icons = [(bump(k * 0.7, 4.0 + k), bump(6.0 - k, 5.0)) for k in range(5)] + [(NOTHING, NOTHING)]
-    found = episodes(*icons, observer=observer)
-    again = Episodes(found.features.copy(), found.counts.copy())
-    own, other = (episode_distances(found, each, observer, "episodes") for each in (found, again))
-    assert np.allclose(own, other, rtol=1e-12, atol=1e-12)
-    assert (own == own.transpose(0, 2, 1)).all()
-    for i in range(6):
-        for j in range(6):
-            parts = distance_shares(found, i, found, j, observer, "episodes")
-            assert own[0, i, j] == pytest.approx(math.sqrt(sum(parts.values())), abs=1e-9)

@@ -58,9 +58,3 @@ def test_it_prints_the_worst_pair_and_becomes_a_dictionary() -> None:
     assert replace(change, people=1).detected_by == "1 virtual person"
     assert told["d_prime"] == {"b": {"designed": 2.0, "delivered": 1.9}, "c": {"designed": 3.0, "delivered": 2.0}}
     assert told["losses"] == list(change.losses())
-
-
-def test_an_unknown_norm_is_refused() -> None:
-    trace = pulse(0.1)
-    with pytest.raises(ValueError, match="there is no norm 'mean'"):
-        judge_delivered(["a"], [trace], [trace], norm="mean")

@@ -123,13 +123,6 @@ def test_bias_favours_names_but_not_in_the_mean(usual: Ranking) -> None:
 
 
 @pytest.mark.slow
-def test_the_same_whoever_works_on_it() -> None:
-    task = Task(context=0.5, gap_s=5.0, bias=0.5)
-    one, two = (rank(SIX, RIG, people=150, parameters=0, task=task, workers=n) for n in (1, 2))
-    assert one.to_json() == two.to_json()
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=60.0), 2.0)], ids=["context", "gap"]
 )

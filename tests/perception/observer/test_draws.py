@@ -123,13 +123,15 @@ def test_what_is_no_table_of_draws_is_refused(tmp_path: Path, text: str) -> None
         PosteriorDraws.load().values("cold limt")
 
 
-def test_numbers_that_are_none_are_refused_with_their_place(tmp_path: Path, text: str) -> None:
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [("x{}", r", cold conduction velocity: 'x.*' is not a finite number"), ("1,2", ": 2 numbers for 52 constants")],
+)
+def test_numbers_that_are_none_are_refused_with_their_place(tmp_path: Path, text: str, row: str, words: str) -> None:
     lines = text.splitlines()
-    head = sum(line.startswith("#") for line in lines)
-    lines[head + 2] = "x" + lines[head + 2]
-    refused(tmp_path, "\n".join(lines), rf"line {head + 3}, cold conduction velocity: 'x.*' is not a finite number")
-    lines[head + 2] = "1,2"
-    refused(tmp_path, "\n".join(lines), rf"line {head + 3}: 2 numbers for 52 constants")
+    place = sum(line.startswith("#") for line in lines) + 2
+    lines[place] = row.format(lines[place])
+    refused(tmp_path, "\n".join(lines), rf"line {place + 1}{words}")
 
 
 def test_draws_of_another_variant_are_refused(tmp_path: Path) -> None:

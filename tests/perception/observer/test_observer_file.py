@@ -1,15 +1,20 @@
-"""Observer files that cannot be used: what is missing, what it is called now, and what to do."""
+"""Observers in place of the shipped one, from draws or from records, and what of a file cannot be used."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError, Table, dump_records, load_records
-from thermicon.perception import Observer
+from thermicon.icons import load_library, parse
+from thermicon.perception import Observer, draw_people, frontier, rank, search
 from thermicon.perception.observer.channels import VARIABLES, Variable
+from thermicon.perception.observer.observer import DATA
 from thermicon.perception.observer.observer_file import NEEDED, NEEDED_OF, SHIPPED
+from thermicon.perception.observer.observer_model import ObserverModel
 
 
 def without(quantity: str, instead: str | None = None) -> Table:
@@ -58,3 +63,78 @@ def test_a_quantity_in_another_unit_is_refused(tmp_path: Path) -> None:
         RecordError, match=r"mine\.toml: .*: unit 'ms', but this quantity is in '.+': convert the value"
     ):
         Observer.load(path)
+
+
+@pytest.fixture
+def draws_file(tmp_path: Path) -> Path:
+    """The shipped draws, of which each needs five times the drive to feel cold."""
+    lines = (DATA / "posterior.csv").read_text(encoding="utf-8").splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    names = lines[len(head)].split(",")
+    place = names.index("cold threshold drive")
+    rows = [line.split(",") for line in lines[len(head) + 1 :]]
+    for row in rows:
+        row[place] = f"{5.0 * float(row[place]):.6g}"
+    made = tmp_path / "numb.csv"
+    made.write_text("\n".join([*head, ",".join(names), *map(",".join, rows)]) + "\n", encoding="utf-8")
+    return made
+
+
+def test_the_shipped_model_is_the_shipped_observer_with_its_people() -> None:
+    model = ObserverModel.load()
+    assert model.nominal == Observer.load()
+    assert model.key == ""
+    assert ObserverModel.of(model) is model
+    people, shipped = model.people(5, seed=3), draw_people(5, seed=3)
+    assert people.threshold_cold.tolist() == shipped.threshold_cold.tolist()
+    assert repr(model) == "ObserverModel(shipped, 1000 posterior draws)"
+
+
+def test_records_give_the_same_people_and_observer_and_no_draws(tmp_path: Path) -> None:
+    own = tmp_path / "lab.toml"
+    own.write_bytes((DATA / "observer.toml").read_bytes())
+    model = ObserverModel.load(own)
+    assert model.nominal == Observer.load()
+    assert model.posterior is None
+    assert np.allclose(model.people(4, 1).criterion_cold, draw_people(4, 1).criterion_cold)
+    ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=4, parameters=8, observer=own)
+    plain = rank(load_library("six-icons"), Rig.load("thenar"), people=4, parameters=0)
+    assert ranking.new_laboratory is None
+    assert ranking.observer == "lab.toml"
+    assert np.allclose(ranking.confusion, plain.confusion)
+
+
+def test_records_without_how_people_differ_are_refused(tmp_path: Path) -> None:
+    text = (DATA / "observer.toml").read_text(encoding="utf-8")
+    own = tmp_path / "lab.toml"
+    own.write_text(text.replace('quantity = "correlation of cold and warm"', 'quantity = "other"'), encoding="utf-8")
+    with pytest.raises(RecordError, match=r"lab\.toml: 'correlation of cold and warm', which says how people differ"):
+        ObserverModel.load(own)
+
+
+@pytest.mark.slow
+def test_a_ranking_with_other_draws_follows_them_throughout(draws_file: Path) -> None:
+    six, rig = load_library("six-icons"), Rig.load("thenar")
+    numb = rank(six, rig, people=8, parameters=8, observer=draws_file)
+    usual = rank(six, rig, people=8, parameters=8)
+    place = usual.labels.index("cooling-step")
+    # Cold needs five times the change: the percept, the d′ to its neighbour and the interval all follow.
+    assert numb.icons[place].onset_s is None or numb.icons[place].onset_s > usual.icons[place].onset_s + 0.1  # type: ignore[operator]
+    neighbour = usual.labels.index("linear-cooling")
+    assert abs(numb.d_prime[place, neighbour] - usual.d_prime[place, neighbour]) > 0.1
+    # Six strong icons are remembered by ratios, so that one point of per cent correct is all they lose.
+    assert numb.proportion_correct < usual.proportion_correct - 0.005
+    assert numb.new_laboratory is not None
+    assert usual.new_laboratory is not None
+    assert numb.new_laboratory.proportion_correct[1] < usual.new_laboratory.proportion_correct[1]
+    assert numb.content_hash != usual.content_hash
+    assert numb.to_dict()["observer"] == "numb.csv"
+
+
+def test_a_search_and_a_frontier_follow_another_observer(draws_file: Path) -> None:
+    text = "cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow(k in 1..4 step 1 K) { warm by k at 2 K/s }"
+    six, rig = load_library("six-icons"), Rig.load("thenar")
+    searched = [search(parse(text), rig, evaluations=10, people=4, observer=each) for each in (None, draws_file)]
+    assert searched[1].before.d_prime < searched[0].before.d_prime
+    chosen = [frontier(six, rig, people=8, most=2, objective="worst", observer=each) for each in (None, draws_file)]
+    assert chosen[1].points[0].d_prime < chosen[0].points[0].d_prime

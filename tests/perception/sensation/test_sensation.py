@@ -1,11 +1,107 @@
+"""From receptors to sensation: drives against closed forms and scipy, then a power that becomes logarithmic."""
+
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.observer.observer import Channel
-from thermicon.perception.sensation.sensation import area_factor, sensation
+from thermicon.perception.sensation.sensation import area_factor, receptor_drive, sensation
+
+
+def low_pass_of_ramp(t: np.ndarray, slope: float, tau: float) -> np.ndarray:
+    return slope * (t - tau * (1 - np.exp(-t / tau)))
+
+
+@pytest.mark.parametrize("dt", [0.01, 0.1, 0.5])
+def test_drive_of_a_ramp_is_exact_at_any_step(observer: Observer, dt: float) -> None:
+    t = np.arange(0.0, 4.0 + dt / 2, dt)
+    warm = low_pass_of_ramp(t, 0.7, 0.1) - low_pass_of_ramp(t, 0.7, 14.0)
+    assert receptor_drive(32.0 + 0.7 * t, dt, "warm", observer) == pytest.approx(np.maximum(warm, 0.0), abs=1e-12)
+    cold = low_pass_of_ramp(t, 0.4, 0.1) - low_pass_of_ramp(t, 0.4, 20.0)
+    assert receptor_drive(32.0 - 0.4 * t, dt, "cold", observer) == pytest.approx(np.maximum(cold, 0.0), abs=1e-12)
+
+
+def test_filters_agree_with_scipy_on_noise(observer: Observer) -> None:
+    from scipy.signal import lsim
+
+    rng = np.random.default_rng(3)
+    t = np.arange(400) * 0.05
+    change = np.concatenate([[0.0], np.cumsum(rng.normal(0, 0.02, t.size - 1))])
+    # 1/(1 + 0.1 s) − 1/(1 + 14 s): integration less adaptation.
+    system = ([14.0 - 0.1, 0.0], np.polymul([14.0, 1.0], [0.1, 1.0]))
+    _, expected, _ = lsim(system, change, t)
+    warm = receptor_drive(32.0 + change, 0.05, "warm", observer)
+    assert warm == pytest.approx(np.maximum(expected, 0.0), abs=1e-9)
+
+
+def test_adaptation_is_complete_inside_the_neutral_zone_only(observer: Observer) -> None:
+    t = np.arange(0.0, 300.0, 0.05)
+    inside = receptor_drive(np.where(t > 1.0, 31.0, 32.0), 0.05, "cold", observer)
+    outside = receptor_drive(np.where(t > 1.0, 27.0, 32.0), 0.05, "cold", observer)
+    assert inside.max() > 0.7
+    assert inside[-1] == pytest.approx(0.0, abs=1e-6)
+    assert outside[-1] == pytest.approx(3.0, abs=1e-4)
+
+
+def test_a_baseline_outside_the_zone_starts_with_its_residue(observer: Observer) -> None:
+    assert receptor_drive(np.full(50, 38.0), 0.01, "warm", observer) == pytest.approx(2.0, abs=1e-12)
+    assert receptor_drive(np.full(50, 38.0), 0.01, "cold", observer).max() == 0.0
+
+
+def limited(observer: Observer, softness_K: float = 0.1) -> Observer:
+    cold = replace(observer.cold, limit_C=33.0, softness_K=softness_K)
+    return replace(observer, cold=cold, warm=replace(observer.warm, limit_C=31.0, softness_K=softness_K))
+
+
+def test_there_is_no_cold_above_its_limit_and_no_warmth_below(observer: Observer) -> None:
+    t = np.arange(0.0, 6.0, 0.01)
+    fall = np.interp(t, [0.0, 2.0], [35.9, 33.5])
+    assert receptor_drive(fall, 0.01, "cold", observer).max() > 2.0
+    assert receptor_drive(fall, 0.01, "cold", limited(observer)).max() < 0.01
+    rise = np.interp(t, [0.0, 2.0], [28.0, 30.5])
+    assert receptor_drive(rise, 0.01, "warm", limited(observer)).max() < 0.01
+    assert receptor_drive(rise + 4.0, 0.01, "warm", limited(observer)).max() > 2.0
+    far = np.interp(t, [0.0, 2.0], [30.0, 27.0])  # far beyond its limit a channel is as without
+    with_limit = receptor_drive(far, 0.01, "cold", limited(observer, 0.05))
+    assert with_limit == pytest.approx(receptor_drive(far, 0.01, "cold", observer), abs=1e-9)
+
+
+def test_softness_lets_a_channel_set_in_gradually(observer: Observer) -> None:
+    t = np.arange(0.0, 6.0, 0.01)
+    near = np.interp(t, [0.0, 0.5], [33.4, 33.0])
+    hard, soft = (receptor_drive(near, 0.01, "cold", limited(observer, s)).max() for s in (0.01, 1.0))
+    assert soft > 5.0 * hard
+
+
+def test_rows_are_independent_and_keep_their_shape(observer: Observer) -> None:
+    rng = np.random.default_rng(0)
+    many = 32.0 + np.cumsum(rng.normal(0, 0.05, (3, 40, 2000)), axis=-1)
+    together = receptor_drive(many, 0.01, "cold", observer)
+    assert together.shape == many.shape
+    assert np.array_equal(together[1, 7], receptor_drive(many[1, 7], 0.01, "cold", observer))
+
+
+def test_heat_flow_is_filtered_alike_within_its_own_zone(observer: Observer) -> None:
+    flux = replace(
+        observer,
+        variable="heat flow",
+        cold=replace(observer.cold, neutral_flux=(-140.0, 40.0), threshold_drive=70.0),
+        warm=replace(observer.warm, neutral_flux=(-140.0, 40.0), threshold_drive=80.0),
+    )
+    t = np.arange(0.0, 300.0, 0.05)
+    inside = receptor_drive(np.where(t > 1.0, -120.0, -80.0), 0.05, "cold", flux)
+    outside = receptor_drive(np.where(t > 1.0, -200.0, -80.0), 0.05, "cold", flux)
+    assert inside.max() > 30.0
+    assert inside[-1] == pytest.approx(0.0, abs=1e-4)
+    assert outside[-1] == pytest.approx(60.0, abs=1e-3)
+
+
+def test_messages(observer: Observer) -> None:
+    with pytest.raises(ValueError, match=r"at least two samples on its last axis, not shape \(3, 1\)"):
+        receptor_drive(np.zeros((3, 1)), 0.01, "cold", observer)
 
 
 @pytest.mark.parametrize(("channel", "unit"), [("cold", 0.08), ("warm", 0.15)])
