@@ -49,8 +49,6 @@ def test_the_limit_is_that_of_the_lowest_temperature_that_the_paper_states() -> 
     claim, rig = printed().one("lowest contact temperature"), Rig.load("shani2021")
     held = rig.driver.current_max_A
     settled = simulate_current(Drive([0.0, 900.0], [held, held]), rig, rate_Hz=1.0).display_C[-1]
-    assert claim.low is not None
-    assert claim.high is not None
     assert claim.low <= settled <= claim.high
     assert settled == pytest.approx(coldest_display_C(rig), abs=1e-3)
     # the plates' energy balance with pencil: what the module absorbs comes through contact, epidermis and dermis
@@ -75,7 +73,6 @@ def test_the_miss_falls_with_the_current_limit() -> None:
     assert at[printed().one("module current").central] < 0.3
     assert found.reached == tuple(limit >= 2.0 for limit in found.limit_A)
     legend = found.plot().get_legend()
-    assert legend is not None
     said = [text.get_text() for text in legend.get_texts()]
     assert said == ["reached", "missed", "this rig's 1 A", "the module's own 1.85 A"]
 

@@ -113,7 +113,6 @@ def test_recovery_is_when_display_and_skin_are_back() -> None:
     start = ensemble.at_rest(REST)
     end = ensemble.end_of(COOL, start)
     found = recovery_s(CurrentPlant.of(ensemble), PLAYS[0], start, end)
-    assert found is not None
     times = np.arange(0.0, 2 * found, 0.02)
     values = ensemble.hold(REST, end, times)[0]
     began = ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][:, :, :1]
@@ -142,7 +141,6 @@ def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
     assert once < 39.5, "zero current leads to 39.1 °C"
     repeating = Repeating(CurrentPlant.of(ensemble), [[CurrentPlay(drive, REST)]], limits)
     shortest = shortest_pause_s(repeating)
-    assert shortest is not None
     assert shortest > 3.0
     assert repeating.safe(shortest)
     assert not repeating.safe(0.9 * shortest)
@@ -166,7 +164,6 @@ def test_what_glows_again_after_five_seconds_is_refused_and_after_its_recovery_i
     assert usual.repeated.recovery_s == usual.repeated.pause_s > 60.0
     assert soon.colour == "red"
     assert soon.repeated.shortest_pause_s == usual.repeated.shortest_pause_s
-    assert soon.reason is not None
     assert soon.reason.startswith("skin surface reaches 4")
     assert "repeated plays with 5 s of pause" in soon.reason
     assert f"the shortest safe pause is {soon.repeated.shortest_pause_s:g} s (--pause " in soon.reason

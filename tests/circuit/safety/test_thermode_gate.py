@@ -109,7 +109,6 @@ def test_recovery_is_when_the_skin_is_back_in_every_corner(settling_s: float) ->
     one = course([32, 26, 26, 32], [0, 1, 3, 4], settling_s=settling_s)
     ((_, ended),) = UNDER.play(one, UNDER.steady(32.0))
     found = recovery_s(UNDER, one, UNDER.rest(one), ended)
-    assert found is not None
     times = np.arange(0.0, 120.0, 0.01)
     skin = UNDER.held(32.0, ended, times)[WATCHED.index("skin_C")]
     began = UNDER.held(32.0, UNDER.steady(32.0), np.array([0.0]))[WATCHED.index("skin_C")]
@@ -135,7 +134,6 @@ def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
     first = judged(600.0)
     shortest = first.repeated.shortest_pause_s
     assert first.safe
-    assert shortest is not None
     assert shortest > 1.0
     assert judged(shortest).safe
     shorter = judged(round(0.9 * shortest, 2))

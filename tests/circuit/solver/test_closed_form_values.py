@@ -2,10 +2,8 @@
 
 import itertools
 import math
-import tomllib
 from collections.abc import Callable
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,18 +11,12 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import erf, erfc, erfcx
 
-REFERENCE = tomllib.loads((Path(__file__).parents[2] / "reference" / "closed_forms.toml").read_text(encoding="utf-8"))
-VALUES: list[dict[str, Any]] = REFERENCE["value"]
-BODY, UPPER = REFERENCE["body"], REFERENCE["epidermis"]
+from tests.circuit.solver.test_closed_forms import BODY, E_ALUMINA, FILM, REFERENCE, RESISTANCE, VALUES, name
+
+UPPER = REFERENCE["epidermis"]
 K, HEAT = BODY["conductivity_W_per_mK"], BODY["density_kg_per_m3"] * BODY["heat_capacity_J_per_kgK"]
 ALPHA, E_SKIN = K / HEAT, math.sqrt(K * HEAT)
-E_ALUMINA = REFERENCE["alumina"]["effusivity_W_s05_per_m2K"]
 PERFUSED = BODY["perfusion_per_s"] * BODY["blood_J_per_m3K"]  # W/(m³·K)
-RESISTANCE, FILM = 5.4e-4, 1852.0
-
-
-def name(row: dict[str, Any]) -> str:
-    return " ".join(str(row[key]) for key in ("case", "what", "depth_mm", "mode", "time_s") if key in row)
 
 
 def spread(x: float, t: float) -> float:

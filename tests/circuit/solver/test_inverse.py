@@ -45,7 +45,6 @@ def test_what_stores_heat_neither_rings_nor_misses(keys: dict[str, object]) -> N
     rig = THENAR.with_(**keys)
     for icon in load_library("six-icons"):
         trace = simulate(icon, rig)
-        assert trace.outcome is not None
         assert trace.outcome.reached
         assert abs(trace.outcome.largest_miss_K) < 1e-3
         assert np.abs(np.diff(trace.current_A, 2))[-52:-2].max() < 1e-4
@@ -53,7 +52,6 @@ def test_what_stores_heat_neither_rings_nor_misses(keys: dict[str, object]) -> N
 
 def test_the_skin_cue_needs_the_whole_driver_and_is_reached() -> None:
     trace = simulate(step("skin"), THENAR)
-    assert trace.outcome is not None
     assert trace.outcome.reached
     assert trace.outcome.reason is None
     assert (trace.current_A.min(), trace.current_A.max()) == (-1.5, 1.5)
@@ -63,7 +61,6 @@ def test_the_skin_cue_needs_the_whole_driver_and_is_reached() -> None:
 
 def test_a_miss_says_how_much_when_and_why() -> None:
     trace = simulate(step("skin"), THENAR.with_(**{"driver.current_limit_A": 1.0}))
-    assert trace.outcome is not None
     assert not trace.outcome.reached
     assert trace.outcome.largest_miss_K == pytest.approx(1.31, abs=0.02)
     assert trace.outcome.largest_miss_s == pytest.approx(2.0, abs=0.02)
@@ -73,20 +70,17 @@ def test_a_miss_says_how_much_when_and_why() -> None:
     )
     for limit, miss in ((SHANI.driver.current_max_A, 2.12), (1.5, 0.73)):
         printed = simulate(step("skin"), SHANI.with_(**{"driver.current_limit_A": limit}))
-        assert printed.outcome is not None
         assert printed.outcome.largest_miss_K == pytest.approx(miss, abs=0.01)
 
 
 def test_a_drive_that_only_cools_cannot_return_the_skin() -> None:
     trace = simulate(step("skin"), SHANI.with_(**{"driver.current_min_A": 0.0}), tail_s=2.0)
-    assert trace.outcome is not None
     assert trace.outcome.largest_miss_K == pytest.approx(-4, abs=0.5)
     assert trace.current_A.min() == 0.0
 
 
 def test_compliance_voltage_binds() -> None:
     trace = simulate(step("skin"), THENAR.with_(**{"driver.voltage_limit_V": 4.0}))
-    assert trace.outcome is not None
     assert "compliance voltage" in str(trace.outcome.reason)
     # The limit binds at the start of a period; within one the plates drift by a few hundredths of a kelvin.
     assert np.abs(trace.voltage_V).max() < 4.0 + 1e-3

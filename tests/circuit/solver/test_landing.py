@@ -83,7 +83,6 @@ def test_an_earlier_landing_is_the_later_part_of_the_same_run() -> None:
 
 def test_a_current_holds_the_bare_display_before() -> None:
     plan = design(hold(29.0), lands(-0.5), 2.0)
-    assert plan.lead_A is not None
     assert len(plan.lead_A) == 51
     assert landing_state(lands(-0.5), current_A=float(plan.lead_A[0]))[1] == pytest.approx(29.0)
     away = start_under(lands(-600.0), 0.08) - state_under_current(network_of(THENAR), 0.08)

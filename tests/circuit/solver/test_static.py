@@ -56,7 +56,6 @@ def test_a_rate_beyond_the_rig_is_one_that_the_run_misses() -> None:
     (message,) = check_static(fast, THENAR)
     assert message.startswith("icon x: 8 °C/s of cooling at 0 s is more than the 5.")
     outcome = simulate(fast, THENAR).outcome
-    assert outcome is not None
     assert not outcome.reached
 
 
@@ -102,7 +101,6 @@ def test_until_a_step_arrives_nothing_is_missed(
 def test_a_square_wave_is_reached_and_its_slowest_step_told() -> None:
     trace = simulate(cue("square by 3 °C every 4 s for 8 s"), THENAR)
     assert trace.reachable
-    assert trace.outcome is not None
     assert 0.5 < (trace.outcome.slowest_step_s or 0.0) < 1.5
     # At the driver's limit on the way, at the level behind it.
     assert trace.current_A.min() == -1.5
@@ -129,7 +127,6 @@ def test_a_square_wave_too_fast_for_the_module_says_so() -> None:
 def test_a_shape_out_of_reach_has_a_nearest_one(body: str) -> None:
     icon = cue(body)
     near = nearest_reachable(icon, THENAR)
-    assert near is not None
     assert simulate(near.icon, THENAR).reachable
     assert parse(str(near.icon))["x"] == near.icon
 
@@ -137,7 +134,6 @@ def test_a_shape_out_of_reach_has_a_nearest_one(body: str) -> None:
 def test_an_icon_that_plays_another_has_a_nearest_one() -> None:
     text = "cue 1; set { control display; baseline 32 °C }; icon a { pulse by -4 °C for 300 ms; rest for 2 s }"
     near = nearest_reachable(parse(text + "; icon b { play a; rest for 1 s; play a }")["b"], THENAR)
-    assert near is not None
     assert near.icon.corners().duration_s == pytest.approx(5.6)
 
 

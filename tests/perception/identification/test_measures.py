@@ -84,7 +84,6 @@ def ranking(rig: Rig) -> Ranking:
 
 def test_intervals_hold_the_prediction_and_are_wide(ranking: Ranking) -> None:
     found = ranking.new_laboratory
-    assert found is not None
     assert found.draws == 16
     assert found.people == 8
     assert found.each.values.shape == (16, len(found.each.names))
@@ -99,8 +98,6 @@ def test_intervals_hold_the_prediction_and_are_wide(ranking: Ranking) -> None:
     for icon, (low, high) in zip(ranking.icons, found.detected, strict=True):
         assert low <= icon.detected_probability <= high
     for icon, onset in zip(ranking.icons, found.onset_s, strict=True):
-        assert onset is not None
-        assert icon.onset_s is not None
         assert 0.5 < onset[0] < icon.onset_s < onset[1] < 5.0
     assert repr(found).startswith("NewLaboratory(16 draws, 8 people each: ")
     assert repr(found).endswith(" bits)")
@@ -109,7 +106,6 @@ def test_intervals_hold_the_prediction_and_are_wide(ranking: Ranking) -> None:
 def test_they_are_in_the_file(ranking: Ranking) -> None:
     held = json.loads(ranking.to_json())
     found = ranking.new_laboratory
-    assert found is not None
     assert held["set"]["proportion_correct_interval_new_laboratory"] == list(found.proportion_correct)
     assert held["set"]["information_bits_interval_new_laboratory"] == list(found.information_bits)
     assert held["set"]["posterior_draws"] == 16
@@ -161,7 +157,6 @@ def test_only_constants_that_take_part_are_doubted(ranking: Ranking) -> None:
     smaller = Rig.load("forearm").with_(**{"contact.area_cm2": 4.0})
     away = rank(load_library("six-icons"), smaller, people=4, parameters=4)
     for found, some, others in ((ranking, idle | of_a_site, set()), (away, idle, of_a_site)):
-        assert found.new_laboratory is not None
         each = found.new_laboratory.each
         acting = {name for name, acts in zip(each.names, each.acts, strict=True) if acts}
         assert acting.isdisjoint(some)

@@ -124,8 +124,6 @@ def test_a_ranking_with_other_draws_follows_them_throughout(draws_file: Path) ->
     assert abs(numb.d_prime[place, neighbour] - usual.d_prime[place, neighbour]) > 0.1
     # Six strong icons are remembered by ratios, so that one point of per cent correct is all they lose.
     assert numb.proportion_correct < usual.proportion_correct - 0.005
-    assert numb.new_laboratory is not None
-    assert usual.new_laboratory is not None
     assert numb.new_laboratory.proportion_correct[1] < usual.new_laboratory.proportion_correct[1]
     assert numb.content_hash != usual.content_hash
     assert numb.to_dict()["observer"] == "numb.csv"

@@ -12,7 +12,6 @@ def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:
     percept = perceive(cue(change=-4.0, name="dip"), observer)
     assert (percept.channel, percept.icon) == ("cold", "dip")
     assert percept.detected_probability == pytest.approx(1.0)
-    assert percept.onset_s is not None
     assert 0.55 < percept.onset_s < 0.8
     assert repr(percept).startswith("Percept(dip, nominal person: felt at 0.")
     assert " d′, 18 s, receptor clock)" in repr(percept)
@@ -56,7 +55,6 @@ def test_a_larger_area_and_a_shorter_path_are_felt_sooner(cue: Any, observer: Ob
 def test_felt_peaks_are_later_by_conduction(cue: Any, observer: Observer) -> None:
     percept = perceive(cue(change=-4.0, rate=2.0, hold=0.0), observer)
     peak, felt = percept.peak_s("cold"), percept.felt_peak_s("cold")
-    assert peak is not None
     assert 1.9 < peak < 2.1
     assert felt == pytest.approx(peak + 0.7 / 2.0 + 0.225 / 12.0)
     assert percept.conduction_s == (pytest.approx(0.35 + 0.225 / 12.0), pytest.approx(1.4 + 0.225 / 2.0))
