@@ -12,9 +12,7 @@ from .options import Json, Seed, opt, write_text
 
 def validate_command(
     people: Annotated[int, opt("N", "Number of virtual people.", 2, 2000)] = 200,
-    draws: Annotated[
-        int, opt("N", "Number of observers drawn for intervals and trade-offs; 0 for none.", 0, 1000)
-    ] = 128,
+    draws: Annotated[int, opt("N", "Number of observers drawn for intervals; 0 for none.", 0, 1000)] = 128,
     seed: Seed = 0,
     json: Json = None,
 ) -> None:

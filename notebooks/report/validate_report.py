@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from thermicon.perception.evidence.validate import Judged, Line, ValidationReport
 
 TITLE = "Experiments the constants were inferred from"
-TARGET_HEADS = ("temp.", "flow")
+TARGET_HEADS = ("temp.", "flow", "skin")
 MARK = {"holds": "✓", "misses": "✗", "shown": " "}
 
 
@@ -32,15 +32,20 @@ def validate_report(report: ValidationReport) -> list[Block]:
     ]
     for section in report.sections:
         made.append(Heading(f"{section.target.number} {section.target.title}"))
-        made.append(grid(("", "published", *TARGET_HEADS), map(_line, section.lines), TARGET_HEADS))
+        made.append(grid(("", "published", *TARGET_HEADS, "nearer"), map(_line, section.lines), TARGET_HEADS))
     held = [report.counts(k) for k in range(len(VARIABLES))]
+    nearer = report.nearer()
     counted = ", ".join(f"{name} {a} of {b}" for name, (a, b) in zip(VARIABLES, held, strict=True))
     return [
         *made,
         Text(
             f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.\n"
-            "temp.: receptors respond to temperature; flow: to heat flow. All are predictions, not measurements; rows "
-            "marked fitted are among the experiments above. --json has every number, with sources and intervals."
+            f"nearer: to what was published. Of {sum(nearer.values())} results that were not fitted and that skin "
+            f"temperature predicts too, the model (temp.) is nearer to {nearer['model']}, skin temperature to "
+            f"{nearer['baseline']}; {nearer['both']} are equal.\n"
+            "temp.: receptors respond to temperature; flow: to heat flow; skin: the baseline, who goes by the "
+            "temperature of the skin alone. All are predictions, not measurements; rows marked fitted are among the "
+            "experiments above. --json has every number, with sources and intervals."
         ),
     ]
 
@@ -49,7 +54,9 @@ def _line(line: Line) -> Sequence[str]:
     """A row of a target: name with its unit, what was published, and each prediction with its verdict."""
     cells = [f"{_predicted(line, one)} {MARK[one.verdict.word]}" for one in line.judged]
     unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
-    return (f"{line.row.label}{',' if unit else ''}{unit}", line.published.text, *cells)
+    skin = "–" if line.baseline is None else plain(line.baseline)
+    name = f"{line.row.label}{',' if unit else ''}{unit}"
+    return name, line.published.text, *cells, skin, line.nearer_to_published
 
 
 def _predicted(line: Line, one: Judged) -> str:

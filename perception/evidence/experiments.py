@@ -9,26 +9,34 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, lru_cache, partial
+from functools import lru_cache, partial
 
 import numpy as np
 
 from thermicon.circuit import Rig
 
-from ..experiments.on_bench import choice_reaction_time, forced_choice, method_of_levels, method_of_limits, yes_no
+from ..experiments.laboratory import Laboratory
+from ..experiments.measure import ADAPTIVE, METHODS, WORDS, Condition, Setting, logs_of
 from ..observer.channels import CHANNELS, Channel, Variable, sign_of
-from ..observer.observer import Observer, load_thresholds
-from ..observer.people import draw_people
+from ..observer.observer import load_thresholds
+from ..observer.people import YOUNG_YEARS
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import perceive
-from .predicted import DRAWS, Asked, Predicted, predict, quantile_felt
+from .baseline import noticed_K
+from .predicted import DRAWS, Asked, Predicted, Subject, nominal_subject, predict
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 FLAT_K_PER_S = (0.1, 0.2, 0.3)
 AREAS_CM2 = (2.5, 5.0, 10.0)
 RAMP_K, RAMP_K_PER_S = 8.0, 5.0
 PEOPLE = 100
+LIMIT_K = 12.0
+"""Where a ramp of limits ends, K."""
+SIZES_K = np.geomspace(0.005, 8.0, 33)
+"""Sizes of forced choice: many, since a threshold is compared with that at another rate."""
+AT_THE_SKIN = 1e-7
+"""Contact resistance of a stimulus that is prescribed at the skin, m²K/W: none that counts."""
 LIMITS: dict[str, tuple[str, float]] = {"hand": ("hand-dorsum", 9.0), "forearm": ("forearm", 10.0)}
 """Rig and area of contact, cm²; on the hand it is not stated where the norms were found, and is assumed."""
 PULSE_K, PULSE_S = 4.0, 8.0
@@ -37,36 +45,52 @@ STEEP_K, STEEP_K_PER_S = 4.0, 3.0
 STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percept clock"
 
 
+@lru_cache(maxsize=8)
+def _laboratory(subject: Subject, setting: Setting) -> Laboratory:
+    return subject.laboratory(setting)
+
+
+@lru_cache(maxsize=2048)
+def measured(setting: Setting, condition: Condition, subject: Subject) -> float:
+    """What one person gives in a task, in the unit of the condition; inf where the largest change is not felt."""
+    value = float(np.exp(logs_of(_laboratory(subject, setting), setting, condition, SIZES_K)[0].mean()))
+    return value if condition.method not in ADAPTIVE or value < 0.999 * SIZES_K[-1] else np.inf
+
+
+def _threshold(method: str, channel: Channel, rate_K_per_s: float = 1.0, hold_s: float = 3.0) -> Condition:
+    size = LIMIT_K if method == "limits" else None
+    return Condition("threshold", method, channel, 32.0, size, rate_K_per_s, hold_s)
+
+
 def rate_curve(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Thresholds on the forearm against the rate of change, as Kenshalo, Holmes & Wood 1968 studied.
 
     A threshold (K) for each channel and rate; then for each channel the largest change of threshold over
     0.1 to 0.3 K/s, and the thresholds at the other rates over that at 0.1 K/s.
     """
-    bench = _bench("forearm", 9.0, "skin", 32.0)
+    setting = Setting("forearm", AT_THE_SKIN, 9.0)
     said = "forced choice at the skin, forearm, from 32 °C; the end of the ramp is held for 1 s"
 
-    @cache
-    def at(channel: Channel, rate: float, observer: Observer) -> float:
-        return forced_choice(observer, bench, channel, rate_K_per_s=rate, hold_s=1.0)
+    def at(channel: Channel, rate: float, subject: Subject) -> float:
+        return measured(setting, _threshold("forced_choice", channel, rate, 1.0), subject)
 
-    def change(channel: Channel, observer: Observer) -> float:
-        found = [at(channel, rate, observer) for rate in FLAT_K_PER_S]
+    def change(channel: Channel, subject: Subject) -> float:
+        found = [at(channel, rate, subject) for rate in FLAT_K_PER_S]
         return max(found) / min(found) - 1.0
 
-    def raised(channel: Channel, rate: float, observer: Observer) -> float:
-        return at(channel, rate, observer) / at(channel, FLAT_K_PER_S[0], observer)
+    def raised(channel: Channel, rate: float, subject: Subject) -> float:
+        return at(channel, rate, subject) / at(channel, FLAT_K_PER_S[0], subject)
 
-    asked = []
+    asked, named = [], {rate: f"threshold at {rate:g} K/s" for rate in RATES_K_PER_S}
     for channel in CHANNELS:
         asked += [
-            Asked(f"threshold at {rate:g} K/s", channel, "K", said, partial(at, channel, rate))
-            for rate in RATES_K_PER_S
+            Asked(name, channel, "K", said, partial(at, channel, rate), noticed_K(channel))
+            for rate, name in named.items()
         ]
-        asked.append(Asked("largest change over 0.1 to 0.3 K/s", channel, "1", said, partial(change, channel)))
+        asked.append(Asked("largest change over 0.1 to 0.3 K/s", channel, "1", said, partial(change, channel), 0.0))
         asked += [
-            Asked(f"threshold at {rate:g} K/s over that at 0.1", channel, "1", said, partial(raised, channel, rate))
-            for rate in RATES_K_PER_S
+            Asked(f"{name} over that at 0.1", channel, "1", said, partial(raised, channel, rate), 1.0)
+            for rate, name in named.items()
             if rate not in FLAT_K_PER_S
         ]
     return predict("rate curve", asked, variable, draws, seed)
@@ -85,89 +109,69 @@ def limits(
 
     `people` fill in the spread over persons, of 20 to 30 years unless `age_years` is given.
     """
-    bench = _bench(*LIMITS[site], "display", 32.0)
-    aged = "" if age_years is None else f", {age_years:g} years"
-    said = f"display ramp of 1 K/s, {LIMITS[site][1]:g} cm²{aged}"
-    crowd = draw_people(people, seed, age_years=age_years)
-
-    asked = [Asked("limits threshold", channel, "K", said, partial(_limits, bench, channel)) for channel in CHANNELS]
+    rig, area = LIMITS[site]
+    setting, aged = _setting(rig, area), "" if age_years is None else f", {age_years:g} years"
+    said = f"display ramp of 1 K/s, {area:g} cm²{aged}"
+    crowd = nominal_subject(variable).laboratory(
+        setting, people=people, seed=seed, age_years=YOUNG_YEARS if age_years is None else age_years
+    )
+    conditions = [_threshold("limits", channel) for channel in CHANNELS]
+    asked = [
+        Asked("limits threshold", one.channel, "K", said, partial(measured, setting, one), noticed_K(one.channel))
+        for one in conditions
+    ]
     made = []
-    nominal = Observer.load(variable=variable)
-    for one, channel in zip(predict(f"limits on the {site}", asked, variable, draws, seed), CHANNELS, strict=True):
-        each = np.sort(method_of_limits(nominal, bench, channel, people=crowd))
-        low, middle, high = (quantile_felt(each, share) for share in (0.16, 0.5, 0.84))
-        spread = None if low is None or high is None else (low, high)
-        made.append(replace(one, value=middle, people=spread))
+    for found, one in zip(predict(f"limits on the {site}", asked, variable, draws, seed), conditions, strict=True):
+        low, middle, high = np.percentile(np.exp(logs_of(crowd, setting, one)[0]), [16.0, 50.0, 84.0]).tolist()
+        made.append(replace(found, value=middle, people=(low, high)))
     return tuple(made)
 
 
 def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
     """Choice reaction times on the forearm at 5 °C/s from 31 °C: a median for each area, their exponent, their ratio.
 
-    The times of the largest area are those to compare with the published ones (about 10 cm²). Where the
-    module falls behind the ramp of that area, the conditions say so.
+    The times of the largest area are those to compare with the published ones (about 10 cm²).
     """
-    ramps = f"display ramp of {RAMP_K_PER_S:g} K/s up to {RAMP_K:g} K from 31 °C, forearm, warm or cold?"
+    said = f"display ramp of {RAMP_K_PER_S:g} K/s up to {RAMP_K:g} K from 31 °C, forearm, warm or cold?"
     largest = AREAS_CM2[-1]
 
-    @cache
-    def at(channel: Channel, area_cm2: float, observer: Observer) -> float:
-        bench = _bench("forearm", area_cm2, "display", 31.0)
-        found = choice_reaction_time(observer, bench, channel, rate_K_per_s=RAMP_K_PER_S, size_K=RAMP_K)
-        return float(found.quantile()[0])
+    def at(channel: Channel, area_cm2: float, subject: Subject) -> float:
+        timed = Condition("reaction_time", "choice", channel, 31.0, RAMP_K, RAMP_K_PER_S, 0.0)
+        return measured(_setting("forearm", area_cm2), timed, subject)
 
-    def exponent(channel: Channel, observer: Observer) -> float:
-        times = [at(channel, area, observer) for area in AREAS_CM2]
+    def exponent(channel: Channel, subject: Subject) -> float:
+        times = [at(channel, area, subject) for area in AREAS_CM2]
         return float(np.polyfit(np.log(AREAS_CM2), np.log(times), 1)[0])
 
-    said = {c: f"{ramps}{_behind(_bench('forearm', largest, 'display', 31.0), c)}" for c in CHANNELS}
     asked = [
-        Asked(f"reaction time at {area:g} cm²", channel, "s", said[channel], partial(at, channel, area))
+        Asked(f"reaction time at {area:g} cm²", channel, "s", said, partial(at, channel, area))
         for channel in CHANNELS
         for area in AREAS_CM2
     ]
     asked += [
-        Asked("exponent of area", c, "1", f"{said[c]}; over {AREAS_CM2} cm²", partial(exponent, c)) for c in CHANNELS
+        Asked("exponent of area", c, "1", f"{said}; over {AREAS_CM2} cm²", partial(exponent, c)) for c in CHANNELS
     ]
-    asked.append(Asked("warm over cold", "both", "1", ramps, lambda o: at("warm", largest, o) / at("cold", largest, o)))
+    asked.append(Asked("warm over cold", "both", "1", said, lambda o: at("warm", largest, o) / at("cold", largest, o)))
     return predict("choice reaction time", asked, variable, draws, seed)
 
 
-def _behind(bench: Bench, channel: Channel) -> str:
-    """What keeps the display from following the reaction-time ramp; nothing where it follows."""
-    (trace,) = bench.play([ramp(channel, RAMP_K, RAMP_K_PER_S)], RAMP_K / RAMP_K_PER_S).traces
-    return "" if trace.reason is None else f"; the display {trace.reason}"
-
-
 def methods(variable: Variable = "temperature", *, draws: int = 0, seed: int = 0) -> tuple[Predicted, ...]:
-    """One observer by three methods at 1 K/s on the back of the hand: forced choice, levels, limits, in K."""
-    bench = _bench(*LIMITS["hand"], "display", 32.0)
-    said = "display ramps of 1 K/s from 32 °C on the back of the hand, 9 cm²"
-
-    def levels(channel: Channel, observer: Observer) -> float:
-        return float(np.median(method_of_levels(observer, bench, channel)))
-
-    def choice(channel: Channel, observer: Observer) -> float:
-        return forced_choice(observer, bench, channel)
-
-    named: list[tuple[str, Callable[[Channel, Observer], float]]] = [
-        ("forced choice", choice),
-        ("levels", levels),
-        ("limits", partial(_limits, bench)),
-    ]
-    asked = [Asked(f"threshold by {name}", c, "K", said, partial(by, c)) for name, by in named for c in CHANNELS]
+    """One observer by three methods at 1 K/s on the back of the hand: forced choice, yes/no, limits, in K."""
+    setting, said = _setting(*LIMITS["hand"]), "display ramps of 1 K/s from 32 °C on the back of the hand, 9 cm²"
+    asked = [
+        Asked(
+            f"threshold by {WORDS[method]}", channel, "K", said,
+            partial(measured, setting, _threshold(method, channel)), noticed_K(channel),
+        )
+        for method in METHODS["threshold"]
+        for channel in CHANNELS
+    ]  # fmt: skip
     return predict("method", asked, variable, draws, seed)
 
 
-@lru_cache(maxsize=512)
-def _limits(bench: Bench, channel: Channel, observer: Observer) -> float:
-    """Limits of the nominal person, which two experiments on the hand ask for."""
-    return float(method_of_limits(observer, bench, channel)[0])
-
-
-@lru_cache(maxsize=32)
-def _bench(rig: str, area_cm2: float, surface: Surface, baseline_C: float) -> Bench:
-    return Bench(Rig.load(rig).with_(**{"contact.area_cm2": area_cm2}), baseline_C, surface)
+def _setting(rig: str, area_cm2: float) -> Setting:
+    """The skin of a rig under its own contact."""
+    return replace(Setting.of(Rig.load(rig)), area_cm2=area_cm2)
 
 
 def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: int = 0) -> tuple[Predicted, ...]:
@@ -180,15 +184,15 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
     """
     said = f"raised-cosine display pulse of {PULSE_K:g} K in {PULSE_S:g} s, thenar, percept clock"
 
-    def lead(surface: Surface, channel: Channel, observer: Observer) -> float:
+    def lead(surface: Surface, channel: Channel, subject: Subject) -> float:
         played = _pulse(channel)
-        peak = perceive(played.traces[0], observer).felt_peak_s(channel)
+        peak = perceive(played.traces[0], subject.observer).felt_peak_s(channel)
         moved = sign_of(channel) * played.surface_C(surface)[0]
         return float(np.inf) if peak is None else peak - float(played.time_s[int(moved.argmax())])
 
-    def onset(play: Callable[[Channel], Stimulus], channel: Channel, observer: Observer) -> float:
-        found = perceive(play(channel).traces[0], observer)
-        return float(np.inf) if found.onset_s is None else found.onset_s - observer.decision_s
+    def onset(play: Callable[[Channel], Stimulus], channel: Channel, subject: Subject) -> float:
+        found = perceive(play(channel).traces[0], subject.observer)
+        return float(np.inf) if found.onset_s is None else found.onset_s - subject.observer.decision_s
 
     asked = [Asked("felt peak minus the display's", c, "s", said, partial(lead, "display", c)) for c in CHANNELS]
     asked += [Asked("felt peak minus the skin's", c, "s", said, partial(lead, "skin", c)) for c in CHANNELS]
@@ -206,13 +210,15 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
     """
     alarms = load_thresholds().one("false-alarm rate near threshold").central
     said = f"skin steps at 1 K/s half of which are reported, held for {HOLD_S:g} s, {alarms:g} false alarms, thenar"
+    setting = Setting("thenar", AT_THE_SKIN, 9.0)
 
-    def returned(channel: Channel, observer: Observer) -> float:
-        bench = _thenar("skin")
-        asked = replace(observer, criterion=criterion_of(alarms, observer.noise_correlation_s, HOLD_S))
-        size = yes_no(asked, bench, channel, hold_s=HOLD_S)
+    def returned(channel: Channel, subject: Subject) -> float:
+        criterion = criterion_of(alarms, subject.observer.noise_correlation_s, HOLD_S)
+        asked = replace(subject.observer, criterion=criterion)
+        keen = Subject(asked, {**subject.constants, "criterion of yes and no": criterion})
+        size = measured(setting, _threshold("yes_no", channel, hold_s=HOLD_S), keen)
         start = round(size + HOLD_S, 2)
-        played = bench.play([ramp(channel, size, 1.0, HOLD_S, back=True)], start + HOLD_S + 2.0)
+        played = _thenar("skin").play([ramp(channel, size, 1.0, HOLD_S, back=True)], start + HOLD_S + 2.0)
         cold, warm = (psi[0, 0] for psi in played.felt(asked))
         after = (warm if channel == "cold" else cold)[round(start / played.dt_s) :]
         return float(detect(after, np.zeros_like(after), played.dt_s, asked).probability)

@@ -36,24 +36,30 @@ from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
 from ..selection.appraise import population_dprime
 from ..selection.max_min_subset import max_min_subset
+from .baseline import named_by_skin
 from .predicted import Predicted, interval_of, plausible_laboratories
 
 if TYPE_CHECKING:
     from thermicon.icons import Icon
 
+SKIN = "skin_C"
 Score = Callable[[Array], float]
 """One number from the confusions (people, icons, icons) of a crowd."""
 
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """Confusions of one variant: of every person, and of fewer people for the nominal observer and each laboratory."""
+    """Confusions of one variant: of every person, and of fewer people for the nominal observer and each laboratory.
+
+    `baseline` are those by skin temperature alone, the same for all variants.
+    """
 
     variable: Variable
     labels: tuple[str, ...]
     probability: Array
     few: Array
     drawn: Array
+    baseline: Array
 
     @property
     def pooled(self) -> Array:
@@ -72,7 +78,8 @@ class Identified:
         value, nominal = score(self.probability), score(self.few)
         each = tuple(float(np.clip(value + score(one) - nominal, 0.0, top)) for one in self.drawn)
         ends, said = interval_of(each), conditions or self.said
-        return Predicted(experiment, quantity, "both", value, unit, *ends, self.variable, said, draws=each)
+        about = (experiment, quantity, "both", value, unit, *ends, self.variable, said)
+        return Predicted(*about, draws=each, baseline=score(self.baseline))
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +90,7 @@ class Shown:
     crowd: People
     played: tuple[ReceptorTemperatures, ...]
     seed: int
+    baseline: Array
 
     def identify(self, variable: Variable, draws: int) -> Identified:
         """Confusions of one variant from memory."""
@@ -107,7 +115,8 @@ class Shown:
                 return found
 
             kept = np.stack(list(in_order(drawn, range(draws))))
-        return Identified(variable, self.labels, whole, confusions(thin, nominal, few, FEW_SAMPLES), kept)
+        alone = confusions(thin, nominal, few, FEW_SAMPLES)
+        return Identified(variable, self.labels, whole, alone, kept, self.baseline)
 
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
@@ -117,15 +126,17 @@ def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
 
     members, crowd = list(icons), draw_people(people, seed)
     names = tuple(icon.name for icon in members)
-    end = run_end_s(duration_s(icon, rig) for icon in members)
+    durations = [duration_s(icon, rig) for icon in members]
+    end = run_end_s(durations)
     columns = [[receptor_column(variable, channel) for channel in CHANNELS] for variable in VARIABLES]
-    probes = [probe for pair in columns for probe in pair]
+    probes = [SKIN, *(probe for pair in columns for probe in pair)]
     batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
     played = tuple(
         ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2, names)
         for cold, warm in columns
     )
-    return Shown(names, crowd, played, seed)
+    rows = [round(each * RATE_HZ) + 1 for each in durations]
+    return Shown(names, crowd, played, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
 
 
 def correct(probability: Array) -> float:

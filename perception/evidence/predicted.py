@@ -1,26 +1,30 @@
-"""One predicted number with its uncertainty: parameters that nobody has measured, and people; and what goes with what.
+"""One predicted number with its uncertainty: parameters that nobody has measured, and people.
 
 Intervals come from laboratories that the evidence leaves possible, as `rank` draws them; experiments that no population
-was simulated for ask their observers alone. Unmeasured constants move several predictions at once: where what brings
-one nearer to its published number takes another away from its own, no choice of those constants can satisfy both.
+was simulated for ask one person of each.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import combinations
 
 import numpy as np
 
+from thermicon.circuit import Rig
+
 from ..arrays import Array
+from ..experiments.laboratory import PEOPLE, SEED, Laboratory
+from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
-from ..observer.channels import USUAL_NORM, Variable
+from ..observer.channels import CHANNELS, USUAL_NORM, Variable
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
+from ..observer.people import YOUNG_YEARS
+from .results import load_constants
 
 DRAWS = 24
 """Observers drawn for an interval: enough to see its size, not its second digit."""
@@ -34,7 +38,8 @@ class Predicted:
     was felt. `low`, `high` enclose 95 % of the observers that the assumed and calibrated intervals leave
     possible; `people` is the 16 to 84 % interval over virtual people at nominal parameters. `draws` has the
     answers of those observers (inf: not felt): the k-th is the same observer in every experiment of a
-    variant that was run with as many draws, so that two predictions can be plotted against each other.
+    variant that was run with as many draws, so that two predictions can be plotted against each other. `baseline` is
+    what skin temperature alone predicts (None: nothing).
     """
 
     experiment: str
@@ -48,6 +53,7 @@ class Predicted:
     conditions: str
     people: tuple[float, float] | None = None
     draws: tuple[float, ...] = ()
+    baseline: float | None = None
 
     def __repr__(self) -> str:
         value = "nothing felt" if self.value is None else f"{self.value:.3g} {self.unit}"
@@ -58,15 +64,55 @@ class Predicted:
         )
 
 
+NOBODY_DIFFERS = (
+    "cold sensitivity between people",
+    "warm sensitivity between people",
+    "criterion between people",
+    "decision time between people",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """An observer, with all constants by name, by which it is asked in a laboratory's tasks."""
+
+    observer: Observer
+    constants: Mapping[str, float]
+
+    def laboratory(
+        self, setting: Setting, *, people: int | None = None, seed: int = SEED, age_years: float = YOUNG_YEARS
+    ) -> Laboratory:
+        """A laboratory without an offset that asks this person alone, or `people` of an age, on the skin of a rig."""
+        known = dict(self.constants) | (dict.fromkeys(NOBODY_DIFFERS, 0.0) if people is None else {})
+        # The skin is the rig's own; age is an offset of sensitivity, in natural logarithms.
+        skin = Rig.load(setting.site_rig).skin
+        known |= {"effusivity of living skin": 1.0, "sensitivity between laboratories": 1.0}
+        known["softness of the limits"] = self.observer.cold.softness_K  # heat flow has none of its own
+        for channel, depth in zip(CHANNELS, (skin.cold_receptor_m, skin.warm_receptor_m), strict=True):
+            known[f"{channel} receptor depth"] = 1e3 * (depth - skin.layers[0].thickness_m)
+        lost = (self.constants[f"{channel} sensitivity lost per decade"] for channel in CHANNELS)
+        older = tuple(-each * (age_years - YOUNG_YEARS) / 10.0 for each in lost)
+        return setting.laboratory(known, older, self.observer.variable, people or PEOPLE, seed)
+
+
+def nominal_subject(variable: Variable) -> Subject:
+    """The observer at the maximum of the posterior."""
+    return Subject(Observer.load(variable=variable), {each.name: each.value for each in load_constants(variable)})
+
+
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What an experiment is asked for: quantity, channel, unit, conditions, and how an observer answers (inf: not)."""
+    """What an experiment is asked for: quantity, channel, unit, conditions, and how a subject answers (inf: not).
+
+    `baseline` is what skin temperature alone predicts.
+    """
 
     quantity: str
     channel: str
     unit: str
     conditions: str
-    answer: Callable[[Observer], float]
+    answer: Callable[[Subject], float]
+    baseline: float | None = None
 
 
 def predict(
@@ -77,15 +123,18 @@ def predict(
     seed: int = 0,
 ) -> tuple[Predicted, ...]:
     """Answers of the nominal observer, with the interval over `draws` plausible ones (0: none) of a seed."""
-    nominal = Observer.load(variable=variable)
-    others = plausible_observers(draws, seed, variable=variable) if draws else ()
+
+    def answers(subject: Subject) -> list[float]:
+        return [one.answer(subject) for one in asked]
+
+    nominal = answers(nominal_subject(variable))
+    others = list(in_order(answers, plausible_subjects(draws, seed, variable=variable) if draws else ()))
     made = []
-    for one in asked:
-        found, each = one.answer(nominal), tuple(in_order(one.answer, others))
-        value = float(found) if np.isfinite(found) else None
-        ends = interval_of(each)
-        about = (one.quantity, one.channel, value, one.unit, *ends, variable, one.conditions)
-        made.append(Predicted(experiment, *about, draws=each))
+    for place, one in enumerate(asked):
+        each = tuple(found[place] for found in others)
+        value = nominal[place] if np.isfinite(nominal[place]) else None
+        about = (one.quantity, one.channel, value, one.unit, *interval_of(each), variable, one.conditions)
+        made.append(Predicted(experiment, *about, draws=each, baseline=one.baseline))
     return tuple(made)
 
 
@@ -124,86 +173,8 @@ def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLabora
 
 
 @lru_cache(maxsize=8)
-def plausible_observers(n: int = 32, seed: int = 0, *, variable: Variable = "temperature") -> tuple[Observer, ...]:
-    """The observers of these laboratories; the same for the same seed.
-
-    >>> len(plausible_observers(2)), plausible_observers(2) == plausible_observers(2)
-    (2, True)
-    """
-    laboratories = plausible_laboratories(n, seed, variable)
-    return tuple(laboratories.at(place, 1)[0] for place in range(n))
-
-
-STRONG, RARE = 0.5, 0.001
-"""Least rank correlation that is called one, and probability below which few observers are fewer than by chance."""
-FEWEST = 8
-"""Draws below which no correlation is reported."""
-
-
-@dataclass(frozen=True, slots=True)
-class Answers:
-    """What every plausible observer answers to one row (inf: not felt), which of them satisfy it, and its label.
-
-    `away` is +1 where the nominal prediction is too high, −1 where it is too low, 0 where it holds.
-    """
-
-    label: str
-    each: tuple[float, ...]
-    holds: tuple[bool, ...]
-    away: int
-
-
-@dataclass(frozen=True, slots=True)
-class TradeOff:
-    """Two rows over the same observers: Spearman's correlation (None: one does not vary), shares that hold.
-
-    `share_both_by_chance` would satisfy both if the two had nothing to do with each other. `both_miss` is said of the
-    nominal predictions. `against` is True where both miss and what mends one worsens the other, False where it mends
-    both, and None where not both miss or the correlation is weak. `rarer_than_chance`: so few observers satisfy both
-    that chance alone would give as few or fewer with a probability below 0.001 (Fisher's exact test, one-sided).
-    """
-
-    first: str
-    second: str
-    correlation: float | None
-    share_first_holds: float
-    share_second_holds: float
-    share_both_hold: float
-    share_both_by_chance: float
-    both_miss: bool
-    against: bool | None
-    rarer_than_chance: bool
-
-
-def trade_offs(rows: Sequence[Answers]) -> tuple[TradeOff, ...]:
-    """Every pair of rows, in their order; nothing from fewer than eight observers."""
-    from scipy.stats import hypergeom
-
-    found = []
-    for first, second in combinations(rows, 2):
-        n = len(first.each)
-        if n < FEWEST:
-            continue
-        rho = correlation(first.each, second.each)
-        one, other = np.array(first.holds), np.array(second.holds)
-        a, b, both = float(one.mean()), float(other.mean()), float((one & other).mean())
-        missed = bool(first.away and second.away)
-        strong = missed and rho is not None and abs(rho) >= STRONG
-        against = first.away * second.away * (rho or 0.0) < 0.0 if strong else None
-        rarer = bool(hypergeom.cdf((one & other).sum(), n, one.sum(), other.sum()) < RARE)
-        found.append(TradeOff(first.label, second.label, rho, a, b, both, a * b, missed, against, rarer))
-    return tuple(found)
-
-
-def correlation(first: Sequence[float], second: Sequence[float]) -> float | None:
-    """Spearman's rank correlation; inf ranks last, None where one of the two does not vary.
-
-    >>> correlation((1.0, 2.0, 4.0), (10.0, 20.0, float("inf")))
-    1.0
-    """
-    from scipy.stats import rankdata
-
-    one, other = rankdata(first), rankdata(second)
-    if min(one.std(), other.std()) == 0.0:
-        return None
-    return round(float(np.corrcoef(one, other)[0, 1]), 12)
+def plausible_subjects(n: int = 32, seed: int = 0, *, variable: Variable = "temperature") -> tuple[Subject, ...]:
+    """The observers of these laboratories; the same for the same seed."""
+    drawn = plausible_laboratories(n, seed, variable)
+    constants = (dict(zip(drawn.names, values, strict=True)) for values in drawn.values.tolist())
+    return tuple(Subject(drawn.at(place, 1)[0], own) for place, own in enumerate(constants))

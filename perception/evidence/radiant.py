@@ -17,7 +17,8 @@ from ..arrays import Array
 from ..observer.channels import Variable
 from ..observer.observer import Observer, load_thresholds
 from ..sensation.sensation import receptor_drive, sensation
-from .predicted import DRAWS, Asked, Predicted, predict
+from .baseline import noticed_K
+from .predicted import DRAWS, Asked, Predicted, Subject, predict
 
 RADIANT_S, DT_S = 3.0, 0.01
 
@@ -96,17 +97,18 @@ def whole_body_warmth(
         f"thresholds {factor:.3g} times those of the thenar"
     )
     whole = f"{said}, summed over {body:g} m²"
+    skin = noticed_K("warm") / float(warmed.surface_K[-1])
     asked = [
-        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(_flux_felt, body)),
-        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(_flux_felt, None)),
+        Asked("flux just felt, full summation", "warm", "W/m²", whole, partial(_flux_felt, body), skin),
+        Asked("flux just felt, no summation", "warm", "W/m²", said, partial(_flux_felt, None), skin),
         Asked("rise of the surface per W/m²", "warm", "K m²/W", said, lambda _: float(warmed.surface_K[-1])),
     ]
     return predict("whole-body warmth", asked, variable, draws, seed)
 
 
-def _flux_felt(area_m2: float | None, observer: Observer) -> float:
+def _flux_felt(area_m2: float | None, subject: Subject) -> float:
     """Flux whose largest warm sensation is 1, by bisection of its logarithm."""
-    rig, warmed = _forearm()
+    (rig, warmed), observer = _forearm(), subject.observer
     rest, change = rig.skin.rest_C, warmed.warm_receptor_K
     if observer.variable == "heat flow":
         rest, change = rig.resting_flux_W_per_m2, warmed.warm_receptor_W_per_m2

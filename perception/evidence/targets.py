@@ -54,7 +54,10 @@ class Published:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One number of a target: the prediction it names, the rule and its numbers (`value`, `low`, `high`)."""
+    """One number of a target: the prediction it names, the rule and its numbers (`value`, `low`, `high`).
+
+    `compared`: whether the published number is of the same quantity, so that the nearer prediction is the better one.
+    """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
 
@@ -76,6 +79,7 @@ class Row:
     published_site: str = ""
     published_where: str = ""
     published_apply: str = ""
+    compared: bool = True
 
     def __post_init__(self) -> None:
         here = f"targets: {self.name!r}"

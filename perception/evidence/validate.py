@@ -7,7 +7,6 @@ suspected is a result.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -16,8 +15,9 @@ from thermicon.circuit.records import Table
 from ..identification.laboratory import DRAWS
 from ..observer.channels import VARIABLES, Variable
 from ..observer.observer import load_thresholds
+from .baseline import nearer_of
 from .conditioning import Conditioning, load_conditioning
-from .predicted import Answers, Predicted, TradeOff, interval_of, trade_offs
+from .predicted import Predicted, interval_of
 from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
 from .verdicts import Verdict, judge_row
 
@@ -59,6 +59,16 @@ class Line:
             return "neither"
         return f"neither, {'temperature' if warmth.miss < flow.miss else 'heat flow'} nearer"
 
+    @property
+    def baseline(self) -> float | None:
+        """What skin temperature alone predicts; None where it predicts nothing."""
+        return self.judged[0].predicted.baseline
+
+    @property
+    def nearer_to_published(self) -> str:
+        """Which of model (the default variant) and baseline is nearer, as `nearer_of` says."""
+        return nearer_of(self.row, self.judged[0].predicted.value, self.baseline, self.published)
+
 
 @dataclass(frozen=True, slots=True)
 class Section:
@@ -80,8 +90,6 @@ class ValidationReport:
         Arguments of the run.
     sections
         Targets with their verdicts.
-    trade_offs
-        Pairs of targets of every variant, in the order of VARIABLES.
     evidence
         Curves and answers behind the figures.
     conditioning
@@ -98,7 +106,6 @@ class ValidationReport:
     seed: int
     trials: int
     sections: tuple[Section, ...]
-    trade_offs: tuple[tuple[TradeOff, ...], ...]
     evidence: Evidence
     conditioning: Conditioning
 
@@ -106,6 +113,11 @@ class ValidationReport:
         """How many judged rows hold for a variant, of how many."""
         held = [line.judged[variant].verdict.holds for s in self.sections for line in s.lines if line.row.judged]
         return sum(one is True for one in held), len(held)
+
+    def nearer(self) -> dict[str, int]:
+        """How often model, baseline and both are nearest to a published result that was not fitted."""
+        lines = [line for s in self.sections for line in s.lines if not line.published.fitted]
+        return {who: sum(line.nearer_to_published == who for line in lines) for who in ("model", "baseline", "both")}
 
     def __repr__(self) -> str:
         said = ", ".join("{} {} of {}".format(variant, *self.counts(k)) for k, variant in enumerate(VARIABLES))
@@ -127,7 +139,7 @@ def validate(
     people
         Number of virtual people behind spreads between persons.
     draws
-        Number of plausible observers behind intervals and trade-offs; 0: none.
+        Number of plausible observers behind intervals; 0: none.
     seed
         Seed of people and observers.
     trials
@@ -173,42 +185,8 @@ def assemble(evidence: Evidence, table: Table, people: int, draws: int, seed: in
             was = published_for(row, table)
             lines.append(Line(row, was, tuple(judged(row, was, table, evidence, variant) for variant in VARIABLES)))
         sections.append(Section(target, tuple(lines)))
-    pairs = tuple(trade_offs(answers(sections, k)) for k in range(len(VARIABLES)))
     made_from = load_conditioning()
-    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), pairs, evidence, made_from)
-
-
-def answers(sections: Sequence[Section], variant: int) -> tuple[Answers, ...]:
-    """The judged rows of a variant over its draws; twice judged predictions count once."""
-    found: dict[tuple[str, str, str, str], Answers] = {}
-    for section in sections:
-        for line in section.lines:
-            one, row = line.judged[variant], line.row
-            if not row.judged or not one.predicted.draws:
-                continue
-            held = tuple(bool(judge_row(row, each, line.published).holds) for each in one.predicted.draws)
-            key = (row.experiment, row.quantity, row.channel, row.apply)
-            label = f"{section.target.number} {short(row)}"
-            found.setdefault(key, Answers(label, one.predicted.draws, held, one.verdict.way))
-    return tuple(found.values())
-
-
-SHORTER = {
-    "over that with any other icon, least of four groups": "",
-    "confusion of ": "",
-    "threshold at 0.02 K/s over that at 0.1": "raised at 0.02 K/s",
-    "threshold at 0.03 K/s over that at 0.1": "raised at 0.03 K/s",
-}
-"""Names of rows as they fit on axes."""
-
-
-def short(row: Row) -> str:
-    """A label for axes: name, without what follows a comma or bracket, and the channel."""
-    name = row.name.split(",")[0] if row.channel != "both" else row.name
-    for long, words in SHORTER.items():
-        name = name.replace(long, words)
-    name = name.partition(" (")[0].strip()
-    return f"{name}, {row.channel}" if row.channel in ("cold", "warm") else name
+    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence, made_from)
 
 
 def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:
@@ -239,7 +217,8 @@ def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
         for one, other in zip(cold.draws, warm.draws, strict=True)
     )
     low, high = interval_of(each)
-    return replace(cold, channel="both", value=value, low=low, high=high, people=None, draws=each)
+    skin = None if cold.baseline is None or warm.baseline is None else combined(row.apply, cold.baseline, warm.baseline)
+    return replace(cold, channel="both", value=value, low=low, high=high, people=None, draws=each, baseline=skin)
 
 
 def _linear(one: Predicted, times: float, plus: float) -> Predicted:
@@ -250,4 +229,5 @@ def _linear(one: Predicted, times: float, plus: float) -> Predicted:
 
     low, high = (moved(one.low), moved(one.high)) if times > 0.0 else (moved(one.high), moved(one.low))
     draws = tuple(times * each + plus if math.isfinite(each) else math.inf for each in one.draws)
-    return replace(one, value=moved(one.value), low=low, high=high, people=None, draws=draws)
+    about = (moved(one.value), one.unit, low, high, one.variable, one.conditions)
+    return Predicted(one.experiment, one.quantity, one.channel, *about, draws=draws, baseline=moved(one.baseline))

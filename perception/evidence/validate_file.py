@@ -27,10 +27,6 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
             }
             for section in report.sections
         ],
-        "trade_offs": [
-            {"variant": variant, "pairs": [asdict(trade) for trade in pairs]}
-            for variant, pairs in zip(VARIABLES, report.trade_offs, strict=True)
-        ],
         "confusions": [
             {
                 "set": name,
@@ -54,6 +50,8 @@ def _line(line: Line) -> dict[str, Any]:
         "published": asdict(line.published),
         "criterion": {"text": criterion_of_row(line.row, line.published), "source": line.row.source},
         "better": line.nearer or None,
+        "baseline": _finite(line.baseline),
+        "nearer_to_published": line.nearer_to_published or None,
         "predicted": [_judged(one) for one in line.judged],
     }
 

@@ -131,8 +131,13 @@ class Setting:
         return Laboratory({**constants, **own, **contact}, variable, people=people, seed=seed)
 
 
-def logs_of(laboratory: Laboratory, setting: Setting, condition: Condition) -> tuple[Array, float]:
-    """Log value of each person (people,), and the SD of the log of one trial (UNSTATED where there is none)."""
+def logs_of(
+    laboratory: Laboratory, setting: Setting, condition: Condition, sizes_K: Array = CHOICE_SIZES_K
+) -> tuple[Array, float]:
+    """Log value of each person (people,), and the SD of the log of one trial (UNSTATED where there is none).
+
+    Forced choice is played with changes of `sizes_K`, and its threshold lies between them, linear in logarithms.
+    """
     site, channel, limits = setting.path_site, condition.channel, condition.method == "limits"
     gain = laboratory.gain(channel, setting.area_cm2, OWN, site, YOUNG_YEARS)
 
@@ -143,11 +148,11 @@ def logs_of(laboratory: Laboratory, setting: Setting, condition: Condition) -> t
         ramps = [ramp(size, condition.hold_s) for size in YES_NO_SIZES_K.tolist()]
         return yes_no_logs(laboratory, ramps, gain)[0], UNSTATED
     if condition.method == "forced_choice":
-        peaks = [Played.of(laboratory, ramp(size, condition.hold_s)).peak for size in CHOICE_SIZES_K.tolist()]
+        peaks = [Played.of(laboratory, ramp(size, condition.hold_s)).peak for size in sizes_K.tolist()]
         logs = np.maximum.accumulate(np.log(peaks))
         rising = np.append(True, np.diff(logs) > 0.0)
         wanted = -np.log(gain * laboratory.sensitivity[channel])
-        return np.interp(wanted, logs[rising], np.log(CHOICE_SIZES_K)[rising]), UNSTATED
+        return np.interp(wanted, logs[rising], np.log(sizes_K)[rising]), UNSTATED
     assert condition.size_K is not None
     timed = condition.kind == "reaction_time"
     hold_s = 0.0 if limits else max(condition.hold_s, AFTER_S) if timed else condition.hold_s

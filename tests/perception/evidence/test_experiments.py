@@ -9,20 +9,19 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import Observer, draw_people
 from thermicon.perception.evidence.experiments import (
     first_and_return,
     limits,
+    measured,
     methods,
     peak_lead,
     rate_curve,
     reaction_times,
 )
-from thermicon.perception.evidence.predicted import Predicted
+from thermicon.perception.evidence.predicted import Predicted, Subject, nominal_subject
 from thermicon.perception.evidence.radiant import radiant_warming, whole_body_warmth
-from thermicon.perception.experiments.on_bench import method_of_limits
-from thermicon.perception.observer.channels import VARIABLES, Variable
-from thermicon.perception.sensation.bench import Bench
+from thermicon.perception.experiments.measure import Condition, Setting
+from thermicon.perception.observer.channels import CHANNELS, VARIABLES, Variable
 
 
 def by(found: tuple[Predicted, ...], quantity: str, channel: str) -> Predicted:
@@ -45,25 +44,20 @@ def test_a_rate_curve_is_thresholds_and_their_ratios() -> None:
         assert flat[2] == pytest.approx(threshold, rel=0.4)
         assert slow == pytest.approx(flat[2], rel=0.2)
         assert value(found, "threshold at 0.03 K/s over that at 0.1", channel) == pytest.approx(slow / flat[0])
+        assert by(found, "threshold at 0.03 K/s over that at 0.1", channel).baseline == 1.0
         change = value(found, "largest change over 0.1 to 0.3 K/s", channel)
         assert change == pytest.approx(max(flat) / min(flat) - 1.0)
 
 
-RIGS = {"hand": ("hand-dorsum", 9.0), "forearm": ("forearm", 10.0)}
-
-
-@pytest.mark.parametrize("site", RIGS)
+@pytest.mark.parametrize("site", ["hand", "forearm"])
 def test_limits_have_people_and_parameters_and_rise_with_age(site: str) -> None:
     cold, warm = limits(site, people=30, draws=4)
-    assert (cold.channel, warm.channel) == ("cold", "warm")
-    for one in (cold, warm):
+    assert [(one.channel, one.experiment) for one in (cold, warm)] == [(c, f"limits on the {site}") for c in CHANNELS]
+    for one, skin in ((cold, 0.11), (warm, 0.20)):
         assert one.value is not None and one.people is not None and one.low is not None and one.high is not None
         assert one.people[0] < one.value < one.people[1]
         assert one.low < one.high
-    bench = Bench(Rig.load(RIGS[site][0]).with_(**{"contact.area_cm2": RIGS[site][1]}), 32.0, "display")
-    each = method_of_limits(Observer.load(), bench, "cold", people=draw_people(30, 0))
-    assert (cold.people, cold.value) == (pytest.approx(tuple(np.quantile(each, [0.16, 0.84]))), np.median(each))
-    assert cold.experiment == f"limits on the {site}"
+        assert one.baseline == skin
     old = limits(site, people=30, age_years=70.0, draws=0)[0]
     assert (old.value or 0.0) > (cold.value or 0.0)
     assert "70 years" in old.conditions
@@ -71,7 +65,7 @@ def test_limits_have_people_and_parameters_and_rise_with_age(site: str) -> None:
 
 def test_reaction_times_fall_with_area_and_methods_rise() -> None:
     found = reaction_times(draws=0)
-    for channel in ("cold", "warm"):
+    for channel in CHANNELS:
         times = [value(found, f"reaction time at {area:g} cm²", channel) for area in (2.5, 5.0, 10.0)]
         assert times == sorted(times, reverse=True)
         # Areas are equally spaced in logarithm, so that a fitted slope is that of the ends.
@@ -80,9 +74,18 @@ def test_reaction_times_fall_with_area_and_methods_rise() -> None:
     warm, cold = (value(found, "reaction time at 10 cm²", channel) for channel in ("warm", "cold"))
     assert value(found, "warm over cold", "both") == pytest.approx(warm / cold)
     assert warm > cold
+    assert {one.baseline for one in found} == {None}
     three = [p.value or 0.0 for p in methods() if p.channel == "cold"]
     assert three == sorted(three)
     assert len(three) == 3
+
+
+def test_who_does_not_feel_the_largest_change_has_no_threshold() -> None:
+    person = nominal_subject("temperature")
+    deaf = Subject(person.observer, {**person.constants, "warm threshold drive": 1e4})
+    for method in ("forced_choice", "yes_no"):
+        asked = Condition("threshold", method, "warm", 32.0, None, 1.0, 3.0)
+        assert np.isinf(measured(Setting.of(Rig.load("thenar")), asked, deaf))
 
 
 @pytest.mark.parametrize("variable", VARIABLES)
@@ -97,11 +100,13 @@ def test_timing_and_warmth_run_on_every_variant(variable: Variable) -> None:
     assert 0.0 < value(found, display, "cold") - value(found, skin, "cold") < 0.5
     whole, none = (value(found, f"flux just felt, {how} summation", "warm") for how in ("full", "no"))
     assert whole < none
-    assert value(found, "rise of the surface per W/m²", "warm") == pytest.approx(0.0016, rel=0.1)
+    rise = value(found, "rise of the surface per W/m²", "warm")
+    assert by(found, "flux just felt, full summation", "warm").baseline == pytest.approx(0.20 / rise)
+    assert rise == pytest.approx(0.0016, rel=0.1)
 
 
 def test_the_same_draws_stand_behind_every_experiment() -> None:
-    """An observer with slower warm conduction is late in both: trade-offs can be read off pairs of draws."""
+    """An observer with slower warm conduction is late in both."""
     lag = by(peak_lead(draws=64), "felt peak minus the skin's", "warm")
     time = by(reaction_times(draws=64), "reaction time at 10 cm²", "warm")
     assert len(lag.draws) == len(time.draws) == 64

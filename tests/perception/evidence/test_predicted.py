@@ -1,4 +1,4 @@
-"""Observers that the evidence leaves possible, and which predictions no choice of them can mend together."""
+"""Observers that the evidence leaves possible, what they predict, and what skin temperature alone predicts."""
 
 import math
 
@@ -6,44 +6,33 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import Observer
-from thermicon.perception.evidence.predicted import (
-    Answers,
-    Asked,
-    correlation,
-    plausible_observers,
-    predict,
-    trade_offs,
-)
-from thermicon.perception.experiments.on_bench import forced_choice
+from thermicon.perception import confuse
+from thermicon.perception.evidence.baseline import SAMPLES, named_by_skin, nearer_of, noise_K, noticed_K
+from thermicon.perception.evidence.predicted import Asked, nominal_subject, plausible_subjects, predict
+from thermicon.perception.evidence.targets import Published, Row
+from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.sensation.bench import Bench
+from thermicon.perception.observer.people import People
 
 
 @pytest.mark.parametrize("variable", VARIABLES)
 def test_draws_are_those_of_the_posterior_and_fill_it(variable: Variable) -> None:
-    drawn = plausible_observers(16, variable=variable)
+    drawn = [subject.observer for subject in plausible_subjects(16, variable=variable)]
     assert {o.variable for o in drawn} == {variable}
     known = PosteriorDraws.load(variable=variable).values("noise correlation time")
     noise = np.array([o.noise_correlation_s for o in drawn])
+    assert noise.tolist() == [s.constants["noise correlation time"] for s in plausible_subjects(16, variable=variable)]
     assert set(noise.tolist()) <= set(known.tolist())
     assert 3 <= (noise < np.median(known)).sum() <= 13
     assert len({o.memory.timing for o in drawn}) == 16
 
 
-def test_every_draw_keeps_the_thresholds_near_the_shipped_ones() -> None:
-    bench = Bench(Rig.load("thenar"))
-    shipped = forced_choice(Observer.load(), bench, "cold")
-    found = [forced_choice(person, bench, "cold") for person in plausible_observers(8)]
-    assert 0.35 * shipped < min(found) < max(found) < 2.5 * shipped
-
-
 def test_the_seed_decides() -> None:
-    assert plausible_observers(4, seed=1) == plausible_observers(4, seed=1)
-    assert plausible_observers(4, seed=1) != plausible_observers(4, seed=2)
+    one, again, other = ([s.observer for s in plausible_subjects(4, seed=seed)] for seed in (1, 1, 2))
+    assert one == again != other
     with pytest.raises(ValueError, match=r"at least two observers are needed to show an interval, not 1"):
-        plausible_observers(1)
+        plausible_subjects(1)
 
 
 def test_what_is_not_felt_is_none() -> None:
@@ -52,49 +41,58 @@ def test_what_is_not_felt_is_none() -> None:
     assert repr(found[0]).startswith("Predicted(x, y, cold: nothing felt from temperature")
 
 
-UP = tuple(float(k) for k in range(20))
-DOWN = UP[::-1]
+def test_one_person_has_the_skin_of_the_rig_no_offset_and_no_scatter_of_people_but_that_of_age() -> None:
+    setting, limits = Setting.of(Rig.load("thenar")), Condition("threshold", "limits", "warm", 32.0, 12.0, 1.0, 0.0)
+    choice = Condition("threshold", "forced_choice", "warm", 32.0, None, 1.0, 3.0)
+    person = nominal_subject("temperature")
+    alone, old = (person.laboratory(setting, age_years=years) for years in (25.0, 65.0))
+    assert (alone.values["cold receptor depth"], alone.values["warm receptor depth"]) == pytest.approx((0.10, 0.21))
+    assert alone.values["effusivity of living skin"] == 1.0
+    young_logs, old_logs = (logs_of(each, setting, choice)[0] for each in (alone, old))
+    assert np.ptp(young_logs) == 0.0
+    lost = person.constants["warm sensitivity lost per decade"]
+    assert old_logs[0] - young_logs[0] == pytest.approx(4.0 * lost, rel=0.05)
+    many = logs_of(person.laboratory(setting, people=40), setting, limits)[0]
+    assert (many.size, many.std() > 0.2) == (40, True)
 
 
-def answers(label: str, each: tuple[float, ...], below: float, away: int) -> Answers:
-    return Answers(label, each, tuple(value < below for value in each), away)
+def test_the_baseline_does_the_rate_task_as_people_do() -> None:
+    """By courses that are written out; people say which of two ramps is 43 % faster in 75 to 84 % of trials."""
+    square = []
+    for span, wanted in ((span, wanted) for span in (2.0, 4.0) for wanted in (0.6744898, 0.9944579)):
+        time = np.linspace(0.0, span / 0.5, 100_001)
+        rms = math.sqrt(np.square(np.minimum(0.5 * 1.43 * time, span) - 0.5 * time).mean())
+        square.append((rms / (math.sqrt(2.0) * wanted)) ** 2)
+    assert noise_K() == pytest.approx(math.sqrt(np.mean(square)), rel=1e-4)
+    assert (noticed_K("cold"), noticed_K("warm")) == (0.11, 0.20)
+
+
+def test_the_baseline_names_icons_by_the_mean_square_until_the_longer_has_ended() -> None:
+    skin = np.zeros((2, 3, 1000))
+    skin[:, 1, :100], skin[:, 2, :400], skin[:, 1, 600:] = 1.0, -2.0, 50.0
+    apart = np.array([[0.0, 1.0, 2.0], [1.0, 0.0, math.sqrt((9.0 * 100 + 4.0 * 300) / 400)], [2.0, 0.0, 0.0]])
+    apart[2, 1] = apart[1, 2]
+    found = named_by_skin(skin, [100, 100, 400], People.nominal(2), seed=0)
+    again = confuse(np.stack([apart / noise_K()] * 2), lapse=People.nominal(2).lapse, samples=SAMPLES)
+    assert found == pytest.approx(again.probability)
+
+
+NUMBER, SPAN = Published("0.91", "us", unit="1", value=0.91), Published("0 to 0.12", "us", unit="1", low=0.0, high=0.12)
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "against", "rarer", "both_miss", "both_hold"),
+    ("rule", "published", "model", "baseline", "nearer"),
     [
-        (answers("a", UP, 10, 1), answers("b", DOWN, 10, 1), True, True, True, 0.0),
-        (answers("a", UP, 10, 1), answers("b", UP, 5, 1), False, False, True, 0.25),
-        (answers("a", UP, 10, 0), answers("b", UP, 5, 1), None, False, False, 0.25),
-        # By chance none holds in C(18, 2) of C(20, 2) cases.
-        (answers("a", UP, 2, 1), answers("b", DOWN, 2, 1), True, False, True, 0.0),
-        (answers("a", UP, 8, 1), answers("b", DOWN, 8, 1), True, False, True, 0.0),
-        (answers("a", UP, 9, 1), answers("b", DOWN, 9, 1), True, True, True, 0.0),
+        ("shown", NUMBER, 0.93, 0.87, "model"),
+        ("shown", NUMBER, None, 0.87, "baseline"),
+        ("shown", NUMBER, 0.93, None, ""),
+        ("published range", SPAN, 0.2, 0.13, "baseline"),
+        ("published range", SPAN, 0.03, 0.0, "both"),
+        ("at least", Published("hard", "us"), 1.3, 4.7, "baseline"),
+        ("above", Published("raised", "us"), 1.04, 1.0, "model"),
+        ("shown", Published("hard", "us"), 1.0, 4.7, ""),
     ],
 )
-def test_two_rows_are_mended_together_or_against_each_other(
-    first: Answers, second: Answers, against: bool | None, rarer: bool, both_miss: bool, both_hold: float
-) -> None:
-    (found,) = trade_offs([first, second])
-    shares = found.share_first_holds, found.share_second_holds
-    assert shares == (np.mean(first.holds), np.mean(second.holds))
-    assert found.share_both_by_chance == pytest.approx(shares[0] * shares[1])
-    assert found.share_both_hold == both_hold
-    assert (found.against, found.rarer_than_chance, found.both_miss) == (against, rarer, both_miss)
-    assert abs(found.correlation or 0.0) == 1.0
-
-
-def test_ranks_share_ties_and_few_draws_tell_nothing() -> None:
-    assert correlation((1.0, 1.0, 2.0), (3.0, 3.0, math.inf)) == 1.0
-    assert correlation((1.0, 1.0), (1.0, 2.0)) is None
-    assert correlation((1.0, 2.0, 3.0, 4.0), (1.0, 3.0, 2.0, 4.0)) == pytest.approx(0.8)
-    assert trade_offs([answers("a", UP[:7], 3, 1), answers("b", UP[:7], 3, 1)]) == ()
-    for correlated, against in ((0.48, None), (0.52, False)):
-        # Two numbers in exchange for each other leave the rest in order.
-        swapped = min(
-            (tuple(UP[:k]) + tuple(DOWN[: 20 - k]) for k in range(20)),
-            key=lambda each: abs((correlation(UP, each) or 0.0) - correlated),
-        )
-        found = trade_offs([answers("a", UP, 3, 1), answers("b", swapped, 3, 1)])[0]
-        assert abs((found.correlation or 0.0) - correlated) < 0.2
-        assert (found.against is None) == (abs(found.correlation or 0.0) < 0.5) == (against is None)
+def test_which_is_nearer(rule: str, published: Published, model: float, baseline: float, nearer: str) -> None:
+    row = Row("x", "both", "1", "x", "y", rule, "us", value=1.0 if rule == "above" else 2.0, published="x")
+    assert nearer_of(row, model, baseline, published) == nearer

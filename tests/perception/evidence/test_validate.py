@@ -15,7 +15,7 @@ from thermicon.icons import load_library
 from thermicon.perception import rank
 from thermicon.perception.evidence.identified import GROUPS, SHAPES, WAVES, wave_name
 from thermicon.perception.evidence.targets import load_targets, published_for
-from thermicon.perception.evidence.validate import ValidationReport, answers, assemble, judged, validate
+from thermicon.perception.evidence.validate import ValidationReport, assemble, judged, validate
 from thermicon.perception.evidence.validate_file import report_file
 from thermicon.perception.identification.measures import proportion_correct
 from thermicon.perception.observer.channels import VARIABLES
@@ -110,13 +110,6 @@ def test_which_does_better(report: ValidationReport) -> None:
     assert replace(line, judged=(holds, far)).nearer == "temperature"
     assert replace(line, judged=(far, holds)).nearer == "heat flow"
     assert replace(line, judged=(holds, holds)).nearer == "both"
-
-
-def test_shares_of_draws_and_trade_offs(report: ValidationReport) -> None:
-    own = answers(report.sections, 0)
-    assert len({one.label for one in own}) == len(own)
-    assert all(len(one.each) == 8 for one in own)
-    assert len(report.trade_offs[0]) == len(own) * (len(own) - 1) // 2
 
 
 def test_the_waves_of_a_group_differ_in_shape_alone() -> None:

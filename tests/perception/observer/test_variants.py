@@ -7,7 +7,6 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.perception import Observer, perceive
-from thermicon.perception.experiments.on_bench import forced_choice
 from thermicon.perception.observer.channels import VARIABLES, Variable, check_variable
 from thermicon.perception.observer.observer import TURNED_OFF, Receptor
 from thermicon.perception.sensation.bench import Bench, ramp
@@ -24,7 +23,8 @@ def test_every_variant_loads_and_is_near_the_thresholds_it_was_inferred_from(var
     assert [percept.channel for percept in felt] == ["cold", "warm"]
     bench = Bench(rig)
     for channel, published in (("cold", 0.11), ("warm", 0.20)):
-        assert 0.5 * published < forced_choice(person, bench, channel) < 2.0 * published
+        half, twice = (bench.play([ramp(channel, share * published, 1.0)], 4.0) for share in (0.5, 2.0))
+        assert max(psi.max() for psi in half.felt(person)) < 1.0 < max(psi.max() for psi in twice.felt(person))
 
 
 @pytest.mark.parametrize("name", TURNED_OFF)
