@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from thermicon.notebooks.study import orders
 from thermicon.notebooks.study.orders import first_order_counts, orders_of, williams_rows
 
 
@@ -50,6 +51,13 @@ def test_balanced_orders_are_more_even_than_random_ones() -> None:
 
     assert spread("balanced") <= 2
     assert spread("random") >= 5
+
+
+def test_of_twelve_orders_the_most_balanced_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    uneven, better, best = [0, 1, 0, 1, 0, 1], [0, 1, 0, 1, 2, 0], [0, 1, 2, 0, 2, 1]
+    drawn = iter([*[uneven] * 11, better, best])
+    monkeypatch.setattr(orders, "_drawn", lambda *_, **__: next(drawn))
+    assert orders_of("balanced", 3, 2, 1, 1, seed=0) == ((tuple(better),),)
 
 
 def test_shuffled_orders_have_repeats_and_whole_blocks() -> None:
