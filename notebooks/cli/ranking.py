@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from json import dumps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -37,6 +37,7 @@ from .options import (
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking, Task
+    from thermicon.perception.observer.observer_model import ObserverModel
 
 TRIALS, MOST_WORKERS = 48, 1024
 TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s"), "context": (0.0, 1.0, ""), "bias": (0.0, 5.0, "")}
@@ -64,6 +65,25 @@ class SetFigureOptions(FigureOptions):
         """The file of the one figure of the set, where one was asked for: a name with an ending."""
         single = self.figure is not None and self.figure.suffix and not self.figure.is_dir()
         return self.figure if single else None
+
+
+@dataclass(frozen=True)
+class RankedBy(CrowdOptions):
+    """Virtual people with a form of memory, or the rules of the literature, which have no draws."""
+
+    norm: Annotated[
+        Literal["episodes", "naming", "rules"],
+        typer.Option("--norm", "--by", help="How icons are remembered; rules: by the literature's rules, not people."),
+    ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """Arguments of `rank`."""
+        return {**super().asked, "norm": "episodes", "by": "rules"} if self.norm == "rules" else super().asked
+
+    def draws(self, model: ObserverModel) -> int:
+        """How many draws to use."""
+        return 0 if self.norm == "rules" else super().draws(model)
 
 
 @dataclass(frozen=True)
@@ -116,7 +136,7 @@ def _read_task(text: str) -> tuple[str, float]:
 
 def rank_command(
     files: FileNames,
-    crowd: CrowdOptions,
+    crowd: RankedBy,
     task: TaskOptions,
     rig: RigOptions,
     figure: SetFigureOptions,
@@ -157,6 +177,8 @@ def rank_command(
         for option, value in {**given, "--tracking": crowd.tracking}.items():
             if value:
                 raise usage("belongs to a ranking; leave it out, or --doubt", option)
+        if crowd.norm == "rules":
+            raise usage("is about predictions for people: leave out --by rules", "--doubt")
         doubt_about(files, crowd, rig, figure, json)
         return
     icons = read_set(files)
@@ -173,7 +195,9 @@ def rank_command(
     draws = crowd.draws(model)
     _say_if_first()
     asked = {**crowd.asked, "trials": task.trials, "task": task.load(), "observer": model}
-    found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
+    ruled = crowd.norm == "rules"
+    edits: Literal["none", "worst"] = "none" if ruled else "worst"
+    found = report_of(icons, where, draws, edits=edits, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
     if figure.figure is not None:
@@ -189,8 +213,8 @@ def rank_command(
     if json == STDOUT:
         typer.echo(found.to_json())
     else:
-        following = _following(found.ranking, icons, files, rig, crowd)
-        show(rank_report(found, icons.title, near, following, details), None if details else MOST_LINES)
+        following = "" if ruled else _following(found.ranking, icons, files, rig, crowd)
+        show(rank_report(found, icons.title, near, following, details), None if details or ruled else MOST_LINES)
 
 
 def doubt_about(

@@ -62,8 +62,11 @@ def report(
     """
     result = made.to_dict(mapped=False)  # the map is drawn, not printed
     title, count = icons.title or "Thermal icons", len(result["icons"])
+    if result["by"] == "rules":
+        parts = rank_report(made, title)
+        return as_markdown(parts) if as_text else as_html(parts, f"{title}: by rules")
     lead = f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon"
-    parts: list[Block] = [
+    parts = [
         Heading(title, 1),
         Text(f"{lead}: a model's, not measured", "lead"),
         *(Text(f"warning: {line}", "warn") for line in result["warnings"]),

@@ -54,6 +54,8 @@ def rank_report(
     ``details``, all but the first note, the reasons and what the numbers depend on are left out.
     """
     result = made.to_dict(mapped=False)  # the map is drawn, not printed
+    if result["by"] == "rules":
+        return rules_blocks(made.ranking, title)
     place = {row["icon"]: k for k, row in enumerate(made.ranking.rows())}
     icons = sorted(result["icons"], key=lambda icon: place[icon["name"]])
     notes = [*trouble_lines(result["icons"], cures or {}), *outside_lines(icons)]
@@ -77,6 +79,36 @@ def rank_report(
         icon_table(icons, result),
         *(detail_blocks(result) if details else []),
         Text(caveat(result) if details else f"{short} More: {'rank ' * (not following)}--details"),
+    ]
+
+
+def rules_blocks(ranking: Ranking, title: str) -> list[Block]:
+    """Report a set by rules alone: one row per icon, the best first, and what each rule found."""
+    numbers = ("score", "rules passed", "distinct pairs", "margin")
+    rows = [
+        (
+            row["icon"],
+            percent(row["rules_score"]),
+            f"{row['rules_passed']} of {row['rules']}",
+            f"{row['pairs_distinguishable_by_rules']} of {len(ranking.icons) - 1}",
+            "–" if row["rules_margin"] is None else f"{1.0 + row['rules_margin']:.3g} ×",
+        )
+        for row in ranking.rows()
+    ]
+    points = [f"{icon.name}: {rule.text}" for icon in ranking.icons for rule in icon.rules if not rule.from_model]
+    points += [rule.text for rule in ranking.rules]
+    worst = [pair for pair in ranking.pairs if (pair.a, pair.b) == ranking.worst_pair]
+    points += [f"worst pair, {pair.a} and {pair.b}: {rule.text}" for pair in worst for rule in pair.rules]
+    apart = sum(pair.rules_pass for pair in ranking.pairs)
+    return [
+        *([Heading(title, 1)] if title else []),
+        grid(("icon", *numbers), rows, numbers, ("icon", *numbers)),
+        Text(f"{apart} of {count_of(len(ranking.pairs), 'pair')} distinguishable by the rules:"),
+        Bullets(tuple(points)),
+        Text(
+            "Scored by rules of thumb alone: the share of rules passed, equally weighted, then the smallest margin as "
+            "a multiple of its threshold. Rules on latency and felt peak need the model and are not counted."
+        ),
     ]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -205,6 +206,17 @@ def test_workers_change_no_byte(cli: Cli, two: Path, tmp_path: Path) -> None:
         said = cli("rank", two, "--people", 5, "--intervals", 0, "--json", outs[-1], *extra)
         assert said.exit_code == 0, said.stderr
     assert len({out.read_bytes() for out in outs}) == 1
+
+
+def test_a_set_is_ranked_by_rules_alone(cli: Cli, tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    said = cli("rank", "six-icons", "--by", "rules", "--report", page)
+    assert said.exit_code == 0, said.stderr
+    words = " ".join(said.stdout.split())
+    assert "15 of 15 pairs distinguishable by the rules" in words
+    assert re.search(r"cooling-step: rate of change \(ROC\) at the receptor \(cold\): \S+ K/s against at least", words)
+    assert "correct" not in words
+    assert "rate of change (ROC)" in page.read_text(encoding="utf-8")
 
 
 def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:
