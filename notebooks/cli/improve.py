@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal
-    from thermicon.perception.selection.reach import Advice
     from thermicon.perception.selection.search import SearchResult
 
     from ..report.blocks import Block
@@ -83,9 +82,8 @@ def improve_command(
     """Improve a set of icons: edit pairs, choose the best icons, or search the families of a set.
 
     Families are searched over their continuous parameters, unless --choose, --up-to or --edits without --evaluations
-    asks for icons as they are; all other icons stay. Totals, numbers and single icons that a goal asks for are kept,
-    and where a search misses it, changes of the rig are tried. What is found is the best for the model: test it with
-    people.
+    asks for icons as they are; all other icons stay. Totals, numbers and single icons that a goal asks for are kept.
+    What is found is the best for the model: test it with people.
     """
     from thermicon.icons import Family, IconSet
     from thermicon.perception import Goal
@@ -136,7 +134,7 @@ def improve_command(
             )
         for path in outputs:
             write_text(str(found.found), path)
-        told = [] if STDOUT in outputs else beside_start(found, icons, where, must, how)
+        told = [] if STDOUT in outputs else beside_start(found, icons, where, how)
     else:
         made = chosen(icons, where, choose, what, must, edits, how)
         for path in outputs:
@@ -177,14 +175,11 @@ def chosen(
     )
 
 
-def beside_start(
-    found: SearchResult, icons: IconSet, rig: Rig, must: Sequence[str] | None, how: dict[str, Any]
-) -> list[Block]:
-    """Rank the found set and its start as the search did; try what would help where the found one misses the goal."""
+def beside_start(found: SearchResult, icons: IconSet, rig: Rig, how: dict[str, Any]) -> list[Block]:
+    """Rank the found set and its start as the search did, and judge both by the goal."""
     from thermicon.icons import IconSet
     from thermicon.perception import rank
     from thermicon.perception.selection.goal_result import judge_goal
-    from thermicon.perception.selection.reach import what_would_help
 
     start = IconSet(icons.name, icons.title, icons.context, icons.metadata, found.start)
     goal, asked = how["goal"], {name: value for name, value in how.items() if name != "goal"}
@@ -193,10 +188,4 @@ def beside_start(
     with progress_bar("ranking") as bar:
         rankings = [rank(each, rig, **asked, progress=bar) for each in (start, found.found)]
     before, after = (SetReport(each, goal=None if goal is None else judge_goal(goal, each)) for each in rankings)
-    advice: Advice | None = None
-    if after.goal is not None and not after.goal.met:
-        like = {name: how[name] for name in ("seed", "tracking", "norm", "observer")}
-        like |= {"objective": found.objective, "count": len(found.found), "must": must}
-        with progress_bar("trying changes") as bar:
-            advice = what_would_help(icons, rig, after.goal.goal, found.found, step=bar, **like)
-    return search_report(found, before, after, advice, icons.title)
+    return search_report(found, before, after, icons.title)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
@@ -14,16 +14,13 @@ from .rank_report import BARELY
 
 if TYPE_CHECKING:
     from thermicon.perception.selection.frontier import Frontier, FrontierPoint
-    from thermicon.perception.selection.reach import Advice, Trial
     from thermicon.perception.selection.search import SearchResult
 
     from .set_report import SetReport
 
-MOST_EXCLUDED, MOST_TRIALS = 3, 3
+MOST_EXCLUDED = 3
 REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.evaluator`, repeated here to avoid its imports."""
-LEAST_AGAIN = 0.01
-"""Share of what is wanted, below which a second search is not worth a sentence."""
 
 
 def frontier_report(found: Frontier, title: str) -> list[Block]:
@@ -100,9 +97,7 @@ def _reached(found: Frontier) -> str:
     return "What 95 % of people reach is about people alone, at the nominal constants: milder than in a goal."
 
 
-def search_report(
-    found: SearchResult, before: SetReport, after: SetReport, advice: Advice | None, title: str
-) -> list[Block]:
+def search_report(found: SearchResult, before: SetReport, after: SetReport, title: str) -> list[Block]:
     """Report the found set, its scores next to those of the initial set, the goal, and the caveat."""
     ranking, icons = after.ranking, found.found
     tried = [f"{icon.name}: {icon.metadata.tags[-1]}" for icon in icons if "found by search" in icon.metadata.tags]
@@ -111,7 +106,7 @@ def search_report(
     goal: list[Block] = []
     if after.goal is not None:
         goal.append(Text("\n".join(goal_lines(after.goal.to_dict()))))
-        goal += [] if after.goal.met else advice_blocks(advice)
+        goal += [] if after.goal.met else [Text("Not reached by this search: try more --evaluations, or another rig.")]
     climbed = f", in the last climb {found.climbed_by}" if found.climbed_by else ""
     return [
         *([Heading(title, 1)] if title else []),
@@ -163,44 +158,3 @@ def _remarks(found: SearchResult, after: SetReport) -> Iterator[str]:
     for icon in icons:
         if icon["detected_probability"] < BARELY:
             yield f"{icon['name']} is detected in {percent(icon['detected_probability'])} of trials only"
-
-
-def advice_blocks(advice: Advice | None) -> list[Block]:
-    """Which changes bring a goal nearer that this search did not reach, and which were tried in vain.
-
-    >>> advice_blocks(None)[0].text
-    'Not reached by this search, and no change could be tried.'
-    """
-    if advice is None or not advice.trials:
-        return [Text("Not reached by this search, and no change could be tried.")]
-
-    def named(trials: Sequence[Trial]) -> list[str]:
-        return [f"{trial.words} ({trial.change})" for trial in trials]
-
-    helpful, more = advice.helpful[:MOST_TRIALS], named(advice.helpful[MOST_TRIALS:])
-    if helpful:
-        head = (
-            f"Not reached by this search. What would bring it nearer, for {REFINING_PEOPLE} people, each against the "
-            "best set of the rig as it is:"
-        )
-        points = [f"{said}: {_nearer(trial, advice)}" for said, trial in zip(named(helpful), helpful, strict=True)]
-        points += [f"nearer by less: {'; '.join(more)}"] * bool(more)
-        points += [f"tried and no nearer: {'; '.join(named(advice.idle))}"] * bool(advice.idle)
-    else:
-        head, points = "Not reached by this search. None of the changes tried brings it nearer:", named(advice.idle)
-    if advice.again > LEAST_AGAIN:
-        points.append(
-            f"searching again alone came nearer by {100.0 * advice.again:.0f} % of what is wanted: give more "
-            "--evaluations, or another --seed"
-        )
-    return [Text(head), Bullets(tuple(points))]
-
-
-def _nearer(trial: Trial, advice: Advice) -> str:
-    """The part that misses most without the change, before and with it."""
-    from thermicon.perception.selection.reach import missing
-
-    place = max(range(len(advice.baseline.parts)), key=lambda k: missing(advice.baseline.parts[k]))
-    before, after = (goal_value(each.parts[place].to_dict())[0] for each in (advice.baseline, trial.result))
-    met = ", and the goal is met" if trial.met else ""
-    return f"{advice.baseline.parts[place].part.text}: {before} → {after}{met}"
