@@ -100,7 +100,7 @@ def simulate_command(
     rate: Annotated[float, opt("HZ", "Samples per second.", 1e-3, 1e6)] = 100.0,
     tail: Annotated[
         float | None,
-        opt("S", "Seconds simulated after the last corner.  [default: 0; 10 in figures]", 0.0, LONGEST_TAIL_S),
+        opt("S", "Seconds simulated after the last corner.  [default: 0; 5 in figures]", 0.0, LONGEST_TAIL_S),
     ] = None,
 ) -> None:
     """Simulate icons: the current that plays them, and temperatures and heat flow down to the receptors.
@@ -159,7 +159,7 @@ def simulate_file(
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes, figure.look, settled=tail_s is None)
+        draw_overview(played, picture, rig.changes, figure.look)
     near = [
         None if trace.reachable else nearest_reachable(each, rig) for each, trace in zip(icons, traces, strict=True)
     ]

@@ -24,10 +24,8 @@ if TYPE_CHECKING:
 
     from ..timeline.scene import Drawing, Scene
 
-FELT_TAIL_S = 10.0
-"""How long an overview follows sensation after the last corner at most, unless a tail is given."""
-STILL = 0.1
-"""What stays within 10 % of its panel's range of its end has come to rest."""
+FELT_TAIL_S = 5.0
+"""How long an overview follows sensation after the last corner, unless a tail is given."""
 WIDEST, MOST_LINES = 110, 6
 """Letters of a line, and lines, of what the figure of a scene says."""
 CHANNELS = {"cold": COOL, "warm": WARM}
@@ -96,7 +94,7 @@ def _heat_flow(trace: Trace, ax: Axes) -> None:
         return
     for name, (color, dashes, width) in list(PLACES.items())[1:]:
         flow = getattr(trace, f"heat_flow_{name.replace(' ', '_')}_W_per_m2") / 1e3
-        ax.plot(t, flow, color=color, lw=width, ls=dashes, label="skin surface" if name == "skin" else name)
+        ax.plot(t, flow, color=color, lw=width, ls=dashes, label=name)
     ax.set_ylabel("heat flow\ninto skin (kW/m²)")
 
 
@@ -126,40 +124,13 @@ def draw_overview(
     picture: Path,
     rig_changes: Sequence[str] = (),
     look: Look = SCREEN,
-    *,
-    settled: bool = False,
 ) -> None:
-    """Write the overview figure of one trace, its percept included where there is skin.
-
-    `settled`: the time axis ends when everything has come to rest, rather than with the trace.
-    """
+    """Write the overview figure of one trace, its percept included where there is skin."""
     from thermicon.perception import perceive
 
     trace = evenly_timed(trace)
     figure = overview(trace, None if trace.site in LOAD_SITES else perceive(trace), rig_changes)
-    if settled:
-        end_when_settled(figure)
     write_figure(figure, picture, look)
-
-
-def end_when_settled(figure: Figure) -> None:
-    """End the time axis soon after the last line has come within 10 % of its panel's range of its end."""
-    ends = [0.0]
-    for ax in figure.axes:
-        courses = [numpy.asarray(line.get_ydata(), dtype=float) for line in ax.lines]
-        most = max([1e-9, *(float(numpy.nanmax(y) - numpy.nanmin(y)) for y in courses if numpy.isfinite(y).sum() > 2)])
-        for line in ax.lines:
-            time, values = (numpy.asarray(each, dtype=float) for each in line.get_data())
-            there = numpy.isfinite(values)
-            if there.sum() < 3:
-                ends.append(float(time.max()) if time.size and line.get_linestyle() == ":" else 0.0)
-                continue
-            time, values = time[there], values[there]
-            moving = numpy.flatnonzero(numpy.abs(values - values[-1]) > STILL * most)
-            ends.append(float(time[moving[-1]]) if moving.size else 0.0)
-    low, high = figure.axes[-1].get_xlim()
-    if max(ends) > 0.0:
-        figure.axes[-1].set_xlim(low, min(high, 1.05 * max(ends)))
 
 
 def evenly_timed(trace: Trace) -> Trace:

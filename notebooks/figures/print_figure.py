@@ -20,9 +20,7 @@ from thermicon.icons.atomic import complete_or_absent
 from .style import MM, NARROW_MM, SCREEN, Look
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.legend import Legend
 
 DPI, PAPER_DPI = 130, 300
 COLORBAR = "<colorbar>"
@@ -36,8 +34,8 @@ THINNER = 0.75
 IN_BRACKETS = re.compile(r"\s*\([^()]*\)$")
 WIDEST_LABEL, WIDEST_BAR_LABEL = 0.85, 0.7
 """Share of the figure's width that a label of the abscissa, or those of all colour bars, may take in one line."""
-LONGEST_KEY = 30
-"""Letters of a line in the key below the panels."""
+LONGEST_KEY, KEY_PT, MOST_COLUMNS = 30, 9.0, 4
+"""Letters of a line in the key below the panels, their size on a screen, and columns at most."""
 EMBEDDED: Mapping[str, Any] = {
     "pdf.fonttype": 42, "ps.fonttype": 42, "svg.fonttype": "path", "svg.hashsalt": "thermicon",
 }  # fmt: skip
@@ -69,8 +67,8 @@ def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
         figure.savefig(draft, format=kind, dpi=dpi, metadata=UNDATED[kind])
 
 
-def small_png(figure: Figure) -> bytes:
-    """Draw a figure as PNG with a palette of its own, cut to what is drawn.
+def small_png(figure: Figure, dpi: float | None = None) -> bytes:
+    """Draw a figure as PNG with a palette of its own, cut to what is drawn; without `dpi` as a notebook shows it.
 
     >>> from matplotlib.figure import Figure
     >>> small_png(Figure(figsize=(1, 1)))[1:4]
@@ -79,8 +77,8 @@ def small_png(figure: Figure) -> bytes:
     from PIL import Image
 
     drawn, small = io.BytesIO(), io.BytesIO()
-    dpi = min(figure.dpi, WIDEST_PX / figure.get_figwidth())
-    figure.savefig(drawn, format="png", dpi=dpi, bbox_inches="tight", facecolor="white")
+    usual = min(figure.dpi, WIDEST_PX / figure.get_figwidth())
+    figure.savefig(drawn, format="png", dpi=dpi or usual, bbox_inches="tight", facecolor="white")
     Image.open(drawn).convert("RGB").quantize(COLOURS, dither=Image.Dither.NONE).save(small, "PNG", optimize=True)
     return small.getvalue()
 
@@ -123,15 +121,11 @@ def restyle(figure: Figure, width_mm: float) -> None:
     ratio = min(1.0, width_mm / (float(figure.get_figwidth()) * MM_PER_INCH))
     even = any(ax.get_aspect() != "auto" for ax in figure.axes)
     tall = ratio if even else ratio**HEIGHT_POWER
-    key_inches = _key_inches(figure)
-    if width_mm < NARROW_MM:
-        _keys_below(figure)
-    height = float(figure.get_figheight()) * tall
+    height, key_inches = float(figure.get_figheight()) * tall, _key_inches(figure)
     figure.set_size_inches(width_mm / MM_PER_INCH, height)
     _resize(figure)
     _break_labels(figure)
-    for legend in list(figure.legends):
-        _fit(figure, legend)
+    _fit_keys(figure, gathered=width_mm < NARROW_MM)
     if key_inches:  # panels keep their height, whatever the key needs
         figure.set_figheight(height + _key_inches(figure) - tall * key_inches)
 
@@ -141,27 +135,16 @@ def _letter_panels(figure: Figure) -> None:
 
     Titles of several panels stay, since they say what each shows, without what is in brackets.
     """
-    held: Any = figure
     if figure.get_suptitle():
-        held._suptitle.set_in_layout(False)
-        held._suptitle.set_visible(False)
-        held._suptitle.set_text("")
-
-    def place(ax: Axes) -> tuple[int, int]:
-        spec = ax.get_subplotspec()
-        return (0, 0) if spec is None else (spec.rowspan.start, spec.colspan.start)
-
-    shown = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
-    panels: list[Any] = sorted(shown, key=place)
+        figure.suptitle("").set_in_layout(False)
+    panels = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
     for panel, letter in zip(panels, ascii_lowercase, strict=False):
-        titles = {loc: IN_BRACKETS.sub("", panel.get_title(loc=loc)) for loc in ("left", "center", "right")}
-        for loc, title in titles.items():
-            panel.set_title("" if len(panels) == 1 else title, loc=loc)
-        named = next((loc for loc in ("left", "center") if titles[loc]), "")
-        if len(panels) > 1 and named:
-            panel.set_title(rf"$\mathbf{{{letter}}}$  {titles[named]}", loc=named)
-        elif len(panels) > 1:
-            panel.set_title(letter, loc="left", fontweight="bold")
+        titles = {loc: IN_BRACKETS.sub("", panel.get_title(loc=loc)) for loc in ("left", "center")}
+        named = next((loc for loc, title in titles.items() if title and len(panels) > 1), "left")
+        lettered = rf"$\mathbf{{{letter}}}$  {titles[named]}" if titles[named] else letter
+        for loc in titles:
+            said = lettered if loc == named and len(panels) > 1 else ""
+            panel.set_title(said, loc=loc, fontweight="normal" if titles[named] else "bold")
 
 
 def _renderer(figure: Figure) -> Any:
@@ -224,42 +207,30 @@ def _printed_pt(size: float) -> float:
     return min(max(size * TYPE_PT / 10.0, SMALLEST_PT), LARGEST_PT)
 
 
-def _keys_below(figure: Figure) -> None:
-    """Gather the keys that stand beside the panels into one below them; what several name alike stands once."""
-    entries: dict[tuple[str, str, str], tuple[Any, str]] = {}
-    for ax in figure.axes:
+def _fit_keys(figure: Figure, gathered: bool) -> None:
+    """Lay out keys in as many columns as the width has room for; `gathered`: those beside panels become one below."""
+    keys: list[tuple[str, list[Any], list[str]]] = []
+    for legend in list(figure.legends):
+        side = cast("Any", legend)._outside_loc or "upper"
+        keys.append((side, list(legend.legend_handles), [text.get_text() for text in legend.get_texts()]))
+        legend.remove()
+    entries: dict[str, Any] = {}  # what several panels name alike stands once
+    for ax in figure.axes if gathered else ():
         legend = ax.get_legend()
-        if legend is None or legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 <= 1.0:
-            continue
-        for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
-            thing: Any = handle
-            label = textwrap.fill(" ".join(text.get_text().split()), LONGEST_KEY)
-            colour = thing.get_color() if hasattr(thing, "get_color") else thing.get_facecolor()
-            dashes = thing.get_linestyle() if hasattr(thing, "get_linestyle") else ""
-            entries.setdefault((label, str(colour), str(dashes)), (thing, label))
-        legend.remove()
-    for label, colour, dashes in list(entries):
-        # cold and cold receptor, skin and skin surface: one line, one entry
-        if any(other[0].startswith(f"{label} ") and other[1:] == (colour, dashes) for other in entries):
-            del entries[label, colour, dashes]
+        if legend is not None and legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 > 1.0:
+            for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
+                entries.setdefault(textwrap.fill(" ".join(text.get_text().split()), LONGEST_KEY), handle)
+            legend.remove()
     if entries:
-        handles, labels = zip(*sorted(entries.values(), key=lambda entry: len(entry[1])), strict=True)
-        figure.legend(
-            handles, labels, loc="outside lower center", ncols=3, frameon=False, fontsize=8, handlelength=2.6,
-            columnspacing=1.2,
-        )  # fmt: skip
-
-
-def _fit(figure: Figure, legend: Legend) -> None:
-    """Give a key of the whole figure as many columns as the width has room for; columns are laid out anew."""
-    held, whole, renderer = cast("Any", legend), cast("Any", figure), _renderer(figure)
-    handles, labels = legend.legend_handles, [text.get_text() for text in legend.get_texts()]
-    size, side = legend.get_texts()[0].get_fontsize(), held._outside_loc or "upper"
-    for columns in range(held._ncols, 0, -1):
-        legend.remove()
-        legend = whole.legend(
-            handles, labels, loc=f"outside {side} center", ncols=columns, frameon=False, fontsize=size,
-            handlelength=2.2, columnspacing=1.2,
-        )  # fmt: skip
-        if legend.get_window_extent(renderer).width <= 0.98 * float(figure.bbox.width):
-            return
+        labels = sorted(entries, key=len)
+        keys.append(("lower", [entries[label] for label in labels], labels))
+    whole, renderer = cast("Any", figure), _renderer(figure)
+    for side, handles, labels in keys:
+        for columns in range(min(MOST_COLUMNS, len(labels)), 0, -1):
+            legend = whole.legend(
+                handles, labels, loc=f"outside {side} center", ncols=columns, frameon=False,
+                fontsize=_printed_pt(KEY_PT), handlelength=2.4, columnspacing=1.2,
+            )  # fmt: skip
+            if columns == 1 or legend.get_window_extent(renderer).width <= 0.98 * float(figure.bbox.width):
+                break
+            legend.remove()

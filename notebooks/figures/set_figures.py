@@ -88,7 +88,7 @@ def write_figures(ranking: Ranking, icons: IconSet, rig: Rig, place: Path, look:
         write_figure(figure, folder / f"{name}.{kind}", look)
     for icon in icons:
         trace, picture = simulate(icon, rig, tail_s=FELT_TAIL_S), folder / f"overview-{icon.name}.{kind}"
-        draw_overview(trace, picture, rig.changes, look=look, settled=True)
+        draw_overview(trace, picture, rig.changes, look=look)
     count = "1 overview" if len(icons) == 1 else f"{len(icons)} overviews"
     note(f"wrote {', '.join(f'{name}.{kind}' for name in drawn)} and {count} into {folder}")
 

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Session
 
     from ..study.schedule import Course, Pace, PlannedPlay
-    from ..study.study_file import Threshold
 
 COLOURS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442", "#999999")
 """Okabe and Ito's colours, which people of every colour vision can distinguish; beyond eight, hatches differ."""
@@ -57,36 +56,6 @@ def study_figure(
         ax.spines[["top", "right"]].set_visible(False)
     handles = [Patch(**_fill(place), lw=0.0, label=f"{place + 1}  {name}") for place, name in enumerate(names)]
     order.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
-    return figure
-
-
-def threshold_figure(levels_K: Sequence[float], threshold: Threshold, session: Session | None) -> Figure:
-    """Draw the levels that may be played, and the session in which every trial plays the greatest."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9.0, 5.2 if session is not None else 2.4), layout="constrained")
-    heights = [1.0] if session is None else [1.0, 2.0]
-    axes: list[Axes] = list(figure.subplots(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0])
-    levels = axes[0]
-    levels.vlines(levels_K, 0.0, 1.0, color=COLOURS[0], lw=2.0)
-    levels.set_xscale("log")
-    levels.set_yticks([])
-    levels.set_xlabel(f"change of the display (K), {threshold.direction}")
-    levels.set_title(f"{len(levels_K)} drives, each judged; QUEST+ plays nothing else", fontsize=10, loc="left")
-    ticks = [levels_K[0], levels_K[len(levels_K) // 2], levels_K[-1]]
-    levels.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
-    levels.minorticks_off()
-    if session is not None:
-        ax = axes[1]
-        time, skin = envelope(session.trace.time_s / 60.0, session.trace.skin_C)
-        ax.plot(time, skin, color=INK, lw=1.0)
-        ax.set_title(
-            "skin if every trial played the greatest change, the worst of all courses", fontsize=10, loc="left"
-        )
-        ax.set_ylabel("skin (°C)")
-        ax.set_xlabel("time (min)")
-    for ax in axes:
-        ax.spines[["top", "right"]].set_visible(False)
     return figure
 
 

@@ -38,8 +38,6 @@ PANELS = (
 """Columns of a sweep, and what stands above their panel."""
 ALIKE, MISS_K = 1e-3, 1e-3
 """What differs by less than 0.1 % is the same at all values; and so are misses within 1 mK."""
-FLAT = 0.05
-"""Share of its value that an axis shows around what is the same everywhere."""
 LABELS = {
     "correct": "correct (%)",
     "correct_95": "correct (%),\n95 % of people reach",
@@ -95,10 +93,6 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int =
         ax.yaxis.set_label_coords(1.0, 1.02)
         ax.margins(y=0.1)
         _key_axis(ax, names, log, places, MOST_NARROW_TICKS if across < WIDE else MOST_TICKS)
-        if columns in flat:  # its last digits are noise
-            low, high = ax.dataLim.y0, ax.dataLim.y1
-            around = max(FLAT * max(abs(low), abs(high)), ALIKE)
-            ax.set_ylim(low - around, high + around)
         if columns == ("largest_miss_K",):
             ax.set_ylim(bottom=0.0)
     shaded = _shade(axes, frame, places)

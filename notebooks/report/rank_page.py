@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import platform
 from collections.abc import Iterator, Mapping
 from importlib.metadata import version
@@ -10,13 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import number, percent
 
-from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Row, Text, as_html, as_markdown, grid
-from .rank_details import task_note
+from ..figures.print_figure import small_png
+from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Row, Text, as_html, grid
 from .rank_report import rank_report
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
@@ -53,9 +51,8 @@ def report(
     rig: Rig,
     command: str = "",
     cures: Mapping[str, str] | None = None,
-    as_text: bool = False,
 ) -> str:
-    """Write the page as HTML text, or as Markdown without pictures: the same bytes for the same arguments.
+    """Write the page as HTML text: the same bytes for the same arguments.
 
     ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
     an icon could be reached. No date is printed.
@@ -64,7 +61,7 @@ def report(
     title, count = icons.title or "Thermal icons", len(result["icons"])
     if result["by"] == "rules":
         parts = rank_report(made, title)
-        return as_markdown(parts) if as_text else as_html(parts, f"{title}: by rules")
+        return as_html(parts, f"{title}: by rules")
     lead = f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon"
     parts = [
         Heading(title, 1),
@@ -83,22 +80,16 @@ def report(
         Heading("Safety"),
         Text(SAFETY),
     ]
-    return as_markdown(parts) if as_text else as_html(parts, f"{title}: predicted ranking")
+    return as_html(parts, f"{title}: predicted ranking")
 
 
 def _settings(result: dict[str, Any], rig: Rig, command: str) -> Iterator[Block]:
-    changes = ", ".join(result["rig_changes"]) or "none"
-    draws = result["set"]["posterior_draws"]
     versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     rows = [
         ("command", command),
-        ("rig", f"{result['rig']}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²; changes: {changes}"),
+        ("rig", f"{result['rig']}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²"),
         ("people", f"{result['people']} virtual, seed {result['seed']}"),
-        ("same for all people", f"{result['tracking']} tracking"),
-        ("what is remembered", f"{result['norm']} norm"),
-        ("task", task_note(result["task"]).removeprefix(", ")),
-        ("draws of the posterior", str(draws) if draws else ""),
-        ("predicted experiment", f"{result['set']['trials']} trials"),
+        ("draws of the posterior", str(result["set"]["posterior_draws"] or "")),
         ("made with", f"thermicon {result['thermicon']}, Python {platform.python_version()}, {versions}"),
         ("content hash", result["content_hash"]),
     ]
@@ -170,7 +161,7 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
 
 def _drawn(axes: Axes, said: str, caption: str) -> Picture:
     figure: Any = axes.figure
-    return Picture(caption, said, "png", round(96 * figure.get_figwidth()), png_of(figure, MAPS))
+    return Picture(caption, said, "png", round(96 * figure.get_figwidth()), small_png(figure, MAPS))
 
 
 def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
@@ -209,18 +200,6 @@ def _overview(icon: Icon, rig: Rig, count: int) -> Picture:
     from ..figures.overview import FELT_TAIL_S, evenly_timed, overview
 
     trace = evenly_timed(simulate(icon, rig, tail_s=FELT_TAIL_S))
-    data = png_of(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
+    data = small_png(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
     alt = f"temperatures, heat flow, current and sensation of {icon.name}"
     return Picture("", alt, "png", OVERVIEW_PIXELS, data)
-
-
-def png_of(figure: Figure, dpi: float, colours: int = 64) -> bytes:
-    """A figure as a small PNG of few colours."""
-    from PIL import Image
-
-    held, small = io.BytesIO(), io.BytesIO()
-    figure.savefig(held, format="png", dpi=dpi)
-    held.seek(0)
-    with Image.open(held) as image:
-        image.convert("RGB").quantize(colours, dither=Image.Dither.NONE).save(small, format="png", optimize=True)
-    return small.getvalue()

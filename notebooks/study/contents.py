@@ -69,7 +69,7 @@ def files_of(plan: Plan) -> dict[str, bytes]:
         "dataset_description.json": dataset_description(title, version("thermicon")),
         f"task-{study.name}_events.json": events_description(title, markers, _texts(plan)),
         "README.txt": _readme(plan).encode("utf-8"),
-        "timeline.png": _timeline(plan),
+        **_timeline(plan),
     }
     if study.threshold is not None:
         files["levels.csv"] = _levels(plan, stimuli, markers)
@@ -212,20 +212,23 @@ def _icons(plan: Plan) -> str:
     return str(played).rstrip("\n") + "\n"
 
 
-def _timeline(plan: Plan) -> bytes:
-    from ..figures.study_figure import study_figure, threshold_figure
+def _timeline(plan: Plan) -> dict[str, bytes]:
+    """Orders and a session on the clock; of a threshold, whose orders are found as it runs, its longest session."""
+    from ..figures.session_figure import session_figure
+    from ..figures.study_figure import study_figure
 
-    study = plan.materials.study
     label, first = next(iter(plan.judged.sessions.items()), ("", None))
-    if study.threshold is not None:
-        figure = threshold_figure(levels_K(study.threshold), study.threshold, first)
+    if plan.materials.study.threshold is not None:
+        if first is None:
+            return {}
+        figure = session_figure(first)
     else:
         course = next((course for course in plan.courses if course.label == label), plan.courses[0])
         plays = planned_plays(course, plan.durations_s, pace_of(plan))
         figure = study_figure(plan.courses, course, plays, pace_of(plan), first)
     content = io.BytesIO()
     figure.savefig(content, dpi=130, format="png", metadata={"Software": None})
-    return content.getvalue()
+    return {"timeline.png": content.getvalue()}
 
 
 def _readme(plan: Plan) -> str:

@@ -209,7 +209,7 @@ def test_workers_change_no_byte(cli: Cli, two: Path, tmp_path: Path) -> None:
 
 
 def test_a_set_is_ranked_by_rules_alone(cli: Cli, tmp_path: Path) -> None:
-    page = tmp_path / "page.md"
+    page = tmp_path / "page.html"
     said = cli("rank", "six-icons", "--by", "rules", "--report", page)
     assert said.exit_code == 0, said.stderr
     words = " ".join(said.stdout.split())

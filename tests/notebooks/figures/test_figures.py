@@ -15,7 +15,7 @@ from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.solver import draw as circuit_draw
 from thermicon.icons import load_library, parse
 from thermicon.notebooks import overview
-from thermicon.notebooks.figures.overview import MOST_LINES, end_when_settled, scene_figure
+from thermicon.notebooks.figures.overview import MOST_LINES, scene_figure
 from thermicon.notebooks.figures.print_figure import COLORBAR, restyle
 from thermicon.notebooks.figures.set_figures import set_figure
 from thermicon.notebooks.figures.style import COOL, WARM
@@ -53,15 +53,6 @@ def test_the_maps_of_one_icon_are_one_cell() -> None:
     icons = parse("cue 1\nset s { control display }\nicon a { cool by 2 °C at 1 °C/s; hold for 1 s }")
     ranking = rank(icons, Rig.load("thenar"), people=1)
     assert [len(ax.texts) for ax in set_figure(ranking).axes] == [1, 1]
-
-
-def test_an_overview_ends_when_everything_has_come_to_rest() -> None:
-    trace = simulate(load_library("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=30.0)
-    figure = overview(trace, perceive(trace))
-    icon_s = float(trace.time_s[-1]) - 30.0
-    end_when_settled(figure)
-    ends = {ax.get_xlim()[1] for ax in figure.axes}
-    assert len(ends) == 1 and icon_s < ends.pop() < icon_s + 10.0
 
 
 def test_two_maps_below_one_another_name_the_columns_once() -> None:

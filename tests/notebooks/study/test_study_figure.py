@@ -8,9 +8,8 @@ from matplotlib.colors import to_hex
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Session, SessionPlan, play_session
 from thermicon.icons import parse
-from thermicon.notebooks.figures.study_figure import COLOURS, MOST_ROWS, study_figure, threshold_figure
+from thermicon.notebooks.figures.study_figure import COLOURS, MOST_ROWS, study_figure
 from thermicon.notebooks.study.schedule import Course, Pace, Trial, planned_plays
-from thermicon.notebooks.study.study_file import Threshold
 
 from .conftest import CUES
 
@@ -56,12 +55,3 @@ def test_of_many_participants_the_first_are_drawn() -> None:
     many = [Course(f"{k}", TRIALS) for k in range(MOST_ROWS + 5)]
     figure = study_figure(many, many[0], planned_plays(many[0], LASTING, PACE), PACE, None)
     assert figure.axes[0].get_title(loc="left") == f"order of play (the first {MOST_ROWS} of {MOST_ROWS + 5})"
-
-
-def test_levels_of_a_threshold_are_drawn(session: Session) -> None:
-    threshold = Threshold(direction="cool")
-    figure = threshold_figure([0.1, 0.3, 1.0], threshold, session)
-    assert len(figure.axes) == 2
-    assert figure.axes[0].get_xlabel() == "change of the display (K), cool"
-    assert [tick.get_text() for tick in figure.axes[0].get_xticklabels()] == ["0.1", "0.3", "1"]
-    assert len(threshold_figure([0.1, 0.3, 1.0], threshold, None).axes) == 1
