@@ -89,9 +89,6 @@ def canonical(data: bytes, file: str) -> bytes:
     """Return a cue file in canonical layout; CueErrors when it is not sound.
 
     Line ends are those of the first line, Windows' or not, and a byte order mark is taken away.
-
-    >>> canonical(b"\\xef\\xbb\\xbfcue 1\\r\\nicon x{ hold for 1 s }", "x.cue")
-    b'cue 1\\r\\n\\r\\nicon x {\\r\\n  hold for 1 s\\r\\n}\\r\\n'
     """
     from thermicon.icons import format_text
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.number_text import percent
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
@@ -26,8 +25,6 @@ from .options import (
 from .ranking import command_text
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
     from thermicon.perception.pilot.measurements_file import Measurements
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.trials import Trials
@@ -190,7 +187,8 @@ def condition(
     last = KEEP_IT
     if keep is not None and drawn is not None:
         _keep(found, keep, drawn)
-        last = _ranked(files[0], icons, where, replace(crowd, seed=0, observer=drawn), rig)
+        kept = replace(crowd, seed=0, observer=drawn)
+        last = f"Predict for this laboratory:\n  {command_text(files[:1], rig, kept, paths=True)}"
     if json == STDOUT:
         return
     show(observed_report(found, files, last))
@@ -203,18 +201,6 @@ def _keep(found: Observed[Any, Any], keep: Path, drawn: Path) -> None:
         table.write_text(draws, encoding="utf-8")
         draft.write_text(observer, encoding="utf-8")
     note(f"wrote {keep} and {drawn}")
-
-
-def _ranked(file: str, icons: IconSet, where: Rig, crowd: ObserverOptions, rig: RigOptions) -> str:
-    """The per cent correct that rank shows for the laboratory that was kept, and the command that does."""
-    from thermicon.perception import rank
-
-    with progress_bar("ranking") as progress:
-        ranking = rank(icons, where, **crowd.asked, parameters=0, observer=crowd.observer, progress=progress)
-    return (
-        f"rank shows {percent(ranking.proportion_correct)} correct for this laboratory: {ranking.people} other people "
-        f"at the first of the kept draws.\n  {command_text([file], rig, crowd, paths=True)}"
-    )
 
 
 def _numbers(text: str, option: str, least: int, most: int) -> tuple[int, ...]:

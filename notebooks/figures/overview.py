@@ -152,11 +152,6 @@ def scene_figure(scene: Scene) -> Figure:
     """Draw a scene: the overview of its icon, with threshold bands, unreached spans and events; safety and notes above.
 
     A scene without a drawing gives a figure that says why.
-
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.notebooks.timeline.scene import scene
-    >>> scene_figure(scene("cue 1; icon dip { cool by 6 at 3 °C/s }", Rig.load("thenar"))).get_suptitle().splitlines()
-    ['GREY  safety not judged: the text has errors', 'line 1: missing unit: this number has no unit']
     """
     from matplotlib.figure import Figure
 

@@ -68,12 +68,7 @@ def write_figure(figure: Figure, path: Path, look: Look = SCREEN) -> None:
 
 
 def small_png(figure: Figure, dpi: float | None = None) -> bytes:
-    """Draw a figure as PNG with a palette of its own, cut to what is drawn; without `dpi` as a notebook shows it.
-
-    >>> from matplotlib.figure import Figure
-    >>> small_png(Figure(figsize=(1, 1)))[1:4]
-    b'PNG'
-    """
+    """Draw a figure as PNG with a palette of its own, cut to what is drawn; without `dpi` as a notebook shows it."""
     from PIL import Image
 
     drawn, small = io.BytesIO(), io.BytesIO()
@@ -108,15 +103,7 @@ def themed_svg(figure: Figure) -> str:
 
 
 def restyle(figure: Figure, width_mm: float) -> None:
-    """Change a figure in place as it is printed so wide: its size, letters, lines and keys; its title goes.
-
-    >>> from matplotlib.figure import Figure
-    >>> figure = Figure(figsize=(8, 6))
-    >>> _ = figure.subplots(2, 1)
-    >>> restyle(figure, 85.0)
-    >>> round(float(figure.get_figwidth()) * 25.4, 1), figure.axes[1].get_title(loc="left")
-    (85.0, 'b')
-    """
+    """Change a figure in place as it is printed so wide: its size, letters, lines and keys; its title goes."""
     _letter_panels(figure)
     ratio = min(1.0, width_mm / (float(figure.get_figwidth()) * MM_PER_INCH))
     even = any(ax.get_aspect() != "auto" for ax in figure.axes)

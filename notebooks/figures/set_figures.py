@@ -25,15 +25,7 @@ MAP_HEIGHT = 0.85
 
 
 def set_figure(ranking: Ranking, stacked: bool = False) -> Figure:
-    """Draw distances (d′) and predicted confusions of one set side by side; stacked in a narrow column, as asked.
-
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.icons import load_library
-    >>> from thermicon.perception import rank
-    >>> ranking = rank(load_library("six-icons"), Rig.load("thenar"), people=20)
-    >>> len(set_figure(ranking).axes) >= 2
-    True
-    """
+    """Draw distances (d′) and predicted confusions of one set side by side; stacked in a narrow column, as asked."""
     from matplotlib.figure import Figure
 
     from thermicon.perception.plots import draw_heat

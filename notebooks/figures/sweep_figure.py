@@ -68,13 +68,6 @@ def sweep_figure(frame: pd.DataFrame, key: str, log: bool = False, across: int =
     Icons that mainly cool are blue, others orange, and each has its own mark. A cross stands for an icon that was not
     reached, a grey band for values at which nothing could be played. What is the same at all values is left out and
     named below.
-
-    >>> from thermicon.circuit import Rig
-    >>> from thermicon.icons import load_library
-    >>> from thermicon.notebooks import sweep
-    >>> step, key = load_library("six-icons")["cooling-step"], "driver.current_limit_A"
-    >>> len(sweep_figure(sweep([step], Rig.load("thenar"), key, [1.0, 1.5]), key).axes)
-    5
     """
     flat = [columns for columns, _ in PANELS if _same(frame, columns)]
     panels = [panel for panel in PANELS if panel[0] not in flat] or list(PANELS)

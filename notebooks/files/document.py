@@ -37,10 +37,6 @@ class History:
     """The state that is shown, those before it (the oldest first) and those undone (the next to be redone last).
 
     Verbs return new histories. At most 200 steps are kept; the oldest are forgotten.
-
-    >>> history = History(Edited("a")).typed("ab", 0.0).typed("abc", 0.5).typed("abcd", 3.0)
-    >>> history.undo().now.text, history.undo().undo().now.text, history.undo().redo().now.text
-    ('abc', 'a', 'abcd')
     """
 
     now: Edited
@@ -92,16 +88,6 @@ class Document:
     ``path`` is its file, None where it has none yet; ``saved`` is the text there; ``history`` holds the text as it is
     now with the steps before and after it; ``versions`` holds texts that were kept. ``keeps`` says whether these, and
     unsaved text, are kept beside the file: where a kernel serves a page.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     first = Document("cue 1")
-    ...     path = first.save_as(Path(folder) / "a.cue")
-    ...     second = Document.open(path)
-    ...     first.history = first.history.changed("cue 1 # mine")
-    ...     _ = first.save()
-    ...     second.warning().partition(":")[0]
-    'a.cue has changed on disk since it was opened here'
     """
 
     def __init__(self, text: str, name: str = "icons", keeps: bool = False, path: Path | None = None) -> None:

@@ -29,12 +29,6 @@ def felt_beside(
 
     ``rest`` are the icons of the set that are not exported, ``warn`` takes what cannot be compared, ``tail_s`` is
     simulated after the last corner.
-
-    >>> from thermicon.circuit import export
-    >>> from thermicon.icons import load_library
-    >>> icon = load_library("six-icons")["cooling-step"]
-    >>> export(icon, "thenar", "dac-16", felt=felt_beside()).felt
-    (PerceivedChange(cooling-step: detected 0.992 → 0.992 by 200 virtual people),)
     """
     return lambda ready: _compared(ready, rest, warn, tail_s)
 

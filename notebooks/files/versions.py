@@ -55,13 +55,6 @@ class Versions:
 
     ``path`` is the file that holds them, None where they are only held in memory; ``failed`` says why the newest could
     not be written, None while they are.
-
-    >>> import tempfile
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     place = Path(folder) / "a.cue"
-    ...     Versions(place).typed("cue 1 # typed", None)
-    ...     [each.text for each in Versions(place).others]
-    ['cue 1 # typed']
     """
 
     def __init__(self, place: Path | None) -> None:

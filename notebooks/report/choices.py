@@ -40,11 +40,7 @@ def _goal_value(part: dict[str, Any]) -> str:
 
 
 def goal_value(part: dict[str, Any]) -> tuple[str, str]:
-    """What was predicted of a part of a goal and its distance from what is wanted, with units; empty where none.
-
-    >>> goal_value({"text": "time <= 10 s", "met": True, "value": 8.5, "wanted": 10.0})
-    ('8.5 s', '1.5 s')
-    """
+    """What was predicted of a part of a goal and its distance from what is wanted, with units; empty where none."""
     value, wanted = part["value"], part["wanted"]
     if isinstance(value, str):
         return value, ""
@@ -65,11 +61,7 @@ def laboratory(observer: str, own: bool) -> str:
 
 
 def choice_lines(chosen: dict[str, Any], where: str = "a new laboratory") -> Iterator[str]:
-    """Report what was chosen, how certain that is, its scores as a set of its own, and the excluded icons.
-
-    >>> scored("worst", 2.449), scored("correct", 0.914), scored("bits-per-s", 0.3)
-    ('d′ 2.4 in the worst pair', '91 % correct', '0.30 bits/s')
-    """
+    """Report what was chosen, how certain that is, its scores as a set of its own, and the excluded icons."""
     objective, count = chosen["objective"], len(chosen["icons"])
     yield f"Best {count} of {chosen['pool']}, by {NAMES[objective]}: {', '.join(chosen['icons'])}"
     score = f"within the range of all {chosen['pool']}: {scored(objective, chosen['value'])}"

@@ -33,12 +33,6 @@ def gate_words(ready: Sequence[Prepared]) -> list[tuple[str, str]]:
     """Repetition and hardware of the icons that may be written: what it is about, and what is to be known.
 
     Of an icon that is not safe nothing is said here, since it is refused with its reason and cure.
-
-    >>> from thermicon.circuit import export
-    >>> from thermicon.icons import load_library
-    >>> ready = export(load_library("six-icons")["cooling-step"], "thenar", "qst-tcs2", "tcs2-serial")
-    >>> [about for about, _ in gate_words(ready.prepared)]
-    ['a driver stuck at its limit', 'repeated plays', 'the hardware must provide']
     """
     from thermicon.circuit.safety.gate import Gate
 
@@ -145,14 +139,7 @@ def steps_of(delivery: DeliveredDrive) -> str:
 
 
 def short_scenario(run: Scenario) -> str:
-    """A scenario in few words: which quantities of the rig are high and which low, whether repeated, what follows.
-
-    >>> from thermicon.circuit.safety.checks import Before, Scenario
-    >>> short_scenario(Scenario((-0.3, 0, 0.1, 0, 0, 0, 0), before=Before("warm", 9.0)))
-    'low contact; high gain; repeated (warm bound)'
-    >>> short_scenario(Scenario((0,) * 7, ending="zero current"))
-    'the rig as given, then zero current'
-    """
+    """A scenario in few words: which quantities of the rig are high and which low, whether repeated, what follows."""
     from thermicon.circuit.rig.uncertainty import WORDS
     from thermicon.circuit.safety.words import scenario_text
 

@@ -203,13 +203,7 @@ def edit_text(pair: Mapping[str, Any]) -> str:
 
 
 def assumption_blocks(found: Mapping[str, Any] | None) -> list[Block]:
-    """The assumptions that move the proportion correct most, what the site rests on, and what was not varied.
-
-    >>> area = {"name": "area of contact", "unit": "cm²", "low": 0.75, "high": 3.0, "source": "people",
-    ...         "correct_at_low": 0.4, "correct_at_high": 0.6, "value": 1.5}
-    >>> assumption_blocks({"moving": [area], "site": None, "not_varied": []})[1].points
-    ('area of contact: 40 % correct at 0.75 cm², 60 % at 3 cm² (1.5 cm² assumed)',)
-    """
+    """The assumptions that move the proportion correct most, what the site rests on, and what was not varied."""
     if found is None or not (found["moving"] or found["site"]):
         return []
     head = "What this depends on (no single assumption stands out from these people and draws)"

@@ -99,11 +99,7 @@ def _settings(result: dict[str, Any], rig: Rig, command: str) -> Iterator[Block]
 
 
 def _sized(value: float | None, unit: str) -> str:
-    """Write a component with its unit; a factor has a multiplication sign.
-
-    >>> _sized(1.5, "s"), _sized(2.0, "1"), _sized(None, "s")
-    ('1.50 s', '2.00 ×', '–')
-    """
+    """Write a component with its unit; a factor has a multiplication sign."""
     if value is None:
         return "–"
     written = "×" if unit == "1" else unit

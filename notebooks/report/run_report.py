@@ -172,13 +172,7 @@ def sweep_lines(frame: pd.DataFrame, names: Sequence[str], keys: Sequence[str]) 
 
 
 def sweep_report(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[str]) -> list[Grid]:
-    """Report one row per icon and value: each quantity with its 95 % interval for a new laboratory, where it has one.
-
-    >>> import pandas as pd
-    >>> row = {"icon": "dip", "contact.area_cm2": 4.0, "correct": 0.82, "correct_low": 0.7, "correct_high": 0.91}
-    >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), ["contact.area_cm2"], ["correct"])[0].rows[0]]
-    ['dip', '4', '82 % (70–91)']
-    """
+    """Report one row per icon and value: each quantity, with its 95 % interval for a new laboratory if it has one."""
     from thermicon.perception.ranking.swept import ALL, OF_THE_SET
 
     of_icons = not {*quantities} <= {*OF_THE_SET}
@@ -235,13 +229,7 @@ def compare_report(made: Comparison) -> list[Block]:
 
 
 def comparison_line(one: Appraisal, other: Appraisal, people: int) -> str:
-    """Report how well the icons of two sets are identified by the same people.
-
-    >>> from thermicon.perception.selection.appraise import Appraisal
-    >>> one, other = (Appraisal(("a", "b"), d, share, 1.0, 0.2, 0.5) for d, share in ((2.51, 0.9), (1.0, 0.7)))
-    >>> comparison_line(one, other, 100)
-    'predicted for 100 virtual people: A 90 % correct, d′ of the worst pair 2.5; B 70 % correct, d′ 1.0'
-    """
+    """Report how well the icons of two sets are identified by the same people."""
     first, second = (f"{percent(each.proportion_correct)} correct, d′" for each in (one, other))
     worst = f"of the worst pair {one.d_prime:.1f}"
     return f"predicted for {people} virtual people: A {first} {worst}; B {second} {other.d_prime:.1f}"

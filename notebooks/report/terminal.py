@@ -44,11 +44,7 @@ def show(blocks: Sequence[Block | str], most: int | None = None) -> None:
 
 
 def lines(blocks: Sequence[Block], width: int, is_terminal: bool = True) -> list[str]:
-    """Return the lines of blocks at this width, with an empty one between two that do not belong together.
-
-    >>> lines([Text("Two points:"), Bullets(("one", "two")), Text("The end.")], 40)
-    ['Two points:', '  - one', '  - two', '', 'The end.']
-    """
+    """Return the lines of blocks at this width, with an empty one between two that do not belong together."""
     shown = [
         block for block in blocks if not isinstance(block, (Picture, Row)) and block not in (Bullets(()), Text(""))
     ]

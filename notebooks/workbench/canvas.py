@@ -96,10 +96,6 @@ class Canvas(anywidget.AnyWidget):
     """Draws frames of one view: ``design`` (text and time line), ``traces`` (time line) or ``heat`` (two matrices).
 
     What a frame consists of is said in ``frames``. Nothing is drawn before the first one.
-
-    >>> canvas = Canvas(view="heat")
-    >>> canvas.view
-    'heat'
     """
 
     _esm = module_text()

@@ -40,13 +40,6 @@ class DesignModel:
 
     ``receive`` takes a message of the page and ``turn`` a knob; both return the frame to draw and raise nothing.
     ``model`` is the observer that predicts; None: the shipped one.
-
-    >>> from thermicon.circuit import Rig
-    >>> made = DesignModel("cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }", Rig.load("thenar"))
-    >>> made.receive({"type": "text", "seq": 1, "text": "cue 1; icon dip { cool by 6 at 3 K/s }"}).meta["stale"]
-    True
-    >>> made.receive({"type": "undo", "seq": 2}).meta["text"]
-    'cue 1; icon dip { cool by 6 °C at 3 °C/s; return at 3 °C/s }'
     """
 
     def __init__(

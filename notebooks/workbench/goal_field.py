@@ -37,11 +37,6 @@ class GoalField:
 
     ``changed`` is called after each new goal. A text that cannot be read is kept, with what is wrong with it below,
     and nothing is judged by it.
-
-    >>> field = GoalField(lambda: None)
-    >>> field.text.value = "corect >= 90 %"
-    >>> field.goal is None, "there is no quantity" in field.said.value
-    (True, True)
     """
 
     def __init__(self, changed: Callable[[], None]) -> None:

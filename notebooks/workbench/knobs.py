@@ -110,10 +110,6 @@ def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None
     """Return rig and observer with knobs set; what cannot be leaves them as they were before it, and says so.
 
     Knobs that are not named stay where they are. Raises KeyError for a name that no knob has.
-
-    >>> applied = apply(Rig.load("thenar"), {"rest": 34.0, "contact": 2.0})
-    >>> applied.rig.skin.rest_C, applied.rig.contact.resistance_m2K_per_W, applied.notes
-    (34.0, 0.00108, ())
     """
     table = {knob.key: knob for knob in knobs_of(rig)}
     if unknown := [key for key in values if key not in table]:
@@ -152,12 +148,7 @@ def apply(rig: Rig, values: Mapping[str, float | str], observer: Observer | None
 
 
 def aged(observer: Observer, age_years: float) -> Observer:
-    """Return an observer of an age: thresholds times ``age_factor`` of their channel, as for drawn people.
-
-    >>> young, old = Observer.load(), aged(Observer.load(), 65.0)
-    >>> 1.3 < old.cold.threshold_drive / young.cold.threshold_drive < 4.0
-    True
-    """
+    """Return an observer of an age: thresholds times ``age_factor`` of their channel, as for drawn people."""
 
     def raised(channel: Channel) -> Receptor:
         receptor = observer.receptor(channel)

@@ -59,12 +59,6 @@ class BackgroundWorker:
     """Runs jobs in a thread; a new job makes all earlier ones stale.
 
     ``fail`` is called with a message when a job, or its change of the page, raises an error.
-
-    >>> done = []
-    >>> worker = BackgroundWorker()
-    >>> worker.ask(lambda job: job.on_page(lambda: done.append("job")))
-    >>> worker.wait(), done
-    (True, ['job'])
     """
 
     def __init__(self, fail: Callable[[str], None] = lambda message: None) -> None:

@@ -73,11 +73,6 @@ SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
 def document_of(source: str | Path | Icon | IconSet | None, keeps: bool = False) -> Document:
     """Return the document of a source, None for six-icons; raises CueErrors for a file or name that does not exist,
     OutputError for a file that cannot be edited.
-
-    >>> document_of("cue 1; icon dip { hold for 1 s }").text
-    'cue 1; icon dip { hold for 1 s }'
-    >>> document_of("wave-shapes").title, document_of("wave-shapes").text.splitlines()[0]
-    ('wave-shapes', 'cue 1')
     """
     if isinstance(source, Icon | IconSet):
         return Document(str(source), source.name or "icons", keeps)
@@ -167,9 +162,5 @@ class LogPanel:
 
 
 def help_html() -> str:
-    """Return the sheet as HTML.
-
-    >>> "F8" in help_html()
-    True
-    """
+    """Return the sheet as HTML."""
     return "".join(f"{fragment('block', head, 'th-head')}{fragment('points', lines)}" for head, lines in SHEET)

@@ -93,11 +93,6 @@ def rank_set(
 
     A ``goal`` about a share of people is judged with draws of the parameters only; of these, all are used where the
     ``observer`` has fewer than ``parameters``.
-
-    >>> from thermicon.circuit import Rig
-    >>> text = "cue 1; icon dip { cool by 3 K at 2 K/s; return at 2 K/s }; icon glow { pulse warm by 3 K for 2 s }"
-    >>> rank_set(text, Rig.load("thenar"), 2, 0).labels
-    ['dip', 'glow']
     """
     from thermicon.perception import choose, rank
     from thermicon.perception.identification.map import map_of

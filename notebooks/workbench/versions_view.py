@@ -114,11 +114,7 @@ class VersionsView:
 
 
 def changed_lines(before: str, now: str) -> list[tuple[str, str]]:
-    """Lines that only one of two texts has, each with ``−`` or ``+``, and the lines around them, with a blank.
-
-    >>> changed_lines("cue 1\\nicon a { hold for 1 s }", "cue 1\\nicon a { hold for 2 s }")
-    [('', 'cue 1'), ('−', 'icon a { hold for 1 s }'), ('+', 'icon a { hold for 2 s }')]
-    """
+    """Lines that only one of two texts has, each with ``−`` or ``+``, and the lines around them, with a blank."""
     found = list(difflib.unified_diff(before.splitlines(), now.splitlines(), lineterm="", n=1))[2:]
     signs = {"-": "−", "+": "+"}
     rows = [("…", "") if line.startswith("@@") else (signs.get(line[0], ""), line[1:]) for line in found][1:]
@@ -133,11 +129,7 @@ def _title(version: Version) -> str:
 
 
 def link(name: str, data: bytes) -> str:
-    """A link that saves a file under a name.
-
-    >>> link("a.cue", b"cue 1")
-    '<a class="th-download" download="a.cue" href="data:text/plain;base64,Y3VlIDE=">a.cue</a>'
-    """
+    """A link that saves a file under a name."""
     address = f"data:{TYPES.get(Path(name).suffix, 'application/octet-stream')};base64,{b64encode(data).decode()}"
     return fragment("download", name, address)
 

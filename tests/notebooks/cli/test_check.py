@@ -67,6 +67,14 @@ def test_files_are_brought_into_canonical_layout(cli: Cli, tmp_path: Path) -> No
     assert sorted(each.name for each in tmp_path.iterdir()) == ["a.cue", "b.cue"]
 
 
+@pytest.mark.parametrize("before", [b"", b"\xef\xbb\xbf"], ids=["plain", "with a byte order mark"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_line_ends_stay(cli: Cli, tmp_path: Path, before: bytes, end: str) -> None:
+    path = written(tmp_path / "a.cue", before + LOOSE.replace("\n", end).encode())
+    assert cli("check", "--fix", path).exit_code == 0
+    assert path.read_bytes() == TIDY.replace("\n", end).encode()
+
+
 def test_bad_files_are_told_together_and_stay_as_they_are(cli: Cli, tmp_path: Path) -> None:
     good = written(tmp_path / "good.cue", LOOSE)
     slip = written(tmp_path / "slip.cue", "cue 1\nicon x{ hold for 4 }")

@@ -77,21 +77,12 @@ def test_the_kernel_is_this_python(python: str, state: str, words: str, monkeypa
     assert (finding.state, words in finding.text) == (state, True)
 
 
-@pytest.mark.parametrize(
-    ("said", "code", "states", "words"),
-    [
-        ("No broken requirements found.", 0, ["ok"], "fits the others (numpy "),
-        ("cold 1 has requirement b<2, but you have b 2.1.\nthermicon 9 requires c.", 1, ["note", "fault"], "b 2.1"),
-        ("", 1, ["note"], "since pip check says: No module named pip"),
-    ],
-)
-def test_requirements_are_what_pip_says(
-    said: str, code: int, states: list[str], words: str, ran: Callable[..., None]
-) -> None:
-    ran(code, said, "No module named pip\n")
-    found = list(doctor.check_required())
-    assert [each.state for each in found] == states
-    assert words in found[0].text
+def test_a_package_that_is_missing_is_a_fault_with_its_cure(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor, "REPORTED", ("numpy", "no-such-package"))
+    fault, found = doctor.check_required()
+    assert (fault.state, fault.text, found.state) == ("fault", "no-such-package is not installed", "ok")
+    assert "pip install thermicon" in str(fault.cure)
+    assert found.text.startswith("numpy ")
 
 
 def test_every_extra_has_its_package_and_a_purpose() -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shlex
 from collections.abc import Callable
 from pathlib import Path
@@ -65,27 +64,13 @@ def test_answers_print_write_and_keep(cli: Cli, two: Path, answers: Path, tmp_pa
     assert cli(*asked, "--json", "-").stdout == out.read_text(encoding="utf-8"), "the same question, the same bytes"
 
 
-@pytest.mark.parametrize(
-    "options",
-    [
-        (),
-        pytest.param(
-            ("--norm", "naming", "--tracking", "display", "--set", "contact.area_cm2=6"), marks=pytest.mark.slow
-        ),
-    ],
-)
-def test_what_rank_shows_of_a_kept_laboratory_is_what_it_shows(
-    cli: Cli, two: Path, answers: Path, tmp_path: Path, options: tuple[str, ...]
-) -> None:
+def test_the_command_after_keep_predicts_for_the_laboratory(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
     lab = tmp_path / "my lab.toml"
-    words = told(cli("pilot", two, "--answers", answers, *QUICK, "--seed", 3, "--keep", lab, *options))
-    promised = re.search(r"rank shows (\d+ %) correct for this laboratory: 200 other people at the first of", words)
-    assert promised is not None
+    words = told(cli("pilot", two, "--answers", answers, *QUICK, "--seed", 3, "--keep", lab))
     assert words.endswith(f"--observer '{lab.with_suffix('.csv')}'")
     command = shlex.split("thermicon rank " + words.split("thermicon rank ")[1])
     ranked = cli(*command[1:])
     told(ranked, "your laboratory, my lab.csv")
-    assert re.search(rf"^{promised[1]} +named correctly; ", ranked.stdout, re.M)
     assert "warning: my lab.csv was conditioned on" not in ranked.stderr
 
 
