@@ -4,7 +4,6 @@ Run with `pytest -m benchmark tests/benchmarks -s`. Each ratio comes with the er
 """
 
 import subprocess
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,14 +11,12 @@ import numpy as np
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from tests.benchmarks.peers import CORNERS, ngspice_command, plain, run_ngspice, scipy_run
+from tests.benchmarks.peers import CORNERS, best_of, ngspice_command, plain, run_ngspice, scipy_run
 from thermicon.circuit import Drive, Rig, fit, netlist, simulate_current
 from thermicon.circuit.fitting.laboratory import synthetic_log
-from thermicon.circuit.solver.batch_inputs import Bank, cut, run_follow, run_forward
-from thermicon.circuit.solver.inverse import design
+from thermicon.circuit.solver.batch_inputs import Bank, cut, run_forward
 from thermicon.circuit.solver.network import network_of
-from thermicon.circuit.solver.steady import state_under_current, steady_state
-from thermicon.icons import load_library
+from thermicon.circuit.solver.steady import state_under_current
 
 pytestmark = pytest.mark.benchmark
 Tool = Callable[[str], str]
@@ -28,16 +25,6 @@ PROBES = ("skin_C", "cold_receptor_C", "warm_receptor_C")
 FITTED = {"contact.resistance_m2K_per_W": 7e-4, "module.seebeck_V_per_K": 0.0505, "module.resistance_ohm": 6.6}
 MOST_FIT_S = 2.0
 RIGS = {"shani2021": Rig.load("shani2021"), "thenar": Rig.load("thenar")}
-
-
-def best_of(run: Callable[[], object], times: int) -> float:
-    """Least wall time in s of some runs: what the machine can do when nothing else disturbs it."""
-    found = []
-    for _ in range(times):
-        start = time.perf_counter()
-        run()
-        found.append(time.perf_counter() - start)
-    return min(found)
 
 
 def ngspice_run(ngspice: str, folder: Path, texts: list[str]) -> float:
@@ -115,32 +102,6 @@ def test_a_batch_of_64_with_a_rig_per_lane(name: str, tool: Tool, tmp_path: Path
         f"\n{name}: batch of 64, per cue {cue * 1e3:.3f} ms: {process / cue:.0f} times an ngspice process, "
         f"{many / 64 / cue:.0f} times a cue in one ngspice process of 64 ({many / 64 * 1e3:.1f} ms)"
     )
-
-
-@pytest.mark.parametrize("control", ["skin", "display"])
-def test_inverse_beside_forward(control: str, benchmark: BenchmarkFixture) -> None:
-    rig = RIGS["thenar"]
-    cue = next(iter(load_library("cooling-step-skin" if control == "skin" else "six-icons")))
-    bank, lanes = Bank.of([network_of(rig)] * 64), np.arange(64)
-    _, state = steady_state(rig, control, 32.0)
-    start = bank.states([state] * 64)
-    corners = cue.corners(32.0)
-    target = np.interp(ROWS[1:], corners.time_s, corners.value)[None]
-    plan = design(cue, rig, 30.0)
-    intervals = cut(ROWS, plan.drive.time_s, plan.drive.current_A[None], held=True)
-    zero = np.zeros(64, dtype=np.int64)
-
-    def forward() -> object:
-        return run_forward(bank, lanes, zero, intervals, start.copy(), PROBES)
-
-    def inverse() -> object:
-        return run_follow(bank, lanes, zero, 0.01, target, control == "skin", start.copy())
-
-    forward()
-    benchmark(inverse)
-    ratio = float(benchmark.stats.stats.min) / best_of(forward, 10)
-    benchmark.extra_info.update(inverse_over_forward=ratio)
-    print(f"\n{control}: inverse over forward in a batch of 64: {ratio:.2f}")
 
 
 def test_a_fit_of_three_parameters_takes_less_than_two_seconds(benchmark: BenchmarkFixture) -> None:

@@ -4,33 +4,18 @@ Run with `pytest -m benchmark tests/benchmarks/test_family_speed.py -s`.
 """
 
 import time
-from collections.abc import Callable
 
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from thermicon.icons import Icon, back, format_text, hold, parse, ramp
-from thermicon.icons.language.source import MOST_BYTES
+from tests.benchmarks.peers import best_of
+from thermicon.icons import Icon, back, hold, parse, ramp
 
 pytestmark = pytest.mark.benchmark
 FAMILY = (
     "cue 1\nicon ramp(amount in 0.1..10 step 0.1 °C, rate in 0.1..10 step 0.1 °C/s, pause in 1..10 step 1 s)\n"
     '  means "{amount} at {rate}"\n{ change by amount at rate; hold for pause; return at rate }'
 )
-ROW = (
-    'icon row-{} means "a row" {{ cool by 6 K at 3 K/s; '
-    "repeat 3 {{ hold for .5 s; pulse warm by 1 K for 1 s }}; return over 2 s }} # c\n"
-)
-
-
-def best_of(run: Callable[[], object], times: int = 3) -> float:
-    """Least wall time in s of some runs."""
-    found = []
-    for _ in range(times):
-        start = time.perf_counter()
-        run()
-        found.append(time.perf_counter() - start)
-    return min(found)
 
 
 def one_by_one(count: int) -> list[Icon]:
@@ -68,13 +53,3 @@ def test_a_check_follows_every_member_once(benchmark: BenchmarkFixture) -> None:
     took = benchmark.pedantic(check, rounds=1)
     print(f"\n50,601 members checked and summarised in {took:.1f} s of processor time")
     assert took < 4.0
-
-
-def test_reading_and_layout(benchmark: BenchmarkFixture) -> None:
-    text = "cue 1\n" + "".join(ROW.format(n) for n in range(1_500))
-    assert len(text.encode()) < MOST_BYTES
-    benchmark.pedantic(lambda: format_text(text), rounds=3)
-    read, size = best_of(lambda: parse(text)), len(text) / 1e3
-    took = benchmark.stats["min"]
-    print(f"\n1,500 icons, {size:.0f} kB: read in {read:.2f} s, laid out in {took:.2f} s ({size / took:.0f} kB/s)")
-    assert took < 3 * read

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
-import numpy
 import pytest
 
-from tests.browser.staticpage import INKED, NUMBERS, ROWS, TEXT, TROUBLE, Bench, design
+from tests.browser.staticpage import INKED, TEXT, TROUBLE, Bench, design
 
 
 def test_a_view_greets_and_draws_the_first_frame(drawn: Bench) -> None:
@@ -120,51 +117,6 @@ def test_the_keyboard_reaches_error_cure_undo_and_leaves_the_text(drawn: Bench) 
     assert drawn.text == TEXT
 
 
-@pytest.mark.parametrize(
-    ("typed", "offered"),
-    [
-        ("  co", ["cool", "control"][:1]),
-        ("  cool ", ["by", "to"]),
-        ("  cool by 6 ", ["°C", "degC", "K"]),
-        ("  cool by 6 K ", ["at", "over"]),
-        ("  hold for 4 ", ["s", "ms", "min"]),
-        ("  play ", ["dip"]),
-        ("  # cool by 6 ", []),
-    ],
-)
-def test_what_may_follow_is_offered(drawn: Bench, typed: str, offered: list[str]) -> None:
-    page = drawn.page
-    drawn.set_caret(TEXT.index("  cool"))
-    page.keyboard.insert_text(typed + "\n")
-    page.keyboard.press("ArrowLeft")
-    page.keyboard.press("Control+ ")
-    labels = page.locator(".cm-tooltip-autocomplete .cm-completionLabel")
-    if offered:
-        labels.first.wait_for()
-    else:
-        page.wait_for_timeout(300)
-    assert labels.all_inner_texts() == offered
-
-
-def test_brackets_close_and_the_text_can_be_searched(drawn: Bench) -> None:
-    page = drawn.page
-    drawn.set_caret(len(TEXT))
-    page.keyboard.type("icon b {")
-    assert drawn.text == TEXT + "icon b {}"
-    page.keyboard.press("Enter")
-    page.keyboard.type("hold for 1 s")
-    assert drawn.text == TEXT + "icon b {\n  hold for 1 s\n}"
-    page.keyboard.press("Control+f")
-    page.locator(".cm-search input[name=search]").press_sequentially("hold")
-    page.wait_for_function("document.querySelectorAll('.cm-searchMatch').length === 2")
-    page.keyboard.press("Escape")
-    page.locator(".cm-search").wait_for(state="detached")
-    drawn.set_caret(17)
-    page.keyboard.press("Enter")
-    page.keyboard.type("rest")
-    assert drawn.text.startswith("cue 1\n\nicon dip {\n  rest\n  cool"), "the indentation is kept"
-
-
 def test_a_drag_sends_the_newest_place_and_ends_once(drawn: Bench) -> None:
     page = drawn.page
     x, y = drawn.corner(2.0, 30.0)
@@ -186,20 +138,6 @@ def test_a_drag_sends_the_newest_place_and_ends_once(drawn: Bench) -> None:
     drags = drawn.sent("drag")
     assert [message["end"] for message in drags] == [False, False, True]
     assert drags[-1]["t"] == newest["t"]
-
-
-def test_axes_stand_still_under_the_pointer(drawn: Bench) -> None:
-    page = drawn.page
-    before = page.evaluate(NUMBERS)
-    page.mouse.move(*drawn.corner(4.0, 28.0))
-    page.mouse.down()
-    page.mouse.move(*drawn.corner(4.0, 27.0))
-    moved = design(text=None, seq=drawn.sent()[-1]["seq"])
-    drawn.frame(moved, numpy.linspace(32.0, 12.0, ROWS + 1))
-    assert page.evaluate(NUMBERS) == before
-    page.mouse.up()
-    drawn.frame(design(text=None, seq=drawn.sent()[-1]["seq"]), numpy.linspace(32.0, 12.0, ROWS + 1))
-    assert page.evaluate(NUMBERS) != before
 
 
 def test_a_fixed_corner_says_why_and_sends_nothing(drawn: Bench) -> None:
@@ -242,16 +180,6 @@ def test_undo_and_save_work_where_a_corner_was_dragged(drawn: Bench) -> None:
     assert [message["type"] for message in drawn.sent()[1:]] == ["undo", "redo", "save"]
 
 
-def test_a_chosen_corner_belongs_to_its_icon(drawn: Bench) -> None:
-    page = drawn.page
-    page.locator(".tm-stage").focus()
-    page.keyboard.press("]")
-    page.locator(".tm-tip", has_text="2.00 s, 30.00 °C").wait_for()
-    drawn.frame(design(icon="rise"))
-    assert page.locator(".tm-tip").is_hidden()
-    assert page.locator(".tm-live").count() == 0
-
-
 @pytest.mark.parametrize(
     ("free", "why", "said"),
     [
@@ -278,14 +206,6 @@ def test_a_key_across_the_way_of_a_corner_says_why(drawn: Bench, free: str, why:
     assert drawn.sent("drag") != []
 
 
-def test_the_cursor_reads_every_series_with_its_unit(drawn: Bench) -> None:
-    page = drawn.page
-    x, y = drawn.corner(3.0, 27.0)
-    page.mouse.move(x, y)
-    page.wait_for_function("document.querySelector('.tm-value').textContent.startsWith('29.0')")
-    assert re.fullmatch(r"skin 29\.0\d °C", page.locator(".tm-entry").text_content())
-
-
 def test_without_an_answer_a_banner_says_so_and_the_text_is_sent_again(drawn: Bench) -> None:
     page = drawn.page
     page.locator(".cm-content").press("Control+End")
@@ -300,19 +220,6 @@ def test_without_an_answer_a_banner_says_so_and_the_text_is_sent_again(drawn: Be
     assert page.locator(".tm-banner").is_hidden()
     assert drawn.text == TEXT + "#x"
     assert drawn.sent("text")[-1]["text"] == TEXT + "#x"
-
-
-def test_a_text_that_cannot_be_drawn_leaves_a_page_that_works(drawn: Bench) -> None:
-    nothing = {"t0": 0.0, "dt": 0.0, "n": 0}
-    drawn.frame(design(text="cue", panels=[], handles=[], time=nothing, icons=[], icon=None, stale=True))
-    page = drawn.page
-    assert page.locator(".tm-nothing").inner_text() == "Nothing to draw yet."
-    page.locator(".tm-stage").press("ArrowRight")
-    page.locator(".cm-content").press("Control+End")
-    page.keyboard.type(" 1")
-    drawn.answer()
-    assert page.locator(".tm-nothing").is_hidden()
-    assert page.locator(".tm-panel").count() == 1
 
 
 def test_the_badge_says_the_rule_and_opens_to_more(drawn: Bench) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import Any
 
 import numpy
@@ -18,25 +17,6 @@ def made(page: Any) -> Iterator[Bench]:
     bench = open_bench(page)
     yield bench
     assert bench.wrong == []
-
-
-@pytest.mark.parametrize("count", [2, 16])
-@pytest.mark.parametrize("width", [900, 1280])
-def test_labels_of_a_heat_map_do_not_overlap(page: Any, made: Bench, count: int, width: int) -> None:
-    page.set_viewport_size({"width": width, "height": 800})
-    made.show("heat")
-    labels = [f"a-rather-long-name_amount=-3_rate={k}" for k in range(count)]
-    one = {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": 6, "text": "0.0"}
-    both = [one, {**one, "key": "confusion", "label": "confusion", "text": "0%", "high": 1}]
-    meta = {"type": "frame", "view": "heat", "seq": 0, "labels": labels, "matrices": both, "picked": None, "ms": 1.0}
-    made.frame(meta, numpy.full(count * count, 0.5))
-    for kind in (".tm-row", ".tm-column"):
-        boxes = [each.bounding_box() for each in page.locator(f"[data-matrix=distance] {kind}").all()]
-        axis, size = ("y", "height") if kind == ".tm-row" else ("x", "width")
-        assert all(one[axis] + one[size] <= other[axis] + 0.1 for one, other in pairwise(boxes))
-    first, second = (page.locator(f"[data-matrix={key}]").bounding_box() for key in ("distance", "confusion"))
-    assert first["x"] + first["width"] <= second["x"]
-    assert first["y"] == second["y"]
 
 
 def test_a_view_without_a_drawing_waits_without_a_banner_while_the_kernel_lives(page: Any, made: Bench) -> None:

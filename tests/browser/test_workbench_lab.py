@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.jupyter import Server, command, dark, errors_in, open_notebook, reload, restart_kernel, run_all, save
+from tests.browser.jupyter import Server, dark, errors_in, open_notebook, reload, restart_kernel, run_all, save
 from tests.browser.onbench import (
     TWO,
     click_a_confusion,
@@ -50,36 +50,11 @@ def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
     type_drag_and_err(bench)
 
 
-def test_knobs_and_curves_fit_beside_the_side_bar(bench: Page, shot: Shot) -> None:
-    command(bench, "filebrowser:activate")
-    bench.wait_for_timeout(1500)
-    bench.locator(".thermicon").first.evaluate("bench => bench.scrollIntoView({ block: 'start' })")
-    bench.wait_for_timeout(500)
-    shot("lab-side-bar")
-    cut = """() => { const place = document.querySelector('.jp-Notebook').getBoundingClientRect();
-      const parts = [...document.querySelectorAll('.thermicon-knob, .thermicon-bar button, .tm-timeline, .tm-editor')];
-      const out = (box) => box.width && (box.right > place.right || box.bottom > place.bottom + 1);
-      return parts.filter((part) => out(part.getBoundingClientRect())).map((part) => part.className); }"""
-    assert bench.evaluate(cut) == []
-
-
 def test_text_below_the_first_screen_can_be_edited(bench: Page) -> None:
     cells = bench.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-Notebook .jp-Cell")
     before = cells.count()
     type_below_the_first_screen(bench)
     assert cells.count() == before
-
-
-def test_a_slider_changes_the_curves_and_reset_brings_them_back(bench: Page) -> None:
-    before = root(bench).get_attribute("data-seq")
-    slider = bench.locator(".thermicon-knob").filter(has_text="current limit").locator(".noUi-handle")
-    slider.focus()
-    for _ in range(26):
-        bench.keyboard.press("ArrowLeft")
-    expect(bench.locator(".tm-notes").first).to_contain_text("cooling-step is not reached")
-    assert root(bench).get_attribute("data-seq") is not None, before
-    bench.get_by_role("button", name="Reset").click()
-    expect(bench.locator(".tm-notes").first).to_be_hidden()
 
 
 CUT = """all => all.filter((label) => {

@@ -45,24 +45,6 @@ def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> Non
     assert row(said, "target")[1:5] == ["10", "K", "2.00", "s"]
 
 
-@pytest.mark.slow
-def test_two_sets_are_paired_by_name_and_the_better_is_told(cli: Cli, two: Path, tmp_path: Path) -> None:
-    other = tmp_path / "other.cue"
-    body = "{ cool by 3 °C at 3 °C/s; hold for 2 s; return at 3 °C/s }"
-    alike = body.replace("by 3 ", "by 3.3 ")
-    other.write_text(f"cue 1\nset s {{ control display; baseline 32 °C }}\nicon cool-step {body}\nicon b {alike}\n")
-    said, turned = cli("compare", two, other), cli("compare", other, two)
-    assert said.stdout.startswith("cool-step\nA  two.cue: 8 s")
-    assert f"only in one of the two sets: warm-step ({two}), b ({other})" in said.stderr
-    (tables, _, forth), back = said.stdout.partition("\npredicted "), turned.stdout.partition("\npredicted ")[2]
-    assert forth.startswith("for 100 virtual people: A ")
-    assert set(forth.replace(";", "").split()) == set(back.replace(";", "").split()) and forth != back
-    assert cli("compare", two, other, "--icon", "cool-step").stdout == tables
-    assert cli("compare", two, other, "--icon", "warm-step").exit_code == 1
-    warned = cli("compare", two, other, "--set", "safety.skin_highest_C=38").stderr
-    assert warned.count("warning:") == len({line for line in warned.splitlines() if line.startswith("warning:")}) > 0
-
-
 def test_two_sets_without_a_common_name_are_predicted(cli: Cli, two: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.cue"
     other.write_text(two.read_text(encoding="utf-8").replace("cool-step", "dip").replace("warm-step", "glow"))

@@ -54,14 +54,6 @@ def test_the_self_test_compares(ran: Callable[..., None]) -> None:
     assert (finding.state, "code -11: ImportError: no numba" in finding.text) == ("fault", True)
 
 
-def test_the_cache_is_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path / "cache"))
-    (fresh,) = doctor.check_cache()
-    assert (fresh.state, fresh.text.partition(";")[0]) == ("ok", f"{tmp_path / 'cache'}, writable, 0 MB")
-    (tmp_path / "cache" / "compiled" / "code").write_bytes(bytes(2_000_000))
-    assert "writable, 2 MB" in next(doctor.check_cache()).text
-
-
 @pytest.mark.parametrize(
     ("python", "state", "words"),
     [

@@ -79,14 +79,6 @@ def test_simulate_replays_an_exported_drive_exactly(cli: Cli, two: Path, tmp_pat
         assert np.abs(theirs[column] - ours[column]).max() < 1e-6, column
 
 
-def test_one_icon_is_still_compared_with_the_others(cli: Cli, tmp_path: Path) -> None:
-    said = cli("export", "six-icons", "--icon", "double-dip", "--to", "tdms", "-o", tmp_path / "out", *SURE)
-    assert said.exit_code == 0, said.stderr
-    assert names(tmp_path / "out") == ["double-dip.json", "double-dip.tdms"]
-    assert "wrote 1 drive with its sidecar into " in said.stderr
-    assert len(json.loads((tmp_path / "out" / "double-dip.json").read_text())["perception"]["d_prime"]) == 5
-
-
 @pytest.mark.parametrize(
     "name", ["c-array", "tcs2-serial", "psychopy", "setpoint-csv", pytest.param("wav", marks=pytest.mark.slow)]
 )

@@ -133,13 +133,3 @@ def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
 def test_a_goal_is_judged_at_every_number(cli: Cli, options: tuple[object, ...], told: tuple[str, ...]) -> None:
     words = " ".join(cli("improve", "six-icons", "--people", 4, *options).stdout.split())
     assert [each for each in told if each not in words] == [], words
-
-
-def test_a_goal_is_reported(cli: Cli, two: Path, tmp_path: Path) -> None:
-    out = tmp_path / "goal.json"
-    said = cli("improve", two, "--people", 4, "--intervals", 8, "--goal", "correct >= 10 %, time <= 1 s", "-o", out)
-    assert said.exit_code == 0, said.stderr
-    for words in ("Goal: NOT met", "✓ correct >= 10 %: ", "✗ time <= 1 s: "):
-        assert words in said.stdout
-    held = json.loads(out.read_text(encoding="utf-8"))["goal"]
-    assert [part["met"] for part in held["parts"]] == [True, False]

@@ -15,18 +15,6 @@ from thermicon.icons.files.shipped import load_library
 Cli = Callable[..., Any]
 
 
-def test_a_rig_in_a_paragraph_has_its_driver_and_no_warnings(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "hand.toml"
-    Rig.load("fingertip").with_(module={"name": "TEC1-12706"}, driver={"current_limit_A": 2.0}).save(path)
-    said = cli("list", "--cite", "cooling-step-skin", "--rig", path)
-    assert said.stdout.count("\n") == 1
-    assert "; driver −2 … 2 A, 15 V at most, updated at 100 Hz. The icons" in said.stdout
-    assert "follows: fingertip; site fingertip" in said.stdout
-    assert "30 mm module" not in said.stdout
-    assert "warning" not in said.stdout
-    assert "data sheets" not in said.stderr
-
-
 @pytest.mark.parametrize("what", ["icons", "rigs", "devices", "formats"])
 def test_each_kind_is_listed_within_80_columns(cli: Cli, what: str) -> None:
     said = cli("list", what)

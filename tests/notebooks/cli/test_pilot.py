@@ -79,27 +79,12 @@ def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: 
     assert "too few to say" not in words
 
 
-@pytest.mark.slow
-def test_odd_answers_are_judged_by_as_much_as_was_tried(cli: Cli, two: Path, tmp_path: Path) -> None:
-    path, rows = tmp_path / "t.csv", ["participant,trial,presented,responded"]
-    for person in ("ann", "bob", "cem"):
-        rows += [f"{person},{k},{'cool-step' if k % 2 else 'warm-step'},cool-step" for k in range(10)]
-    path.write_text("\n".join(rows) + "\n", encoding="utf-8")
-    told(cli("pilot", two, "--answers", path, "--draws", 24), "12 laboratories are too few to say")
-    told(cli("pilot", two, "--answers", path, "--draws", 240), "cannot explain these answers, not even with other")
-
-
 def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "plan.json"
     said = cli("pilot", two, *QUICK, "--participants", "16,4", "--trials", "6,20", "--json", out)
     told(said, "participants 6 trials 20 trials", "in points; * marks an interval")
     own = json.loads(out.read_text(encoding="utf-8"))
     assert [(each["participants"], each["trials"]) for each in own["designs"]] == [(4, 6), (4, 20), (16, 6), (16, 20)]
-
-
-def test_plan_of_two_sets(cli: Cli, two: Path) -> None:
-    said = cli("pilot", two, "six-icons", *QUICK, "--participants", "6", "--trials", "12")
-    told(said, "Difference of the two: ", "distinguish the two sets in the right direction (paired t test at 5 %")
 
 
 @pytest.mark.slow

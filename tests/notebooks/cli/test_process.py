@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from thermicon.notebooks.cli.main import COMMANDS, main, program
+from thermicon.notebooks.cli.main import COMMANDS, program
 
 Cli = Callable[..., Any]
 posix = pytest.mark.skipif(sys.platform == "win32", reason="signals and pipes work differently there")
@@ -66,21 +66,6 @@ def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     assert (run.returncode, run.stderr) == (130, "interrupted\n")
 
 
-@pytest.mark.parametrize("where", ["main.TyperGroup.make_context", "main.TyperGroup.invoke", "main.program"])
-def test_an_interrupt_is_told_wherever_it_comes(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str
-) -> None:
-    def stopped(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(f"thermicon.notebooks.cli.{where}", stopped)
-    monkeypatch.setattr(sys, "argv", ["thermicon", "list"])
-    with pytest.raises(SystemExit) as end:
-        main()
-    assert end.value.code == 130
-    assert capsys.readouterr().err == "interrupted\n"
-
-
 def test_damaged_machine_code_is_told_and_an_error_of_the_program_is_not_hidden(
     monkeypatch: pytest.MonkeyPatch, cli: Cli
 ) -> None:
@@ -97,30 +82,11 @@ def test_damaged_machine_code_is_told_and_an_error_of_the_program_is_not_hidden(
 
 
 @posix
-@pytest.mark.parametrize(
-    ("command", "files"),
-    [
-        (("simulate", "two.cue", "-o", "t.csv", "--figure", "t.png"), ("t.csv", "t-cool-step.png", "t-warm-step.png")),
-        *(
-            pytest.param(*case, marks=pytest.mark.slow)
-            for case in (
-                (
-                    ("rank", "two.cue", "--people", "3", "--json", "l.json", "--figure", "fl"),
-                    ("l.json", "fl/distance.png"),
-                ),
-                (("simulate", "two.cue", "--figure", "t.png"), ("t-cool-step.png", "t-warm-step.png")),
-                (("sweep", "two.cue", *VARY, "-o", "-", "--figure", "s.png"), ("s.png",)),
-                (("compare", "two.cue:cool-step", "two.cue:warm-step", "--figure", "c.png"), ("c.png",)),
-            )
-        ),
-    ],
-)
-def test_files_are_there_when_nobody_waits_for_the_words(two: Path, command: tuple[str, ...], files: Any) -> None:
+def test_files_are_there_when_nobody_waits_for_the_words(two: Path) -> None:
     read, write = os.pipe()
     os.close(read)
-    words = [sys.executable, "-m", "thermicon.notebooks.cli.main", *command]
+    words = [sys.executable, "-m", "thermicon.notebooks.cli.main", "simulate", "two.cue", "-o", "t.csv"]
     run = subprocess.run(words, cwd=two.parent, stdout=write, stderr=write, timeout=120, check=False)
     os.close(write)
     assert run.returncode == 0
-    for name in files:
-        assert (two.parent / name).stat().st_size > 0, name
+    assert (two.parent / "t.csv").stat().st_size > 0

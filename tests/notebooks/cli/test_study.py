@@ -56,6 +56,11 @@ def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) 
     assert "run_study.py: is missing; it was exported with study.json" in said.stderr
 
 
+def test_the_same_study_gives_the_same_bytes(out: Path, tmp_path: Path) -> None:
+    first, again = ({path.name: path.read_bytes() for path in one.iterdir()} for one in (out, make(tmp_path, QUICK)))
+    assert first == again
+
+
 def refused(cli: Cli, folder: Path, text: str) -> str:
     """What a refused study says; nothing may be there."""
     said = cli("study", write_study(folder, text), "-o", folder / "out")

@@ -65,24 +65,6 @@ def test_every_number_is_that_of_the_run(two: Path) -> None:
 
 
 @pytest.mark.slow
-def test_two_keys_make_a_grid(cli: Cli, two: Path, tmp_path: Path) -> None:
-    out, figure = tmp_path / "grid.csv", tmp_path / "grid.png"
-    options = ("--vary", f"{AREA}=4:16:2", "--vary", f"{LIMIT}=0.7:1.5:3", "--figure", figure)
-    said = cli("sweep", two, *options, "-o", out)
-    assert said.exit_code == 0, said.stderr
-    frame = pd.read_csv(out)
-    assert list(frame.columns[:3]) == ["icon", AREA, LIMIT]
-    one = frame[frame["icon"] == "cool-step"]
-    assert list(zip(one[AREA], one[LIMIT], strict=True)) == [(a, c) for a in (4, 16) for c in (0.7, 1.1, 1.5)]
-    assert len(frame) == 12
-    alone = summarise(simulate(read_cue(two)["cool-step"], Rig.load("thenar").with_(**{AREA: 16.0, LIMIT: 0.7})))
-    row = one[(one[AREA] == 16) & (one[LIMIT] == 0.7)].iloc[0]
-    assert row["skin_min_C"] == pytest.approx(alone.skin_min_C, rel=1e-8)
-    assert "of 6 combinations" in said.stderr
-    assert figure.stat().st_size > 20_000
-
-
-@pytest.mark.slow
 def test_an_impossible_value_is_a_row_with_the_reason(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "sweep.csv"
     said = cli("sweep", two, "--vary", f"{AREA}=-5:10:4", "-o", out, "--figure", tmp_path / "sweep.png")

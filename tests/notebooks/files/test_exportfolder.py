@@ -17,7 +17,7 @@ import pytest
 from tests.circuit.surerig import SURE
 from tests.notebooks.files.dying import CASES, NEW, OLD, drive
 from thermicon.circuit.delivery.export_folder import check_export_folder, publish
-from thermicon.icons.atomic import OutputError, stopped_cleanly
+from thermicon.icons.atomic import OutputError
 
 DYING = Path(__file__).with_name("dying.py")
 STAGE = ".drives.thermicon-part"
@@ -173,63 +173,14 @@ class TestFiles:
         assert signal.getsignal(number) is before
 
 
-RACE = """
-import sys
-from pathlib import Path
-sys.path.insert(0, sys.argv[1])
-from dying import drive
-from thermicon.circuit.delivery.export_folder import publish
-from thermicon.icons.atomic import OutputError, stopped_cleanly
-folder, mine, rounds = Path(sys.argv[2]), sys.argv[3], int(sys.argv[4])
-for turn in range(rounds):
-    print("ready", flush=True)
-    sys.stdin.readline()
-    try:
-        publish(drive(mine, mine.encode()), folder / f"out{turn}")
-        said = "done"
-    except OutputError as error:
-        said = str(error)
-    print(said, flush=True)
-"""
-
-
 class TestTwoAtOnce:
     """Two processes that export into one folder."""
-
-    @posix
-    def test_one_wins_and_the_other_is_refused(self, tmp_path: Path) -> None:
-        rounds = 30
-        command = [sys.executable, "-c", RACE, str(DYING.parent), str(tmp_path)]
-        pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-        with (
-            subprocess.Popen([*command, "x", str(rounds)], **pipes) as first,
-            subprocess.Popen([*command, "y", str(rounds)], **pipes) as second,
-        ):
-            for turn in range(rounds):
-                for each in (first, second):
-                    assert each.stdout.readline() == "ready\n"  # type: ignore[union-attr]
-                for each in (first, second):
-                    each.stdin.write("\n")  # type: ignore[union-attr]
-                    each.stdin.flush()  # type: ignore[union-attr]
-                said = [each.stdout.readline().strip() for each in (first, second)]  # type: ignore[union-attr]
-                assert sorted(word == "done" for word in said) == [False, True], said
-                loser = next(word for word in said if word != "done")
-                assert "already exist and were kept" in loser or "another export is writing into" in loser
-                winner = "xy"[said.index("done")]
-                assert held(tmp_path / f"out{turn}") == drive(winner, winner.encode())
 
     def test_a_folder_that_another_export_prepares_is_refused_with_its_place(self, tmp_path: Path) -> None:
         (tmp_path / ".out.thermicon-part").mkdir()
         with pytest.raises(OutputError, match=r"another export is writing into .*, or delete .*\.out\.thermicon-part"):
             publish(drive("a", b"1"), tmp_path / "out")
         assert names(tmp_path) == [".out.thermicon-part"]
-
-
-@posix
-def test_a_request_to_end_is_an_interrupt() -> None:
-    with pytest.raises(KeyboardInterrupt), stopped_cleanly():
-        os.kill(os.getpid(), signal.SIGTERM)
-    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
 @posix

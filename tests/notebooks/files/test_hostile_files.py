@@ -12,24 +12,15 @@ from typing import Any
 
 import pytest
 
+from tests.notebooks.readers import KINDS
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, c_array, load_format
 from thermicon.circuit.delivery.formats.form import check_name
 from thermicon.circuit.delivery.samples import rate_of
-from thermicon.circuit.fitting.log import read_log
-from thermicon.circuit.safety.session import read_order
 from thermicon.circuit.solver.drive import DriveError, read_drive
-from thermicon.icons import CueErrors, load_library, parse, read_cue
-from thermicon.icons.recordings.recorded import read_readings
-from thermicon.notebooks.files.document import Document
-from thermicon.notebooks.files.trace_files import read_curves
-from thermicon.notebooks.study.study_file import study_text
-from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.observer.observer import Observer
-from thermicon.perception.pilot.measurements_file import read_measurements
-from thermicon.perception.pilot.trials_file import read_trials
+from thermicon.icons import CueErrors, load_library, parse
 
 Cli = Callable[..., Any]
 POSIX = sys.platform != "win32"
@@ -113,39 +104,12 @@ def shipped(package: str, place: str) -> str:
     return (files(package) / place).read_text(encoding="utf-8")
 
 
-ROWS = "time_s,current_A,skin_C\n" + "".join(f"{k / 10},0.{k % 5},{32 - k / 20}\n" for k in range(30))
-ANSWERS = "participant,trial,presented,responded\n" + "".join(f"P1,{k},cooling-step,warming-step\n" for k in range(9))
-VALUES = "participant,kind,method,channel,value,unit\nP1,threshold,limits,cold,1.1,K\n"
-CUE = "cue 1 # a comment\nicon dip { cool by 3 °C at 2 °C/s # another\n  hold for 1 s }\n"
-READERS: dict[str, tuple[str, str, Callable[[Path], object]]] = {
-    "cue": ("a.cue", CUE, read_cue),
-    "cue in an editor": ("a.cue", CUE, lambda path: parse(Document.open(path).text, "a.cue")),
-    "rig": ("a.toml", shipped("thermicon.circuit", "rigs/thenar.toml"), Rig.load),
-    "device": ("a.toml", shipped("thermicon.circuit", "devices/dac-12.toml"), Device.load),
-    "observer": ("a.toml", shipped("thermicon.perception", "data/observer.toml"), Observer.load),
-    "study": ("a.toml", shipped("thermicon.notebooks", "data/example-study.toml"), study_text),
-    "log": ("a.csv", ROWS, lambda path: read_log(path).column("skin_C").tolist()),
-    "drive": ("a.csv", ROWS, lambda path: repr(read_drive(path))),
-    "trace": ("a.csv", ROWS, lambda path: read_curves(str(path)).columns["skin_C"].tolist()),
-    "recording": ("a.csv", ROWS, read_readings),
-    "answers": ("a.csv", ANSWERS, lambda path: read_trials(path, ["cooling-step", "warming-step"]).counts.tolist()),
-    "measurements": ("a.csv", VALUES, lambda path: repr(read_measurements(path, Rig.load("thenar")))),
-    "order": ("a.txt", "cooling-step\nwarming-step # last\n", lambda path: read_order(path, load_library("six-icons"))),
-    "draws": (
-        "a.csv",
-        shipped("thermicon.perception", "data/posterior.csv"),
-        lambda path: PosteriorDraws.load(path).nominal().cold,
-    ),
-}
-
-
-@pytest.mark.parametrize("kind", READERS)
+@pytest.mark.parametrize("kind", KINDS)
 def test_every_file_is_read_alike_whatever_ends_its_lines(tmp_path: Path, kind: str) -> None:
-    name, text, read = READERS[kind]
-    found = []
+    held, found = KINDS[kind], []
     for end in ("\n", "\r\n", "\r"):
-        (tmp_path / name).write_bytes(text.replace("\n", end).encode())
-        found.append(read(tmp_path / name))
+        (tmp_path / held.file).write_bytes(held.texts[0].replace("\n", end).encode())
+        found.append(held.read(tmp_path / held.file))
     assert found[0] == found[1] == found[2]
 
 

@@ -9,10 +9,8 @@ from pathlib import Path
 import pytest
 
 from tests.circuit.surerig import sure_rig
-from thermicon.circuit import export
 from thermicon.icons import parse
 from thermicon.icons.atomic import OutputError
-from thermicon.notebooks.files.exporting import felt_beside
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.export_view import ExportView
 from thermicon.perception import rank
@@ -105,20 +103,6 @@ def test_what_is_not_reached_is_written_only_on_request_and_not_into_a_file(tmp_
     assert (tmp_path / "drives" / "cold.csv").exists()
 
 
-@pytest.mark.slow
-def test_a_device_offers_the_formats_that_it_takes_and_says_what_it_cannot_play(tmp_path: Path) -> None:
-    bench = Bench(tmp_path)
-    bench.view.device.value = "qst-tcs2"
-    assert [name for _, name in bench.view.form.options] == ["tcs2-serial", "psychopy"]
-    bench.wait()
-    assert bench.view.ready is not None
-    assert bench.view.ready.device.name == "qst-tcs2"
-    bench.design.receive({"type": "text", "text": FAR})
-    bench.wait()
-    assert bench.view.button.disabled
-    assert "qst-tcs2" in bench.said("status") or "refused" in bench.said("status")
-
-
 def test_a_text_with_errors_is_not_exported(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
     bench.design.receive({"type": "text", "text": TWO.replace("3 °C at", "3 at")})
@@ -129,10 +113,3 @@ def test_a_text_with_errors_is_not_exported(tmp_path: Path) -> None:
     bench.design.receive({"type": "text", "text": TWO})
     bench.wait()
     assert not bench.view.button.disabled
-
-
-def test_preparing_tells_how_far_it_is() -> None:
-    steps: list[tuple[int, int]] = []
-    made = export(parse(TWO), sure_rig(), felt=felt_beside(), step=lambda done, total: steps.append((done, total)))
-    assert steps == [(1, 2), (2, 2)]
-    assert [change.icon for change in made.felt] == ["dip", "glow"]

@@ -63,14 +63,6 @@ def test_a_site_is_that_of_the_shipped_rig_on_the_same_display(rig: Rig) -> None
     assert apply(made, {"site": "thenar"}).rig.skin.layers == rig.skin.layers
 
 
-def test_depths_counted_from_the_horny_layer_come_with_the_fingertip(rig: Rig) -> None:
-    made = apply(rig, {"site": "fingertip"}).rig
-    assert made.receptor_depths() == Rig.load("fingertip").receptor_depths()
-    assert apply(made, {"site": "thenar"}).rig.receptor_depths() == rig.receptor_depths()
-    printed = Rig.load("shani2021")
-    assert apply(printed, {"site": "forearm"}).rig.deep_C == printed.deep_C == 37.0
-
-
 def test_an_aged_observer_feels_what_a_drawn_person_of_that_age_feels(rig: Rig) -> None:
     trace = simulate(load_library("six-icons")["cold-to-warm"], rig)
     old = perceive(trace, aged(Observer.load(), 70.0))

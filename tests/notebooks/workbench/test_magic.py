@@ -4,11 +4,8 @@ import subprocess
 import sys
 from collections.abc import Iterator
 
-import nbformat
 import pytest
 from IPython.core.interactiveshell import InteractiveShell
-from nbclient import NotebookClient
-from nbclient.exceptions import CellExecutionError
 
 from tests.builders import missing
 from tests.notebooks.workbench.openbench import SAID
@@ -51,29 +48,6 @@ def test_it_says_what_it_does_and_can_be_taken_away(shell: InteractiveShell) -> 
     assert "%%cue [NAME]" in shell.magics_manager.magics["cell"]["cue"].__doc__
     shell.extension_manager.unload_extension("thermicon.notebooks")
     assert "cue" not in shell.magics_manager.magics["cell"]
-
-
-@pytest.mark.slow
-def test_a_notebook_shows_pictures_and_stops_at_mistakes() -> None:
-    cells = (
-        *("%load_ext thermicon.notebooks", "%%cue alerts\n" + GOOD, "print(len(alerts))"),
-        *("%%cue" + BAD, "print('never')"),
-    )
-    made = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
-    client = NotebookClient(made, timeout=60, kernel_name="python3")
-    with pytest.raises(CellExecutionError, match="E102 missing unit"):
-        client.execute()
-    _, shown, counted, wrong, never = made.cells
-    (picture,) = shown.outputs
-    assert picture.output_type == "execute_result"
-    assert picture.data["text/html"].startswith("<svg")
-    assert picture.data["text/plain"].startswith("<IconSet (unnamed): 1 icon, 4 s")
-    assert counted.outputs[0].text == "1\n"
-    (error,) = wrong.outputs
-    assert (error.output_type, error.ename) == ("error", "CueErrors")
-    assert error.traceback[0] == "cell:2:20  E102 missing unit"
-    assert "Traceback" not in "\n".join(error.traceback)
-    assert never.outputs == []
 
 
 def test_nothing_imports_ipython_or_widgets_before_they_are_used() -> None:

@@ -16,7 +16,6 @@ from thermicon.circuit import Rig, simulate
 from thermicon.circuit.fitting.log import LogError
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
-from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.files.outputs import PAGE_FOLDER
 from thermicon.notebooks.timeline.measured import read_measured, read_uploaded
 from thermicon.notebooks.workbench.document_bar import DocumentBar
@@ -133,18 +132,3 @@ def test_a_workbench_is_made_with_a_log(log: Path) -> None:
     long = log.with_name("long.csv")
     long.write_text("time_s,display_C\n" + "".join(f"{k / 100:.2f},32\n" for k in range(40_001)), encoding="utf-8")
     assert read_measured(long).notes[-1] == "long.csv: one row in 3 of 40,001 is shown"
-
-
-def test_another_file_aligns_the_log_anew_and_one_that_does_not_fit_is_said(log: Path) -> None:
-    bench, _, panel = opened()
-    load(panel, log)
-    bench._design.open(Document(TEXT.replace("icon dip {", "icon dip { hold for 1 s;")))
-    assert panel.shift.value == pytest.approx(LATE_S + 1.0, abs=0.02)
-    columns = np.loadtxt(log, delimiter=",", skiprows=1)
-    current = log.with_name("current.csv")
-    np.savetxt(current, columns[:, :2], fmt="%.4f", delimiter=",", header="time_s,current_A", comments="")
-    load(panel, current)
-    bench._design.take_rig(Rig.load("tcs2"))
-    frame = bench._design.receive({"type": "icon", "name": "none"})
-    assert not any("failed" in note for note in frame.meta["notes"])
-    assert "current.csv: " in frame.meta["measured"]

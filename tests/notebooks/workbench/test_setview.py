@@ -16,11 +16,9 @@ from thermicon.notebooks.editing.number_literals import CannotEdit, with_edit
 from thermicon.notebooks.report.rank_details import number_points
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import BackgroundWorker, Job, Superseded
-from thermicon.notebooks.workbench.set_model import QUICK, RankedSet, overlay_frame, rank_set
+from thermicon.notebooks.workbench.set_model import RankedSet, overlay_frame, rank_set
 from thermicon.notebooks.workbench.set_view import SetView
 from thermicon.notebooks.workbench.view_blocks import chosen_html, set_html
-from thermicon.notebooks.workbench.workbench import Workbench
-from thermicon.perception import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.ranking.rank_file import ranking_file
 from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number
@@ -194,14 +192,6 @@ def test_a_set_of_one_says_that_it_is_never_confused() -> None:
     assert bench.view._maps.layout.display == "none"
 
 
-@pytest.mark.slow
-def test_what_cannot_be_played_stands_apart_with_its_reason() -> None:
-    bench = Bench(THREE.replace("cool by 4 °C at 2 °C/s", "cool by 14 °C at 9 °C/s"))
-    table = bench.said("table")
-    assert table.index('<tr class="apart">') < table.index("far *")
-    assert "far is not reached" in bench.said("notes")
-
-
 @pytest.mark.parametrize("text", SAID["texts"])
 def test_what_cannot_be_ranked_is_said(text: str) -> None:
     assert missing(SAID["texts"][text], Bench(text).said("status")) == []
@@ -222,15 +212,6 @@ def test_the_best_few_are_chosen_marked_and_kept() -> None:
     bench.view.take.click()
     assert bench.design.scene.names == tuple(chosen)
     assert bench.view.count.value == 0
-
-
-def test_a_map_stays_where_it_was_when_an_icon_changes(ranked: Bench) -> None:
-    before = ranked.made.map
-    assert before is not None
-    text = THREE.replace("cool by 4 °C", "cool by 4.2 °C")
-    after = rank_set(text, Rig.load("thenar"), *QUICK, reference=before).map
-    assert after is not None
-    assert abs(after.points - before.points).max() < 2.0
 
 
 def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
@@ -299,18 +280,6 @@ def test_scores_and_choice_name_the_laboratory_in_the_words_of_rank(laboratory: 
     assert "observer of" not in said["caveat"]
     chosen = rank_set(THREE, Rig.load("thenar"), 4, 2, Selection(2, "worst"), observer=laboratory)
     assert f"for {words} (95 %): " in chosen_html(chosen.report)
-
-
-@pytest.mark.slow
-def test_the_laboratory_of_a_workbench_predicts_in_every_view(laboratory: ObserverModel, tmp_path: Path) -> None:
-    bench = Workbench(TWO, observer=few_draws(tmp_path / "lab.csv", 2, "by weights from 4 laboratories", "thenar"))
-    assert bench.ranking(4).observer == "lab.csv"
-    assert bench.scene.observer == laboratory.nominal != Observer.load()
-    made = Bench(TWO, laboratory)
-    assert "in your laboratory, lab.csv (95 %): " in made.said("scores")
-    assert made.made.ranking.proportion_correct == bench.ranking(24).proportion_correct
-    made.design.turn({"age": 60.0})
-    assert made.design.observer.cold.threshold_drive > laboratory.nominal.cold.threshold_drive
 
 
 def test_a_single_draw_gives_no_interval(tmp_path: Path) -> None:

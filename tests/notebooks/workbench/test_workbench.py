@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import nbformat
 import pytest
 
 from thermicon.circuit import Rig
@@ -159,15 +156,6 @@ def test_an_impossible_value_is_told_and_reset_brings_all_back(bench: Workbench,
     assert bench.scene.notes == ()
 
 
-def test_a_site_and_an_age_change_what_is_felt(bench: Workbench) -> None:
-    turned(bench, "site", "fingertip")
-    assert bench.rig.site == "fingertip"
-    assert bench.percept is not None
-    before = bench.percept.psi_cold.max()
-    turned(bench, "age", 70.0)
-    assert bench.percept.psi_cold.max() < before
-
-
 def test_nothing_in_the_kernel_takes_long_for_a_frame_of_text_or_slider() -> None:
     design = DesignModel(document_of(None).text, Rig.load("thenar"))
     spent: dict[str, list[float]] = {"text": [], "slider": []}
@@ -233,17 +221,3 @@ def test_without_a_kernel_it_is_text_and_a_picture(bench: Workbench) -> None:
     shown = bench._repr_mimebundle_()
     assert shown["text/plain"] == repr(bench) == "Workbench('dip' of 2 on thenar, green)"
     assert shown["image/png"][1:4] == b"PNG"
-
-
-@pytest.mark.slow
-def test_a_notebook_with_it_is_saved_small(tmp_path: Path) -> None:
-    path = tmp_path / "bench.ipynb"
-    cells = [nbformat.v4.new_code_cell("from thermicon.notebooks import Workbench\nbench = Workbench()\nbench")]
-    nbformat.write(nbformat.v4.new_notebook(cells=cells), path)
-    command = [sys.executable, "-m", "nbconvert", "--execute", "--to", "notebook", "--inplace", str(path)]
-    subprocess.run(command, check=True, capture_output=True, cwd=tmp_path)
-    assert path.stat().st_size < 800_000, "of which the text editor is a third: without it a saved page would be dead"
-    outputs = nbformat.read(path, as_version=4).cells[0].outputs
-    assert "application/vnd.jupyter.widget-view+json" in outputs[0]["data"]
-    assert "image/png" not in outputs[0]["data"]
-    assert "<svg" in outputs[0]["data"]["text/html"]
