@@ -124,7 +124,7 @@ def _letter_panels(figure: Figure) -> None:
     """
     if figure.get_suptitle():
         figure.suptitle("").set_in_layout(False)
-    panels = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
+    panels: list[Any] = [ax for ax in figure.axes if ax.get_label() != COLORBAR and ax.get_visible() and ax.axison]
     for panel, letter in zip(panels, ascii_lowercase, strict=False):
         titles = {loc: IN_BRACKETS.sub("", panel.get_title(loc=loc)) for loc in ("left", "center")}
         named = next((loc for loc, title in titles.items() if title and len(panels) > 1), "left")
@@ -203,11 +203,11 @@ def _fit_keys(figure: Figure, gathered: bool) -> None:
         legend.remove()
     entries: dict[str, Any] = {}  # what several panels name alike stands once
     for ax in figure.axes if gathered else ():
-        legend = ax.get_legend()
-        if legend is not None and legend.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 > 1.0:
-            for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
+        beside = ax.get_legend()
+        if beside is not None and beside.get_bbox_to_anchor().transformed(ax.transAxes.inverted()).x0 > 1.0:
+            for handle, text in zip(beside.legend_handles, beside.get_texts(), strict=True):
                 entries.setdefault(textwrap.fill(" ".join(text.get_text().split()), LONGEST_KEY), handle)
-            legend.remove()
+            beside.remove()
     if entries:
         labels = sorted(entries, key=len)
         keys.append(("lower", [entries[label] for label in labels], labels))
