@@ -17,7 +17,7 @@ from .keys import FitError, FitKey, free_keys
 from .log import Log, LogError, read_log
 from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow, unsteady
 from .overlay import aligned, check_clocks, check_sensors
-from .problem import FREE_START, OFFSET_SD_K, STEADY, STEADY_BEFORE, Problem, changed_layers
+from .problem import OFFSET_SD_K, Problem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
 from .solve import Solution, fits_better, solve
 
@@ -37,7 +37,6 @@ def fit(
     *,
     free: Sequence[str],
     held: bool | None = None,
-    fit_start: bool = False,
     offset_K: float = OFFSET_SD_K,
     fixed_skin: bool = False,
 ) -> RigFit:
@@ -55,9 +54,6 @@ def fit(
     held
         Whether the drive of a row lasts until the next row (True), or is linear between rows (False); None: whichever
         fits the logs better.
-    fit_start
-        Fit the state at the first row as well; otherwise the rig is taken as steady there, under the first row's drive
-        or the one before it.
     offset_K
         Standard deviation in K of what every temperature sensor may read off; 0 for calibrated sensors.
     fixed_skin
@@ -75,6 +71,7 @@ def fit(
 
     Notes
     -----
+    The rig is taken as steady at the first row, under its drive or the one before it.
     Robust least squares (Huber, beyond three standard deviations) with bounds, by `scipy.optimize.least_squares`. The
     noise of each channel comes from its residuals; where neighbouring residuals are alike, because the model leaves
     something out, intervals are widened accordingly, as by the error of the skin's mesh. Intervals allow for skin that
@@ -96,15 +93,15 @@ def fit(
     begin = _explicit(rig, keys)
     runs = runs_of(read, begin, held is not False)
 
-    def begun(start_count: int) -> Problem:
-        return aligned(Problem.of(begin, keys, runs, start_count, offset_K, fixed_skin))
+    def begun(*, steady_before: bool) -> Problem:
+        return aligned(Problem.of(begin, keys, runs, steady_before, offset_K, fixed_skin))
 
-    problem = begun(FREE_START if fit_start else STEADY)
+    problem = begun(steady_before=False)
     check_sensors(problem)
     problem, solution = _solved(problem, held)
-    if not fit_start and unsteady(problem, solution.theta):
+    if unsteady(problem, solution.theta):
         # As in a trace, whose first row has the drive from then on: steady it was under the drive before.
-        other, found = _solved(begun(STEADY_BEFORE), held)
+        other, found = _solved(begun(steady_before=True), held)
         if not unsteady(other, found.theta):
             problem, solution = other, found
     check_clocks(problem, solution.theta)

@@ -19,7 +19,6 @@ from ..solver.displayed import part_of, trace_of_display
 from ..solver.drive import Drive
 from ..solver.landing import start_under
 from ..solver.modes import shown
-from ..solver.network import COLD, HOT, SKIN
 from ..solver.simulate import rows_until, simulate_current
 from ..solver.trace import Trace
 from .log import DRIVES, Log, LogError
@@ -30,13 +29,6 @@ SETTLED_A, MOST_TURNS = 1e-8, 40
 
 STEADY_SPREAD = 6.0
 """Noise of a logged current, in its standard deviations, within which the first rows count as one level."""
-
-SKIN_DEPTHS_M = (0.5e-3, 3e-3)
-"""How deep a start that is not steady reaches into the skin: what heat diffuses in some seconds, and in a minute."""
-
-Start = tuple[float, float, float, float, float]
-"""A start that is not steady under the first row's drive: how much more current in A it was steady under before, and
-how far display, hot plate, and skin near the surface and deeper are from that state in K."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,8 +61,8 @@ class Prediction:
         return np.asarray(np.interp(time_s, self.trace.time_s, values), dtype=np.float64)
 
 
-def predict(rig: Rig, run: Run, start: Start | None = None) -> Prediction:
-    """Simulate a run; `start` is what differs from the steady state of the first row.
+def predict(rig: Rig, run: Run, before_A: float = 0.0) -> Prediction:
+    """Simulate a run; `before_A` is how much more current than the first row's it was steady under.
 
     Raises RigError where the run is not physical on this rig.
     """
@@ -81,11 +73,11 @@ def predict(rig: Rig, run: Run, start: Start | None = None) -> Prediction:
     if run.driven_by != "voltage_V":
         gain = rig.driver.transconductance_A_per_V if run.driven_by == "command_V" else 1.0
         drive = Drive(run.time_s, gain * run.drive, run.held)
-        return Prediction(_play(sensed, drive, start), drive, ohm, display_probe)
+        return Prediction(_play(sensed, drive, before_A), drive, ohm, display_probe)
     current = run.drive / ohm
     for _ in range(MOST_TURNS):
         drive = Drive(run.time_s, current, run.held)
-        found = Prediction(_play(sensed, drive, start), drive, ohm, display_probe)
+        found = Prediction(_play(sensed, drive, before_A), drive, ohm, display_probe)
         seebeck_V = found.at("voltage_V", run.time_s) - drive.at(run.time_s) * ohm
         better = (run.drive - seebeck_V) / ohm
         change, current = float(np.abs(better - current).max()), better
@@ -98,21 +90,14 @@ def predict(rig: Rig, run: Run, start: Start | None = None) -> Prediction:
     )
 
 
-def _play(rig: Rig, drive: Drive, start: Start | None) -> Trace:
+def _play(rig: Rig, drive: Drive, before_A: float) -> Trace:
     level = steady_level(drive.current_A)
-    if start is None and level == drive.current_A[0]:
+    if not before_A and level == drive.current_A[0]:
         return simulate_current(drive, rig, rate_Hz=RATE_HZ)
     try:
-        state = start_under(rig, level + (0.0 if start is None else start[0]))
+        state = start_under(rig, level + before_A)
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the log with a smaller current") from None
-    if start is not None:
-        state = state.copy()
-        state[COLD] += start[1]
-        state[HOT] += start[2]
-        depth = rig.column.depth_m
-        for change_K, reach_m in zip(start[3:], SKIN_DEPTHS_M, strict=True):
-            state[SKIN : SKIN + len(depth)] += change_K * np.exp(-depth / reach_m)
     return simulate_current(drive, rig, rate_Hz=RATE_HZ, start_C=state)
 
 

@@ -16,7 +16,7 @@ from ..rig.parts import Uncertainty
 from .forward import MAD_TO_SD, Channel
 from .identify import Parameter
 from .keys import fittable, free_keys, value_of
-from .problem import FREE_START, STEADY_BEFORE, Problem, Unknown
+from .problem import Problem, Unknown
 from .rig_fit import LARGEST, channel_fits
 from .solve import Solution, covariance_of, huber, solve
 
@@ -77,7 +77,7 @@ def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[st
     sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
     sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
     for r, run in enumerate(problem.runs):
-        if problem.start_count == STEADY_BEFORE and (change := problem.nuisance(theta, "start", r, 0)):
+        if problem.steady_before and (change := problem.nuisance(theta, "start", r, 0)):
             sentences.append(
                 f"{run.name}: the first row's drive has just begun; the start is taken as steady under "
                 f"{abs(change):.2f} A {'less' if change < 0 else 'more'}"
@@ -124,8 +124,6 @@ def _slow_drives(problem: Problem) -> list[str]:
 
 def unsteady(problem: Problem, theta: Array) -> list[str]:
     """Runs whose first seconds fit much worse than the rest."""
-    if problem.start_count == FREE_START:
-        return []
     names = []
     for each, (_, _, channel) in zip(channel_fits(problem, theta), problem.channels(), strict=True):
         residual, noise = (
@@ -137,8 +135,8 @@ def unsteady(problem: Problem, theta: Array) -> list[str]:
         if channel.temperature and early.size and np.median(early) > most:
             names.append(each.run)
     return [
-        f"{name}: the first {EARLY_S:g} s fit much worse than the rest: the rig was not steady at the first row; use "
-        f"--fit-start (fit_start=True), or log a few seconds of rest first"
+        f"{name}: the first {EARLY_S:g} s fit much worse than the rest: the rig was not steady at the first row; "
+        f"log a few seconds of rest first"
         for name in dict.fromkeys(names)
     ]
 

@@ -1,7 +1,8 @@
 """The fit as numbers: free keys and what is fitted along with them, residuals of all channels, and their derivatives.
 
 Along with the keys go the zero of every temperature sensor, how far the sensors are from the drive within a row, shift
-and drift of every further clock, unless left out the layers of the skin, and, on request, the state at the first row.
+and drift of every further clock, unless left out the layers of the skin, and, where a run needs it, the current that
+the rig was steady under before the first row.
 Scales are fitted as logarithms, so that they stay positive and intervals are relative.
 
 Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. What is a times
@@ -21,7 +22,7 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..rig.skin import layer_spreads
-from .forward import Channel, Prediction, Run, Start, predict
+from .forward import Channel, Prediction, Run, predict
 from .keys import FitError, FitKey, value_of
 
 OFFSET_SD_K = 0.1
@@ -30,14 +31,10 @@ OFFSET_SD_K = 0.1
 STEP_LOG, STEP_LINEAR = 1e-3, 5e-3
 """Steps of derivatives: 0.1 % of a scale, 5 mK or 5 ms of the others."""
 
-START_SD = (0.5, 2.0, 2.0, 2.0, 2.0)
+START_SD_A = 0.5
 SHIFT_SD_S, DRIFT_SD = 30.0, 0.02
-"""How far a start may be from steady (current in A, display, hot plate, near and deep skin in K), and
-clocks from each other, where the fit decides: standard deviations."""
-
-STEADY, STEADY_BEFORE, FREE_START = 0, 1, len(START_SD)
-"""How many of these are fitted: none where a run begins steady under its first row's drive, the current alone where it
-was steady under another, all where it was not steady."""
+"""How far the current before the first row may be from that of the first row, and clocks from each other, where the
+fit decides: standard deviations."""
 
 ROW_SHARE = 0.5
 """A row's temperature may belong half a row earlier or later than its drive (standard deviation): a logged current is
@@ -83,7 +80,7 @@ class Problem:
     rig: Rig
     keys: tuple[FitKey, ...]
     runs: tuple[Run, ...]
-    start_count: int
+    steady_before: bool
     offset_sd_K: float
     fixed_skin: bool
     unknowns: tuple[Unknown, ...]
@@ -94,7 +91,7 @@ class Problem:
         rig: Rig,
         keys: tuple[FitKey, ...],
         runs: tuple[Run, ...],
-        start_count: int = STEADY,
+        steady_before: bool = False,
         offset_sd_K: float = OFFSET_SD_K,
         fixed_skin: bool = False,
     ) -> Problem:
@@ -102,10 +99,10 @@ class Problem:
         layers = {} if fixed_skin else layer_priors(rig)
         unknowns = (
             *(_key(rig, key, place) for place, key in enumerate(keys)),
-            *_along(runs, start_count, offset_sd_K),
+            *_along(runs, steady_before, offset_sd_K),
             *(Unknown(kind, 0, k, sd, low=-1.0, high=1.0, step=STEP_LOG) for (kind, k), sd in layers.items()),
         )
-        return Problem(rig, keys, runs, start_count, offset_sd_K, fixed_skin, unknowns)
+        return Problem(rig, keys, runs, steady_before, offset_sd_K, fixed_skin, unknowns)
 
     @property
     def first(self) -> Array:
@@ -124,7 +121,7 @@ class Problem:
 
     def again(self, rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...]) -> Problem:
         """Another rig, keys or runs, with the same fitted along."""
-        return Problem.of(rig, keys, runs, self.start_count, self.offset_sd_K, self.fixed_skin)
+        return Problem.of(rig, keys, runs, self.steady_before, self.offset_sd_K, self.fixed_skin)
 
     def values(self, theta: Array) -> dict[str, float]:
         """Values of the free keys in the units of the rig file."""
@@ -150,7 +147,8 @@ class Problem:
             if len(self._kept) > 4 * (len(moving) + 1):
                 self._kept.clear()
             rig = self.rig_at(theta)
-            self._kept[token] = tuple(predict(rig, run, self.start(theta, k)) for k, run in enumerate(self.runs))
+            before = [self.nuisance(theta, "start", k, 0) for k in range(len(self.runs))]
+            self._kept[token] = tuple(predict(rig, run, more) for run, more in zip(self.runs, before, strict=True))
         return self._kept[token]
 
     def predictions(self, theta: Array) -> tuple[Prediction, ...] | None:
@@ -166,13 +164,6 @@ class Problem:
             if (item.kind, item.run, item.place) == (kind, run, place):
                 return float(value)
         return 0.0
-
-    def start(self, theta: Array, run: int) -> Start | None:
-        """How far a run's start is from steady in K; None where it is taken as steady."""
-        if not self.start_count:
-            return None
-        current, display, hot, near, deep = (self.nuisance(theta, "start", run, k) for k in range(len(START_SD)))
-        return current, display, hot, near, deep
 
     def run_time_s(self, theta: Array, run: int, channel: Channel) -> Array:
         """Times of a channel's rows on the clock of its run's drive, from the first row of the drive."""
@@ -250,12 +241,12 @@ def _key(rig: Rig, key: FitKey, place: int) -> Unknown:
     return Unknown("key", 0, place, 1.0, value, low, value + key.room)
 
 
-def _along(runs: Sequence[Run], start_count: int, offset_sd_K: float) -> list[Unknown]:
+def _along(runs: Sequence[Run], steady_before: bool, offset_sd_K: float) -> list[Unknown]:
     """Start, place within the row, clocks and offsets of every run."""
     extra = []
     for r, run in enumerate(runs):
-        if start_count and run.driven_by not in ("setpoint_C", "display_C"):
-            extra += [Unknown("start", r, place, sd) for place, sd in enumerate(START_SD[:start_count])]
+        if steady_before and run.driven_by not in ("setpoint_C", "display_C"):
+            extra.append(Unknown("start", r, 0, START_SD_A))
         if any(not channel.clock for channel in run.channels):
             extra.append(Unknown("row", r, 0, ROW_SHARE * float(np.median(np.diff(run.time_s))), step=1e-3))
         for clock in range(1, len(run.clocks) + 1):

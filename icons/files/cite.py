@@ -1,4 +1,4 @@
-"""What a paper says of a set: a paragraph for its methods, and BibTeX entries for its sources."""
+"""What a paper says of a set: a paragraph for its methods, with what is unverified of its sources."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,6 @@ from ..model.icon import Icon
 from ..model.iconset import IconSet
 from ..model.units import quantity
 
-TITLE, AUTHORS, LICENCE = "thermicon: a workbench for thermal icons", "The thermicon authors", "MIT"
 _PRESCRIBED = {
     "skin": "the temperature of the skin surface",
     "display": "the temperature of the display",
@@ -22,11 +21,8 @@ _COUNTS = ["no", "one", "two", "three", "four", "five", "six", "seven", "eight",
 _MINUS = re.compile(r"(?<![\w.])-(?=[0-9])")
 _ENTRY = re.compile(r"@(?P<type>[a-z]+)\{(?P<key>[a-z0-9-]+),\n(?P<fields>(?:  .*\n)*)\}")
 _FIELD = re.compile(r"  ([a-z]+) = \{(.*)\},\n")
-_FIELDS = ("author", "title", "journal", "booktitle", "year", "volume", "number", "pages", "doi")
 _YEAR = re.compile(r"\b(?:19|20)[0-9]{2}\b")
 _RESOLVER = re.compile(r"^(?:https?://(?:dx\.)?doi\.org/|doi:)\s*", re.IGNORECASE)
-_ESCAPES = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
-_ESCAPES |= {mark: "\\" + mark for mark in "&%$#_{}"}
 
 Reference = Mapping[str, str]
 """A publication: its ``key``, ``type`` and BibTeX fields, where they were ``seen``, and what is ``unverified``."""
@@ -52,7 +48,7 @@ def methods(icons: IconSet, rig_about: str | None = None) -> str:
     if named := sources(icons):
         texts = (", ".join(filter(None, (by, doi and f"doi:{plain_doi(doi)}"))) for by, doi in named)
         said.append(f"Sources, as the set names them: {'; '.join(texts)}.")
-    unsure = [f"{surnames(each)[0]} {each['year']}" for each in cited(icons)[0] if "unverified" in each]
+    unsure = [f"{surnames(each)[0]} {each['year']}" for each in cited(icons) if "unverified" in each]
     if unsure:
         said.append(f"[Check before printing: details of {', '.join(unsure)} are unverified in the bibliography.]")
     if rig_about:
@@ -134,23 +130,20 @@ def sources(icons: IconSet) -> tuple[Source, ...]:
     return tuple(dict.fromkeys((each.by, each.doi) for each in found if each.by or each.doi))
 
 
-def cited(icons: IconSet) -> tuple[list[Reference], list[Source]]:
-    """Return the publications of the bibliography that a set cites, and the sources that are not in it.
+def cited(icons: IconSet) -> list[Reference]:
+    """Return the publications of the bibliography that a set cites.
 
     A DOI names a publication; so do the first author's last name and a year in ``by``, or, without a year, the first
     two last names.
     """
     found: dict[str, Reference] = {}
-    unknown: list[Source] = []
     for by, doi in sources(icons):
         if doi is not None:
             same = [each for each in references() if each.get("doi", "").lower() == plain_doi(doi).lower()]
         else:
             same = [each for each in references() if _names(by or "", each)]
         found.update({each["key"]: each for each in same})
-        if not same and (doi is not None or (by or "").strip().lower() != "thermicon"):
-            unknown.append((by, doi))
-    return [found[key] for key in sorted(found)], unknown
+    return [found[key] for key in sorted(found)]
 
 
 def plain_doi(text: str) -> str:
@@ -167,39 +160,3 @@ def _names(text: str, each: Reference) -> bool:
     needed: Sequence[str] = surnames(each)[: 1 if years else 2]
     said = all(re.search(rf"\b{re.escape(name)}\b", text, re.IGNORECASE) for name in needed)
     return said and (not years or each["year"] in years)
-
-
-def bibtex(icons: IconSet) -> str:
-    """Return BibTeX entries for the sources of a set and its icons, and for thermicon itself.
-
-    A note names what is unverified. A source that the bibliography lacks becomes an ``@misc`` entry from the metadata
-    of the set, and is marked.
-    """
-    known, unknown = cited(icons)
-    entries = []
-    for each in known:
-        note = {"note": f"details unverified: {each['unverified']}"} if "unverified" in each else {}
-        entries.append(_written(each["type"], each["key"], {name: each.get(name, "") for name in _FIELDS} | note))
-    for place, (by, doi) in enumerate(unknown, start=1):
-        year = _YEAR.search(by or "")
-        values = {"howpublished": escaped(by or ""), "doi": escaped(plain_doi(doi or "")).replace(r"\_", "_")}
-        values |= {"year": year[0] if year else ""}
-        values |= {"note": "As the cue set names it; not in the bibliography of thermicon, details unverified"}
-        entries.append(_written("misc", f"source-{place}", values))
-    own = f"Computer program, version {version('thermicon')}, {LICENCE} licence"
-    entries.append(_written("misc", "thermicon", {"author": f"{{{AUTHORS}}}", "title": f"{{{TITLE}}}", "note": own}))
-    return "\n".join(entries)
-
-
-def escaped(text: str) -> str:
-    r"""Return a text in which the characters that mean something to TeX stand for themselves.
-
-    >>> print(escaped("50 % & more_or_less"))
-    50 \% \& more\_or\_less
-    """
-    return " ".join("".join(_ESCAPES.get(char, char) for char in text).split())
-
-
-def _written(kind: str, key: str, values: dict[str, str]) -> str:
-    rows = [f"  {name} = {{{value}}}," for name, value in values.items() if value]
-    return "\n".join([f"@{kind}{{{key},", *rows, "}"]) + "\n"

@@ -66,9 +66,6 @@ def fit_command(
             help="Hold each row's drive until the next, or interpolate it.  [default: whichever fits better]",
         ),
     ] = None,
-    fit_start: Annotated[
-        bool, flag("--fit-start", "Fit the start as well, where the rig was not steady at the first row.")
-    ] = False,
     offset: Annotated[
         float, opt("K", "What a temperature sensor may read off (standard deviation).", 0.0, MOST_OFFSET_K)
     ] = OFFSET_K,
@@ -109,7 +106,7 @@ def fit_command(
     if output is not None:
         check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
-    fitted = fit(list(logs), where, free=keys, held=hold, fit_start=fit_start, offset_K=offset, fixed_skin=fixed_skin)
+    fitted = fit(list(logs), where, free=keys, held=hold, offset_K=offset, fixed_skin=fixed_skin)
     if output is not None:
         write_text(fitted.rig_text(name or output.stem[:LONGEST_NAME]), output)
     if figure.figure is not None:

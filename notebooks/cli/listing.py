@@ -14,7 +14,7 @@ from ..files.outputs import check_output
 from ..messages import usage
 from ..report.blocks import grid
 from ..report.terminal import show
-from .options import RigOptions, flag, opt, read_set, write_text
+from .options import RigOptions, opt, read_set, write_text
 
 
 def list_command(
@@ -26,21 +26,18 @@ def list_command(
     cite: Annotated[
         str | None, opt("FILE", "Instead: a paragraph for the methods section, of --rig too if it is given.")
     ] = None,
-    bibtex: Annotated[bool, flag("--bibtex", "With --cite: BibTeX entries of the sources.")] = False,
     copy: Annotated[
         tuple[str, Path] | None,
         opt("NAME FILE", "Instead: write a shipped set (.cue), rig or device (.toml) to a new file."),
     ] = None,
 ) -> None:
     """List shipped icon sets, rigs, devices and file formats of drives; cite them, or copy one to start from."""
-    if bibtex and cite is None:
-        raise usage("belongs to --cite FILE", "--bibtex")
-    if rig.given and (cite is None or bibtex):
-        raise usage("applies to the paragraph of --cite; BibTeX entries do not describe a rig", "--rig")
+    if rig.given and cite is None:
+        raise usage("applies to the paragraph of --cite", "--rig")
     if [what, cite, copy].count(None) < 2:
         raise usage("list, --cite and --copy are different things: ask for one of them", "--cite" if cite else "--copy")
     if cite is not None:
-        cite_file(cite, bibtex, rig)
+        cite_file(cite, rig)
     elif copy is not None:
         copy_shipped(*copy)
     else:
@@ -51,16 +48,13 @@ def list_command(
             shown[each]()
 
 
-def cite_file(file: str, as_bibtex: bool, rig: RigOptions) -> None:
-    """Print the methods paragraph of a file, with a rig if given, or the BibTeX entries of its sources."""
+def cite_file(file: str, rig: RigOptions) -> None:
+    """Print the methods paragraph of a file, with a rig if given."""
     from thermicon.circuit.rig.rig_words import rig_summary
-    from thermicon.icons.files.cite import bibtex, methods
+    from thermicon.icons.files.cite import methods
 
     where = rig.load(module_matters=False) if rig.given else None
     icons = read_set([file], where)
-    if as_bibtex:
-        typer.echo(bibtex(icons), nl=False)
-        return
     typer.echo(methods(icons, None if where is None else rig_summary(where, for_methods=True)))
 
 

@@ -107,7 +107,6 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
     if after.goal is not None:
         goal.append(Text("\n".join(goal_lines(after.goal.to_dict()))))
         goal += [] if after.goal.met else [Text("Not reached by this search: try more --evaluations, or another rig.")]
-    climbed = f", in the last climb {found.climbed_by}" if found.climbed_by else ""
     return [
         *([Heading(title, 1)] if title else []),
         Text("Found:"),
@@ -117,7 +116,7 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
         *goal,
         Text(
             f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
-            f"people, whatever --people is; what they maximised was {NAMES[found.objective]}{climbed} (seed "
+            f"people, whatever --people is; what they maximised was {NAMES[found.objective]} (seed "
             f"{found.seed}). Of {count_of(found.finalists, 'set')} held at the end, this one was chosen by "
             f"{NAMES.get(found.chosen_by, found.chosen_by)}. Before and after are for "
             f"{count_of(ranking.people, 'virtual person', 'virtual people')} on the {ranking.job.rig.name} rig.\n"

@@ -1,7 +1,7 @@
 """How a search evaluates pools of icons, by the nominal person or by people, and the sets that it holds at its end.
 
-A goal for 95 % of people is about what 95 % of pairs of a draw of the posterior and a person reach. Two hundred of them
-are enough to climb by; the sets that are held at the end are judged with as many draws as in `rank`, and all people.
+A goal for 95 % of people is about what 95 % of pairs of a draw of the posterior and a person reach: the sets that are
+held at the end are judged with as many draws as in `rank`, and all people.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arrays import Array
-from ..identification.laboratory_draws import DrawnLaboratories
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import Norm, Observer
@@ -31,21 +30,15 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 PEOPLE = 24
-DRAWS, OF_EACH = 32, 6
-"""Each of 32 laboratories invites 6 of 24 people, four of them in turn all: 192 pairs."""
-THINNED = 2
-"""Simulated at 25 Hz and judged at 12.5 Hz, the rate at which `rank` judges draws."""
 JUDGED = ("correct", "bits", "d_prime")
 """Quantities that sets are chosen by for their people's mean; `detected` only for a share of people."""
 
 
 @dataclass(frozen=True, slots=True)
 class Evaluator:
-    """d′ within a pool and scores of its subsets, for the nominal person unless there are `groups`.
+    """d′ within a pool and scores of its subsets, for the nominal person unless there is a `crowd`.
 
-    A group is some of the people who were simulated, `rigs`, with the observer who judges them and what differs between
-    them; every k-th instant is judged. A `share` of all these people reaches the score of a subset; None: their mean.
-    `goal` says what is asked of single icons and of totals.
+    `rigs` are those of the people of the crowd. `goal` says what is asked of single icons and of totals.
     """
 
     rig: Rig
@@ -56,24 +49,12 @@ class Evaluator:
     tracking: str | None = None
     goal: Goal | None = None
     rigs: tuple[Rig, ...] = ()
-    groups: tuple[tuple[slice, Observer, People], ...] = ()
-    every: int = 1
-    share: float | None = None
+    crowd: People | None = None
 
     def with_people(self, model: ObserverModel) -> Evaluator:
         """The first 24 people of the seed, who differ in contact, skin and thresholds."""
         crowd = model.people(PEOPLE, self.seed)
-        return replace(self, rigs=tuple(crowd.rigs(self.rig)), groups=((slice(None), self.observer, crowd),))
-
-    def with_share(self, part: GoalPart, model: ObserverModel, draws: int) -> Evaluator:
-        """What the share of people of a goal reaches, people and uncertainty of the model together."""
-        laboratories = DrawnLaboratories.of(model, self.norm, min(draws, DRAWS), self.seed)
-        groups = []
-        for place in range(len(laboratories)):
-            observer, people = laboratories.at(place, PEOPLE)
-            first = OF_EACH * place % PEOPLE
-            groups.append((slice(first, first + OF_EACH), observer, people.part(first, first + OF_EACH)))
-        return replace(self, groups=tuple(groups), every=THINNED, share=part.people)
+        return replace(self, rigs=tuple(crowd.rigs(self.rig)), crowd=crowd)
 
     @property
     def totals(self) -> tuple[float | None, float | None]:
@@ -86,23 +67,16 @@ class Evaluator:
 
     def d_prime(self, pool: Pool) -> Array:
         """d′ (people, icons, icons) from memory."""
-        if not self.groups:
+        if self.crowd is None:
             return pool.dprimes(pool, self.norm, self.observer)[None]
         met = ReceptorTemperatures.simulated(pool.icons, self.rigs, self.rig, pool.end_s, POOL_HZ, self.tracking)
-        found = []
-        for persons, observer, people in self.groups:
-            cold, warm = met.cold_C[persons, :, :: self.every], met.warm_C[persons, :, :: self.every]
-            played = replace(met, cold_C=cold, warm_C=warm, time_s=met.time_s[:: self.every])
-            felt = respond(played, people, observer, detection=False)
-            found.append(memory_dprime(felt, self.norm, people.memory, observer, USUAL))
-        return np.concatenate(found)
+        felt = respond(met, self.crowd, self.observer, detection=False)
+        return memory_dprime(felt, self.norm, self.crowd.memory, self.observer, USUAL)
 
     def namings(self, d_prime: Array, pool: Pool) -> SubsetIdentification:
         """Who is named what, for the objectives that count errors."""
-        lapse = [people.lapse for _, _, people in self.groups] or [np.array([self.observer.lapse])]
-        return SubsetIdentification.of(
-            d_prime, np.concatenate(lapse), pool.durations_s, self.seed, len(d_prime), share=self.share
-        )
+        lapse = np.array([self.observer.lapse]) if self.crowd is None else self.crowd.lapse
+        return SubsetIdentification.of(d_prime, lapse, pool.durations_s, self.seed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,11 +101,6 @@ class FinalJudge:
         held = () if self.by.goal is None else self.by.goal.parts
         some = [part for part in held if part.quantity in JUDGED or part.people is not None]
         return tuple(sorted(some, key=lambda part: (part.people is None, -(part.people or 0.0))))
-
-    @property
-    def climbed(self) -> GoalPart | None:
-        """The part for a share of people that sets are climbed by: the first about names; None without one."""
-        return next((part for part in self.parts if part.people is not None and part.quantity in JUDGED), None)
 
     @property
     def words(self) -> str:

