@@ -2,19 +2,13 @@
 
 A batch has all icons, since they are compared within a person, and as many people as fit into a bounded memory. That
 depends only on the icons and their length, not on the number of workers.
-
-Finished batches are kept on disk, one .npz file each, so that an interrupted run continues where it stopped. A file is
-complete or absent. Zip checksums and the key of the job guard its content: a file that is damaged, or belongs to
-another job, counts as absent.
 """
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,7 +16,6 @@ import numpy as np
 from thermicon.circuit.cores import cores
 from thermicon.circuit.program import DRIVES
 from thermicon.circuit.program import code_digest as digest_of
-from thermicon.icons.atomic import MARK, OutputError, complete_or_absent, remove_unused
 
 from ..arrays import Array, own_arrays
 from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
@@ -40,60 +33,6 @@ from ..sensation.detection import pooled as pooled_detection
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
-
-STALE_S = 3600.0
-"""A draft is written in milliseconds; one as old as this was left by a run that was killed, and is removed."""
-
-
-class BatchStoreError(ValueError):
-    """Finished batches cannot be kept where they should be; the text states why."""
-
-
-@dataclass(frozen=True, slots=True)
-class BatchStore:
-    """The folder that holds the finished batches of one job, named by the key of the job."""
-
-    folder: Path
-    key: str
-
-    @classmethod
-    def of(cls, key: str, keep: Path) -> BatchStore:
-        """The store of a job inside a folder; both folders are made. Raises `BatchStoreError` where that fails."""
-        folder = keep / key[:32]
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise BatchStoreError(f"cannot keep finished parts in {keep}: {error.strerror or error}") from error
-        remove_unused(folder.glob(f".*.{MARK}.npz"), STALE_S)
-        return cls(folder, key)
-
-    def path(self, number: int) -> Path:
-        """File of a batch."""
-        return self.folder / f"{number:06d}.npz"
-
-    def put(self, number: int, arrays: Mapping[str, Array]) -> None:
-        """Write a batch."""
-        try:
-            with complete_or_absent(self.path(number)) as draft:
-                np.savez(draft, allow_pickle=False, key=np.array(self._label(number)), **arrays)
-        except (OSError, OutputError) as error:
-            raise BatchStoreError(f"cannot keep finished parts in {self.folder}: {error}") from error
-
-    def get(self, number: int) -> dict[str, Array] | None:
-        """The arrays of a finished batch; None where there is no file, or none that can be trusted."""
-        if not self.path(number).exists():
-            return None
-        try:
-            with np.load(self.path(number), allow_pickle=False) as file:
-                arrays = {name: file[name] for name in file.files}
-            return arrays if str(arrays.pop("key")) == self._label(number) else None
-        except Exception:
-            # Whatever is wrong with the file, computing the batch again is the remedy.
-            return None
-
-    def _label(self, number: int) -> str:
-        return f"{self.key} {number}"
-
 
 DT_S = 1.0 / RATE_HZ
 SAMPLES_AT_ONCE = 1_200_000
@@ -168,17 +107,6 @@ class Job:
     def other_norm(self) -> Norm:
         """The norm that is compared with the chosen one."""
         return next(norm for norm in NORMS if norm != self.norm)
-
-    @property
-    def key(self) -> str:
-        """Hash of everything that the numbers of a batch depend on, including the code and data of this version."""
-        parts = [code_digest(), self.rig.document, *self.rig.changes, repr(self.end_s), str(self.people)]
-        parts += [str(self.seed), str(self.trials), str(self.tracking), self.norm, str(self.at_once), repr(self.task)]
-        parts += [] if self.observer is None else [self.observer.key]
-        for icon in self.icons:
-            corners = icon.corners(None if icon.context.control != "current" else 0.0)
-            parts += [icon.name, repr(icon.context), repr(corners.time_s), repr(corners.value), str(icon)]
-        return hashlib.sha256("\0".join(parts).encode("utf-8")).hexdigest()
 
 
 def run(job: Job, number: int) -> BatchResult:
@@ -263,8 +191,8 @@ class PooledResult:
         return matrix
 
 
-def collect_batches(job: Job, workers: int | str | None, keep: Path | None, step: Callable[[], None]) -> PooledResult:
-    """Compute or read every batch, as `rank` has the keywords; `step` is called after each.
+def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None]) -> PooledResult:
+    """Compute every batch, as `rank` has the keywords; `step` is called after each.
 
     Place and order of work do not change the result.
     """
@@ -275,7 +203,7 @@ def collect_batches(job: Job, workers: int | str | None, keep: Path | None, step
     pooled: dict[int, Array] = {}
     reported: dict[int, Array] = {}
     blur = 0.0
-    for number, found in _each_batch(job, workers, keep):
+    for number, found in _each_batch(job, workers):
         pooled[number], reported[number] = found.confusion.sum(axis=0), found.reported[0]
         blur = max(blur, _sampling_error(job, found.confusion))
         # Confusions and response times are most of a batch, and are needed only as their sum.
@@ -311,29 +239,14 @@ def collect_batches(job: Job, workers: int | str | None, keep: Path | None, step
     )
 
 
-def _each_batch(job: Job, workers: int | str | None, keep: Path | None) -> Iterator[tuple[int, BatchResult]]:
-    store = None if keep is None else BatchStore.of(job.key, keep)
-    missing = []
-    for number in range(job.batches):
-        arrays = None if store is None else store.get(number)
-        if arrays is None:
-            missing.append(number)
-        else:
-            yield number, BatchResult(**arrays)
-    if not missing:
-        return
+def _each_batch(job: Job, workers: int | str | None) -> Iterator[tuple[int, BatchResult]]:
     if isinstance(workers, str):
         from .cluster import on_cluster
 
-        results = on_cluster(job, missing, workers)
-    else:
-        # At most two batches per thread are in memory.
-        each = in_order(lambda number: run(job, number), missing, workers or cores())
-        results = iter(zip(missing, each, strict=True))
-    for number, result in results:
-        if store is not None:
-            store.put(number, {field.name: getattr(result, field.name) for field in fields(result)})
-        yield number, result
+        return on_cluster(job, workers)
+    # At most two batches per thread are in memory.
+    each = in_order(lambda number: run(job, number), range(job.batches), workers or cores())
+    return enumerate(each)
 
 
 def _sampling_error(job: Job, confusion: Array, people: int = 1) -> float:
@@ -358,5 +271,5 @@ def _crowd(people: int, seed: int, model: ObserverModel) -> People:
 
 
 def code_digest() -> str:
-    """Hash of the version and of all code that computes a batch: batches of another version are not used."""
+    """Hash of the version and of all code that computes a batch: workers of another version are refused."""
     return digest_of((*DRIVES, "thermicon.perception"))

@@ -24,14 +24,14 @@ class ClusterError(RuntimeError):
     """A cluster cannot be used; the text states why and what to change."""
 
 
-def on_cluster(job: Job, numbers: list[int], address: str) -> Iterator[tuple[int, BatchResult]]:
-    """Compute batches on the cluster whose scheduler has this address, such as `tcp://10.0.0.5:8786`.
+def on_cluster(job: Job, address: str) -> Iterator[tuple[int, BatchResult]]:
+    """Compute all batches of a job on the cluster whose scheduler has this address, such as `tcp://10.0.0.5:8786`.
 
     Batches are yielded as they finish. Raises `ClusterError` where nothing answers, there is no worker, or a worker
     has other code or fails.
     """
     with _client(address) as client:
-        tasks = {client.submit(_run, job, number, pure=False, retries=RETRIES): number for number in numbers}
+        tasks = {client.submit(_run, job, number, pure=False, retries=RETRIES): number for number in range(job.batches)}
         try:
             for task in import_module("distributed").as_completed(list(tasks), loop=client.loop):
                 number = tasks.pop(task)

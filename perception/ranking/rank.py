@@ -46,7 +46,6 @@ def rank(
     task: Task = USUAL,
     observer: ObserverModel | Path | str | None = None,
     workers: int | str | None = None,
-    keep: Path | None = None,
     progress: Progress | None = None,
 ) -> Ranking:
     """Predict how well people identify the icons of a set from memory.
@@ -81,8 +80,6 @@ def rank(
         gives no intervals for a new laboratory.
     workers
         Threads (None: one per core), or the address of the scheduler of a dask cluster.
-    keep
-        Folder that keeps finished batches, so that an interrupted run continues from them.
     progress
         Called with (steps done, steps in all).
 
@@ -132,7 +129,7 @@ def rank(
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
 
-    felt = collect_batches(job, workers, keep, report)
+    felt = collect_batches(job, workers, report)
     scored, pairs = assemble(members, traces, durations, percepts, felt, chosen, nominal)
     counted = playable_pairs(scored, pairs)
     ranking = Ranking(
