@@ -258,11 +258,6 @@ def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:
         overlay(trace, setpoints)
 
 
-def test_nothing_that_changes_gives_no_shift() -> None:
-    time = np.arange(50.0)
-    assert best_shift_s(time, np.ones(50), time, np.sin(time)) == (0.0, 0.0)
-
-
 def test_the_plot_of_a_trace_shows_what_was_measured(log: Log, trace: Trace) -> None:
     plain, both = trace.plot(), trace.plot(measured=log)
     assert len(both.lines) == len(plain.lines) + 1
@@ -281,5 +276,6 @@ def test_noise_and_likeness_of_rows_are_those_of_known_series() -> None:
     assert round(steady_level(np.array([0.1, 0.11, 0.1, 0.5, 0.51])), 3) == 0.103
     shift, same = best_shift_s(time[:300], np.sin(time[:300] / 3), time[:300], np.sin((time[:300] + 1.3) / 3))
     assert (round(shift, 2), round(same, 3)) == (1.3, 1.0)
+    assert best_shift_s(time[:50], np.ones(50), time[:50], np.sin(time[:50])) == (0.0, 0.0)
     assert half_width(False, 1.0) == 1.96 and half_width(True, 0.1) == pytest.approx(np.exp(0.196) - 1)
     assert (milli(0.0344, "V"), milli(-1.23, "K")) == ("34.4 mV", "−1.23 K")

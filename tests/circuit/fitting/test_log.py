@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -217,30 +218,13 @@ def test_a_written_log_is_read_back(log: Log, tmp_path: Path) -> None:
     assert np.allclose(read_log(tmp_path / "a.csv").column("display_C"), log.column("display_C"), atol=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ([], "no key to fit; name one or several, such as contact.resistance_m2K_per_W"),
-        (["contact.area_cm2", "contact.area_cm2"], r"contact\.area_cm2: is given twice; name each key once"),
-        (["module.sebeck_V_per_K"], r"module\.sebeck_V_per_K: cannot be fitted; did you mean module\.seebeck_V_per_K"),
-        (
-            ["skin.layer.dermis.thickness_mm"],
-            "is a key of a rig, but no log identifies it; keys that can be fitted: c",
-        ),
-        (["colour"], "colour: unknown key; .*keys that can be fitted: contact"),
-        (["thermode.lag_s"], r"rig thenar has no thermode with this key; it has contact\.resistance"),
-        (["probe.a.lag_s"], r"rig thenar has no such probe; describe the sensor first, as with --set 'probe="),
-        (["heat_sink.capacity_J_per_K"], "rig thenar has no heat sink with this key"),
-    ],
-)
-def test_a_key_that_cannot_be_fitted_is_named_with_a_cure(keys: list[str], message: str, thenar: Rig) -> None:
-    with pytest.raises(FitError, match=message):
-        free_keys(keys, thenar)
+MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
 
 
-def test_every_fault_is_named_at_once(thenar: Rig) -> None:
-    with pytest.raises(FitError, match=r"thermode.lag_s: .*\ncontroller.lag_s: "):
-        free_keys(["thermode.lag_s", "controller.lag_s"], thenar)
+@pytest.mark.parametrize("keys", MESSAGES["keys"])
+def test_a_key_that_cannot_be_fitted_is_named_with_a_cure(keys: str, thenar: Rig) -> None:
+    with pytest.raises(FitError, match=MESSAGES["keys"][keys]):
+        free_keys(keys.split(",") if keys else [], thenar)
 
 
 def test_each_rig_offers_its_own_keys(thenar: Rig) -> None:

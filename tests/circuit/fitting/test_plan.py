@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,15 +11,10 @@ from thermicon.circuit import Device, Drive, Gate, Rig, export, fit, simulate, s
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
-from thermicon.circuit.fitting.forward import runs_of
-from thermicon.circuit.fitting.identify import NOISE_K, NOISE_V, with_channels
-from thermicon.circuit.fitting.keys import COMMON, free_keys
-from thermicon.circuit.fitting.laboratory import COLUMNS, calibration_icon, plan, plan_frame, synthetic_log
+from thermicon.circuit.fitting.keys import COMMON
+from thermicon.circuit.fitting.laboratory import calibration_icon, plan, plan_frame, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
-from thermicon.circuit.fitting.problem import Problem
-from thermicon.circuit.fitting.solve import covariance_of
 from thermicon.circuit.rig.rig import rig_names
-from thermicon.icons import Icon, parse
 
 FREE = [*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
         "heat_sink.temperature_C", "heat_sink.resistance_K_per_W"]  # fmt: skip
@@ -58,20 +52,6 @@ def test_the_calibration_drive_is_reached_on_every_rig_with_a_module() -> None:
 
 
 @pytest.mark.slow
-def test_the_calibration_drive_is_more_informative_than_what_people_would_try() -> None:
-    shipped = mean_deviation(calibration_icon())
-    others = {name: mean_deviation(candidate(name)) for name in CANDIDATES}
-    assert shipped < 0.8 * others["one step"]
-    assert shipped < 0.6 * others["slow ramps"]
-    assert shipped < 0.8 * others["sine"]
-    # Steps show more, but the gate refuses steps to warm.
-    assert others["square wave"] < shipped
-    refused = export(candidate("square wave"), Rig.load("thenar"), "dac-16")
-    _, refusal = refused.refused[0]
-    assert refusal.kind == "unsafe" and "rate of skin temperature" in refusal.text
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("device", device_names())
 def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None:
     rig = "tcs2" if Device.load(device).driven_by == "set-points" else "thenar"
@@ -97,52 +77,3 @@ def test_an_exported_drive_and_a_thermometer_of_its_own_clock_make_a_log(tmp_pat
     found = fit([drive, meter], rig, free=["contact.resistance_m2K_per_W"], fixed_skin=True)
     assert found["contact.resistance_m2K_per_W"].value == pytest.approx(7e-4, rel=0.01)
     assert found.notes[-1].startswith("meter.csv: its clock was shifted by −100.0")
-
-
-IDENTIFIED = (
-    "contact.resistance_m2K_per_W",
-    "module.seebeck_V_per_K",
-    "module.resistance_ohm",
-    "module.thermal_resistance_K_per_W",
-    "module.cold_plate_J_per_K",
-)
-"""Keys that the calibration drive was chosen for, all free at once."""
-
-RIGS = ("thenar", "forearm", "shani2021")
-RATE_HZ = 10.0
-"""Rows per second of the logs that are compared."""
-
-CANDIDATES = {
-    "one step": "cool by 8 °C at 3 °C/s\n hold for 30 s\n return at 3 °C/s\n rest for 22 s",
-    "slow ramps": "cool by 9 °C at 0.6 °C/s\n warm by 15 °C at 0.6 °C/s\n return at 1 °C/s\n rest for 12 s",
-    "square wave": "square by 6 °C every 14 s for 56 s",
-    "sine": "sine by 6 °C every 14 s for 56 s",
-}
-"""Drives of one minute that people would try first, after a rest of 2 s."""
-
-
-def candidate(name: str) -> Icon:
-    body = CANDIDATES[name]
-    return parse(
-        f"cue 1\nset trial {{\n site thenar\n control display\n baseline 32 °C\n}}\n"
-        f"icon candidate {{\n rest for 2 s\n {body}\n}}\n"
-    )["candidate"]
-
-
-def mean_deviation(icon: Icon, rigs: Sequence[str | Rig] = RIGS, keys: Sequence[str] = IDENTIFIED) -> float:
-    """Geometric mean of the keys' relative SDs from a log of a cue (D-optimality), averaged over rigs."""
-    logs = []
-    for name in rigs:
-        rig = name if isinstance(name, Rig) else Rig.load(name)
-        free = free_keys(keys, rig)
-        log = synthetic_log(
-            rig, seed=0, icon=icon, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=RATE_HZ
-        )
-        problem = Problem.of(rig, free, runs_of([log], rig, False), fixed_skin=True)
-        problem = with_channels(problem, problem.first, COLUMNS, only=True)
-        sigma = [NOISE_K if channel.temperature else NOISE_V for _, _, channel in problem.channels()]
-        covariance = covariance_of(problem, problem.jacobian(problem.first, sigma), [1.0] * len(sigma))
-        sign, logarithm = np.linalg.slogdet(covariance[: len(free), : len(free)])
-        assert sign > 0
-        logs.append(logarithm / (2 * len(free)))
-    return float(np.exp(np.mean(logs)))

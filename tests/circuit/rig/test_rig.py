@@ -45,13 +45,6 @@ def test_repr_is_one_line_with_units() -> None:
     assert repr(THENAR) == ("Rig('thenar', thenar, 9 cm², skin rests at 32.0 °C, blood 34.58 °C, driver -1.5 … 1.5 A)")
 
 
-def test_a_rig_from_a_file_equals_the_shipped_one(tmp_path: Path) -> None:
-    path = tmp_path / "mine.toml"
-    path.write_text((Path(__file__).parents[3] / "circuit/rigs/thenar.toml").read_text("utf-8"), "utf-8")
-    assert Rig.load(path) == THENAR
-    assert Rig.load(str(path)).column.depth_m.tolist() == THENAR.column.depth_m.tolist()
-
-
 def test_with_changes_one_key_and_keeps_the_rest() -> None:
     small = THENAR.with_(**{"contact.area_cm2": 4})
     assert small.contact.area_m2 == pytest.approx(4e-4)

@@ -1,6 +1,5 @@
 """Shipped sites: rest by closed form, receptor depths in both conventions, and what a rig says of itself."""
 
-import itertools
 import math
 
 import numpy as np
@@ -131,10 +130,3 @@ def test_a_rig_tells_about_itself_in_plain_text(name: str) -> None:
     for text in (*words, *(f"warning {text}" for text in rig.warnings), *(f"note {text}" for text in rig.notes)):
         assert text in told
     assert "\n" not in repr(rig)
-
-
-def test_notes_of_a_rig_file_are_kept() -> None:
-    assert THENAR.notes == ()
-    assert THENAR.with_(**{"notes": ["measured on a Monday"]}).notes == ("measured on a Monday",)
-    assert len(SHANI.notes) == len(set(SHANI.notes)) == 5
-    assert list(itertools.chain(*(note.splitlines() for note in SHANI.notes))) == list(SHANI.notes)

@@ -162,7 +162,3 @@ def test_a_rig_is_a_thermode_or_has_a_module() -> None:
         read_table(bare, "x.toml")
     with pytest.raises(RigError, match=r"driver is missing; add it"):
         read_table({key: table for key, table in document.items() if key != "driver"}, "x.toml")
-
-
-def test_about_says_what_the_thermode_is() -> None:
-    assert "set-points in steps of 0.1 K at 100 Hz, followed with a lag of 0.21 s; no" in RIG.about()

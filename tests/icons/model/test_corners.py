@@ -59,6 +59,10 @@ def test_one_period(shape: Shape, start: str) -> None:
         ("sawtooth by 1 °C every 2 s for 4 s",
          [(0, 32), (1, 33), (1, 31), (3, 33), (3, 31), (4, 32)]),
         ("total 2 s; hold for 2 s", [(0, 32), (2, 32)]),
+        ("repeat 2 { warm by 1 °C over 1 s; hold for 1 s }; cool to 31 °C at 3 K/s",
+         [(0, 32), (1, 33), (2, 33), (3, 34), (4, 34), (5, 31)]),
+        ("hold for 1 s; hold for 2 s; warm by 1 °C over 1 s; warm by 2 °C over 2 s; warm by 1 °C over 2 s",
+         [(0, 32), (3, 32), (6, 35), (8, 36)]),
         ("change by -2 °C at 1 °C/s; change to 34 °C over 4 s", [(0, 32), (2, 30), (6, 34)]),
     ],
 )  # fmt: skip
@@ -189,22 +193,6 @@ def test_times_add_up_exactly() -> None:
     assert minutes.time_s == (0.0, 60.0, 61.0, 121.0, 122.0, 182.0, 183.0)
 
 
-def test_a_staircase_and_absolute_targets() -> None:
-    corners = icon(
-        "repeat 2 { warm by 1 °C over 1 s; hold for 1 s }; cool to 31 °C at 3 K/s", "baseline 32 °C"
-    ).corners()
-    assert corners.time_s == (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
-    assert corners.value == (32.0, 33.0, 33.0, 34.0, 34.0, 31.0)
-
-
-def test_only_straight_neighbours_are_merged() -> None:
-    corners = icon(
-        "hold for 1 s; hold for 2 s; warm by 1 °C over 1 s; warm by 2 °C over 2 s; warm by 1 °C over 2 s"
-    ).corners()
-    assert corners.time_s == (0.0, 3.0, 6.0, 8.0)
-    assert corners.value == (32.0, 32.0, 35.0, 36.0)
-
-
 def test_the_baseline_comes_from_the_frame_then_from_the_caller() -> None:
     assert icon(STEP, "baseline 30 °C").corners(35.0).value[0] == 30.0
     assert icon(STEP).corners(35.0).value == (35.0, 29.0, 29.0, 35.0)
@@ -242,28 +230,3 @@ def test_levels_between_corners() -> None:
     assert many.tolist() == [30.5, 29.0]
     with pytest.raises(ValueError, match="not NaN"):
         corners.at(math.nan)
-
-
-@pytest.mark.parametrize(
-    ("times", "values", "quantity", "message"),
-    [
-        ((0, 1), (1,), "temperature_C", "2 times and 1 values"),
-        ((0,), (1,), "temperature_C", "2 or more"),
-        ((1, 2), (1, 2), "temperature_C", "begin at 0 s"),
-        ((0, 1, 1), (1, 2, 3), "temperature_C", "rise strictly"),
-        ((0, 1), (1, math.nan), "temperature_C", "finite"),
-        ((0, 1), (1, 2), "warmth", "quantity must be"),
-        ((1, 0), (1, 2), "temperature_C", "begin at 0 s and rise"),
-    ],
-)
-def test_corners_prove_themselves(
-    times: tuple[float, ...], values: tuple[float, ...], quantity: str, message: str
-) -> None:
-    with pytest.raises(ValueError, match=message):
-        Corners(times, values, quantity)  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize("steps", [(1,), (-1,), (0, 2)])
-def test_a_step_has_a_corner_behind_it(steps: tuple[int, ...]) -> None:
-    with pytest.raises(ValueError, match="must each be a corner that another one follows"):
-        Corners((0, 1), (1, 2), "temperature_C", steps)

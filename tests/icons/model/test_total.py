@@ -57,11 +57,6 @@ def test_any_words(words: list[str], between: str, inside: bool) -> None:
     parsed(f"cue 1\nicon x {{ {text} }}" if inside else text)
 
 
-def test_a_large_file_is_refused_before_it_is_read() -> None:
-    with pytest.raises(CueErrors, match=r"E004 file too large\n  5,000,000 bytes\n  a cue file has at most 250,000"):
-        parse(b"icon " * 1_000_000)
-
-
 @pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
 def test_any_newline_and_a_byte_order_mark(newline: str) -> None:
     text = str(load_library("six-icons")).replace("\n", newline)

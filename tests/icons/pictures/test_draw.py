@@ -11,7 +11,7 @@ from thermicon.icons import Icon, IconSet, library, load_library, parse
 from thermicon.icons.files.shipped import Library
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.statements import Hold
-from thermicon.icons.pictures.draw import COOL, STAY, WARM, chosen, directions, evenly
+from thermicon.icons.pictures.draw import COOL, STAY, WARM, chosen, evenly
 
 SIX = load_library("six-icons")
 SHAPES = parse("""cue 1
@@ -41,11 +41,6 @@ def test_a_picture_keeps_its_texts_and_equal_icons_give_equal_bytes() -> None:
     assert svg == parse(str(SIX))["cooling-step"]._repr_html_()
     assert not re.search(r"\d{4}-\d\d-\d\d|<script", svg)
     assert {icon.name for icon in SIX} <= set(texts(SIX._repr_html_()))
-
-
-def test_pieces_have_the_colours_of_their_direction() -> None:
-    assert directions(SIX["cooling-step"].corners()) == ["cool", "stay", "warm"]
-    assert directions(CURRENT["drive"].corners()) == ["cool", "stay", "warm"]
 
 
 EVIL = "</text></svg><script>alert('x')</script><img src=x onerror=\"alert(1)\">&amp; abc $x^2$ {amount"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -41,34 +42,13 @@ def test_a_table_of_measurements_is_recognised_by_its_header(tmp_path: Path) -> 
     assert not is_measurements(written(tmp_path, "participant,trial,presented,responded\n"))
 
 
-@pytest.mark.parametrize(
-    ("row", "message"),
-    [
-        ("P1,treshold,limits,cold,,1,K,,,", "treshold.*is not a kind; choose of threshold, reaction_time, rating"),
-        ("P1,Reaction time,,cold,6,1,s,,,", "did you mean reaction_time"),
-        ("P1,threshold,,cold,,1,K,,,", "method of a threshold is missing.*forced_choice, yes_no, limits"),
-        ("P1,threshold,staircase,cold,,1,K,,,", "staircase.*choose of forced_choice"),
-        ("P1,threshold,limits,cool,,1,K,,,", "cool.*is not a channel; choose of cold, warm"),
-        ("P1,threshold,limits,cold,,1,s,,,", "is not a unit of a threshold; choose of K"),
-        ("P1,threshold,limits,cold,,-1,K,,,", "lies within 0.005 to 20 K; thresholds are changes.*without sign"),
-        ("P1,threshold,limits,cold,,31,°C,,,", "lies within 0.005 to 20 K; thresholds are changes"),
-        ("P1,reaction_time,,cold,6,850,s,,,", "lies within 0.1 to 60 s.*check s against ms"),
-        ("P1,reaction_time,,cold,,1,s,,,", "size_K is missing.*timed"),
-        ("P1,rating,,cold,6,0,points,,,", "leave out what was not felt"),
-        ("P1,threshold,limits,cold,,n/a,K,,,", "value is 'n/a', not a number"),
-        ("P1,threshold,limits,cold,2,3,K,,,", "the ramp ends at 2 K"),
-        ("P1,threshold,yes_no,cold,2,3,K,,,", "size_K belongs to limits"),
-        ("P1,threshold,limits,cold,,1,K,-0.1,,", "standard_error is '-0.1'.*above 0"),
-        ("P1,threshold,limits,cold,,1,K,2.1,,", "standard_error is '2.1'.*in the unit of the value"),
-        ("P1,threshold,limits,cold,,1,K,,2.5,", "trials is '2.5', not a whole number"),
-        ("P1,threshold,limits,cold,,1,K,,,305", "baseline_C is 305, outside 10 to 45 °C; that looks like kelvin"),
-        (",threshold,limits,cold,,1,K,,,", "participant is empty"),
-        ("P1,threshold,limits,cold,12,1.4,K,,,", "participant 'P1' has cold, limits, 1 K/s twice, also in line 2"),
-    ],
-)
-def test_each_mistake_is_named_with_its_line_and_cure(tmp_path: Path, rig: Rig, row: str, message: str) -> None:
+MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("row", MESSAGES["measurements"])
+def test_each_mistake_is_named_with_its_line_and_cure(tmp_path: Path, rig: Rig, row: str) -> None:
     path = written(tmp_path, HEAD + GOOD + (row if "12,1.4" in row else row.replace("P1,", "P9,")) + "\n")
-    with pytest.raises(TrialsError, match=rf"values\.csv:5: .*{message}"):
+    with pytest.raises(TrialsError, match=rf"values\.csv:5: .*{MESSAGES['measurements'][row]}"):
         read_measurements(path, rig)
 
 

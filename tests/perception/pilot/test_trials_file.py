@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -38,37 +39,13 @@ def test_semicolons_quotes_comments_and_further_columns_are_read(tmp_path: Path)
     assert found.pooled[2].tolist() == [0, 1, 1]
 
 
-@pytest.mark.parametrize(
-    ("rows", "head", "said"),
-    [
-        ((), HEAD, "no row below the names of the columns; write one row per trial"),
-        (("P1,1,dip",), "participant,trial,shown", "columns missing: presented, responded; found: participant, trial"),
-        (("P1,1,dip,dip",), HEAD.replace("trial", "Trial"), "column missing: trial; .*rename 'Trial' to trial"),
-        (("P1,1,dip,dip,x",), f"{HEAD},trial", "the column trial appears twice"),
-        (("P1,1,dip,dip", "P1,1,dip,dip"), HEAD, "csv:3: participant 'P1' has trial '1' twice, also in line 2"),
-        (("P1,1,dip,dipp",), HEAD, "csv:2: responded is 'dipp', which is not an icon of the set; did you mean dip"),
-        (("P1,1,Dip,dip",), HEAD, "presented is 'Dip', .*did you mean dip. Names differ by case"),
-        (("P1,1,dip,",), HEAD, "csv:2: responded is empty; fill it in, or remove the row"),
-        ((",1,dip,dip",), HEAD, "csv:2: participant is empty"),
-        (("P1,1,dip,dip", "p1,2,dip,dip"), HEAD, "participants 'P1' and 'p1' differ by case alone; did you mean 'P1'"),
-        (("P1,1,dip,dip,soon",), f"{HEAD},time_s", "time_s is 'soon', not a time of 0 to 3600 s"),
-        (("P1,1,dip,dip,-1",), f"{HEAD},time_s", "time_s is '-1', not a time of 0 to 3600 s"),
-        (
-            ("P1,1,dip,cool-step,-0.4",),
-            f"{HEAD},time_s",
-            "csv:2: time_s is '-0.4', not a time of 0 to 3600 s; leave it",
-        ),
-        (("P1,1,dip,dip,2", "P1,2,dip,cool-step,9000"), f"{HEAD},time_s", "csv:3: time_s is '9000', not a time of"),
-        (("P1,1,dip,dip,9",), HEAD, "csv:2: 5 cells, where the first line names 4"),
-        ((f"{'P' * 101},1,dip,dip",), HEAD, "participant has 101 characters; at most 100"),
-    ],
-)
-def test_a_bad_table_is_refused_with_place_and_cure(
-    tmp_path: Path, rows: tuple[str, ...], head: str, said: str
-) -> None:
-    path = written(tmp_path, *rows, head=head)
-    with pytest.raises(TrialsError, match=said):
-        read_trials(path, ICONS)
+MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("text", MESSAGES["trials"])
+def test_a_bad_table_is_refused_with_place_and_cure(tmp_path: Path, text: str) -> None:
+    with pytest.raises(TrialsError, match=MESSAGES["trials"][text]):
+        read_trials(written(tmp_path, head=text), ICONS)
 
 
 @pytest.mark.parametrize("times", [(1240, 980, 2315), (1240.5, 980.25, 2315.75), (4200, 980, 3700), (850, 0, 990)])
