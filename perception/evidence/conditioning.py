@@ -1,9 +1,8 @@
-"""What the constants were inferred from, and what they say: rows left out, what mechanisms are worth, onsets and sizes.
+"""What the constants were inferred from, and what they say: rows left out, what mechanisms are worth, onsets.
 
-Everything but onsets and sizes comes from the shipped results of the inference; nothing is fitted here. A row is left
+Everything but onsets comes from the shipped results of the inference; nothing is fitted here. A row is left
 out together with its whole experiment, so that its prediction rests on the other nine.
-Stages of an onset are skin and receptor, nerve, cord to brain, and decision. A step of d′ = 1 is just noticeable, so
-that the peak d′ of a change is the number of just noticeable steps up to it.
+Stages of an onset are skin and receptor, nerve, cord to brain, and decision.
 """
 
 from __future__ import annotations
@@ -12,14 +11,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from statistics import median
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from thermicon.circuit import Rig
 
-from ..observer.channels import CHANNELS, VARIABLES, Channel
+from ..observer.channels import Channel
 from ..observer.observer import Observer
 from ..observer.parts import SPINAL_M_PER_S, SPINE_M
-from ..sensation.bench import Bench, ramp
 from ..sensation.percept import perceive
 from .results import AblatedRow, Constant, PredictedRow, load_ablation, load_constants, load_predictions
 from .rows import load_evidence
@@ -28,8 +26,6 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 RIG, ICONS = "thenar", "six-icons"
-CHANGES_K = (3.0, 10.0)
-RATE_K_PER_S, HOLD_S = 1.0, 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +48,13 @@ class OnsetStages:
 
 @dataclass(frozen=True, slots=True)
 class Conditioning:
-    """The evidence behind the constants, and what the constants say of onsets and sizes."""
+    """The evidence behind the constants, and what the constants say of onsets."""
 
     rows: tuple[PredictedRow, ...]
     constants: tuple[Constant, ...]
     offsets: tuple[Constant, ...]
     ablation: tuple[AblatedRow, ...]
     stages: tuple[OnsetStages, ...]
-    magnitudes: tuple[dict[str, Any], ...]
 
     @property
     def missed(self) -> tuple[PredictedRow, ...]:
@@ -90,7 +85,7 @@ class Conditioning:
 
 @lru_cache(maxsize=1)
 def load_conditioning() -> Conditioning:
-    """The shipped evidence, with onsets of the six icons and sizes of sensations.
+    """The shipped evidence, with onsets of the six icons.
 
     >>> load_conditioning()
     Conditioning(49 of 54 rows covered when left out; 42 constants, 9 not moved, 4 at an edge of the prior)
@@ -105,7 +100,6 @@ def load_conditioning() -> Conditioning:
         offsets=tuple(each for each in constants if each.unit == "SD"),
         ablation=tuple(sorted(load_ablation(), key=lambda run: run.difference)),
         stages=onset_stages(load_library(ICONS), Rig.load(RIG)),
-        magnitudes=magnitudes(),
     )
 
 
@@ -123,31 +117,6 @@ def suspected(row: PredictedRow) -> str:
     if row.covered:
         return ""
     return load_evidence().suspected.get((row.experiment, row.statistic, row.channel), "none named yet")
-
-
-def magnitudes() -> tuple[dict[str, Any], ...]:
-    """Peak d′ of a change by 3 and by 10 K from 32 °C at 1 K/s, held for 3 s, cold then warm of every variant."""
-    bench, made = Bench(Rig.load(RIG), surface="display"), []
-    played = {
-        c: [bench.play([ramp(c, size, RATE_K_PER_S, HOLD_S)], size / RATE_K_PER_S + HOLD_S) for size in CHANGES_K]
-        for c in CHANNELS
-    }
-    for variable in VARIABLES:
-        observer = Observer.load(variable=variable)
-        for place, channel in enumerate(CHANNELS):
-            felt = [each.felt(observer)[place] for each in played[channel]]
-            peaks = [float((each - each[..., :1]).max()) for each in felt]
-            made.append(
-                {
-                    "channel": channel,
-                    "variable": variable,
-                    "changes_K": list(CHANGES_K),
-                    "peak_d_prime": peaks,
-                    "just_noticeable_steps": int(peaks[-1]),
-                    "conditions": f"{RATE_K_PER_S:g} K/s at the display, held {HOLD_S:g} s, {RIG}",
-                }
-            )
-    return tuple(made)
 
 
 def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:

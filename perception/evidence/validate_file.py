@@ -99,7 +99,6 @@ def conditioning_file(known: Conditioning) -> dict[str, Any]:
         "edge_below": EDGE,
         "ablation": [_ablated(each) for each in known.ablation],
         "onset_stages": [_stages(each) for each in known.stages],
-        "magnitudes": list(known.magnitudes),
     }
 
 

@@ -75,13 +75,6 @@ def test_a_table_without_what_is_needed_is_refused() -> None:
         calibrate(without)
 
 
-def test_all_published_numbers_load() -> None:
-    table = load_thresholds()
-    assert {r.channel for r in table} == {"cold", "warm", "both"}
-    assert len(table.select("limits threshold")) == 12
-    assert all(r.use for r in table)
-
-
 def test_observer_proves_itself() -> None:
     person = Observer.load()
     assert person.path_m("forearm") == 0.55

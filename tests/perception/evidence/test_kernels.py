@@ -1,4 +1,4 @@
-"""The compiled receptor stage and first passage, against closed forms, courses and drawn noise."""
+"""First passage and mechanisms of the likelihood one by one, against closed forms, courses and drawn noise."""
 
 from __future__ import annotations
 
@@ -10,50 +10,22 @@ import pytest
 
 from tests.perception.survival import log_survival
 from thermicon.perception import Observer
-from thermicon.perception.experiments.laboratory import SHARES, samples_of
+from thermicon.perception.evidence.posterior import Posterior
+from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samples_of
 from thermicon.perception.kernels import passage as kernels
-from thermicon.perception.kernels.kernels import adapted_drive
 from thermicon.perception.kernels.passage import psychometric
-from thermicon.perception.observer.parts import Transducer
+from thermicon.perception.observer.parts import Transducer, conduction_s
+from thermicon.perception.sensation.sensation import area_factor, summed_area_cm2
 
 DT = 0.025
 TRANSDUCER = Transducer(11.0, 1.2)
 TABLE = TRANSDUCER.psi(np.exp(kernels.LOG_U_FROM + kernels.LOG_U_STEP * np.arange(kernels.LOG_U_POINTS)))
 
 
-def drive(temperature, sign, limit=None, integration_s=0.05):
-    course = np.asarray(temperature, dtype=np.float64)[None]
-    out = np.empty_like(course)
-    far = -sign * 1e6 if limit is None else limit
-    adapted_drive(course, DT, sign, far, 0.4, 30.0, 36.0, integration_s, 17.0, out)
-    return out[0]
-
-
 def passage(log_drive, log_gain, criterion, tau=0.3):
     times = np.empty((log_gain.size, SHARES.size))
     passed = kernels.passage(log_drive, DT * np.arange(log_drive.size), log_gain, criterion, tau, TABLE, SHARES, times)
     return times, passed
-
-
-def test_step_decays_with_slow_adaptation() -> None:
-    step = np.concatenate([[32.0], np.full(800, 30.5)])
-    felt = drive(step, -1.0, integration_s=1e-3)
-    time = DT * np.arange(felt.size)
-    expected = 1.5 * np.exp(-(time[10:] - 0.5 * DT) / 17.0)
-    np.testing.assert_allclose(felt[10:], expected, rtol=2e-3)
-
-
-def test_cold_is_limited_from_above() -> None:
-    course = np.concatenate([np.linspace(35.9, 33.0, 80), np.full(80, 33.0)])
-    assert drive(course, -1.0).max() > 2.0
-    assert drive(course, -1.0, limit=30.0).max() < 1e-2
-    assert drive(course - 5.0, -1.0, limit=33.0).max() > 2.0
-
-
-def test_a_rise_of_cool_skin_is_not_warm() -> None:
-    course = np.linspace(22.0, 28.0, 200)
-    assert drive(course, 1.0, limit=31.0).max() < 1e-2
-    assert drive(course + 10.0, 1.0, limit=31.0).max() > 3.0
 
 
 def test_first_passage_of_a_lane_agrees_with_that_of_a_course() -> None:
@@ -116,3 +88,38 @@ def test_sizes_at_shares_are_read_between_and_beyond() -> None:
     psychometric(reported, np.arange(4.0), np.array([0.5, 0.9]), logs)
     np.testing.assert_allclose(logs[0], [1.5, 3.1], atol=1e-6)
     assert logs[1, 0] == pytest.approx(2.0, abs=0.01)
+
+
+@pytest.mark.parametrize(("a", "p"), [(12.0, 1.0), (6.0, 2.0), (30.0, 0.7)])
+def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: float, p: float) -> None:
+    transducer = Transducer(a, p)
+    assert float(transducer.psi(1.0)) == pytest.approx(1.0)
+    low = float(transducer.psi(2e-4) / transducer.psi(1e-4))
+    assert math.log2(low) == pytest.approx(p, abs=0.01)
+    high = float(transducer.psi(2e9) - transducer.psi(1e9))
+    assert high == pytest.approx(a * p * math.log(2.0), rel=1e-3)
+    steps = transducer.difference_threshold(np.array([3.0]))
+    assert float((transducer.psi(3.0 + steps) - transducer.psi(3.0))[0]) == pytest.approx(1.0)
+
+
+def test_summation_has_two_ends() -> None:
+    assert summed_area_cm2(0.001) == pytest.approx(summed_area_cm2(0.0001), rel=0.2)
+    assert area_factor(400.0, 225.0, 0.9) < 1.2 < 1.4 < area_factor(225.0, 100.0, 0.9)
+    assert area_factor(18000.0, 9.0, 0.9) < 20.0 < (18000.0 / 9.0) ** 0.9
+    middle = math.log(area_factor(20.0, 10.0, 0.7)) / math.log(2.0)
+    assert middle == pytest.approx(0.7, abs=0.12)
+    with pytest.raises(ValueError, match="above 0 cm²"):
+        summed_area_cm2(0.0)
+
+
+def test_the_spine_adds_to_the_nerve() -> None:
+    assert conduction_s("cold", 6.0, 0.7) == pytest.approx(0.7 / 6.0 + 0.225 / 12.0)
+    assert conduction_s("warm", 1.0, [0.7, 0.4]) == pytest.approx([0.7 + 0.225 / 2.0, 0.4 + 0.225 / 2.0])
+
+
+def test_a_later_decade_raises_thresholds() -> None:
+    posterior = Posterior()
+    laboratory = Laboratory(posterior.values(np.zeros(len(posterior.priors))))
+    young, old = (laboratory.gain("cold", 9.0, "E3", "hand", years) for years in (25.0, 65.0))
+    lost = laboratory.values["cold sensitivity lost per decade"]
+    assert math.log(young / old) == pytest.approx(4.0 * lost)

@@ -72,16 +72,6 @@ def test_a_row_is_predicted_again_without_its_experiment() -> None:
     )
 
 
-FEW = (
-    "warm conduction velocity",
-    "cold threshold drive",
-    "warm threshold drive",
-    "cold area exponent",
-    "cold rating exponent",
-    "warm rating at threshold",
-)
-
-
 @contextmanager
 def observed(truth: np.ndarray, random: np.random.Generator) -> Iterator[None]:
     """In place of the published rows, those that people with these constants would have given, errors at random."""
@@ -90,55 +80,6 @@ def observed(truth: np.ndarray, random: np.random.Generator) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("thermicon.perception.evidence.posterior.load_rows", lambda: drawn)
         yield
-
-
-@dataclass(frozen=True)
-class Some:
-    """A posterior of a few constants; the others are known."""
-
-    whole: Posterior
-    truth: np.ndarray
-
-    @property
-    def places(self) -> np.ndarray:
-        return np.array([self.whole.priors.names.index(name) for name in FEW])
-
-    @property
-    def priors(self) -> tuple[str, ...]:
-        return FEW
-
-    def residuals(self, vector: np.ndarray) -> np.ndarray:
-        full = self.truth.copy()
-        full[self.places] = vector
-        return np.concatenate([self.whole.misses(full), vector])
-
-    def predictions(self, vector: np.ndarray) -> dict[tuple[str, str, str], float]:
-        return {}
-
-
-@pytest.mark.slow
-def test_a_few_constants_are_found_again_in_three_data_sets() -> None:
-    scores = []
-    for seed in range(3):
-        random = np.random.default_rng(seed)
-        truth = shipped_vector(Posterior())
-        some = Some(Posterior(), truth)
-        truth[some.places] = random.standard_normal(len(FEW)) * 0.7
-        with observed(truth, random):
-            found = maximise(Some(Posterior(), truth), 0.5 * truth[some.places])
-        scores.append((found.vector - truth[some.places]) / found.sd)
-    z = np.concatenate(scores)
-    assert (np.abs(z) < 1.96).mean() >= 0.75
-    assert 0.3 < np.square(z).mean() < 2.5
-    assert np.abs(z).max() < 4.5
-
-
-def test_synthetic_rows_are_the_predictions_but_for_their_errors() -> None:
-    vector = shipped_vector(Posterior())
-    with observed(vector, np.random.default_rng(1)):
-        misses = Posterior().misses(vector)
-    assert np.square(misses).mean() == pytest.approx(1.0, abs=0.6)
-    assert not np.allclose(misses, Posterior().misses(vector))
 
 
 @pytest.mark.slow

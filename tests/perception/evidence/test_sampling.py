@@ -13,9 +13,8 @@ from thermicon.perception.evidence import chains as chains_module
 from thermicon.perception.evidence import sampling
 from thermicon.perception.evidence.chains import Chain, Diagnostics, Reference, begin, diagnose, extend
 from thermicon.perception.evidence.posterior import Posterior
-from thermicon.perception.evidence.sampling import in_the_middle, sample, shipped_vector
+from thermicon.perception.evidence.sampling import in_the_middle, sample
 from thermicon.perception.evidence.surrogate import LimitFeatures, Surrogate, fit_surrogate
-from thermicon.perception.observer.channels import VARIABLES
 
 SIZE = 3
 TRUTH = np.array([[1.0, 0.5, 0.0], [0.0, 2.0, -0.5], [0.3, 0.0, 1.5], [1.0, 1.0, 1.0]])
@@ -87,12 +86,6 @@ def test_chains_apart_have_not_converged() -> None:
     assert sampling._kept([chain] * 4, Reference(np.zeros(2), np.eye(2))).shape == (4, 90, 2), "a tenth is left out"
     for r_hat, ess, converged in ((1.009, 401.0, True), (1.011, 401.0, False), (1.009, 399.0, False)):
         assert Diagnostics(("a",), np.array([r_hat]), np.array([ess])).converged == converged
-
-
-def test_the_shipped_maximum_is_where_sampling_begins() -> None:
-    for variable in VARIABLES:
-        vector = shipped_vector(Posterior(variable))
-        assert np.abs(vector).max() < 6.0
 
 
 @pytest.mark.slow

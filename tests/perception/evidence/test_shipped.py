@@ -16,7 +16,6 @@ from thermicon.perception.evidence.results import (
     CONSTANTS,
     PREDICTIONS,
     inputs_digest,
-    load_ablation,
     load_constants,
     load_predictions,
 )
@@ -24,7 +23,7 @@ from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.evidence.sampling import shipped_vector
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.draws_file import current_inputs
-from thermicon.perception.observer.observer import DATA, TURNED_OFF
+from thermicon.perception.observer.observer import DATA
 
 
 @pytest.fixture(scope="module")
@@ -69,24 +68,9 @@ def test_left_out_intervals_cover_and_contain_their_middle() -> None:
     assert all(row.left_out_low < row.left_out < row.left_out_high for row in rows)
 
 
-def test_ablation_has_every_mechanism_and_variant() -> None:
-    table = load_ablation()
-    assert {row.without for row in table} >= {*TURNED_OFF, "", "all of them"}
-    whole = [row for row in table if not row.without]
-    assert [row.variable for row in whole] == ["temperature", "heat flow"]
-    assert whole[0].difference == 0.0
-
-
-def test_draws_have_converged_and_left_nothing_out() -> None:
-    header = PosteriorDraws.load().header
-    assert header.converged
-    assert header.r_hat < 1.01
-    assert header.ess > 400.0
-    assert header.left_out == ()
-
-
 def test_draws_lie_around_the_maximum_and_fit_as_well() -> None:
     draws, posterior = PosteriorDraws.load(), Posterior()
+    assert draws.header.converged and draws.header.left_out == ()
     for each in load_constants():
         low, _, high = draws.interval(each.name, 0.98)
         assert low < each.value < high, each.name
@@ -98,29 +82,16 @@ def test_draws_lie_around_the_maximum_and_fit_as_well() -> None:
         assert 60.0 < float(np.square(residuals).sum()) < 190.0
 
 
-def parted(text: str) -> tuple[dict[str, str], list[str], np.ndarray]:
-    """Lines of the header by their first words, names of the columns, and draws (draws, columns)."""
-    lines = text.splitlines()
-    header = dict(line[1:].split(":", 1) for line in lines if line.startswith("#") and ":" in line)
-    names, *rows = [line for line in lines if not line.startswith("#")]
-    return header, names.split(","), np.array([row.split(",") for row in rows], dtype=np.float64)
-
-
 @pytest.mark.slow
 def test_sampling_makes_draws_of_the_shipped_distribution_from_their_seed(tmp_path: Path) -> None:
     """Six minutes of processor time. The draws themselves are the same only where a computer rounds alike."""
     made = tmp_path / "draws.csv"
     command = [sys.executable, "-m", "thermicon.perception.evidence", "sample", "--seed", "0", "-o", made]
     subprocess.run(command, check=True, capture_output=True)
-    (header, names, shipped), (own_header, own_names, own) = (
-        parted(path.read_text("utf-8")) for path in (DATA / "posterior.csv", made)
-    )
-    assert own_names == names
-    assert {key: own_header[key] for key in (" evidence", " priors")} == {
-        key: header[key] for key in (" evidence", " priors")
-    }
-    assert own.shape == shipped.shape == (1000, len(names))
-    spread = shipped.std(axis=0)
+    shipped, own = PosteriorDraws.load(), PosteriorDraws.load(made)
+    assert (own.names, own.draws.shape) == (shipped.names, shipped.draws.shape)
+    assert (own.header.evidence, own.header.priors) == (shipped.header.evidence, shipped.header.priors)
+    spread = shipped.draws.std(axis=0)
     # With 400 effective draws each, means differ by 0.07 of the spread (1 SD), spreads by 5 %.
-    assert (np.abs(own.mean(axis=0) - shipped.mean(axis=0)) / spread).max() < 0.35
-    assert np.abs(np.log(own.std(axis=0) / spread)).max() < 0.3
+    assert (np.abs(own.draws.mean(axis=0) - shipped.draws.mean(axis=0)) / spread).max() < 0.35
+    assert np.abs(np.log(own.draws.std(axis=0) / spread)).max() < 0.3
