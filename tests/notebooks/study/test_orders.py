@@ -35,7 +35,9 @@ def test_in_a_williams_design_every_icon_follows_every_other_equally_often(count
 def test_no_icon_follows_itself_and_blocks_are_complete(
     rule: str, icons: int, repetitions: int, blocks: int, seed: int
 ) -> None:
-    for person in orders_of(rule, icons, repetitions, blocks, 2, seed):
+    people = orders_of(rule, icons, repetitions, blocks, 2, seed)
+    assert people == orders_of(rule, icons, repetitions, blocks, 2, seed)
+    for person in people:
         whole = [place for block in person for place in block]
         assert all(before != after for before, after in pairwise(whole))
         assert len(person) == blocks
@@ -62,6 +64,7 @@ def test_of_twelve_orders_the_most_balanced_is_taken(monkeypatch: pytest.MonkeyP
 
 def test_shuffled_orders_have_repeats_and_whole_blocks() -> None:
     people = orders_of("shuffled", 3, 8, 2, 4, seed=1)
+    assert people == orders_of("shuffled", 3, 8, 2, 4, seed=1) != orders_of("shuffled", 3, 8, 2, 4, seed=2)
     assert any(a == b for person in people for block in person for a, b in pairwise(block))
     assert all(Counter(block) == {0: 8, 1: 8, 2: 8} for person in people for block in person)
 
@@ -71,9 +74,3 @@ def test_rows_of_a_williams_design_are_dealt_out_equally() -> None:
     used = Counter(block for person in people for block in person)
     assert sum(used.values()) == 12
     assert set(used.values()) == {3}
-
-
-def test_equal_seeds_give_equal_orders() -> None:
-    for rule in ("balanced", "williams", "random", "shuffled"):
-        assert orders_of(rule, 5, 3, 2, 3, seed=7) == orders_of(rule, 5, 3, 2, 3, seed=7)
-        assert orders_of(rule, 5, 3, 2, 3, seed=7) != orders_of(rule, 5, 3, 2, 3, seed=8)

@@ -46,12 +46,8 @@ def test_every_play_is_drawn_in_its_own_colour(session: Session) -> None:
     assert 60.0 * max(line.get_xdata()[-1] for line in lines[:3]) < 60.0, "no line through the break"
 
 
-def test_a_thermode_has_orders_but_no_skin() -> None:
-    figure = study_figure(COURSES, COURSES[0], planned_plays(COURSES[0], LASTING, PACE), PACE, None)
-    assert "no session is simulated for a thermode" in figure.axes[2].texts[0].get_text()
-
-
-def test_of_many_participants_the_first_are_drawn() -> None:
+def test_of_many_participants_the_first_are_drawn_and_of_a_thermode_no_skin() -> None:
     many = [Course(f"{k}", TRIALS) for k in range(MOST_ROWS + 5)]
     figure = study_figure(many, many[0], planned_plays(many[0], LASTING, PACE), PACE, None)
     assert figure.axes[0].get_title(loc="left") == f"order of play (the first {MOST_ROWS} of {MOST_ROWS + 5})"
+    assert "no session is simulated for a thermode" in figure.axes[2].texts[0].get_text()

@@ -59,35 +59,19 @@ def test_all_faults_are_named_at_once(tmp_path: Path) -> None:
     assert all(line.startswith(str(tmp_path / "study.toml")) for line in lines)
 
 
-def test_an_unknown_set_names_the_nearest(tmp_path: Path) -> None:
-    path = write_study(tmp_path, QUICK.replace("two.cue", "six-icon"))
-    with pytest.raises(CueErrors, match=r"six-icons"):
-        read_materials(path)
+BYTES = (QUICK.encode("utf-16"), QUICK.replace("quick", "qüick").encode("latin-1"), b"", b"format = ")
 
 
-@pytest.mark.parametrize(
-    ("content", "words"),
-    [
-        (QUICK.encode("utf-16"), r"binary file|not UTF-8 text"),
-        (
-            QUICK.replace("quick", "qüick").encode("latin-1"),
-            r"not UTF-8 text \(byte \d+\); save the study file as UTF-8",
-        ),
-        (b"", r"the file is empty; a study file was expected"),
-        (b"format = ", r"not a valid TOML file"),
-    ],
-    ids=["UTF-16", "Latin-1", "empty", "cut"],
-)
-def test_what_is_not_a_study_file_is_said(content: bytes, words: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("content", "words"), list(zip(BYTES, messages(__file__)["bytes"], strict=True)))
+def test_what_is_not_a_study_file_or_not_there_is_said(content: bytes, words: str, tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_bytes(content)
     with pytest.raises(StudyError, match=words):
         read_materials(path)
-
-
-def test_a_missing_study_is_said() -> None:
     with pytest.raises(StudyError, match=r"nothing-here\.toml: no such study file"):
         read_materials("nothing-here.toml")
+    with pytest.raises(CueErrors, match=r"six-icons"):
+        read_materials(write_study(tmp_path, QUICK.replace("two.cue", "six-icon")))
 
 
 def test_a_threshold_takes_no_set() -> None:
