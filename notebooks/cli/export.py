@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Export
     from thermicon.circuit.delivery.prepare import Prepared
 
-NUMBER = re.compile(r"\d+(\.\d+)?")
 LONGEST_PAUSE_S = 600.0
 """As in `thermicon.circuit.safety.repeated`, repeated here to avoid its imports."""
 LARGEST = 2**30
@@ -140,17 +138,13 @@ def icon_line(one: Prepared) -> str:
 
 
 def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
-    """Every warning once, for its first icon; those that differ in numbers alone follow by name."""
-    alike: dict[str, tuple[str, str, list[str]]] = {}
+    """Every warning once, with the names of its icons."""
+    names: dict[str, list[str]] = {}
     for one in ready:
         for warning in one.warnings:
-            name = one.delivery.icon.name
-            kind = NUMBER.sub("#", str(warning))
-            alike.setdefault(kind, (name, str(warning), []))[2].append(name)
-    for name, warning, names in alike.values():
-        others = [each for each in dict.fromkeys(names) if each != name]
-        more = f"; alike, with numbers in their sidecars: {', '.join(others)}" if others else ""
-        yield f"warning: {name}: {warning}{more}"
+            names.setdefault(warning, []).append(one.delivery.icon.name)
+    for warning, icons in names.items():
+        yield f"warning: {', '.join(dict.fromkeys(icons))}: {warning}"
 
 
 def refused(ready: Export) -> bool:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 MOST_BINS = 2000
 """Bins on the axis of time; each shows the least and the most of its rows, so that no peak is lost."""
 
-MOST_NAMED, MOST_BARS = 16, 200
-"""Plays up to which each has its name written beside its bar, and a bar as wide as it lasts."""
+MOST_NAMED = 16
+"""Plays up to which each has its name written beside its bar."""
 
 HOT = "#7f3b08"
 LEAST_DOSE, FELT_K = 1e-8, 0.1
@@ -57,16 +57,10 @@ def _changes(session: Session, ax: Axes, scale: float) -> None:
     base = np.array([rest + play.drift_K for play in session.plays])
     low = np.array([play.skin_min_C for play in session.plays]) - base
     high = np.array([play.skin_max_C for play in session.plays]) - base
-    if len(session.plays) > MOST_BARS:
-        ax.vlines(starts, low, 0.0, color=COOL, lw=0.6, label="cooling in a play")
-        ax.vlines(starts, 0.0, high, color=WARM, lw=0.6, label="warming")
-    else:
-        if low.min() < -FELT_K:
-            ax.bar(starts, low, widths, align="edge", color=COOL, label="cooling in a play")
-        if high.max() > FELT_K:
-            ax.bar(
-                starts, high, widths, align="edge", color=WARM, hatch="//", edgecolor="white", lw=0.0, label="warming"
-            )
+    if low.min() < -FELT_K:
+        ax.bar(starts, low, widths, align="edge", color=COOL, label="cooling in a play")
+    if high.max() > FELT_K:
+        ax.bar(starts, high, widths, align="edge", color=WARM, hatch="//", edgecolor="white", lw=0.0, label="warming")
     drift = [play.drift_K for play in session.plays]
     ax.plot(starts, drift, color=INK, marker=".", ms=4, lw=1.0, label="baseline drift")
     ax.axhline(0.0, color=GREY, lw=0.8)

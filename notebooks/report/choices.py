@@ -9,8 +9,6 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 SHARE = "For a share of people: what at least so many reach, with the uncertainty of the model."
 MOST_EXCLUDED = 5
-ONE_BY_ONE = 50
-"""People whose own best choice is looked for, as in `thermicon.perception.selection.choose`."""
 
 
 def goal_lines(goal: dict[str, Any] | None, verdict: str = "") -> Iterator[str]:
@@ -87,12 +85,6 @@ def choice_lines(chosen: dict[str, Any], where: str = "a new laboratory") -> Ite
         yield f"for {where} (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits"
     energy = "" if chosen["total_J"] is None else f", total energy {number(chosen['total_J'])} J"
     yield f"total duration {number(chosen['total_s'])} s{energy}"
-    if chosen["best_for_people"] is not None:
-        people = count_of(min(chosen["people"], ONE_BY_ONE), "individual person", "individual people")
-        yield (
-            f"also the best choice for {percent(chosen['best_for_people'])} of {people}; "
-            f"a choice for one person alone would gain d′ {chosen['median_loss']:.2f} (median)"
-        )
     for icon in chosen["excluded"][:MOST_EXCLUDED]:
         yield f"excluded: {icon['icon']} {icon['reason']}"
     if len(chosen["excluded"]) > MOST_EXCLUDED:

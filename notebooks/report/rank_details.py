@@ -108,7 +108,7 @@ def number_points(result: Mapping[str, Any]) -> Iterator[str]:
         people = count_of(whole["new_laboratory_people"], "person", "people")
         yield f"mean of {people} in {where} (95 %): {percent_span(low, high)}"
     elif not result["chosen"]:
-        yield _no_interval(result["observer"])
+        yield "no interval for a new laboratory: --intervals 2 or more and an observer with draws (.csv) give one"
     if bits is None:
         return
     least, most = whole["information_bits_interval"]
@@ -118,15 +118,6 @@ def number_points(result: Mapping[str, Any]) -> Iterator[str]:
     yield f"{whole['bits_per_s']:.2f} bits/s"
     plugin = whole["information_bits_plugin"]
     yield f"a {whole['trials']}-trial experiment would report {plugin:.2f} bits (biased upwards)"
-
-
-def _no_interval(observer: str) -> str:
-    """Why there is none: an observer without draws, or no draws asked for."""
-    if observer.lower().endswith(".toml"):
-        why = f"{observer} is one observer without draws; a table of draws (.csv) gives one"
-    else:
-        why = "--intervals 2 or more and an observer with draws give one"
-    return f"no interval for a new laboratory: {why}"
 
 
 def _range(result: Mapping[str, Any], interval: str) -> str:

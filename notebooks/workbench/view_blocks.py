@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from thermicon.icons.number_text import number, percent
 
+from ..cli.export import warning_lines
 from ..report.blocks import Bullets, Cards, Cell, Facts, Heading, Text, fragment, grid, shown
 from ..report.choices import choice_lines, goal_lines, laboratory
 from ..report.gate_words import CAUTION, gate_words, short_scenario, steps_of
@@ -97,12 +98,8 @@ def delivered_html(ready: Export, remarks: Sequence[str] = ()) -> str:
     whose = ", ".join(dict.fromkeys(change.detected_by for change in felt.values()))
     detected = f"detected by {whose}" if whose else "detected"
     columns = ("icon", "duration", "rate", "receptors within", "rms", detected, "d′ changes by", "safety")
-    names: dict[str, list[str]] = {}  # one line for all icons that share a warning
-    for icon in ready.prepared:
-        for warning in icon.warnings:
-            names.setdefault(warning, []).append(icon.delivery.icon.name)
-    warnings = [f"{', '.join(icons)}: {warning}" for warning, icons in names.items()]
-    told = dict.fromkeys(line.removeprefix("warning: ") for line in (*remarks, *warnings))
+    lines = (*remarks, *warning_lines(ready.prepared))
+    told = dict.fromkeys(line.removeprefix("warning: ") for line in lines)
     return shown(
         grid(columns, [_delivered(icon, felt.get(icon.delivery.icon.name)) for icon in ready.prepared]),
         Facts(tuple(gate_words(ready.prepared))),

@@ -35,29 +35,44 @@ class Said:
     stderr: str
 
 
-@pytest.fixture
-def cli() -> Callable[..., Said]:
-    """``cli("check", "a.cue")`` runs a command in this process."""
+class Runner:
+    """``cli("check", "a.cue")`` runs a command, ``cli.good("check", "a.cue")`` one that has to end well."""
 
-    def run(*arguments: object) -> Said:
-        result = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"}).invoke(app, [str(each) for each in arguments])
+    def __init__(self, run: Callable[..., Said]) -> None:
+        self.run = run
+
+    def __call__(self, *arguments: object, **more: Path) -> Said:
+        return self.run(*(str(each) for each in arguments), **more)
+
+    def good(self, *arguments: object, **more: Path) -> Said:
+        said = self(*arguments, **more)
+        assert said.exit_code == 0, said.stderr
+        return said
+
+
+@pytest.fixture
+def cli() -> Runner:
+    """Runs commands in this process."""
+
+    def run(*arguments: str) -> Said:
+        result = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1"}).invoke(app, arguments)
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             raise result.exception
         return Said(result.exit_code, result.stdout, result.stderr)
 
-    return run
+    return Runner(run)
 
 
 @pytest.fixture
-def process() -> Callable[..., Said]:
-    """``process("check", "a.cue")`` runs a command as a person would, in a process of its own."""
+def process() -> Runner:
+    """Runs commands as a person would, each in a process of its own."""
 
-    def run(*arguments: object, cwd: Path | None = None) -> Said:
-        command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *(str(each) for each in arguments)]
+    def run(*arguments: str, cwd: Path | None = None) -> Said:
+        command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *arguments]
         done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=cwd, timeout=120, check=False)
         return Said(done.returncode, done.stdout, done.stderr)
 
-    return run
+    return Runner(run)
 
 
 @pytest.fixture

@@ -35,8 +35,7 @@ def test_a_large_family_is_checked_whole_and_against_a_rig_by_some(
 ) -> None:
     if most is not None:
         monkeypatch.setattr("thermicon.notebooks.cli.check.MOST_ICONS", most)
-    said = cli("check", written(tmp_path / "large.cue", LARGE), "--rig", "thenar")
-    assert said.exit_code == 0
+    said = cli.good("check", written(tmp_path / "large.cue", LARGE), "--rig", "thenar")
     assert "10,000 icons" in said.stdout
     assert f"{most or 2000:,} of its 10,000 icons" in said.stderr
 
@@ -71,7 +70,7 @@ def test_files_are_brought_into_canonical_layout(cli: Cli, tmp_path: Path) -> No
 @pytest.mark.parametrize("end", ["\n", "\r\n"])
 def test_line_ends_stay(cli: Cli, tmp_path: Path, before: bytes, end: str) -> None:
     path = written(tmp_path / "a.cue", before + LOOSE.replace("\n", end).encode())
-    assert cli("check", "--fix", path).exit_code == 0
+    cli.good("check", "--fix", path)
     assert path.read_bytes() == TIDY.replace("\n", end).encode()
 
 
@@ -94,7 +93,7 @@ def test_the_mode_of_a_file_stays_and_a_link_is_followed(cli: Cli, tmp_path: Pat
     path.chmod(0o640)
     link = tmp_path / "link.cue"
     link.symlink_to(path)
-    assert cli("check", "--fix", link).exit_code == 0
+    cli.good("check", "--fix", link)
     assert link.is_symlink()
     assert path.read_text(encoding="utf-8") == TIDY
     assert stat.S_IMODE(path.stat().st_mode) == 0o640

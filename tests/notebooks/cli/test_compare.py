@@ -22,8 +22,7 @@ def row(said: Any, name: str) -> list[str]:
 
 
 def test_two_rigs_play_the_cooling_step_unless_told(cli: Cli) -> None:
-    said = cli("compare", "thenar", "shani2021")
-    assert said.exit_code == 0
+    said = cli.good("compare", "thenar", "shani2021")
     assert "1046 W/m²" in said.stderr
     lines = said.stdout.splitlines()
     assert lines[:2] == ["cooling-step", "A  thenar: 8 s, reached (everywhere within 1 mK)"]
@@ -37,8 +36,7 @@ def test_two_rigs_play_the_cooling_step_unless_told(cli: Cli) -> None:
 
 
 def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> None:
-    said = cli("compare", f"{two}:cool-step", f"{two}:warm-step")
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("compare", f"{two}:cool-step", f"{two}:warm-step")
     lines = said.stdout.splitlines()
     assert lines[0] == "A  two.cue:cool-step: 8 s, reached (everywhere within 1 mK)"
     assert lines[1].startswith("B  two.cue:warm-step: 8 s, reached")
@@ -48,15 +46,14 @@ def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> Non
 def test_two_sets_without_a_common_name_are_predicted(cli: Cli, two: Path, tmp_path: Path) -> None:
     other = tmp_path / "other.cue"
     other.write_text(two.read_text(encoding="utf-8").replace("cool-step", "dip").replace("warm-step", "glow"))
-    said = cli("compare", two, other)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("compare", two, other)
     assert said.stdout.startswith("predicted for 100 virtual people: A ")
 
 
 def measured(folder: Path, cli: Cli, two: Path) -> tuple[Path, Path]:
     """A trace, and a log made from it: other times, fewer columns, skin 0.2 K warmer, one reading lost."""
     trace = folder / "trace.csv"
-    assert cli("simulate", two, "--icon", "cool-step", "-o", trace).exit_code == 0
+    cli.good("simulate", two, "--icon", "cool-step", "-o", trace)
     frame = pd.read_csv(trace)
     times = np.arange(0.5, 9.0, 0.25)
     log = pd.DataFrame({"time_s": times, "note": "x"})
@@ -70,8 +67,7 @@ def measured(folder: Path, cli: Cli, two: Path) -> tuple[Path, Path]:
 
 def test_a_trace_and_a_log_are_compared_at_the_times_of_the_log(cli: Cli, two: Path, tmp_path: Path) -> None:
     trace, log = measured(tmp_path, cli, two)
-    said = cli("compare", trace, log, "--figure", tmp_path / "a.png")
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("compare", trace, log, "--figure", tmp_path / "a.png")
     assert said.stdout.splitlines()[:2] == ["A  trace.csv", "B  log.csv"]
     assert row(said, "skin")[-2:] == ["0.2", "K"]
     assert row(said, "display")[1:3] == ["0", "K"]
@@ -85,14 +81,13 @@ def test_a_trace_and_a_log_are_compared_at_the_times_of_the_log(cli: Cli, two: P
 
 def test_a_log_with_a_clock_of_its_own_is_aligned(cli: Cli, tmp_path: Path) -> None:
     trace, log = tmp_path / "trace.csv", tmp_path / "log.csv"
-    assert cli("simulate", "six-icons", "--icon", "double-dip", "--rate", "20", "-o", trace).exit_code == 0
+    cli.good("simulate", "six-icons", "--icon", "double-dip", "--rate", "20", "-o", trace)
     frame = pd.read_csv(trace)[["time_s", "display_C"]]
     frame["time_s"] += 3600.25
     frame["display_C"] += 0.1
     frame.to_csv(log, index=False)
     assert "no two rows at a common time" in cli("compare", trace, log).stderr
-    said = cli("compare", trace, log, "--align")
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("compare", trace, log, "--align")
     assert "B was shifted by −3600.25 s, by the correlation of display (1)" in said.stdout
     assert row(said, "display")[1] == "0.1"
     frame.rename(columns={"display_C": "probe_a_C"}).to_csv(log, index=False)

@@ -18,7 +18,7 @@ def test_a_set_is_written_as_json_and_as_cue_text_over_what_was_there(cli: Cli, 
     assert (said.exit_code, said.stdout) == (0, "")
     assert said.stderr == f"wrote {as_json}: 6 icons\n"
     assert as_json.read_text(encoding="utf-8") == to_json(load_library("six-icons"))
-    assert cli("convert", "six-icons", "-o", as_cue).exit_code == 0
+    cli.good("convert", "six-icons", "-o", as_cue)
     assert as_cue.read_text(encoding="utf-8") == str(load_library("six-icons"))
 
 
@@ -40,5 +40,5 @@ def test_a_recording_becomes_an_icon(cli: Cli, tmp_path: Path) -> None:
     (icon,) = read_cue(out)
     assert (icon.name, icon.context.control) == ("cold", "skin")
     assert abs(icon.corners().at(4) - 26) < 0.2
-    assert cli("convert", path, "-o", tmp_path / "dip.json", *options).exit_code == 0
+    cli.good("convert", path, "-o", tmp_path / "dip.json", *options)
     assert (tmp_path / "dip.json").read_text(encoding="utf-8") == to_json(read_cue(out))

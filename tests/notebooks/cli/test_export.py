@@ -58,7 +58,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
         "warning: driver.current_limit_A = 1.5 A takes 15 V of command",
         "cool-step: 8.01 s at 100 Hz on dac-16, receptors within ",
         "safety green in 3 scenarios",
-        "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through ",
+        "warning: cool-step, warm-step: dac-16 plays −1 … 1 A (−10 … 10 V through ",
         f"wrote 2 drives with their sidecars into {out}: cool-step.json, cool-step.csv, warm-step.json",
         "to play: put out each row's command at its time",
     ):
@@ -69,9 +69,9 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
 
 
 def test_simulate_replays_an_exported_drive_exactly(cli: Cli, two: Path, tmp_path: Path) -> None:
-    assert cli("export", two, "--icon", "warm-step", "--to", "csv", "-o", tmp_path / "out", *SURE).exit_code == 0
+    cli.good("export", two, "--icon", "warm-step", "--to", "csv", "-o", tmp_path / "out", *SURE)
     trace = tmp_path / "trace.csv"
-    assert cli("simulate", "--current", tmp_path / "out" / "warm-step.csv", "--hold", "-o", trace, *SURE).exit_code == 0
+    cli.good("simulate", "--current", tmp_path / "out" / "warm-step.csv", "--hold", "-o", trace, *SURE)
     ours = deliver(read_cue(str(two))["warm-step"], Rig.load("thenar"), Device.load("dac-16")).trace.to_frame()
     theirs = pd.read_csv(trace)
     for column in ("time_s", "current_A", "display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
@@ -83,8 +83,7 @@ def test_simulate_replays_an_exported_drive_exactly(cli: Cli, two: Path, tmp_pat
     "name", ["c-array", "tcs2-serial", "psychopy", "setpoint-csv", pytest.param("wav", marks=pytest.mark.slow)]
 )
 def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Path, name: str) -> None:
-    said = cli("export", two, "--to", name, "-o", tmp_path / "out", *SURE)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("export", two, "--to", name, "-o", tmp_path / "out", *SURE)
     assert len(names(tmp_path / "out")) == {"psychopy": 6, "c-array": 5}.get(name, 4)
     open_loop = name not in ("tcs2-serial", "setpoint-csv")
     assert ("open loop: with a module that was not measured" in said.stderr) is open_loop
@@ -141,8 +140,7 @@ class TestRefused:
         assert said.stderr.count("refused: cool-step ") == said.stderr.count(f"refused: {words}") == 1
         assert "--force exports it nevertheless, and the sidecar records that" in said.stderr
         assert not Path("out").exists()
-        said = cli("export", two, "--to", to, "-o", "out", *more, *SURE, "--force")
-        assert said.exit_code == 0
+        said = cli.good("export", two, "--to", to, "-o", "out", *more, *SURE, "--force")
         assert f"forced: {words}" in said.stderr
         told = json.loads(next(Path("out").glob("cool*.json")).read_text())
         assert told["forced"] is True
@@ -174,8 +172,7 @@ def test_another_icon_that_the_device_cannot_play_is_left_out_of_the_comparison(
     path = one_icon(tmp_path, "good", "warm by 2 °C at 1 °C/s; return at 1 °C/s", "display")
     busy = "icon busy { repeat 400 { warm by 0.2 °C at 4 °C/s; return at 4 °C/s; rest for 0.1 s } }\n"
     path.write_text(path.read_text(encoding="utf-8") + busy, encoding="utf-8")
-    said = cli("export", path, "--icon", "good", "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("export", path, "--icon", "good", "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
     assert "warning: busy cannot be played, so nothing is compared with it: qst-tcs2: 1200 segments" in said.stderr
 
 
@@ -183,7 +180,6 @@ def test_very_many_icons_are_not_compared_with_each_other(
     cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("thermicon.notebooks.files.exporting.MOST_COMPARED", 1)
-    said = cli("export", two, "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("export", two, "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
     assert "warning: 2 icons are too many to compare" in said.stderr
     assert json.loads((tmp_path / "out" / "cool-step.json").read_text())["perception"]["d_prime"] == {}

@@ -35,8 +35,7 @@ def families(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def ranked(cli: Cli, tmp_path: Path) -> Callable[..., dict[str, Any]]:
     def run(*more: object) -> dict[str, Any]:
         out = tmp_path / "rank.json"
-        said = cli("improve", "six-icons", *FEW, *more, "-o", out)
-        assert said.exit_code == 0, said.stderr
+        said = cli.good("improve", "six-icons", *FEW, *more, "-o", out)
         return {**json.loads(out.read_text(encoding="utf-8")), "words": " ".join(said.stdout.split())}
 
     return run
@@ -74,8 +73,7 @@ def test_without_families_and_questions_every_close_pair_gets_an_edit(ranked: Ca
 def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_path: Path) -> None:
     out = tmp_path / "found.cue"
     asked = ("improve", families, "--choose", 3, "--evaluations", 40, "--people", 6, "--seed", 4)
-    said = cli(*asked, "-o", out)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good(*asked, "-o", out)
     assert f"wrote {out}" in said.stderr
     found = parse(out.read_text(encoding="utf-8"))
     assert len(found) == 3
@@ -84,14 +82,13 @@ def test_search_writes_a_set_that_can_be_ranked(cli: Cli, families: Path, tmp_pa
     assert "before after" in told
     assert "predictions of a model, not measurements, and the set was optimised for that same model" in told
     assert cli(*asked, "-o", "-").stdout == out.read_text(encoding="utf-8")
-    assert cli("check", out).exit_code == 0
+    cli.good("check", out)
 
 
 @pytest.mark.slow
 def test_search_says_what_a_goal_lacks(cli: Cli, families: Path) -> None:
     options = ("--evaluations", 20, "--people", 6, "--intervals", 8)
-    said = cli("improve", families, *options, "--goal", "correct >= 99.9 % for 95 % of people, time <= 60 s")
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("improve", families, *options, "--goal", "correct >= 99.9 % for 95 % of people, time <= 60 s")
     words = " ".join(said.stdout.split())
     assert re.search(r"goal: correct for 95 % of people \d+\.\d % \d+\.\d %", words)
     for part in (
@@ -106,8 +103,7 @@ def test_search_says_what_a_goal_lacks(cli: Cli, families: Path) -> None:
 
 def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
     out, picture = tmp_path / "out.csv", tmp_path / "out.png"
-    said = cli("improve", "six-icons", "--people", 4, "--up-to", 4, "--intervals", 4, "-o", out, "-o", picture)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("improve", "six-icons", "--people", 4, "--up-to", 4, "--intervals", 4, "-o", out, "-o", picture)
     frame = pd.read_csv(out)
     assert list(frame["icons"]) == [2, 3, 4]
     words = " ".join(said.stdout.split())

@@ -64,8 +64,7 @@ def test_a_page_knows_file_rig_folder_and_observer(cli: Cli, tmp_path: Path, mon
     assert str(tmp_path / "workbench.ipynb") not in command
     assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]
     own = few_draws(tmp_path / "lab.csv", 2, "by weights from 4 laboratories", "hand-dorsum")
-    said = cli("lab", "--page", file, "--observer", own, "--no-browser")
-    assert said.exit_code == 0
+    said = cli.good("lab", "--page", file, "--observer", own, "--no-browser")
     assert "lab.csv was conditioned on the hand-dorsum rig, not on thenar" in said.stderr
     assert served[1][1] == {**page, "THERMICON_PAGE_OBSERVER": str(own)}
     monkeypatch.setenv("THERMICON_PAGE_OBSERVER", str(own))

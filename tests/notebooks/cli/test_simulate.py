@@ -28,8 +28,7 @@ WEAK = ("--icon", "cool-step", "--set", "driver.current_limit_A=0.8")
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 def test_the_trace_has_the_promised_columns_and_rows(cli: Cli, two: Path, tmp_path: Path, suffix: str) -> None:
     out = tmp_path / f"trace{suffix}"
-    said = cli("simulate", two, "-o", out)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("simulate", two, "-o", out)
     assert said.stdout == ""
     first, second, last = said.stderr.splitlines()
     assert first.startswith("cool-step: 8 s, reached")
@@ -49,7 +48,7 @@ def test_the_trace_has_the_promised_columns_and_rows(cli: Cli, two: Path, tmp_pa
 
 def test_one_icon_a_rate_and_a_tail(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "trace.csv"
-    assert cli("simulate", two, "--icon", "warm-step", "--rate", 20, "--tail", 2, "-o", out).exit_code == 0
+    cli.good("simulate", two, "--icon", "warm-step", "--rate", 20, "--tail", 2, "-o", out)
     frame = pd.read_csv(out)
     assert set(frame["icon"]) == {"warm-step"}
     assert len(frame) == 161
@@ -65,8 +64,7 @@ def test_the_summary_says_what_matters(cli: Cli, two: Path) -> None:
 
 
 def test_a_miss_is_data_and_not_a_failure(cli: Cli, two: Path, tmp_path: Path) -> None:
-    said = cli("simulate", two, *WEAK)
-    assert said.exit_code == 0
+    said = cli.good("simulate", two, *WEAK)
     assert "NOT reached: misses its target by" in said.stdout
     icon, rig = read_cue(two)["cool-step"], Rig.load("thenar").with_(**{"driver.current_limit_A": 0.8})
     near = nearest_reachable(icon, rig)
@@ -86,8 +84,7 @@ def test_a_designed_drive_replays_exactly_when_held(cli: Cli, two: Path, tmp_pat
     pd.concat([lead, shifted]).to_csv(drive, index=False)
     miss = {}
     for name, options in (("held", ["--hold"]), ("linear", [])):
-        said = cli("simulate", "--current", drive, *options, "-o", "-")
-        assert said.exit_code == 0, said.stderr
+        said = cli.good("simulate", "--current", drive, *options, "-o", "-")
         replayed = pd.read_csv(io.StringIO(said.stdout))
         assert list(replayed.columns) == COLUMNS
         assert replayed["icon"].isna().all()
@@ -117,8 +114,7 @@ class TestNetlist:
 
     def test_the_clock_of_a_hand_that_lands_is_named(self, cli: Cli, two: Path, tmp_path: Path) -> None:
         out = tmp_path / "cool.cir"
-        said = cli("simulate", two, "--icon", "cool-step", "--set", "contact.lands_s=-2", "-o", out)
-        assert said.exit_code == 0
+        said = cli.good("simulate", two, "--icon", "cool-step", "--set", "contact.lands_s=-2", "-o", out)
         assert "clock begins when the hand lands; the cue begins at 2 s\n" in said.stderr
         text = out.read_text(encoding="ascii")
         assert "Bcontact cold skin I=V(landed)*" in text
@@ -132,10 +128,9 @@ class TestNetlist:
         ngspice = tool("ngspice")
         options = ("--icon", "cool-step", "--tail", "2", "--set", "contact.area_cm2=4")
         monkeypatch.chdir(tmp_path)
-        said = cli("simulate", two, *options, "-o", "Cool.sp")
-        assert said.exit_code == 0, said.stderr
+        said = cli.good("simulate", two, *options, "-o", "Cool.sp")
         assert said.stderr.endswith("wrote Cool.sp; ngspice -b Cool.sp writes the probes into Cool.txt\n")
-        assert cli("simulate", two, *options, "-o", "trace.csv").exit_code == 0
+        cli.good("simulate", two, *options, "-o", "trace.csv")
         run = subprocess.run([ngspice, "-b", "Cool.sp"], cwd=tmp_path, capture_output=True, text=True, check=False)
         assert run.returncode == 0, run.stdout + run.stderr
         theirs = pd.read_csv(tmp_path / "Cool.txt", sep=r"\s+").add_prefix("/")

@@ -41,8 +41,7 @@ def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) 
             rows = list(csv.DictReader(file))
         assert len(rows) == 10
         assert all((out / row["drive_file"]).is_file() and (out / row["sidecar_file"]).is_file() for row in rows)
-    said = cli("export", "--verify", out)
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("export", "--verify", out)
     copy = tmp_path / "copy"
     copy.mkdir()
     for path in out.iterdir():
@@ -86,8 +85,7 @@ def test_a_derived_gap_grows_until_it_is_safe(tmp_path: Path, cli: Cli) -> None:
     (tmp_path / "two.cue").write_text(
         (tmp_path / "two.cue").read_text(encoding="utf-8").replace("hold for 20 s", "hold for 12 s"), encoding="utf-8"
     )
-    said = cli("study", path, "-o", tmp_path / "made")
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("study", path, "-o", tmp_path / "made")
     assert "the shortest pause that is safe" in said.stdout
 
 
@@ -154,8 +152,7 @@ def test_a_thermode_is_judged_by_its_gate_over_the_whole_session(tmp_path: Path,
     text = QUICK.replace("rig_changes", 'rig = "tcs2"\ndevice = "qst-tcs2"\nrig_changes', 1)
     lines = [line for line in text.splitlines() if not line.startswith("rig_changes")]
     text = "\n".join(lines).replace("gap_s = 10", "gap_s = 300").replace("repetitions = 2", "repetitions = 4")
-    said = cli("study", write_study(tmp_path, text), "-o", tmp_path / "out")
-    assert said.exit_code == 0, said.stderr
+    said = cli.good("study", write_study(tmp_path, text), "-o", tmp_path / "out")
     assert "judged by its drives alone, repeated in any order: a thermode has no current" in said.stdout
     sidecar = json.loads((tmp_path / "out" / "dip.json").read_text(encoding="utf-8"))
     assert sidecar["rig"]["changes"] == ["safety.session_min=86.0"], "18 plays of 3 s and 17 gaps of 300 s"

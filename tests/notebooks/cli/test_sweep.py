@@ -67,8 +67,7 @@ def test_every_number_is_that_of_the_run(two: Path) -> None:
 @pytest.mark.slow
 def test_an_impossible_value_is_a_row_with_the_reason(cli: Cli, two: Path, tmp_path: Path) -> None:
     out = tmp_path / "sweep.csv"
-    said = cli("sweep", two, "--vary", f"{AREA}=-5:10:4", "-o", out, "--figure", tmp_path / "sweep.png")
-    assert said.exit_code == 0
+    said = cli.good("sweep", two, "--vary", f"{AREA}=-5:10:4", "-o", out, "--figure", tmp_path / "sweep.png")
     assert said.stderr.splitlines()[:3] == [
         "cool-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
         "warm-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
@@ -132,8 +131,7 @@ class TestPeople:
 
     def test_what_95_percent_of_people_reach_is_the_number_of_a_goal(self, cli: Cli, two: Path, tmp_path: Path) -> None:
         out = tmp_path / "m.csv"
-        said = cli("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK, "-o", out)
-        assert said.exit_code == 0, said.stderr
+        said = cli.good("sweep", two, "--vary", f"{AREA}=3,9", "--measure", "correct_95", *QUICK, "-o", out)
         frame = pd.read_csv(out)
         ranking = rank(read_cue(two), Rig.load("thenar"), people=4, parameters=4)
         goal = judge_goal("correct >= 1 % for 95 % of people", ranking)

@@ -21,8 +21,7 @@ def test_the_table_and_the_json(
 ) -> None:
     report = validation_report
     monkeypatch.setattr("thermicon.perception.evidence.validate.validate", lambda **_: report)
-    said = cli("validate", "--json", tmp_path / "v.json")
-    assert said.exit_code == 0
+    said = cli.good("validate", "--json", tmp_path / "v.json")
     assert "wrote" in said.stderr
     words = " ".join(said.stdout.split())
     for section in report.sections:
