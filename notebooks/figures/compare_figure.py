@@ -97,14 +97,7 @@ def _draw(ax: Axes, time: Array, values: Array, name: str, *, color: str, lw: fl
 
 
 def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.0, 6.4)) -> Figure:
-    """Return a matplotlib Figure of one of the prepared icons: as designed and as its device delivers it.
-
-    >>> from thermicon.circuit import export
-    >>> from thermicon.icons import load_library
-    >>> icon = load_library("six-icons")["cooling-step"]
-    >>> export_figure(export(icon, "thenar")).get_suptitle()
-    'cooling-step on dac-16, safety green'
-    """
+    """Return a matplotlib Figure of one of the prepared icons: as designed and as its device delivers it."""
     from matplotlib.figure import Figure
 
     one = ready.prepared[place]

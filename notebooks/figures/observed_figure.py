@@ -94,7 +94,8 @@ def _conditions(ax: Axes, found: Observed[Measured, MeasurementFit]) -> None:
     rows = []
     for before, after in zip(found.fit.conditions, found.fit_after.conditions, strict=True):
         unit, name = before.predicted[0], f"{before.condition.label}\n{before.observed:.3g} {before.condition.unit}"
-        rows.append(Row(name, _over(before.predicted, unit), _over(after.predicted, unit), before.observed / unit))
+        both: list[Any] = [tuple(end / unit for end in each.predicted) for each in (before, after)]
+        rows.append(Row(name, *both, before.observed / unit))
     _draw(ax, rows, 1.0)
     ax.set_xscale("log")
     ends = ax.get_xlim()
@@ -102,10 +103,6 @@ def _conditions(ax: Axes, found: Observed[Measured, MeasurementFit]) -> None:
     ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     ax.set_xticks([], minor=True)
     ax.set_title("group means over the predicted median", fontsize=10)
-
-
-def _over(ends: Three, unit: float) -> Three:
-    return ends[0] / unit, ends[1] / unit, ends[2] / unit
 
 
 def _sets(ax: Axes, found: Observed[Any, Any]) -> None:

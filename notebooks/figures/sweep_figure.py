@@ -172,11 +172,7 @@ def sweep_map(
 
 
 def key_label(key: str) -> str:
-    """The key in words with its unit; an age is in years.
-
-    >>> key_label("contact.area_cm2"), key_label("module.seebeck_V_per_K"), key_label("age_years"), key_label("site")
-    ('contact area (cm²)', 'module Seebeck coefficient (V/K)', 'age (years)', 'site')
-    """
+    """The key in words with its unit; an age is in years."""
     from thermicon.circuit.rig.faults import name_of, unit_of
 
     unit = "years" if key.endswith("_years") else unit_of(key)

@@ -61,13 +61,7 @@ class KnobResult(NamedTuple):
 
 @lru_cache(maxsize=32)
 def knobs_of(rig: Rig) -> tuple[Knob, ...]:
-    """Return the knobs of a rig, each at the value that the rig has.
-
-    >>> [(knob.key, knob.shown(knob.value)) for knob in knobs_of(Rig.load("thenar"))]
-    ... # doctest: +NORMALIZE_WHITESPACE
-    [('contact', '1 ×'), ('area', '9 cm²'), ('rest', '32 °C'), ('site', 'thenar'), ('age', '25 years'),
-     ('limit', '1.5 A')]
-    """
+    """Return the knobs of a rig, each at the value that the rig has."""
     known = load_thresholds()
     zone, spread = (known.one(name) for name in ("complete adaptation", "contact resistance spread"))
     lost = observer_records().one("sensitivity lost per decade", channel="cold")

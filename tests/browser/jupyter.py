@@ -16,7 +16,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-import nbformat
 from playwright.sync_api import Locator, Page
 
 STARTS_WITHIN_S = 60.0
@@ -126,15 +125,6 @@ def end_kernels(server: Server) -> None:
     for session in sessions:
         asked = urllib.request.Request(f"{server.url}/api/sessions/{session['id']}", method="DELETE")
         urllib.request.urlopen(asked, timeout=30).close()
-
-
-def make_notebook(path: Path, *cells: str) -> Path:
-    """Write a notebook of code cells, for tests that need one of their own."""
-    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
-    nbformat.write(
-        nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in cells], metadata=kernel), path
-    )
-    return path
 
 
 def open_notebook(page: Page, server: Server, name: str) -> Locator:

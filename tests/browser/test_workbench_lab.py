@@ -11,16 +11,12 @@ from playwright.sync_api import Page, expect
 from tests.browser.jupyter import Server, dark, errors_in, open_notebook, reload, restart_kernel, run_all, save
 from tests.browser.onbench import (
     TWO,
-    click_a_confusion,
     expect_text,
-    open_tab,
     root,
     text_of,
-    type_below_the_first_screen,
     type_drag_and_err,
     type_text,
     wait_until_drawn,
-    wait_until_refined,
 )
 
 Shot = Callable[[str], Path]
@@ -50,32 +46,10 @@ def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
     type_drag_and_err(bench)
 
 
-def test_text_below_the_first_screen_can_be_edited(bench: Page) -> None:
-    cells = bench.locator(".jp-NotebookPanel:not(.lm-mod-hidden) .jp-Notebook .jp-Cell")
-    before = cells.count()
-    type_below_the_first_screen(bench)
-    assert cells.count() == before
-
-
 CUT = """all => all.filter((label) => {
   const span = label.querySelector("span").getBoundingClientRect(), box = label.getBoundingClientRect();
   return span.width > box.width + 0.5 || span.top < box.top - 1 || span.bottom > box.bottom + 1;
 }).map((label) => label.textContent)"""
-
-
-def test_the_set_is_compared_and_an_edit_applied(bench: Page, shot: Shot) -> None:
-    open_tab(bench, "Set")
-    wait_until_refined(bench)
-    expect(bench.get_by_role("button", name="Apply edit")).to_be_enabled(timeout=60_000)
-    shot("lab-set-light")
-    open_tab(bench, "Design")
-    type_text(bench, TWO)
-    click_a_confusion(bench)
-    bench.get_by_role("button", name="Apply edit").click()
-    open_tab(bench, "Design")
-    edited = "text => document.querySelector('.thermicon .tm-editor').editor.text !== text"
-    bench.wait_for_function(edited, arg=TWO)
-    assert "# as far as is pleasant" in text_of(bench)
 
 
 def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server, shot: Shot) -> None:

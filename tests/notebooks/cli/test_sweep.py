@@ -64,21 +64,6 @@ def test_every_number_is_that_of_the_run(two: Path) -> None:
     assert frame["reached"].tolist() == [False, True, True, True]
 
 
-@pytest.mark.slow
-def test_an_impossible_value_is_a_row_with_the_reason(cli: Cli, two: Path, tmp_path: Path) -> None:
-    out = tmp_path / "sweep.csv"
-    said = cli.good("sweep", two, "--vary", f"{AREA}=-5:10:4", "-o", out, "--figure", tmp_path / "sweep.png")
-    assert said.stderr.splitlines()[:3] == [
-        "cool-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
-        "warm-step: reached at 2 of 4 values, everywhere within 1 mK, impossible at 2",
-        f"impossible, as at {AREA} = -5: rig thenar: {AREA} = -5.0 cm²: must be at least 0.01 cm²",
-    ]
-    frame = pd.read_csv(out)
-    lost = frame[frame[AREA] <= 0]
-    assert lost["reason"].str.contains("must be at least 0.01 cm²").all()
-    assert lost[["reached", "safe", "duration_s", "skin_min_C"]].isna().all(axis=None)
-
-
 class TestFigure:
     """What is drawn of a sweep."""
 

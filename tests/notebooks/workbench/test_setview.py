@@ -13,16 +13,12 @@ from tests.notebooks.workbench.openbench import SAID
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks.editing.number_literals import CannotEdit, with_edit
-from thermicon.notebooks.report.rank_details import number_points
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import BackgroundWorker, Job, Superseded
 from thermicon.notebooks.workbench.set_model import RankedSet, overlay_frame, rank_set
 from thermicon.notebooks.workbench.set_view import SetView
-from thermicon.notebooks.workbench.view_blocks import chosen_html, set_html
 from thermicon.perception.observer.observer_model import ObserverModel
-from thermicon.perception.ranking.rank_file import ranking_file
 from thermicon.perception.selection.candidate_edits import numbers_of, repeated, with_number
-from thermicon.perception.selection.request import Selection
 
 TWO = """cue 1
 
@@ -256,30 +252,6 @@ def test_an_edit_that_does_not_fit_is_refused_with_what_to_do() -> None:
     ):
         with pytest.raises(CannotEdit, match=words):
             with_edit(text, made, "old", "new")
-
-
-@pytest.fixture(scope="module")
-def laboratory(tmp_path_factory: pytest.TempPathFactory) -> ObserverModel:
-    """Draws of one laboratory, as ``pilot --keep lab.toml`` writes them."""
-    file = tmp_path_factory.mktemp("lab") / "lab.csv"
-    return ObserverModel.load(few_draws(file, 2, "by weights from 4 laboratories", "thenar"))
-
-
-def test_scores_and_choice_name_the_laboratory_in_the_words_of_rank(laboratory: ObserverModel) -> None:
-    made = rank_set(THREE, Rig.load("thenar"), 4, 128, observer=laboratory)
-    result = ranking_file(made.ranking, mapped=False)
-    words = "your laboratory, lab.csv"
-    assert any(f"people in {words} (95 %): " in line for line in number_points(result))
-    said = set_html(made.ranking, result)
-    assert said["scores"].count(f"in {words} (95 %): ") == 2
-    assert "new laboratory" not in said["scores"]
-    assert "Predicted with the observer of lab.csv." in said["caveat"]
-    new = rank_set(TWO, Rig.load("thenar"), 4, 2).ranking
-    said = set_html(new, ranking_file(new, mapped=False))
-    assert said["scores"].count("in a new laboratory (95 %): ") == 2
-    assert "observer of" not in said["caveat"]
-    chosen = rank_set(THREE, Rig.load("thenar"), 4, 2, Selection(2, "worst"), observer=laboratory)
-    assert f"for {words} (95 %): " in chosen_html(chosen.report)
 
 
 def test_a_single_draw_gives_no_interval(tmp_path: Path) -> None:
