@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json as json_text
-import os
 import platform
-import subprocess
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
@@ -35,8 +33,6 @@ EXTRAS = {
 """The package that each extra brings, and what it is for; extras that only developers need are left out."""
 KERNEL = "python3"
 """The kernel that the shipped notebooks name."""
-SELF_TEST_ENDS_S = 600.0
-"""Given up after this time. Without compiled code in the cache the self-test takes up to a minute."""
 REINSTALL = "install thermicon again in a new environment; if that does not help, report it with doctor --json"
 
 
@@ -184,20 +180,9 @@ def compute(case: dict[str, Any]) -> dict[str, float]:
 
 
 def check_self_test() -> Iterator[Finding]:
-    """Compare the numbers of the self-test with the stored ones; in a process, since compiled code may crash."""
+    """Compare the numbers of the self-test with the stored ones."""
     case = stored()
-    try:
-        run = run_program("-m", __name__, ends_s=SELF_TEST_ENDS_S)
-    except subprocess.TimeoutExpired:
-        text = f"not ended after {SELF_TEST_ENDS_S:g} s"
-        yield Finding("self-test", "fault", text, "end other programs and run it again")
-        return
-    if run.returncode != 0:
-        last = ([line for line in run.stderr.splitlines() if line.strip()] or ["without a message"])[-1]
-        text = f"ended with exit code {run.returncode}: {last.strip()}"
-        yield Finding("self-test", "fault", text, f"mend the faults above; else {REINSTALL}")
-        return
-    computed, wrong = json_text.loads(run.stdout), False
+    computed, wrong = compute(case), False
     played = f"{case['icon']} of {case['set']} on the {case['rig']} rig"
     for each in case["number"]:
         value, wanted, within, unit = computed[each["name"]], each["value"], each["tolerance"], each["unit"]
@@ -225,21 +210,3 @@ def installed_version(name: str) -> str | None:
         return version(name)
     except PackageNotFoundError:
         return None
-
-
-def run_program(*words: str, ends_s: float) -> subprocess.CompletedProcess[str]:
-    """Run this Python without input and return what it says; `subprocess.TimeoutExpired` where it takes longer."""
-    return subprocess.run(
-        [sys.executable, "-P", *words],
-        capture_output=True,
-        encoding="utf-8",
-        errors="replace",
-        stdin=subprocess.DEVNULL,
-        timeout=ends_s,
-        check=False,
-        env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-    )
-
-
-if __name__ == "__main__":
-    sys.stdout.write(json_text.dumps(compute(stored())) + "\n")

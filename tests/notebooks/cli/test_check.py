@@ -23,12 +23,6 @@ def written(path: Path, text: str | bytes) -> Path:
     return path
 
 
-def test_one_line_a_file(cli: Cli, two: Path) -> None:
-    said = cli("check", two)
-    assert (said.exit_code, said.stderr) == (0, "")
-    assert said.stdout == "two.cue: 2 icons, 6–8 s, 26–36 °C, steepest 3 °C/s\n"
-
-
 @pytest.mark.parametrize("most", [100, pytest.param(None, marks=pytest.mark.slow)])
 def test_a_large_family_is_checked_whole_and_against_a_rig_by_some(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, most: int | None

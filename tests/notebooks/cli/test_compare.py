@@ -43,13 +43,6 @@ def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> Non
     assert row(said, "target")[1:5] == ["10", "K", "2.00", "s"]
 
 
-def test_two_sets_without_a_common_name_are_predicted(cli: Cli, two: Path, tmp_path: Path) -> None:
-    other = tmp_path / "other.cue"
-    other.write_text(two.read_text(encoding="utf-8").replace("cool-step", "dip").replace("warm-step", "glow"))
-    said = cli.good("compare", two, other)
-    assert said.stdout.startswith("predicted for 100 virtual people: A ")
-
-
 def measured(folder: Path, cli: Cli, two: Path) -> tuple[Path, Path]:
     """A trace, and a log made from it: other times, fewer columns, skin 0.2 K warmer, one reading lost."""
     trace = folder / "trace.csv"

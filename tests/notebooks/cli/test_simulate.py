@@ -55,14 +55,6 @@ def test_one_icon_a_rate_and_a_tail(cli: Cli, two: Path, tmp_path: Path) -> None
     assert frame["target_C"].iloc[-1] == pytest.approx(32.0)
 
 
-def test_the_summary_says_what_matters(cli: Cli, two: Path) -> None:
-    said = cli("simulate", two, "--icon", "cool-step")
-    assert (said.exit_code, said.stderr) == (0, "")
-    assert said.stdout.startswith("cool-step: 8 s, reached (everywhere within 1 mK)")
-    for words in ("current   −0.48 to 1.11 A", "display   26–32 °C", "cold receptor −"):
-        assert words in said.stdout
-
-
 def test_a_miss_is_data_and_not_a_failure(cli: Cli, two: Path, tmp_path: Path) -> None:
     said = cli.good("simulate", two, *WEAK)
     assert "NOT reached: misses its target by" in said.stdout
