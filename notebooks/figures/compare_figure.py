@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Export
     from thermicon.circuit.arrays import Array
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
-    from thermicon.circuit.delivery.prepare import Prepared
 
 
 FIRST = ("skin_C", "display_C", "cold_receptor_C", "warm_receptor_C", "heat_flow_skin_W_per_m2", "current_A")
@@ -116,7 +115,8 @@ def export_figure(ready: Export, place: int = 0, size: tuple[float, float] = (8.
         apart = 1e3 * (getattr(delivered, column) - getattr(designed, column))
         axes[2].plot(time_s, apart, color=color, lw=1.2, ls=dashes, label=name)
     axes[2].set_ylabel("delivered −\ndesigned (mK)")
-    on_one_clock(figure, axes, "time on the device's clock (s)", title_of(one))
+    title = f"{delivery.icon.name} on {delivery.device.name}, safety {one.verdict.colour}"
+    on_one_clock(figure, axes, "time on the device's clock (s)", title)
     return figure
 
 
@@ -130,8 +130,3 @@ def _drive_panel(ax: Axes, delivery: DeliveredDrive) -> None:
     ax.plot(time_s, wide, color=TARGET, lw=4.0, drawstyle=style, label=f"{label}, designed")
     ax.plot(time_s, thin, color=INK, lw=1.0, drawstyle=style, label=f"{label}, delivered")
     ax.set_ylabel("current (A)" if delivered.has_current else "display (°C)")
-
-
-def title_of(one: Prepared) -> str:
-    """Which icon on which device, and the colour of the gate."""
-    return f"{one.delivery.icon.name} on {one.delivery.device.name}, safety {one.verdict.colour}"

@@ -95,7 +95,7 @@ def _conditions(ax: Axes, found: Observed[Measured, MeasurementFit]) -> None:
     for before, after in zip(found.fit.conditions, found.fit_after.conditions, strict=True):
         unit, name = before.predicted[0], f"{before.condition.label}\n{before.observed:.3g} {before.condition.unit}"
         both: list[Any] = [tuple(end / unit for end in each.predicted) for each in (before, after)]
-        rows.append(Row(name, *both, before.observed / unit))
+        rows.append(Row(name, both[0], both[1], before.observed / unit))
     _draw(ax, rows, 1.0)
     ax.set_xscale("log")
     ends = ax.get_xlim()
