@@ -7,7 +7,7 @@ or an interval, and the conditions under which it holds.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -126,20 +126,17 @@ class Table:
         channel: str = "",
         site: str = "",
         method: str = "",
-        use: str = "",
-        where: Mapping[str, Plain] | None = None,
     ) -> tuple[Record, ...]:
         """All records that match every key given; a channel also matches records for both channels."""
         records = self._by_quantity.get(quantity, [])
         if not records:
             raise RecordError(f"{self.name}: no quantity {quantity!r}; {did_you_mean(quantity, self._by_quantity)}")
-        keys = {"channel": channel, "site": site, "method": method, "use": use, **(where or {})}
-        for key, value in keys.items():
-            if value == "":
+        for key, value in {"channel": channel, "site": site, "method": method}.items():
+            if not value:
                 continue
-            matching = [r for r in records if _matches(_field(r, key), value, key)]
+            matching = [r for r in records if getattr(r, key) == value or (key == "channel" and r.channel == "both")]
             if not matching:
-                hint = did_you_mean(str(value), {str(_field(r, key)) for r in records})
+                hint = did_you_mean(value, {getattr(r, key) for r in records})
                 raise RecordError(f"{self.name}: {quantity!r} has no record with {key} = {value!r}; {hint}")
             records = matching
         return tuple(records)
@@ -211,16 +208,6 @@ def _record(file: str, index: int, entry: object, declared: tuple[str, ...]) -> 
         return Record(**given, extra=tuple(further))
     except RecordError as problem:
         raise RecordError(f"{place}: {problem}") from None
-
-
-def _field(record: Record, key: str) -> Plain:
-    if key in ("channel", "site", "method", "use"):
-        return str(getattr(record, key))
-    return dict(record.extra).get(key, "")
-
-
-def _matches(stored: Plain, requested: Plain, key: str) -> bool:
-    return stored == requested or (key == "channel" and stored == "both")
 
 
 def _toml(value: Plain) -> str:

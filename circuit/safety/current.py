@@ -157,8 +157,11 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         return _at(known[0], np.nan_to_num(free, nan=HOTTEST_C if warm else COLDEST_C))
 
     def alone(self, limits: Limits, end_s: float, begun_C: Array) -> list[Tally]:
-        """Where zero current leads in the end."""
-        return [judge_the_end(self.ensemble, limits, end_s, begun_C)]
+        """The steady state under zero current, checked against the limits of temperature."""
+        tally = Tally(limits, self.corners, Scenario(ending=IN_THE_END), begun_C=begun_C)
+        levels = np.repeat(zero_current_C(self.ensemble)[:, :, np.newaxis], 2, axis=2)
+        tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
+        return [tally]
 
     def following(
         self,
@@ -224,14 +227,6 @@ def zero_current_C(ensemble: Ensemble) -> Array:
         state = state_under_current(network, 0.0, in_the_end=True)
         steady_C[:, lane] = [network.read(state, name) for name in WATCHED]
     return steady_C
-
-
-def judge_the_end(ensemble: Ensemble, limits: Limits, end_s: float, begun_C: Array) -> Tally:
-    """The steady state under zero current, checked against the limits of temperature."""
-    tally = Tally(limits, ensemble.corners, Scenario(ending=IN_THE_END), begun_C=begun_C)
-    levels = np.repeat(zero_current_C(ensemble)[:, :, np.newaxis], 2, axis=2)
-    tally.add(np.array([end_s + LATER_S, end_s + 2 * LATER_S]), levels, rates=False, sums=False, drift=True)
-    return tally
 
 
 def without_power(ensemble: Ensemble, state: State, times_s: Array) -> tuple[Array, State]:

@@ -264,7 +264,8 @@ def _gated_together(
     safe: bool,
 ) -> Iterator[Gate]:
     """The verdicts on drives, each in its ways of being followed, that may follow each other in any order."""
-    recoveries = [_longest_s([single.recovery_s for single in ways]) for ways in singles]
+    times = [[single.recovery_s for single in ways] for ways in singles]
+    recoveries = [None if None in each else max(time for time in each if time is not None) for each in times]
     recovered_s = [LONGEST_PAUSE_S if time is None else time for time in recoveries]
     pause = max(recovered_s) if pause_s is None else pause_s
     repeating = Repeating(plant, [[single.play for single in ways] for ways in singles], limits)
@@ -290,9 +291,3 @@ def _gated_together(
             Repeated(pause, recovery, with_faults, plays, limits.session_s, again, shortest),
             demand,
         )
-
-
-def _longest_s(times: Sequence[float | None]) -> float | None:
-    """The longest of times; None where one is not known."""
-    known = [time for time in times if time is not None]
-    return max(known) if len(known) == len(times) else None

@@ -37,14 +37,9 @@ def part_of(update_s: float, finest_s: float = FINEST_S) -> float:
 
 @dataclass(frozen=True, slots=True)
 class DisplayDesign:
-    """Set-points of a thermode for a cue and the display that follows, at steps (rows,) of `step_s` from 0 on, in °C.
-
-    `prompt_C` is the display without its lag, by which the outcome is judged; `display_C` has the lag.
-    """
+    """The display of a thermode (rows,) in °C for a cue, at steps of `step_s` from 0 on; judged without its lag."""
 
     step_s: float
-    setpoint_C: Array
-    prompt_C: Array
     display_C: Array
     outcome: Outcome
 
@@ -84,9 +79,7 @@ def design_display(icon: Icon, rig: Rig, end_s: float, finest_s: float = FINEST_
     setpoints = np.interp(times, ticks, setpoints_C)
     prompt = shown(setpoints, step, 0.0, thermode.slew_K_per_s)
     outcome = judge_display(icon, modes, base, step, prompt, limits, thermode.slew_K_per_s)
-    return DisplayDesign(
-        step, setpoints, prompt, shown(setpoints, step, thermode.lag_s, thermode.slew_K_per_s), outcome
-    )
+    return DisplayDesign(step, shown(setpoints, step, thermode.lag_s, thermode.slew_K_per_s), outcome)
 
 
 def judge_display(
@@ -175,16 +168,12 @@ def displays_on(
     step, displays = shared[0].step_s, np.array([plan.display_C for plan in shared])
     times: Array = np.arange(displays.shape[1], dtype=np.float64) * step
     anew = [k for k, icon in enumerate(icons) if tracking == "ideal" and icon.context.control == "skin"]
-    aligned = len(rows) <= len(times) and bool(np.abs(times[: len(rows)] - rows).max() < 1e-9)
     for r, rig in enumerate(rigs):
         for k in anew:
             displays[k] = design_display(icons[k], rig, float(rows[-1]), finest).display_C
         modes = modes_of(rig)
         read = np.swapaxes([modes.run(row, step, modes.steady(float(row[0])), chosen)[0] for row in displays], 0, 1)
-        if aligned:
-            values[felt, r] = read[:, :, : len(rows)]
-        else:
-            values[felt, r] = [[np.interp(rows, times, row) for row in lane] for lane in read]
+        values[felt, r] = [[_at(rows, times, row) for row in lane] for lane in read]
     return values
 
 

@@ -232,10 +232,6 @@ class Trace:
         columns.update({f"probe_{name}_C": values for name, values in self.probes})
         return pd.DataFrame(columns)
 
-    def to_csv(self, path: str | Path, power: bool = False) -> None:
-        """Write the columns of `to_frame` as a CSV file; numbers have nine digits, NaN is an empty cell."""
-        self.to_frame(power).to_csv(path, index=False, float_format=CSV_FORMAT)
-
     def plot(self, ax: Axes | None = None, probes: bool = False, measured: Log | None = None) -> Axes:
         """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes.
 

@@ -26,7 +26,7 @@ from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, source_of
-from ..observer.observer import NORMS, Norm, Observer
+from ..observer.observer import NORMS, Norm, Observer, load_thresholds
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.percept import perceive_many
 from .episodes import Episodes, episode_distances
@@ -42,7 +42,7 @@ def memory_noise(known: Table, observer: Observer) -> Record:
     fraction = known.one("rate Weber fraction")
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     criteria = known.one("criterion of the rate task").interval
-    cases = rate_task(known, observer)
+    cases = [Episodes.of(cold[None], warm[None], dt, observer) for cold, warm, dt in _felt(known, observer)]
     found = [[_noise_of(case, proportion, observer) for case in cases] for proportion in criteria]
     ends = [_root_mean_square(values) for values in found]
     every = [v for values in found for v in values]
@@ -95,18 +95,11 @@ def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> floa
     return math.exp(float(brentq(missed, low, high, xtol=1e-6)))
 
 
-def rate_task(known: Table, observer: Observer) -> list[Episodes]:
-    """Episodes of the published rate discrimination: every rate and span, against a rate larger by the fraction."""
-    return [Episodes.of(cold[None], warm[None], dt, observer) for cold, warm, dt in _felt(known, observer)]
-
-
-def peaks_of_task(known: Table, observer: Observer) -> Array:
-    """Peak cold sensations of all ramps of the rate task, in d′."""
-    return np.concatenate([cold.max(axis=-1).ravel() for cold, _, _ in _felt(known, observer)])
-
-
 def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, float]]:
-    """Cold and warm sensations (2, n_time) of the two ramps of every condition, and the step of their clock in s."""
+    """Cold and warm sensations (2, n_time) of the published rate discrimination, and the step of their clock in s.
+
+    Every rate and span, against a rate that is larger by the fraction.
+    """
     fraction = known.one("rate Weber fraction").central
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     for rate, span in itertools.product(rates, spans):
@@ -249,9 +242,6 @@ def range_of(psi_cold: Array, psi_warm: Array, observer: Observer) -> Array:
 @lru_cache(maxsize=1)
 def reference_range() -> float:
     """Range in log units of the task that memory noise is calibrated on: its ramps, simulated, by their peaks."""
-    from ..observer.observer import load_thresholds
-    from .task import peaks_of_task
-
     observer = Observer.load()
-    peaks = peaks_of_task(load_thresholds(), observer)[np.newaxis]
+    peaks = np.concatenate([cold.max(axis=-1).ravel() for cold, _, _ in _felt(load_thresholds(), observer)])[np.newaxis]
     return float(range_of(peaks, np.zeros_like(peaks), observer)[0])

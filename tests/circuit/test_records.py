@@ -42,7 +42,7 @@ def test_records_are_read_with_their_intervals(tmp_path: Path) -> None:
     assert cold.interval == (0.8, 3.0)
     assert cold.get("tissue") == "nerve"
     assert len(table) == 2
-    assert table.one("velocity", where={"tissue": "nerve"}) is cold
+    assert table.one("velocity", channel="cold") is cold
 
 
 def test_repr_is_one_line_with_unit_and_source() -> None:
