@@ -83,13 +83,6 @@ JUMPS = Drive([0, 1, 1.5, 6, 9, 12, 20], [0.1, 0.5, 1.2, -0.9, -0.8, 0.3, 0.3], 
 BESIDE = Drive([0, 1.0000003, 1.9999996, 2.5, 2.5000005, 4], [0.1, 0.9, -0.4, 0.5, 1.1, 1.1], held=True)
 
 
-@pytest.mark.parametrize("name", ["thenar", "shani2021"])
-@pytest.mark.parametrize("drive", [CORNERS, JUMPS, BESIDE], ids=["corners", "jumps", "beside"])
-def test_a_20_s_drive_agrees(name: str, drive: Drive, tool: Tool, tmp_path: Path) -> None:
-    found = played(Rig.load(name), drive, tool("ngspice"), tmp_path)
-    assert found.small(), found
-
-
 BODIES = {
     "legs": {"module.leg_nodes": 4, "module.leg_capacity_J_per_K": 0.8},
     "warm sink": {"heat_sink.temperature_C": 28.0, "heat_sink.capacity_J_per_K": 40.0,
@@ -103,9 +96,22 @@ BODIES = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("body", BODIES)
-def test_bodies_that_store_heat_agree(body: str, tool: Tool, tmp_path: Path) -> None:
-    found = played(Rig.load("thenar").with_(**BODIES[body]), CORNERS, tool("ngspice"), tmp_path)
+OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
+CONTROLLED = {f"heat_sink.{key}": value for key, value in OWN.items()}
+STRONG = Drive([0, 1, 1.5, 9, 9.5, 20], [0.1, 0.1, 1.4, 1.4, 0.2, 0.2])
+PLAYED: dict[str, tuple[str, dict[str, object], Drive]] = {
+    **{f"{kind} on {name}": (name, {}, drive) for name in ("thenar", "shani2021")
+       for kind, drive in (("corners", CORNERS), ("jumps", JUMPS), ("beside", BESIDE))},
+    **{body: ("thenar", dict(keys), CORNERS) for body, keys in BODIES.items()},
+    "sink under PI": ("shani2021", {**CONTROLLED}, STRONG),
+    "sink under P": ("shani2021", {**CONTROLLED, "heat_sink.ki_W_per_Ks": 0.0}, STRONG),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", PLAYED)
+def test_a_drive_agrees_on_a_rig(case: str, tool: Tool, tmp_path: Path) -> None:
+    name, keys, drive = PLAYED[case]
+    found = played(Rig.load(name).with_(**keys), drive, tool("ngspice"), tmp_path)
     assert found.small(), found
 
 
@@ -153,17 +159,6 @@ def test_a_designed_drive_replayed_starts_from_rest(tool: Tool, tmp_path: Path) 
     assert at_rest == pytest.approx(plan.start_C[1], abs=1e-6)
     assert at_first == pytest.approx(simulate_current(drive, rig).display_C[0], abs=1e-6)
     assert abs(at_rest - at_first) > 5
-
-
-OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
-
-
-@pytest.mark.parametrize("change", [{}, {"ki_W_per_Ks": 0.0}], ids=["PI", "P"])
-def test_a_heat_sink_under_its_own_control_agrees(change: dict[str, float], tool: Tool, tmp_path: Path) -> None:
-    keys = {f"heat_sink.{key}": value for key, value in {**OWN, **change}.items()}
-    drive = Drive([0, 1, 1.5, 9, 9.5, 20], [0.1, 0.1, 1.4, 1.4, 0.2, 0.2])
-    found = played(Rig.load("shani2021").with_(**keys), drive, tool("ngspice"), tmp_path)
-    assert found.small(), found
 
 
 def test_a_file_that_ngspice_cannot_write_to_is_told() -> None:

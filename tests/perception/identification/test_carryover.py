@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -89,34 +88,11 @@ def largest(rig: Rig, gap_s: float, tracking: str | None) -> float:
     return float(carry_over(ICONS, rig, 18.0, gap_s, tracking=tracking).apart[NORMS.index(USUAL_NORM)].max())
 
 
-def is_step(gap_s: float, before: float, after: float) -> bool:
-    """Whether a second more takes away so much at once.
-
-    The skin forgets with time constants above 4 s, and the sensation of the return itself ends within the first 4 s.
-    """
-    return after < (0.75 if gap_s > 4.0 else 0.6) * before - 0.05
-
-
 WAYS = [("forearm", "replay", 79.0), ("thenar", None, 61.0)]
 """Rigs and gaps at which one person, who remembers an episode or does not, has a step of 1 d′ or more."""
 
 
 @pytest.mark.parametrize(("name", "tracking", "gap_s"), WAYS, ids=[f"{each[0]}" for each in WAYS])
 def test_where_one_person_has_a_step_people_have_none(name: str, tracking: str | None, gap_s: float) -> None:
-    rig = Rig.load(name)
-    assert not is_step(gap_s, *(largest(rig, gap, tracking) for gap in (gap_s, gap_s + 1.0)))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "tracking"), [("forearm", "replay"), ("thenar", None), ("hand-dorsum", "replay")])
-def test_carry_over_falls_without_a_step(name: str, tracking: str | None) -> None:
-    """Over gaps of 1 to 300 s; until the slowest after-sensation has come, within two minutes, it may also rise.
-
-    In the end there is less than one row of the trace at 25 Hz, which is up to 0.16 d′ of a start.
-    """
-    rig = Rig.load(name)
-    left = [largest(rig, float(gap_s), tracking) for gap_s in range(1, 301)]
-    steps = [(gap_s, *pair) for gap_s, pair in enumerate(pairwise(left), 1) if is_step(gap_s, *pair)]
-    rises = [(gap_s, *pair) for gap_s, pair in enumerate(pairwise(left), 1) if gap_s > 120 and pair[1] > pair[0] + 0.05]
-    assert steps == rises == []
-    assert left[-1] < 0.16 < 1.0 < left[9]
+    before, after = (largest(Rig.load(name), gap, tracking) for gap in (gap_s, gap_s + 1.0))
+    assert after >= 0.75 * before - 0.05, "the skin forgets with time constants above 4 s"

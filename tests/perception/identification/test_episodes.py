@@ -105,14 +105,6 @@ def test_as_many_episodes_as_an_icon_has_and_no_more_than_the_bound(observer: Ob
         felt(MOST + 1)
 
 
-def test_trains_of_any_number_of_pulses_differ(observer: Observer) -> None:
-    trains = [(sum((bump(1.0 + 0.7 * k, 6.0, 0.2, 0.1) for k in range(n)), NOTHING), NOTHING) for n in range(7, 21)]
-    found = episodes(*trains, observer=observer)
-    assert found.counts.tolist() == [list(range(7, 21))]
-    apart = episode_distances(found, found, observer, "episodes")[0]
-    assert (apart[~np.eye(14, dtype=bool)] > 1.0).all()
-
-
 def test_an_episode_that_the_end_cuts_has_no_length(observer: Observer) -> None:
     long, longer = bump(1.0, 20.0, hold_s=30.0), bump(1.0, 20.0, hold_s=5.0)
     found = episodes((long, NOTHING), (longer, NOTHING), observer=observer)

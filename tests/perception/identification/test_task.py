@@ -198,17 +198,3 @@ def test_icons_are_followed_to_their_end() -> None:
     ):
         with pytest.raises(ValueError, match=said):
             carry_over(icons, RIG, end_s, gap_s)
-
-
-def test_icons_that_cannot_be_played_are_ranked_apart() -> None:
-    courses = {
-        "hot": ("warm by 17 °C at 2 °C/s", 2), "fine": ("cool by 3 °C at 2 °C/s", 2),
-        "fast": ("cool by 6 °C at 15 °C/s", 1), "other": ("warm by 3 °C at 2 °C/s", 2),
-    }  # fmt: skip
-    text = "cue 1\nset s { site thenar; control skin; baseline 32 °C }\n"
-    for name, (course, hold) in courses.items():
-        text += f"icon {name} {{ {course}; hold for {hold} s; return at 2 °C/s }}\n"
-    found = ranked(parse(text))
-    assert {row["icon"] for row in found.rows()[:2]} == {"fine", "other"}
-    assert found.worst_pair == ("fine", "other")
-    assert all(row["reason"] for row in found.rows()[2:])

@@ -46,15 +46,6 @@ def test_whatever_is_needed_is_asked_for(variable: Variable) -> None:
             Observer.from_table(Table("x", kept), variable=variable)
 
 
-def test_a_file_that_is_not_text_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "binary.toml"
-    path.write_bytes(b"[[record]]\nquantity = '\xff'")
-    with pytest.raises(
-        RecordError, match=r"binary.toml: not UTF-8 text \(byte 23\); save the table of records as UTF-8"
-    ):
-        Observer.load(path)
-
-
 def test_a_quantity_in_another_unit_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     text = SHIPPED.read_text(encoding="utf-8")
