@@ -196,14 +196,22 @@ class _Stage:
         if control == "display" and (values := self._superposed(targets, bases, states)) is not None:
             return values
         targets = ahead(targets, np.array(bases), lead)
+        rig_of, cue_of = self._lanes(len(icons))
+        bank, period, begun = self.bank, 1.0 / self.nominal.driver.update_Hz, self.bank.states(states)
         if self.nominal.controller is None:
-            currents = self._follow(control, targets, states)
+            currents = run_follow(bank, rig_of, cue_of, period, targets, control == "skin", begun)[0]
+        elif control == "skin":
+            raise RigError(
+                "skin-controlled cues cannot be solved again through a PID loop, which measures only the display; "
+                "use tracking display, or rigs without [controller]"
+            )
         else:
-            currents = self._loop(control, targets, bases, np.array([current for current, _ in lanes]), states)
+            setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
+            gains, bias_A = np.array([gains_of(rig) for rig in self.rigs]), np.array([current for current, _ in lanes])
+            currents = run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias_A, begun)[0]
         if self.nominal.contact.lands_s is not None:
-            rig_of = self._lanes(len(icons))[0]
             every = np.arange(len(rig_of), dtype=np.int64)
-            states = list(led(self.bank, rig_of, every, currents[:, :lead], self.nominal, self.bank.states(states)))
+            states = list(led(bank, rig_of, every, currents[:, :lead], self.nominal, begun))
         return self._play(currents[:, lead:], icons, states)
 
     def _superposed(self, targets: Array, bases: Sequence[float], states: Sequence[Array]) -> Array | None:
@@ -232,27 +240,6 @@ class _Stage:
         """Rig and cue of every lane, all cues of a rig together."""
         rig_of, cue_of = (place.ravel() for place in np.indices((len(self.rigs), cues)))
         return rig_of, cue_of
-
-    def _follow(self, control: str, targets: Array, states: Sequence[Array]) -> Array:
-        """Currents (rigs · cues, periods) that make each rig follow each target from its state."""
-        bank, period = self.bank, 1.0 / self.nominal.driver.update_Hz
-        rig_of, cue_of = self._lanes(len(targets))
-        return run_follow(bank, rig_of, cue_of, period, targets, control == "skin", bank.states(states))[0]
-
-    def _loop(
-        self, control: str, targets: Array, bases: Sequence[float], bias_A: Array, states: Sequence[Array]
-    ) -> Array:
-        """As `_follow`, by the PID loop of each rig; under skin control a loop has no set-point."""
-        if control == "skin":
-            raise RigError(
-                "skin-controlled cues cannot be solved again through a PID loop, which measures only the display; "
-                "use tracking display, or rigs without [controller]"
-            )
-        bank, period = self.bank, 1.0 / self.nominal.driver.update_Hz
-        rig_of, cue_of = self._lanes(len(targets))
-        setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
-        gains = np.array([gains_of(rig) for rig in self.rigs])
-        return run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias_A, bank.states(states))[0]
 
     def _play(self, currents: Array, icons: Sequence[Icon], states: Sequence[Array]) -> Array:
         """Run held currents, one row per cue or per lane, on every rig and cue from given states."""

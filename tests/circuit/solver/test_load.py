@@ -86,8 +86,8 @@ def test_a_log_of_a_block_is_fitted_and_says_nothing_of_contact_with_skin() -> N
     log = synthetic_log(truth, seed=3)
     keys = ["contact.resistance_m2K_per_W", "load.capacity_J_per_K", "module.seebeck_V_per_K"]
     fitted = fit(log, THENAR.with_(load={**BLOCK, "capacity_J_per_K": 30.0}), free=keys)
-    assert fitted.values["load.capacity_J_per_K"] == pytest.approx(20.0, rel=0.01)
-    assert fitted.values["contact.resistance_m2K_per_W"] == pytest.approx(2e-4, rel=0.02)
+    assert fitted["load.capacity_J_per_K"].value == pytest.approx(20.0, rel=0.01)
+    assert fitted["contact.resistance_m2K_per_W"].value == pytest.approx(2e-4, rel=0.02)
     shipped = THENAR.uncertainty
     assert fitted.rig.uncertainty.contact_resistance_relative == shipped.contact_resistance_relative
     assert fitted.rig.uncertainty.seebeck_relative < shipped.seebeck_relative
