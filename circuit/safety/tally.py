@@ -210,10 +210,9 @@ class Tally:
         value = np.where(self._present[:, np.newaxis], self._value, nothing[:, np.newaxis])
         return np.where(self._rules.upper[:, np.newaxis], value - limit, limit - value)
 
-    def passes(self, severity: str = "hard") -> bool:
-        """Whether no lane exceeds a limit of a severity."""
-        of_severity = self._rules.hard if severity == "hard" else ~self._rules.hard
-        return bool(np.isnan(self._since_s[of_severity]).all())
+    def passes(self) -> bool:
+        """Whether no lane exceeds a hard limit."""
+        return bool(np.isnan(self._since_s[self._rules.hard]).all())
 
     def _limits(self) -> Array:
         """The limit of every rule in each lane (rules, lanes)."""

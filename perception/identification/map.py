@@ -40,15 +40,7 @@ class PerceptualMap(Drawn):
     people: int = 1
 
     def __post_init__(self) -> None:
-        for name, shape in (("points", (2,)), ("covariance", (2, 2))):
-            held = getattr(self, name)
-            if held is None:
-                continue
-            own = np.array(held, dtype=np.float64)
-            if own.shape != (len(self.labels), *shape) or not np.isfinite(own).all():
-                raise ValueError(f"a map needs finite {name} of shape {(len(self.labels), *shape)}, not {own.shape}")
-            own.setflags(write=False)
-            object.__setattr__(self, name, own)
+        own_arrays(self, "points", *(() if self.covariance is None else ("covariance",)))
 
     def __repr__(self) -> str:
         icons = "1 icon" if len(self.labels) == 1 else f"{len(self.labels)} icons"

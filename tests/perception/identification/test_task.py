@@ -188,13 +188,3 @@ def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
 def test_numbers_of_a_task_out_of_their_range(key: str, value: float, said: str) -> None:
     with pytest.raises(ValueError, match=said):
         Task(**{key: value})
-
-
-def test_icons_are_followed_to_their_end() -> None:
-    for icons, end_s, gap_s, said in (
-        (list(SIX), 18.0, -1.0, "a gap of -1 s between icons must be 0 or more"),
-        (list(SIX), 2.0, 1.0, "icons of up to 8 s cannot be followed for 2 s: give a later end"),
-        ([], 18.0, 1.0, "without icons nothing is left behind"),
-    ):
-        with pytest.raises(ValueError, match=said):
-            carry_over(icons, RIG, end_s, gap_s)
