@@ -81,8 +81,6 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
     """
     if not (0 <= tail_s < np.inf):
         raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
-    if tail_s * rate_Hz > MOST_ROWS:
-        raise RigError(f"a tail of {tail_s:g} s at {rate_Hz:g} Hz is over the limit of {MOST_ROWS} rows; shorten it")
     end = duration_s(icon, rig) + tail_s
     rows = rows_until(end, rate_Hz)
     if rig.thermode is not None:
