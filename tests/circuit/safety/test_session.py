@@ -42,10 +42,15 @@ def hot_set(amount: float) -> IconSet:
     return parse(WARM.format(amount=amount))
 
 
-@pytest.mark.parametrize("tracking", ["replay", "display"])
-def test_a_session_of_one_icon_is_its_single_run(six: IconSet, rig: Rig, tracking: str) -> None:
-    for icon in six:
-        session = play_session(six, SessionPlan((icon.name,)), rig, tracking=tracking)
+@pytest.mark.parametrize(
+    ("icons", "name", "tracking"),
+    [("six-icons", "thenar", "replay"), ("six-icons", "thenar", "display"),
+     ("cooling-step-skin", "shani2021", "replay"), ("cooling-step-skin", "fingertip", "replay")],
+)  # fmt: skip
+def test_a_session_of_one_icon_is_its_single_run(icons: str, name: str, tracking: str) -> None:
+    played, rig = read_cue(icons), Rig.load(name)
+    for icon in played:
+        session = play_session(played, SessionPlan((icon.name,)), rig, tracking=tracking)
         alone = simulate(icon, rig)
         for column in ("display_C", "skin_C", "cold_receptor_C", "warm_receptor_C", "hot_plate_C"):
             assert np.abs(getattr(session.trace, column) - getattr(alone, column)).max() < 1e-6, (icon.name, column)
@@ -54,15 +59,8 @@ def test_a_session_of_one_icon_is_its_single_run(six: IconSet, rig: Rig, trackin
         (play,) = session.plays
         assert (play.start_s, play.end_s, play.drift_K) == (0.0, summary.duration_s, 0.0)
         assert (play.skin_min_C, play.skin_max_C) == pytest.approx((summary.skin_min_C, summary.skin_max_C), abs=1e-6)
-        assert play.verdict == judge_safety(alone).colour == session.verdict
-
-
-@pytest.mark.parametrize("name", ["shani2021", "fingertip"])
-def test_skin_control_and_other_rigs_are_played_too(name: str) -> None:
-    icons, other = read_cue("cooling-step-skin"), Rig.load(name)
-    session = play_session(icons, SessionPlan(("cooling-step",)), other)
-    alone = simulate(icons["cooling-step"], other)
-    assert np.abs(session.trace.skin_C - alone.skin_C).max() < 1e-6
+        assert play.verdict == judge_safety(alone).colour
+        assert play.verdict == session.verdict or name != "thenar"  # in the worst case
 
 
 @pytest.mark.parametrize("tracking", ["replay", "display"])
@@ -156,14 +154,7 @@ def test_icons_that_prescribe_current_are_played_by_their_means(rig: Rig) -> Non
 
 
 def test_a_loop_and_a_sink_of_its_own_are_played(six: IconSet, rig: Rig) -> None:
-    loop = rig.with_set(
-        [
-            "controller.kp_A_per_K=0.4",
-            "controller.ki_A_per_Ks=0.3",
-            "controller.kd_As_per_K=0.0",
-            "controller.lag_s=0.05",
-        ]
-    )
+    loop = rig.with_(controller={"kp_A_per_K": 0.4, "ki_A_per_Ks": 0.3, "kd_As_per_K": 0.0, "lag_s": 0.05})
     sink = rig.with_set([f"heat_sink.{each}" for each in SINK])
     for other in (loop, sink):
         session = play_session(six, SessionPlan(("cooling-step", "warming-step")), other)

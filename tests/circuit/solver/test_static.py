@@ -82,8 +82,10 @@ def after(begin: float) -> np.ndarray:
         (400, after(1.0) - after(1.3), np.clip(ENDS - 1.0, 0.0, 1.0) * (ENDS <= 1.3), [(1.0, 1.3), (1.3, 4.0)], (1.0,)),
         (800, np.ones(800), np.full(800, 0.5), [(0.0, math.inf)], (0.0,)),  # a level that is never held
         (300, 1.0 - after(2.9), np.ones(800), [(2.9, math.inf)], ()),  # no time is left to arrive
+        (300, after(1.02), np.zeros(800), [(1.02, math.inf)], ()),  # less than 2 s are
+        (300, after(0.99), np.zeros(800), [(0.99, math.inf)], (0.99,)),
     ],
-    ids=["arrives", "too late for the next", "never held", "at the end"],
+    ids=["arrives", "too late for the next", "never held", "at the end", "in 1.98 s", "in 2.01 s"],
 )
 def test_until_a_step_arrives_nothing_is_missed(
     count: int, target: np.ndarray, reached: np.ndarray, steps_s: list[tuple[float, float]], late_s: tuple[float, ...]
