@@ -29,14 +29,9 @@ EVERYTHING, AMPS = (
 )
 
 
-@pytest.mark.parametrize("name", library_names())
-def test_shipped_sets_are_valid(name: str) -> None:
-    assert not list(VALID.iter_errors(json.loads(to_json(load_library(name)))))
-
-
-@pytest.mark.parametrize("text", [EVERYTHING, AMPS], ids=["temperature", "current"])
-def test_every_kind_of_statement_is_valid(text: str) -> None:
-    assert not list(VALID.iter_errors(json.loads(to_json(parse(text)))))
+@pytest.mark.parametrize("icons", [parse(EVERYTHING), parse(AMPS), *map(load_library, library_names())], ids=repr)
+def test_every_kind_of_statement_and_every_shipped_set_is_valid(icons: IconSet) -> None:
+    assert not list(VALID.iter_errors(json.loads(to_json(icons))))
 
 
 def test_a_statement_has_its_fields_with_their_units() -> None:

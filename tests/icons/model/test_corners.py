@@ -1,7 +1,9 @@
 """Corner points, against numbers worked out by hand: exact where lines are straight, within the tolerance elsewhere."""
 
 import math
+import tomllib
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,48 +43,12 @@ def test_one_period(shape: Shape, start: str) -> None:
     assert corners.duration_s == 4.0
 
 
-@pytest.mark.parametrize(
-    ("body", "points"),
-    [
-        ("step by 3 °C; hold for 1 s; return over 1 s", [(0, 32), (0, 35), (1, 35), (2, 32)]),
-        ("hold for 1 s; step cool by 6 °C", [(0, 32), (1, 32), (1, 26)]),
-        ("hold for 1 s; step to 26 °C; hold for 1 s; step to 30 °C; hold for 1 s",
-         [(0, 32), (1, 32), (1, 26), (2, 26), (2, 30), (3, 30)]),
-        ("hold for 1 s; step by 3 °C; step by 2 °C; hold for 1 s", [(0, 32), (1, 32), (1, 37), (2, 37)]),
-        ("hold for 1 s; step by 3 °C; step by -3 °C; hold for 1 s", [(0, 32), (2, 32)]),
-        ("warm by 1 °C over 1 s; step by 3 °C; step by -3 °C; warm by 2 °C over 2 s", [(0, 32), (3, 35)]),
-        ("pulse by -3 °C for 500 ms; rest for 1 s", [(0, 32), (0, 29), (0.5, 29), (0.5, 32), (1.5, 32)]),
-        ("pulse by 1 °C for 1 s; pulse by -1 °C for 1 s", [(0, 32), (0, 33), (1, 33), (1, 31), (2, 31), (2, 32)]),
-        ("repeat 2 { step by 1 °C; hold for 1 s }", [(0, 32), (0, 33), (1, 33), (1, 34), (2, 34)]),
-        ("square by 3 °C every 2 s for 4 s",
-         [(0, 32), (0, 35), (1, 35), (1, 29), (2, 29), (2, 35), (3, 35), (3, 29), (4, 29), (4, 32)]),
-        ("sawtooth by 1 °C every 2 s for 4 s",
-         [(0, 32), (1, 33), (1, 31), (3, 33), (3, 31), (4, 32)]),
-        ("total 2 s; hold for 2 s", [(0, 32), (2, 32)]),
-        ("repeat 2 { warm by 1 °C over 1 s; hold for 1 s }; cool to 31 °C at 3 K/s",
-         [(0, 32), (1, 33), (2, 33), (3, 34), (4, 34), (5, 31)]),
-        ("hold for 1 s; hold for 2 s; warm by 1 °C over 1 s; warm by 2 °C over 2 s; warm by 1 °C over 2 s",
-         [(0, 32), (3, 32), (6, 35), (8, 36)]),
-        ("change by -2 °C at 1 °C/s; change to 34 °C over 4 s", [(0, 32), (2, 30), (6, 34)]),
-    ],
-)  # fmt: skip
-def test_corners_by_hand(body: str, points: list[tuple[float, float]]) -> None:
-    assert nominal(corners_of(body)) == points
+CASES = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize(
-    ("wave", "points"),
-    [
-        ("triangle by 4 °C every 4 s for 2.5 s cut", [(0, 32), (1, 36), (2.5, 30)]),
-        ("square by 3 °C every 4 s for 2 s cut", [(0, 32), (0, 35), (2, 35)]),
-        ("square by 3 °C every 4 s for 3 s cut", [(0, 32), (0, 35), (2, 35), (2, 29), (3, 29)]),
-        ("sawtooth by 3 °C every 4 s for 1 s cut", [(0, 32), (1, 33.5)]),
-        ("sawtooth by 3 °C every 4 s for 2 s starting cool cut", [(0, 32), (2, 29)]),
-        ("square by 3 °C every 4 s for 1 ms cut", [(0, 32), (0, 35), (0.001, 35)]),
-    ],
-)
-def test_a_cut_wave_stops_where_it_is(wave: str, points: list[tuple[float, float]]) -> None:
-    assert nominal(corners_of(wave)) == points
+@pytest.mark.parametrize("body", CASES["corners"])
+def test_corners_by_hand(body: str) -> None:
+    assert nominal(corners_of(body)) == [(time, level) for time, level in CASES["corners"][body]]
 
 
 @pytest.mark.parametrize("shape", [*UNIT, "sine"])

@@ -13,53 +13,10 @@ from thermicon.icons import CueErrors, Family, parse
 from thermicon.icons.model.check import MOST_CORNERS, corner_count
 from thermicon.icons.model.statements import Wave
 
-# Per kind of value: unit, numbers that make sense at one place or another, and some that never do.
-VALUES = {
-    "absolute": ("°C", ["24", "26", "29", "30.5", "32", "33", "35", "38", "62"]),
-    "change": ("K", ["-9", "-3", "-2.5", "-1", "1", "1.5", "3", "6", "30", "0"]),
-    "rate": ("°C/s", ["0.5", "1", "1.5", "2", "3", "1e7", "0"]),
-    "time": ("s", ["0.3", "0.5", "1", "1.1", "1.5", "2", "2.2", "4", "2000", "1e-7"]),
-    "count": ("", ["1", "2", "3", "7", "2.5", "60000"]),
-    "amount": ("A", ["-1", "-0.5", "0.5", "1", "2", "15", "0"]),
-    "slope": ("A/s", ["0.5", "1", "2"]),
-}
-SKIN = [
-    "cool by {change} at {rate}",
-    "warm by {change} over {time}",
-    "warm to {absolute} at {rate}",
-    "cool to {absolute} over {time}",
-    "change by {change} at {rate}",
-    "change to {absolute} at {rate}",
-    "return at {rate}",
-    "return over {time}",
-    "step by {change}",
-    "step cool by {change}",
-    "step to {absolute}",
-    "pulse by {change} for {time}",
-    "pulse warm by {change} for {time}",
-    "sine by {change} every {time} for {time}",
-    "square by {change} every {time} for {time} cut",
-    "triangle by {change} every {time} for {time} starting cool cut",
-    "sawtooth by {change} every {time} for {time} cut",
-    "sine by {change} every {time} for {time} starting cool cut",
-]
-CURRENT = [
-    "to {amount} at {slope}",
-    "to {amount} over {time}",
-    "return at {slope}",
-    "step by {amount}",
-    "step to {amount}",
-    "pulse by {amount} for {time}",
-    "square by {amount} every {time} for {time} starting down cut",
-    "sine by {amount} every {time} for {time}",
-    "to 1 A at {rate}",
-]
-BOTH = ["hold for {time}", "rest for {time}", "play other", "return over {time}", "repeat {count} {{{body}}}"]
-ENDS = ["total {time}", "total at most {time}", "total at least {time}"]
-OTHER = {
-    "skin": "icon other { pulse by 2 K for 1 s; hold for 0.5 s; hold for 0.5 s; square by 1 K every 1 s for 2 s }",
-    "current": "icon other { pulse by 1 A for 1 s; hold for 0.5 s; hold for 0.5 s }",
-}
+FOUND = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))["members"]
+VALUES, SKIN, CURRENT, BOTH, ENDS, OTHER = (
+    FOUND[name] for name in ("values", "skin", "current", "both", "ends", "other")
+)
 
 
 class Chooser:

@@ -1,5 +1,7 @@
+import tomllib
 from dataclasses import replace
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -137,33 +139,14 @@ def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) 
     assert dict(bad.choose(3, must=("twice",)).excluded)["b"] == "moves in the same way as twice"
 
 
-@pytest.mark.parametrize(
-    ("which", "asked", "said"),
-    [
-        ("pool", {"count": 6}, "6 icons cannot be chosen: there are only 5 icons$"),
-        ("bad", {"count": 6}, r"6 icons cannot be chosen: only 5 of 8 are left \(twice moves .*; hot is"),
-        ("bad", {"must": ("twise",)}, r"no icon is called 'twise', which must be .*; did you mean twice\?$"),
-        ("bad", {"must": ("hot",)}, "hot must be among the chosen but cannot be: it is not safe: "),
-        (
-            "bad",
-            {"must": ("b", "twice")},
-            "twice must be among the chosen .*: it moves in the same way as b",
-        ),
-        ("pool", {"most_s": 5.0}, r"no 3 of the 5 icons stay within a total of 5 s \(the 3 shortest last 1"),
-        ("pool", {"must": ("a",), "most_J": 0.1}, "no 3 .* with a among them .* of 0.1 J .the 3 most frugal take"),
-        ("pool", {"count": 1}, "1 cannot be chosen: at least 2 icons are needed"),
-        ("pool", {"count": 2, "must": ("a", "b", "c")}, "3 icons must be among 2: choose more, or ask for fewer$"),
-        ("pool", {"objective": "best"}, "the objective is one of worst, correct, bits, bits-per-s, not 'best'$"),
-        ("pool", {"most_s": -1.0}, "the total time must be above 0, not -1 s$"),
-        ("pool", {"most_J": float("nan")}, "the total energy must be above 0, not nan J$"),
-        ("pool", {"must": "ab"}, r"must is a tuple of names, such as must=\('ab',\)$"),
-    ],
-)
-def test_what_cannot_be_chosen_is_told(
-    which: str, asked: dict[str, Any], said: str, request: pytest.FixtureRequest
-) -> None:
-    with pytest.raises(ChoiceError, match=f"^{said}"):
-        request.getfixturevalue(which).choose(**{"count": 3, **asked})
+CHOICES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))["choice"]
+
+
+@pytest.mark.parametrize("asked", CHOICES)
+def test_what_cannot_be_chosen_is_told(asked: str, request: pytest.FixtureRequest) -> None:
+    which, _, words = asked.partition(": ")
+    with pytest.raises(ChoiceError, match=f"^{CHOICES[asked]}"):
+        request.getfixturevalue(which).choose(**{"count": 3, **eval(f"dict({words})")})
 
 
 def test_too_few_are_no_pool(rig: Rig, crowd: People) -> None:
