@@ -7,13 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
-from thermicon.perception.observer.draws_file import to_text
 
-
-def messages(beside: str) -> dict[str, Any]:
-    """The table of messages beside a test file, given as its ``__file__``."""
-    return tomllib.loads(Path(beside).with_name("messages.toml").read_text(encoding="utf-8"))
+def messages(beside: str, name: str = "messages.toml") -> dict[str, Any]:
+    """The table of this name nearest to a test file, which is given as its ``__file__``: beside it, or above."""
+    found = next(folder / name for folder in Path(beside).parents if (folder / name).exists())
+    return tomllib.loads(found.read_text(encoding="utf-8"))
 
 
 def missing(words: str | list[str], told: str) -> list[str]:
@@ -26,6 +24,9 @@ def few_draws(path: Path, count: int, resampled: str = "", rig: str = "") -> Pat
 
     They are those of one laboratory where ``resampled`` says how they were obtained.
     """
+    from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
+    from thermicon.perception.observer.draws_file import to_text
+
     shipped = PosteriorDraws.load()
     values = shipped.draws[:count].copy()
     if resampled:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.circuit.fitting.fit import fit
 from thermicon.circuit.fitting.forward import runs_of
@@ -218,7 +218,7 @@ def test_a_written_log_is_read_back(log: Log, tmp_path: Path) -> None:
     assert np.allclose(read_log(tmp_path / "a.csv").column("display_C"), log.column("display_C"), atol=1e-6)
 
 
-MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("keys", MESSAGES["keys"])

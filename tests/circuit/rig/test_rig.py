@@ -2,13 +2,13 @@
 
 import json
 import re
-import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Drive, Rig, simulate_current
 from thermicon.circuit.rig.corner import perturbed
 from thermicon.circuit.rig.rig import rig_names
@@ -112,7 +112,7 @@ def test_a_changed_rig_knows_what_was_changed() -> None:
     assert once.with_(**{"contact.area_cm2": 5}).changes == ("contact.area_cm2=5", "driver.current_limit_A=1.0")
 
 
-MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("case", MESSAGES["refused"], ids=lambda case: case["words"][:40])

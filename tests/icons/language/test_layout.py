@@ -1,7 +1,6 @@
 """The formatter: what it writes means the same, keeps every comment, and is left alone by the next run."""
 
 import re
-import tomllib
 from collections import Counter
 from itertools import pairwise
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 from hypothesis import strategies as st
 
 import thermicon.icons
+from tests.builders import messages
 from tests.icons.model.test_roundtrip import families, icons, sets
 from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, Icon, IconSet, format_text, parse
@@ -132,7 +132,7 @@ def test_shipped_files_are_in_canonical_layout(name: str) -> None:
     assert format_text(text) == text
 
 
-TIDY = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))["tidy"]
+TIDY = messages(__file__, "cases.toml")["tidy"]
 
 
 @pytest.mark.parametrize("written", TIDY)

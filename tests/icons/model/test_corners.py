@@ -1,13 +1,12 @@
 """Corner points, against numbers worked out by hand: exact where lines are straight, within the tolerance elsewhere."""
 
 import math
-import tomllib
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.icons import CueErrors, Icon, parse, pulse, step, wave
 from thermicon.icons.model.context import Context
 from thermicon.icons.model.corners import STEP_S, Corners
@@ -43,7 +42,7 @@ def test_one_period(shape: Shape, start: str) -> None:
     assert corners.duration_s == 4.0
 
 
-CASES = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))
+CASES = messages(__file__, "cases.toml")
 
 
 @pytest.mark.parametrize("body", CASES["corners"])

@@ -1,11 +1,10 @@
 """Every mistake in the table is told with its code, place and words; every suggestion is itself sound."""
 
-import tomllib
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
 
+from tests.builders import messages
 from thermicon.icons import CueErrors, parse
 from thermicon.icons.model.errors import CueError, codes
 
@@ -35,7 +34,7 @@ def _mistake(row: dict[str, Any]) -> Mistake:
     return Mistake(text, row["code"], *row["place"], row["words"], row.get("suggestion"))
 
 
-_TABLES = tomllib.loads(Path(__file__).parents[1].joinpath("mistakes.toml").read_text(encoding="utf-8"))
+_TABLES = messages(__file__, "mistakes.toml")
 ALL = [_mistake(row) for rows in _TABLES.values() for row in rows]
 
 

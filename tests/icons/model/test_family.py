@@ -1,10 +1,8 @@
 """A family is a sequence of icons that are made when asked for; it proves itself on construction."""
 
-import tomllib
-from pathlib import Path
-
 import pytest
 
+from tests.builders import messages
 from thermicon.icons import CueErrors, Family, Icon, IconSet, back, cool, parse, pulse, repeat, step
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.parameter import Parameter, Slot
@@ -150,7 +148,7 @@ def test_a_start_that_a_member_cannot_take_is_told() -> None:
         parse(text).summary(28)
 
 
-MESSAGES = tomllib.loads(Path(__file__).parents[1].joinpath("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("made", MESSAGES["family"])

@@ -3,12 +3,11 @@
 import os
 import subprocess
 import sys
-import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
+from tests.builders import messages
 from thermicon.icons import Icon, IconSet, hold, parse, rest
 
 TEXT = """cue 1
@@ -55,7 +54,7 @@ def test_layout_comments_and_spelling_do_not_count() -> None:
     assert parse(other).content_hash == SET.content_hash
 
 
-CASES = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))
+CASES = messages(__file__, "cases.toml")
 
 
 @pytest.mark.parametrize(("old", "new"), CASES["hash"]["changes"])

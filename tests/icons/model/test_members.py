@@ -1,19 +1,18 @@
 """A family is sound exactly when each member, written as an icon, is; its summary covers them all."""
 
-import tomllib
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import strategies as st
 
+from tests.builders import messages
 from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, parse
 from thermicon.icons.model.check import MOST_CORNERS, corner_count
 from thermicon.icons.model.statements import Wave
 
-FOUND = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))["members"]
+FOUND = messages(__file__, "cases.toml")["members"]
 VALUES, SKIN, CURRENT, BOTH, ENDS, OTHER = (
     FOUND[name] for name in ("values", "skin", "current", "both", "ends", "other")
 )
@@ -107,7 +106,7 @@ def test_a_family_is_sound_exactly_when_its_members_are(made: tuple[str, list[st
     assert found.steepest_per_s == pytest.approx(max(one.steepest_per_s for one in corners), rel=slope, abs=1e-9)
 
 
-MESSAGES = tomllib.loads(Path(__file__).parents[1].joinpath("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("family", MESSAGES["member"])

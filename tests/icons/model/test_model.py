@@ -2,13 +2,12 @@
 
 import copy
 import pickle
-import tomllib
 from dataclasses import FrozenInstanceError, fields
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.icons import (
     CueErrors,
     Icon,
@@ -57,7 +56,7 @@ EVERYTHING = (
 )
 
 
-MESSAGES = tomllib.loads(Path(__file__).parents[1].joinpath("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("made", MESSAGES["refused"])
@@ -145,7 +144,7 @@ def read(line: str, settings: str = "") -> Statement:
     return parse(f"cue 1; set {{ {settings} }}; icon x {{ {body} }}").icons[0].statements[0]
 
 
-BUILDERS = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))["builders"]
+BUILDERS = messages(__file__, "cases.toml")["builders"]
 
 
 @pytest.mark.parametrize("made", BUILDERS)

@@ -1,15 +1,14 @@
 """Whatever can be built can be written and read back, equal to the last digit."""
 
-import tomllib
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any, get_args
 
 import pytest
 from hypothesis import assume
 from hypothesis import strategies as st
 
+from tests.builders import messages
 from tests.properties import for_any
 from thermicon.icons import CueErrors, Family, Icon, IconSet, parse
 from thermicon.icons.model.context import Context, Metadata
@@ -264,7 +263,7 @@ def test_a_number_reads_back_to_the_same_float(value: float, kind: Any) -> None:
     assert abs(exact(value, kind) - Fraction(value)) <= abs(Fraction(value)) / 2**52
 
 
-CANONICAL = tomllib.loads(Path(__file__).parents[1].joinpath("cases.toml").read_text(encoding="utf-8"))["canonical"]
+CANONICAL = messages(__file__, "cases.toml")["canonical"]
 
 
 @pytest.mark.parametrize("written", CANONICAL)

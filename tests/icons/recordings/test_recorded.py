@@ -1,13 +1,13 @@
 """Recordings in CSV files as icons: how they read, in which shapes tables come, and every message about them."""
 
 import math
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.builders import messages
 from thermicon.icons import Icon, parse
 from thermicon.icons.model.statements import Hold, Ramp, Rest, Return, Step
 from thermicon.icons.recordings.recorded import from_csv
@@ -116,7 +116,7 @@ def test_a_minute_at_a_kilohertz(tmp_path: Path) -> None:
     assert len(icon.statements) == 40
 
 
-MESSAGES = tomllib.loads(Path(__file__).parents[1].joinpath("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 LONG_CELL = {
     "text": 'time_s,skin_C\n0,"' + "3" * 140_000,
     "place": "rec.csv:2",

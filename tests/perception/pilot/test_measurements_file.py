@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
 from thermicon.perception.pilot.trials_file import TrialsError
@@ -42,7 +42,7 @@ def test_a_table_of_measurements_is_recognised_by_its_header(tmp_path: Path) -> 
     assert not is_measurements(written(tmp_path, "participant,trial,presented,responded\n"))
 
 
-MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("row", MESSAGES["measurements"])

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.perception.pilot import trials_file
 from thermicon.perception.pilot.trials_file import TrialsError, read_trials
 
@@ -39,7 +39,7 @@ def test_semicolons_quotes_comments_and_further_columns_are_read(tmp_path: Path)
     assert found.pooled[2].tolist() == [0, 1, 1]
 
 
-MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("text", MESSAGES["trials"])

@@ -1,12 +1,11 @@
-import tomllib
 from dataclasses import replace
 from itertools import combinations
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Rig, Trace
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import Icon, IconSet, parse
@@ -139,7 +138,7 @@ def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) 
     assert dict(bad.choose(3, must=("twice",)).excluded)["b"] == "moves in the same way as twice"
 
 
-CHOICES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))["choice"]
+CHOICES = messages(__file__)["choice"]
 
 
 @pytest.mark.parametrize("asked", CHOICES)

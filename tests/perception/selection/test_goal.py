@@ -1,10 +1,9 @@
 import dataclasses
-import tomllib
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet
 from thermicon.perception import Goal, choose, rank
@@ -30,7 +29,7 @@ def test_the_strictest_of_several_counts() -> None:
     assert goal.of("correct") == 0.9
 
 
-MESSAGES = tomllib.loads(Path(__file__).with_name("messages.toml").read_text(encoding="utf-8"))
+MESSAGES = messages(__file__)
 
 
 @pytest.mark.parametrize("text", MESSAGES["goal"])
