@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
@@ -13,6 +14,11 @@ TRUTH = {
     "module.seebeck_V_per_K": 0.0505,
     "module.resistance_ohm": 6.6,
 }
+
+
+def altered(log: Log, name: str = "rig.csv", **columns: np.ndarray) -> Log:
+    """The same rows with some columns changed or added."""
+    return Log.of(name, {"time_s": log.time_s, **dict(log.columns), **columns})
 
 
 @pytest.fixture(scope="session")

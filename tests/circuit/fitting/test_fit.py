@@ -20,7 +20,7 @@ from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.solve import alike
 from thermicon.icons import load_library
 
-from .conftest import TRUTH
+from .conftest import TRUTH, altered
 
 KEYS = list(TRUTH)
 
@@ -126,13 +126,12 @@ def test_gaps_and_wild_rows_do_little_harm(log: Log, thenar: Rig) -> None:
     display, random = np.array(log.column("display_C")), np.random.default_rng(2)
     display[300:420] = np.nan
     display[random.choice(len(display), 12, replace=False)] += 5.0
-    found = fit(Log.of("rig.csv", {"time_s": log.time_s, **dict(log.columns), "display_C": display}), thenar, free=KEYS)
+    found = fit(altered(log, display_C=display), thenar, free=KEYS)
     holds(found, TRUTH, slack=2.0)
 
 
 def test_a_sensor_that_is_off_is_fitted_and_named(log: Log, thenar: Rig) -> None:
-    columns = {"time_s": log.time_s, **dict(log.columns), "display_C": log.column("display_C") + 0.6}
-    found = fit(Log.of("rig.csv", columns), thenar, free=KEYS)
+    found = fit(altered(log, display_C=log.column("display_C") + 0.6), thenar, free=KEYS)
     assert found.channels[0].offset_K == pytest.approx(0.6, abs=0.3)
     assert found.notes[0].startswith("rig.csv: display_C reads +0.")
     assert found.notes[0].endswith("sensors are assumed to be; calibrate it")

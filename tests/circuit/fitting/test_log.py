@@ -17,6 +17,8 @@ from thermicon.circuit.fitting.log import Log, LogError, read_log
 from thermicon.circuit.fitting.overlay import aligned, check_clocks, check_sensors
 from thermicon.circuit.fitting.problem import Problem
 
+from .conftest import altered
+
 CONTACT = ["contact.resistance_m2K_per_W"]
 TIME = np.arange(100) / 10
 PLAIN = {"time_s": TIME, "current_A": 0.1 + 0.3 * (TIME > 2), "display_C": np.full(100, 32.0)}
@@ -110,10 +112,6 @@ def test_logs_without_a_drive_or_without_a_sensor(thenar: Rig) -> None:
     assert (run.clocks, run.channels[0].clock) == (("thermometer.csv",), 1)
 
 
-def altered(log: Log, column: str, values: np.ndarray) -> Log:
-    return Log.of("rig.csv", {"time_s": log.time_s, **dict(log.columns), column: values})
-
-
 def problem_of(log: Log, rig: Rig) -> Problem:
     return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log], rig, False))
 
@@ -123,18 +121,18 @@ def test_a_sensor_that_is_stuck_is_named_with_its_times(part: slice, log: Log, t
     values = np.array(log.column("display_C"))
     values[part] = 30.0
     with pytest.raises(LogError, match=r"rig.csv: display_C reads 30 from .* s without any change, while the rig"):
-        check_sensors(problem_of(altered(log, "display_C", values), thenar))
+        check_sensors(problem_of(altered(log, display_C=values), thenar))
 
 
 def test_a_sensor_in_the_room_is_named(log: Log, thenar: Rig) -> None:
     room = 24.0 + np.random.default_rng(0).normal(0.0, 0.02, len(log.time_s))
     with pytest.raises(LogError, match=r"display_C changes by 0.0\d+ K where the rig changes by \d.*unplugged, or not"):
-        check_sensors(problem_of(altered(log, "display_C", room), thenar))
+        check_sensors(problem_of(altered(log, display_C=room), thenar))
 
 
 def test_the_wrong_sign_is_named(log: Log, thenar: Rig) -> None:
     with pytest.raises(LogError, match="display_C goes the other way than the rig: positive current cools"):
-        check_sensors(problem_of(altered(log, "current_A", -log.column("current_A")), thenar))
+        check_sensors(problem_of(altered(log, current_A=-log.column("current_A")), thenar))
 
 
 def test_an_impossible_offset_is_refused(log: Log, thenar: Rig) -> None:

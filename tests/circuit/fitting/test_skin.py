@@ -17,7 +17,7 @@ from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.solve import spreads
 
-from .conftest import TRUTH
+from .conftest import TRUTH, altered
 from .test_plan import FREE
 
 THICK = {"skin.layer.0.thickness_mm": 0.20}
@@ -71,8 +71,7 @@ def test_the_error_of_the_mesh_is_some_millikelvin(thenar: Rig, log: Log) -> Non
 
 
 def test_a_sensor_that_is_far_off_narrows_nothing(log: Log, thenar: Rig) -> None:
-    columns = {"time_s": log.time_s, **dict(log.columns), "display_C": log.column("display_C") + 2.3}
-    found = fit(Log.of("rig.csv", columns), thenar, free=list(TRUTH))
+    found = fit(altered(log, display_C=log.column("display_C") + 2.3), thenar, free=list(TRUTH))
     before, after = thenar.uncertainty, found.rig.uncertainty
     assert after.contact_resistance_relative >= before.contact_resistance_relative
     assert after.seebeck_relative >= before.seebeck_relative
@@ -89,8 +88,7 @@ SLOWLY = pytest.mark.slow
 )
 def test_a_late_column_is_named_with_its_delay(log: Log, true_rig: Rig, column: str, delay_s: float) -> None:
     moved = np.interp(log.time_s - delay_s, log.time_s, log.column(column))
-    columns = {"time_s": log.time_s, **dict(log.columns), column: moved}
-    found = fit(Log.of("late.csv", columns), true_rig, free=[CONTACT])
+    found = fit(altered(log, "late.csv", **{column: moved}), true_rig, free=[CONTACT])
     word = "late" if delay_s > 0 else "early"
     assert any(f"{column} of late.csv is {abs(delay_s):.2g} s {word} against the other" in note for note in found.notes)
     assert found.misfit
@@ -101,8 +99,7 @@ def test_a_late_column_that_other_keys_make_up_for_is_named_and_narrows_nothing(
     log: Log, true_rig: Rig, thenar: Rig
 ) -> None:
     moved = np.interp(log.time_s - 0.15, log.time_s, log.column("display_C"))
-    columns = {"time_s": log.time_s, **dict(log.columns), "display_C": moved}
-    found = fit(Log.of("late.csv", columns), true_rig, free=FREE)
+    found = fit(altered(log, "late.csv", display_C=moved), true_rig, free=FREE)
     assert any("display_C of late.csv is 0.15 s late against the other" in note for note in found.notes)
     assert found.rig.uncertainty.plates_relative >= thenar.uncertainty.plates_relative
 

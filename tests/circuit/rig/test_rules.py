@@ -87,12 +87,6 @@ def test_uncertainty_is_filled_from_records_and_checked() -> None:
     other = THENAR.with_(**{"uncertainty.gain_relative": 0.2})
     assert (other.uncertainty.gain_relative, other.uncertainty.ambient_K) == (0.2, 3.0)
     assert other.warnings == ()
-    with pytest.raises(RigError, match=r"uncertainty\.ambient_K = -1 K: must be at least 0 K"):
-        THENAR.with_(**{"uncertainty.ambient_K": -1})
-    with pytest.raises(RigError, match=r"uncertainty\.gain_relative = 2: must be at most 0\.9"):
-        THENAR.with_(**{"uncertainty.gain_relative": 2})
-    with pytest.raises(RigError, match=r"uncertainty\.gain_rel: unknown key; did you mean uncertainty\.gain_relative"):
-        THENAR.with_(**{"uncertainty.gain_rel": 0.2})
 
 
 MEASURED = "gain measured against a shunt, 2026-05-12"

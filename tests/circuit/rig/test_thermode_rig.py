@@ -152,8 +152,6 @@ def test_probes_are_read_as_on_a_module() -> None:
 
 
 def test_a_rig_is_a_thermode_or_has_a_module() -> None:
-    with pytest.raises(RigError, match=r"this rig has a module and no thermode; use a rig with \[thermode\]"):
-        Rig.load("thenar").with_(**{"thermode.lag_s": 0.1})
     document = json.loads(Rig.load("thenar").document)
     with pytest.raises(RigError, match=r"the rig has no module and no heat_sink and no driver; remove \[module\]"):
         read_table({**document, "thermode": json.loads(RIG.document)["thermode"]}, "x.toml")

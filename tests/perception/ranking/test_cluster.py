@@ -87,6 +87,8 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
     people, done = 1000, list[int]()
     local = rank(ICONS, RIG, people=people, parameters=0).to_json()
     monkeypatch.setattr(cluster, "PATIENCE_S", 60.0)
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        monkeypatch.setenv(name, "4")  # without a nanny, which would set one thread
     with scheduler(tmp_path) as address:
         workers = [worker(address, tmp_path) for _ in range(3)]
         killed: list[int] = []
@@ -115,22 +117,3 @@ def test_a_worker_is_killed_and_the_bytes_are_those_of_one_machine(
     assert killed
     assert killed[0] < len(done)
     assert far == local
-
-
-@pytest.mark.slow
-def test_threads_of_linear_algebra_change_no_byte(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Workers without a nanny, which would set one thread, give the ranking of this machine."""
-    jobs = [(ICONS, Rig.load("tcs2")), (load_library("pulse-sequences"), RIG)]
-    local = [rank(icons, rig, people=40, parameters=8).to_json() for icons, rig in jobs]
-    monkeypatch.setattr(cluster, "PATIENCE_S", 60.0)
-    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
-        monkeypatch.setenv(name, "4")
-    with scheduler(tmp_path) as address:
-        workers = [worker(address, tmp_path) for _ in range(2)]
-        try:
-            there = [rank(icons, rig, people=40, parameters=8, workers=address).to_json() for icons, rig in jobs]
-        finally:
-            for one in workers:
-                one.kill()
-                one.wait(60)
-    assert there == local
