@@ -17,7 +17,6 @@ from ..inputs import read_text
 from .assemble import HeatPump, probes_of, pump_of, skin_of
 from .faults import sentence
 from .module import Peltier
-from .modules import ModuleOrigin
 from .parts import AIR, NO_CONTACT_M2K_PER_W, Contact, Driver, HeatSink, Load, Probe, Uncertainty, load_of
 from .rig_words import rig_summary, rig_warnings
 from .rigfile import Ambient, Controller, RigError, RigTable, Thermode, parse_toml, read_table
@@ -172,11 +171,6 @@ class Rig:
         return self._pump_for("module").module
 
     @property
-    def module_origin(self) -> ModuleOrigin:
-        """Where the numbers of the module come from; raises RigError on a thermode."""
-        return self._pump_for("module").origin
-
-    @property
     def heat_sink(self) -> HeatSink:
         """What the hot plate sits on; raises RigError on a thermode."""
         return self._pump_for("heat sink").heat_sink
@@ -214,7 +208,7 @@ class Rig:
     @property
     def module_source(self) -> str:
         """One sentence on where the module's parameters come from, and how far they are from the printed Qmax."""
-        return self.module_origin.sentence
+        return self._pump_for("module").origin.sentence
 
     def receptor_depths(self) -> ReceptorDepths:
         """Depths of the receptors in mm, in both conventions.

@@ -1,9 +1,10 @@
 """Corners of a rig: what no file says, within what physics allows, and one truth with `Rig.with_` inside the bounds."""
 
-import math
+from typing import Any
 
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.corner import perturbed, with_gain
 from thermicon.circuit.rig.rig import rig_names
@@ -87,17 +88,7 @@ def test_blood_is_solved_again_unless_the_rig_fixes_it() -> None:
     assert perturbed(THENAR, ambient_K=8.0).deep_C == pytest.approx(32.0)  # air as warm as the resting skin
 
 
-@pytest.mark.parametrize(
-    ("factors", "said"),
-    [
-        ({"contact_resistance_relative": -1.0}, r"rig thenar, one corner of it: contact resistance −100 %: .*use less"),
-        ({"seebeck_relative": -1.5}, r"Seebeck coefficient −150 %"),
-        ({"conductance_relative": math.nan}, r"thermal conductance nan %: must be finite"),
-        ({"plates_relative": 1e308}, r"module\.hot_plate_J_per_K = inf"),
-        ({"ambient_K": -300.0}, r"ambient −300 K from 24 °C: .*absolute zero, −273.15 °C"),
-        ({"heat_sink_K": math.inf}, r"heat sink inf K from 40 °C"),
-    ],
-)
-def test_what_is_physically_impossible_is_said_in_words(factors: dict[str, float], said: str) -> None:
-    with pytest.raises(RigError, match=said):
-        perturbed(THENAR, **factors)
+@pytest.mark.parametrize("case", messages(__file__)["corner"], ids=str)
+def test_what_is_physically_impossible_is_said_in_words(case: dict[str, Any]) -> None:
+    with pytest.raises(RigError, match=case["words"]):
+        perturbed(THENAR, **case["factors"])

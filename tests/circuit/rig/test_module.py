@@ -1,11 +1,12 @@
 """The Peltier module against its closed forms, and its parameters from data sheets against published extractions."""
 
-import math
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from tests.peltier import coldest_C, greatest_difference_A, heat_rejected_W
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Datasheet, Extraction, Peltier, at_mean_C
 from thermicon.circuit.rig.modules import load_module, module_names, module_table
@@ -186,20 +187,10 @@ def test_an_extraction_is_shown_on_one_line_with_units() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    ("figures", "words"),
-    [
-        ((0.0, 14.4, 66, 25), r"i_max_A = 0 A: must be a positive number in A"),
-        ((6.4, -1.0, 66, 25), r"v_max_V = -1 V: must be a positive number in V"),
-        ((6.4, 14.4, math.nan, 25), r"dt_max_K = nan K: must be a positive number in K"),
-        ((6.4, 14.4, 66, math.inf), r"t_hot_C = inf °C: must be a finite number in °C"),
-        ((6.4, 14.4, 66, 25, 0.0), r"q_max_W = 0 W: must be a positive number in W"),
-        ((6.4, 14.4, 300, 25), r"dt_max_K = 300 K: must be below the 298\.15 K of the hot side .* has 60 to 80 K"),
-    ],
-)
-def test_a_sheet_that_cannot_be_is_refused(figures: tuple[float, ...], words: str) -> None:
-    with pytest.raises(ValueError, match=words):
-        Datasheet(*figures)
+@pytest.mark.parametrize("case", messages(__file__)["sheet"], ids=str)
+def test_a_sheet_that_cannot_be_is_refused(case: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=case["words"]):
+        Datasheet(*case["figures"])
 
 
 def test_four_figures_that_contradict_each_other_are_refused() -> None:

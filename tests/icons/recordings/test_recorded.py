@@ -1,7 +1,7 @@
 """Recordings in CSV files as icons: how they read, in which shapes tables come, and every message about them."""
 
-import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -194,22 +194,7 @@ def test_a_recording_that_is_noisier_than_the_tolerance(tmp_path: Path) -> None:
     assert isinstance(from_csv(path, tolerance_K=0.3), Icon)
 
 
-@pytest.mark.parametrize(
-    ("more", "message"),
-    [
-        (
-            {"tolerance_K": 0},
-            r"tolerance_K \(--tolerance\) must be a positive temperature difference in K, such as 0.05, not 0",
-        ),
-        ({"tolerance_K": -0.1}, "not -0.1"),
-        ({"tolerance_K": math.nan}, "not nan"),
-        ({"tolerance_K": True}, "not True"),
-        ({"tolerance_K": "0.1"}, "not '0.1'"),
-        ({"control": "current"}, 'control must be "display" or "skin" for a recorded temperature, not \'current\''),
-        ({"name": "3 dips"}, "name: '3 dips' is not a name"),
-        ({"baseline_C": 305.0}, "baseline_C: 305 °C is outside the −10 to 60 °C"),
-    ],
-)
-def test_arguments_that_cannot_be(tmp_path: Path, more: dict[str, object], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        from_csv(written(tmp_path, DIP), **more)  # type: ignore[arg-type]
+@pytest.mark.parametrize("case", MESSAGES["argument"], ids=str)
+def test_arguments_that_cannot_be(tmp_path: Path, case: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=case["message"]):
+        from_csv(written(tmp_path, DIP), **case["given"])

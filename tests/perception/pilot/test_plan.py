@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, read_cue
 from thermicon.perception.pilot.plan import _simulated, plan
@@ -42,16 +44,7 @@ def test_a_plan_of_one_and_of_two_sets(icons: IconSet, rig: Rig) -> None:
     assert two.cheapest == design
 
 
-@pytest.mark.parametrize(
-    ("options", "said"),
-    [
-        ({"participants": [1]}, "participants must be 2 to 500, since one alone shows no spread"),
-        ({"trials": [0]}, "trials of a participant must be 1 to 5000"),
-        ({"participants": []}, "at least one number of participants"),
-        ({"wanted": 1.0}, "must lie between 0 and 1"),
-        ({"draws": 3}, "at least 20 draws are needed, not 3"),
-    ],
-)
-def test_sizes_that_cannot_be_are_refused(icons: IconSet, rig: Rig, options: dict[str, object], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        plan(icons, rig, **options)  # type: ignore[arg-type]
+@pytest.mark.parametrize("case", messages(__file__)["plan"], ids=str)
+def test_sizes_that_cannot_be_are_refused(icons: IconSet, rig: Rig, case: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=case["words"]):
+        plan(icons, rig, **case["options"])
