@@ -72,7 +72,9 @@ def test_what_never_ends_is_an_error() -> None:
     with pytest.raises(StudyError, match=said):
         find_gap(ICONS, THENAR, Timing(carry_over_d_prime=1e-9), held=True)
     wanted = Timing(landing_from_K=10.0).model_copy(update={"landing_within_K": 1e-6})
-    with pytest.raises(StudyError, match=r"landing_within_K = 1e-06 K: skin that arrives 10 K away is still .* K off"):
+    with pytest.raises(
+        StudyError, match=r"landing_within_K = 1e-06 K: skin that arrives 10 K away is still .* K off after 1800 s"
+    ):
         find_landing(ICONS[0], THENAR, wanted, held=False)
 
 

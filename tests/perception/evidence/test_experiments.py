@@ -20,7 +20,7 @@ from thermicon.perception.evidence.experiments import (
 )
 from thermicon.perception.evidence.predicted import Predicted, Subject, nominal_subject
 from thermicon.perception.evidence.radiant import radiant_warming, whole_body_warmth
-from thermicon.perception.experiments.measure import Condition, Setting
+from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.channels import CHANNELS, VARIABLES, Variable
 
 
@@ -49,13 +49,21 @@ def test_a_rate_curve_is_thresholds_and_their_ratios() -> None:
         assert change == pytest.approx(max(flat) / min(flat) - 1.0)
 
 
-@pytest.mark.parametrize("site", ["hand", "forearm"])
+RIGS = {"hand": Setting("hand-dorsum", 5.4e-4, 9.0), "forearm": Setting("forearm", 5.4e-4, 10.0)}
+
+
+@pytest.mark.parametrize("site", RIGS)
 def test_limits_have_people_and_parameters_and_rise_with_age(site: str) -> None:
     cold, warm = limits(site, people=30, draws=4)
     assert [(one.channel, one.experiment) for one in (cold, warm)] == [(c, f"limits on the {site}") for c in CHANNELS]
     for one, skin in ((cold, 0.11), (warm, 0.20)):
         assert one.value is not None and one.people is not None and one.low is not None and one.high is not None
         assert one.people[0] < one.value < one.people[1]
+        asked = Condition("threshold", "limits", one.channel, 32.0, 12.0, 1.0, 3.0)  # type: ignore[arg-type]
+        each = np.exp(
+            logs_of(nominal_subject("temperature").laboratory(RIGS[site], people=30, seed=0), RIGS[site], asked)[0]
+        )
+        assert (*one.people, one.value) == pytest.approx(tuple(np.percentile(each, [16.0, 84.0, 50.0])))
         assert one.low < one.high
         assert one.baseline == skin
     old = limits(site, people=30, age_years=70.0, draws=0)[0]
@@ -76,6 +84,8 @@ def test_reaction_times_fall_with_area_and_methods_rise() -> None:
     assert warm > cold
     assert {one.baseline for one in found} == {None}
     three = [p.value or 0.0 for p in methods() if p.channel == "cold"]
+    choice = Condition("threshold", "forced_choice", "cold", 32.0, None, 1.0, 3.0)
+    assert three[0] == pytest.approx(measured(RIGS["hand"], choice, nominal_subject("temperature")))
     assert three == sorted(three)
     assert len(three) == 3
 
