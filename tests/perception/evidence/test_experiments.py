@@ -55,14 +55,13 @@ RIGS = {"hand": Setting("hand-dorsum", 5.4e-4, 9.0), "forearm": Setting("forearm
 @pytest.mark.parametrize("site", RIGS)
 def test_limits_have_people_and_parameters_and_rise_with_age(site: str) -> None:
     cold, warm = limits(site, people=30, draws=4)
+    crowd = nominal_subject("temperature").laboratory(RIGS[site], people=30, seed=0)
     assert [(one.channel, one.experiment) for one in (cold, warm)] == [(c, f"limits on the {site}") for c in CHANNELS]
     for one, skin in ((cold, 0.11), (warm, 0.20)):
         assert one.value is not None and one.people is not None and one.low is not None and one.high is not None
         assert one.people[0] < one.value < one.people[1]
         asked = Condition("threshold", "limits", one.channel, 32.0, 12.0, 1.0, 3.0)  # type: ignore[arg-type]
-        each = np.exp(
-            logs_of(nominal_subject("temperature").laboratory(RIGS[site], people=30, seed=0), RIGS[site], asked)[0]
-        )
+        each = np.exp(logs_of(crowd, RIGS[site], asked)[0])
         assert (*one.people, one.value) == pytest.approx(tuple(np.percentile(each, [16.0, 84.0, 50.0])))
         assert one.low < one.high
         assert one.baseline == skin
