@@ -223,7 +223,11 @@ def differences(both: Aligned) -> pd.DataFrame:
 
 
 def unit_of_difference(column: str) -> str:
-    """Unit of a difference in a column of a trace."""
+    """Unit of a difference in a column of a trace.
+
+    >>> [unit_of_difference(name) for name in ("skin_C", "current_A", "heat_flow_skin_W_per_m2")]
+    ['K', 'A', 'W/m²']
+    """
     if column.endswith("_W_per_m2"):
         return "W/m²"
     return {"C": "K", "A": "A", "V": "V"}[column.rpartition("_")[2]]
@@ -238,5 +242,9 @@ def quantity(column: str) -> str:
 
 
 def with_unit(value: float, unit: str) -> str:
-    """Write a difference with the decimals that make sense for its unit."""
+    """Write a difference with the decimals that make sense for its unit.
+
+    >>> with_unit(-0.0426, "K"), with_unit(1289.4, "W/m²")
+    ('−0.043 K', '1289 W/m²')
+    """
     return f"{number(value, 0 if unit == 'W/m²' else 3)} {unit}"

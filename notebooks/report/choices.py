@@ -38,7 +38,11 @@ def _goal_value(part: dict[str, Any]) -> str:
 
 
 def goal_value(part: dict[str, Any]) -> tuple[str, str]:
-    """What was predicted of a part of a goal and its distance from what is wanted, with units; empty where none."""
+    """What was predicted of a part of a goal and its distance from what is wanted, with units; empty where none.
+
+    >>> goal_value({"text": "time <= 10 s", "met": True, "value": 8.5, "wanted": 10.0})
+    ('8.5 s', '1.5 s')
+    """
     value, wanted = part["value"], part["wanted"]
     if isinstance(value, str):
         return value, ""

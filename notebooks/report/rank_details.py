@@ -66,7 +66,11 @@ def outside_lines(icons: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def task_note(task: dict[str, Any]) -> str:
-    """Return how the identification task differs from the default one."""
+    """Return how the identification task differs from the default one.
+
+    >>> task_note({"context": 0.0, "gap_s": 10.0, "bias": 0.0})
+    ', 10 s between icons'
+    """
     parts = [f", {100 * task['context']:g} % of memory noise from the set's range"] if task["context"] else []
     parts += [] if task["gap_s"] is None else [f", {task['gap_s']:g} s between icons"]
     parts += [f", response bias with a standard deviation of {task['bias']:g}"] if task["bias"] else []

@@ -172,7 +172,13 @@ def sweep_lines(frame: pd.DataFrame, names: Sequence[str], keys: Sequence[str]) 
 
 
 def sweep_report(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[str]) -> list[Grid]:
-    """Report one row per icon and value: each quantity, with its 95 % interval for a new laboratory if it has one."""
+    """Report one row per icon and value: each quantity with its 95 % interval for a new laboratory, where it has one.
+
+    >>> import pandas as pd
+    >>> row = {"icon": "dip", "contact.area_cm2": 4.0, "correct": 0.82, "correct_low": 0.7, "correct_high": 0.91}
+    >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), ["contact.area_cm2"], ["correct"])[0].rows[0]]
+    ['dip', '4', '82 % (70–91)']
+    """
     from thermicon.perception.ranking.swept import ALL, OF_THE_SET
 
     of_icons = not {*quantities} <= {*OF_THE_SET}

@@ -88,7 +88,14 @@ def _block(block: Block, width: int, is_terminal: bool) -> Iterator[str]:
 
 
 def hanging(text: str, width: int, indent: int | None = None) -> str:
-    """Wrap a line so that what follows stands behind its indent; units stay with numbers, a command on one line."""
+    """Wrap a line so that what follows stands behind its indent; units stay with numbers, a command on one line.
+
+    >>> print(hanging("  - one two three 4 K", 19, 4))
+      - one two three
+        4 K
+    >>> hanging("  thermicon rank six-icons --observer lab.csv", 20)
+    '  thermicon rank six-icons --observer lab.csv'
+    """
     bare = text.lstrip()
     if bare.startswith(COMMAND):
         return text
