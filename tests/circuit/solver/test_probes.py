@@ -13,7 +13,7 @@ from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.inverse import design
 from thermicon.circuit.solver.network import flow_weights, places_of, stacked, temperature_weights
-from thermicon.circuit.solver.probes import reading_of
+from thermicon.circuit.solver.probes import between, reading_of
 from thermicon.circuit.solver.trace import COLUMNS, write_trace
 from thermicon.icons import load_library
 
@@ -111,6 +111,8 @@ def test_a_lag_is_exact_for_what_is_linear_between_rows() -> None:
 
 def test_a_lagging_probe_starts_settled_and_trails(trace: Trace) -> None:
     slow, plate = trace.probe("slow"), trace.probe("plate")
+    lagging = THENAR.with_(probe=[probe("slow", "display", lag_s=0.4)])
+    assert (between(np.array([0.0, 0.1]), lagging), between(np.array([0.0, 0.1]), THENAR)) == (10, 1)
     assert slow[0] == plate[0]
     assert slow[190] - plate[190] == pytest.approx(3.0 * 0.4 * (1 - np.exp(-1.9 / 0.4)), abs=2e-3)  # on a 3 °C/s ramp
 

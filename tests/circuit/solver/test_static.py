@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, nearest_reachable, simulate
+from thermicon.circuit.solver.inverse import steps_at
 from thermicon.circuit.solver.static import check_static
 from thermicon.circuit.solver.trace import judge
 from thermicon.icons import Icon, load_library, parse
@@ -98,6 +99,12 @@ def test_until_a_step_arrives_nothing_is_missed(
     if late_s == (1.0,):
         assert found.largest_miss_K == pytest.approx(-0.7)
         assert found.reason == "misses its target by 0.70 K at 1.30 s; its step at 1.00 s does not arrive in time"
+
+
+def test_a_step_must_arrive_by_the_end_of_its_hold_or_before_the_next() -> None:
+    body = "step by -3 °C; hold for 2 s; cool by 1 °C at 1 °C/s; step by 2 °C; cool by 1 °C at 1 °C/s; step by 1 °C"
+    first, second, last = steps_at(cue(body), 32.0)
+    assert (*first, *second, *last) == pytest.approx((0.0, 2.0, 3.0, 4.0, 4.0, math.inf), abs=1e-6)
 
 
 def test_a_square_wave_is_reached_and_its_slowest_step_told() -> None:

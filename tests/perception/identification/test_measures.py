@@ -94,6 +94,7 @@ def test_intervals_hold_the_prediction_and_are_wide(ranking: Ranking) -> None:
     ):
         assert 0.0 <= low < value < high <= most
         assert high - low > 0.02
+    assert found.proportion_correct == pytest.approx(np.percentile(found.each.proportion_correct, [2.5, 97.5]))
     assert len(found.detected) == 6
     for icon, (low, high) in zip(ranking.icons, found.detected, strict=True):
         assert low <= icon.detected_probability <= high

@@ -9,7 +9,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
 from thermicon.perception import Observer, Ranking, Task, cheapest_edit, choose, rank
 from thermicon.perception.identification.carry_over import CarryOver, carry_over
-from thermicon.perception.identification.task import NARROWEST, range_of, reference_range
+from thermicon.perception.identification.task import range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
 from thermicon.perception.observer.people import People
 from thermicon.perception.selection.edit import Edit
@@ -56,8 +56,8 @@ def test_context_multiplies_memory_noise_by_the_range_in_the_calibrating_task() 
     narrow = np.full((2, 2), low), np.zeros((2, 2))
     assert Task(context=1.0).memory(own, wide, observer) == pytest.approx([2.0, 4.0])
     assert Task(context=0.5).memory(own, wide, observer) == pytest.approx([2.0**0.5, 2.0 * 2.0**0.5])
-    assert Task(context=1.0).memory(own, narrow, observer) == pytest.approx([NARROWEST, 2.0 * NARROWEST])
-    assert Task(context=1.0, counted=(0,)).memory(own, wide, observer) == pytest.approx([NARROWEST, 2.0 * NARROWEST])
+    assert Task(context=1.0).memory(own, narrow, observer) == pytest.approx([0.25, 0.5])
+    assert Task(context=1.0, counted=(0,)).memory(own, wide, observer) == pytest.approx([0.25, 0.5])
 
 
 def test_a_narrower_set_is_remembered_better_in_context() -> None:
