@@ -102,9 +102,10 @@ def test_until_a_step_arrives_nothing_is_missed(
 
 
 def test_a_step_must_arrive_by_the_end_of_its_hold_or_before_the_next() -> None:
-    body = "step by -3 °C; hold for 2 s; cool by 1 °C at 1 °C/s; step by 2 °C; cool by 1 °C at 1 °C/s; step by 1 °C"
-    first, second, last = steps_at(cue(body), 32.0)
-    assert (*first, *second, *last) == pytest.approx((0.0, 2.0, 3.0, 4.0, 4.0, math.inf), abs=1e-6)
+    body = "step by -3 °C; hold for 2 s; cool by 1 °C at 1 °C/s; step by 2 °C; cool by 1 °C at 1 °C/s; %s"
+    for end, until_s in (("step by 1 °C", math.inf), ("step by 1 °C; hold for 1 s", 5.0)):
+        first, second, last = steps_at(cue(body % end), 32.0)
+        assert (*first, *second, *last) == pytest.approx((0.0, 2.0, 3.0, 4.0, 4.0, until_s), abs=1e-6)
 
 
 def test_a_square_wave_is_reached_and_its_slowest_step_told() -> None:
