@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import stat
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Export
     from thermicon.circuit.delivery.prepare import Prepared
 
+NUMBER = re.compile(r"\d+(\.\d+)?")
 LONGEST_PAUSE_S = 600.0
 """As in `thermicon.circuit.safety.repeated`, repeated here to avoid its imports."""
 LARGEST = 2**30
@@ -138,13 +140,15 @@ def icon_line(one: Prepared) -> str:
 
 
 def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
-    """Every warning once, with the names of its icons."""
-    names: dict[str, list[str]] = {}
+    """Every warning once, for its first icon; those that differ in numbers alone follow by name."""
+    alike: dict[str, tuple[str, list[str]]] = {}
     for one in ready:
         for warning in one.warnings:
-            names.setdefault(warning, []).append(one.delivery.icon.name)
-    for warning, icons in names.items():
-        yield f"warning: {', '.join(dict.fromkeys(icons))}: {warning}"
+            alike.setdefault(NUMBER.sub("#", warning), (warning, []))[1].append(one.delivery.icon.name)
+    for warning, names in alike.values():
+        others = list(dict.fromkeys(names))[1:]
+        more = f"; alike, with numbers in their sidecars: {', '.join(others)}" if others else ""
+        yield f"warning: {names[0]}: {warning}{more}"
 
 
 def refused(ready: Export) -> bool:

@@ -3,8 +3,6 @@
 Run with `pytest -m benchmark tests/benchmarks/test_family_speed.py -s`.
 """
 
-import time
-
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
@@ -34,22 +32,3 @@ def test_members_are_checked_no_slower_than_one_by_one(benchmark: BenchmarkFixtu
     took = benchmark.stats["min"]
     print(f"\n100,000 members checked and counted in {took:.1f} s; one by one {alone:.1f} s, {alone / took:.1f} times")
     assert took < alone
-
-
-def test_a_check_follows_every_member_once(benchmark: BenchmarkFixture) -> None:
-    """What is said of all members comes from the same pass as their errors: 2 s of processor time for 50,601."""
-    text = (
-        "cue 1\nicon dip(size in 0.1..10.1 step 0.1 °C, time in 0.1..50.1 step 0.1 s)\n"
-        "{ cool by size at 3 K/s; hold for time; return at 2 K/s; total at most 100 s }"
-    )
-
-    def check() -> float:
-        start = time.process_time()
-        icons = parse(text)
-        summary = icons.summary(32.0)
-        assert (len(icons), summary.shortest_s) == (50_601, pytest.approx(0.1 + 0.1 / 3 + 0.1 / 2))
-        return time.process_time() - start
-
-    took = benchmark.pedantic(check, rounds=1)
-    print(f"\n50,601 members checked and summarised in {took:.1f} s of processor time")
-    assert took < 4.0

@@ -58,7 +58,7 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
         "warning: driver.current_limit_A = 1.5 A takes 15 V of command",
         "cool-step: 8.01 s at 100 Hz on dac-16, receptors within ",
         "safety green in 3 scenarios",
-        "warning: cool-step, warm-step: dac-16 plays −1 … 1 A (−10 … 10 V through ",
+        "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through ",
         f"wrote 2 drives with their sidecars into {out}: cool-step.json, cool-step.csv, warm-step.json",
         "to play: put out each row's command at its time",
     ):
