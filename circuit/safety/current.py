@@ -206,7 +206,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         """What prevents a host that stops, a driver that is stuck, and faults of a first play."""
         from .demanded import demanded
 
-        return demanded(self, [single for (single,) in singles], recovered_s, repeating, tallies, shortest_s)
+        return demanded(self, [single for (single,) in singles], recovered_s, repeating, shortest_s)
 
 
 def _at(like: State, free_C: Array) -> State:

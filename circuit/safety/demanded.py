@@ -25,9 +25,6 @@ from .tally import HOTTEST_C, WATCHED, Tally, cem43_min
 if TYPE_CHECKING:
     from .plant import Single
 
-MOST_CORNERS = 6
-"""Corners in which single faults are simulated: the rig as given, and the worst ones."""
-
 LONGEST_REST_S = 600.0
 TEST_A, TEST_S = 0.3, 2.0
 """A current small enough for any module and skin, for long enough to be seen by any thermistor."""
@@ -40,7 +37,6 @@ def demanded(
     singles: Sequence[Single[CurrentPlay, State]],
     recovered_s: Sequence[float],
     repeating: Repeating[CurrentPlay, State],
-    tallies: Sequence[list[Tally]],
     shortest_s: float | None,
 ) -> tuple[float | None, list[Demands]]:
     """The shortest pause after which faults can be prevented in practice, and what prevents them in any play after it.
@@ -51,10 +47,9 @@ def demanded(
     """
     display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
     reach_C, faults = (min(display), max(display)), [_faulty(plant, single, repeating.limits) for single in singles]
-    corners = [_farthest(plant, [*single.tallies, *own]) for single, own in zip(singles, tallies, strict=True)]
     if shortest_s is None:
-        rows = zip(faults, singles, corners, corners, strict=True)
-        return None, [_demands(*row, reach_C, None) for row in rows]
+        worst = [one.hardest(reach_C, PRACTICAL_S) for one in faults]
+        return None, [_demands(*row, reach_C, None) for row in zip(faults, singles, worst, strict=True)]
     bounds_of = cache(lambda pause_s: repeating.bounds(pause_s)[1:])
 
     def after(pause_s: float) -> list[Faulty]:
@@ -75,14 +70,14 @@ def demanded(
     for number, one in enumerate(after(longest_s)):
         if not holds(number, longest_s, needed[number]):
             few = hardest[number]
-            found = _demands(one, singles[number], few, few, reach_of(longest_s), None).within_s
+            found = _demands(one, singles[number], few, reach_of(longest_s), None).within_s
             needed[number] = min(PRACTICAL_S, found[0]), min(PRACTICAL_S, found[1])
     pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: all(map(holds, numbers, repeat(longer_s), needed)))
     added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
     while True:
         there, reach, demands = after(pause_s), reach_of(pause_s), {}
         for number in sorted(numbers, key=lambda number: not any(needed[number])):  # what may not suffice first
-            demand = _demands(there[number], singles[number], corners[number], hardest[number], reach, pause_s)
+            demand = _demands(there[number], singles[number], hardest[number], reach, pause_s)
             if pause_s < longest_s and np.less(demand.within_s, needed[number]).any():
                 break
             demands[number] = demand
@@ -94,7 +89,6 @@ def demanded(
 def _demands(
     faulty: Faulty,
     single: Single[CurrentPlay, State],
-    corners: list[int],
     hardest: list[int],
     reach_C: Span,
     pause_s: float | None,
@@ -102,7 +96,7 @@ def _demands(
     """What the hardware must prevent in a drive, in all corners and between bounds; `reach_C` are extremes of displays.
 
     Watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that decided, and found again
-    where they are too slow; the rest in `corners`.
+    where they are too slow. What concerns a first play is found in all corners.
     """
     ensemble, limits = faulty.ensemble, faulty.limits
     for current_A in faulty.ends_A if ensemble.ideal else ():
@@ -125,7 +119,7 @@ def _demands(
             there.cut_off(reach_C, moments, hangs=not watchdog_s),
             key=lambda found: found[0].react_within_s,
         )
-    first = replace(faulty, bounds=()).at(corners)
+    first = replace(faulty, bounds=())
     rest, begins = rest_before(first)
     polarity, swapped = polarity_check(first)
     zero = None
@@ -140,16 +134,6 @@ def _faulty(plant: CurrentPlant, single: Single[CurrentPlay, State], limits: Lim
     play = single.play
     assert isinstance(play.drive, Drive)
     return Faulty(plant.ensemble, play.drive, float(play.rest_A), single.start, limits)
-
-
-def _farthest(plant: CurrentPlant, tallies: list[Tally]) -> list[int]:
-    """Corners that are worst by some hard rule, the rig as given first."""
-    count = len(plant.corners)
-    rows: dict[int, None] = {0: None}
-    for tally in tallies:
-        for lane in tally.worst_lanes():
-            rows.setdefault(lane % count)
-    return sorted(list(rows)[:MOST_CORNERS])
 
 
 def _joined(spans: Sequence[Span]) -> Span:

@@ -125,6 +125,16 @@ def test_the_rest_before_the_first_play_is_needed_and_enough() -> None:
     assert not passes(needed - 1.5)
 
 
+def test_what_a_first_play_demands_is_that_of_all_corners() -> None:
+    """On a wide contact the corners that decide on the play itself are others than those that decide on its start."""
+    rig, warm = Rig.load("forearm"), Drive([0, 0.1, 1.5, 4.0, 5.0], [0.1, -0.2, -0.3, -0.2, 0.1], held=True)
+    demanded = gate(warm, rig, pause_s=140.0).demands
+    every = Ensemble.of(rig)
+    one = Faulty(every, warm, float(warm.current_A[0]), every.at_rest(float(warm.current_A[0])), Limits.shipped())
+    assert demanded.rest_before_first_play_s == rest_before(one)[0] > rest_before(one.at([0, 1, 2, 3, 22, 64]))[0]
+    assert demanded.polarity_check == polarity_check(one)[0]
+
+
 def test_the_dose_of_zero_current_ends_contact_in_time() -> None:
     """A warm heat sink takes skin to where the dose adds up: the time is that at which it reaches its limit."""
     warm = THENAR.with_(**{"heat_sink.temperature_C": 42.5})
