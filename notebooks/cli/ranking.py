@@ -141,7 +141,9 @@ def rank_command(
     rig: RigOptions,
     figure: SetFigureOptions,
     json: Json = None,
-    report: Annotated[Path | None, out("OUT.html", "Write a report as one page.", "--report")] = None,
+    report: Annotated[
+        Path | None, out("OUT", "Write a report: one .html file, or .md without pictures.", "--report")
+    ] = None,
     doubt: Annotated[
         bool, flag("--doubt", "Instead: which constants carry the doubt, and what to measure first.")
     ] = False,
@@ -163,7 +165,7 @@ def rank_command(
     constants their differences come from.
     """
     if report is not None:
-        check_output(report, (".html", ".htm"), "a report")
+        check_output(report, (".html", ".htm", ".md"), "a report")
         if report == STDOUT:
             raise usage("- is not a file; give the name of a page, such as report.html", "--report")
     if json is not None:
@@ -207,7 +209,7 @@ def rank_command(
         from ..report.rank_page import report as page
 
         command = command_text(files, rig, crowd, task)
-        write_text(page(found, icons, where, command, near), report)
+        write_text(page(found, icons, where, command, near, as_text=report.suffix.lower() == ".md"), report)
     if json == STDOUT:
         typer.echo(found.to_json())
     else:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import number, percent
 
 from ..figures.print_figure import small_png
-from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Row, Text, as_html, grid
+from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Row, Text, as_html, as_markdown, grid
 from .rank_report import rank_report
 
 if TYPE_CHECKING:
@@ -51,8 +51,9 @@ def report(
     rig: Rig,
     command: str = "",
     cures: Mapping[str, str] | None = None,
+    as_text: bool = False,
 ) -> str:
-    """Write the page as HTML text: the same bytes for the same arguments.
+    """Write the page as HTML text, or as Markdown without pictures: the same bytes for the same arguments.
 
     ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
     an icon could be reached. No date is printed.
@@ -61,7 +62,7 @@ def report(
     title, count = icons.title or "Thermal icons", len(result["icons"])
     if result["by"] == "rules":
         parts = rank_report(made, title)
-        return as_html(parts, f"{title}: by rules")
+        return as_markdown(parts) if as_text else as_html(parts, f"{title}: by rules")
     lead = f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon"
     parts = [
         Heading(title, 1),
@@ -80,7 +81,7 @@ def report(
         Heading("Safety"),
         Text(SAFETY),
     ]
-    return as_html(parts, f"{title}: predicted ranking")
+    return as_markdown(parts) if as_text else as_html(parts, f"{title}: predicted ranking")
 
 
 def _settings(result: dict[str, Any], rig: Rig, command: str) -> Iterator[Block]:

@@ -195,7 +195,7 @@ def test_workers_change_no_byte(cli: Cli, two: Path, tmp_path: Path) -> None:
 
 
 def test_a_set_is_ranked_by_rules_alone(cli: Cli, tmp_path: Path) -> None:
-    page = tmp_path / "page.html"
+    page = tmp_path / "page.md"
     said = cli.good("rank", "six-icons", "--by", "rules", "--report", page)
     words = " ".join(said.stdout.split())
     assert "15 of 15 pairs distinguishable by the rules" in words

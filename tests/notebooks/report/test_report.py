@@ -141,6 +141,14 @@ def test_it_is_the_same_every_time_without_a_date(made: str, ranking: Ranking, i
     assert len(made) < 1_500_000
 
 
+def test_the_report_as_markdown_has_the_same_words_and_no_pictures(ranking: Ranking, icons: IconSet, rig: Rig) -> None:
+    said = report(SetReport(ranking), icons, rig, as_text=True)
+    assert said.startswith("# Hot & \\<b\\>cold\\</b\\>")
+    assert "| icon | detected | onset | channel | correct | most confused with |" in said
+    assert "data:image" not in said
+    assert "![" not in said
+
+
 def test_one_icon_has_no_pairs(rig: Rig) -> None:
     icons = parse("cue 1\nicon only { warm by 2 °C at 1 °C/s; return at 1 °C/s }\n")
     made = report(SetReport(rank(icons, rig, people=1, parameters=0)), icons, rig)
