@@ -94,6 +94,7 @@ SKIN, DISPLAY, RECEPTOR, HOT_PLATE, RATE, DOSE, BURN, WARMER = range(8)
 """Codes of quantities: the columns of WATCHED, then what is computed from them; the last three add up."""
 
 _CODE_OF = {
+    **dict.fromkeys(("skin surface", "numbness", "cold pain", "heat pain"), SKIN),
     "display": DISPLAY,
     "cold-receptor depth": RECEPTOR,
     "hot plate": HOT_PLATE,
@@ -101,7 +102,7 @@ _CODE_OF = {
     "thermal dose": DOSE,
     "Henriques integral": BURN,
 }
-"""Quantities other than the skin surface, and the time of the display above a temperature."""
+"""Quantities of rules, other than the time of the display above a temperature."""
 
 Flags = npt.NDArray[np.bool_]
 
@@ -255,10 +256,12 @@ def worst_of_lanes(tallies: Sequence[Tally]) -> tuple[Check, ...]:
 
 
 def _code_of(rule: Rule) -> int:
-    """The code of the quantity that a rule limits, as the kernel expects it."""
+    """The code of the quantity that a rule limits, as the kernel expects it; none is judged as another."""
     if rule.above_C is not None:
         return WARMER
-    return _CODE_OF.get(rule.quantity, SKIN)
+    if rule.quantity not in _CODE_OF:
+        raise ValueError(f"{rule.quantity}: a limit that nothing computes; give the quantity a code in safety/tally.py")
+    return _CODE_OF[rule.quantity]
 
 
 def _finite(values: Array) -> Array:

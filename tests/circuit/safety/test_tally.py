@@ -1,6 +1,7 @@
 """A tally of rules over stretches of rows: pieces are the whole, doses add up and are those of closed forms."""
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -60,6 +61,12 @@ def test_rates_and_sums_can_be_left_out() -> None:
     assert check_of(tally, "rate of skin temperature").value == 0.0
     assert check_of(tally, "thermal dose").value == 0.0
     assert check_of(tally, "skin surface").value == pytest.approx(43.0)
+
+
+def test_a_limit_of_a_quantity_without_a_code_is_refused_and_not_judged_as_skin_temperature() -> None:
+    for quantity in ("display rate", "Skin surface"):
+        with pytest.raises(ValueError, match=f"{quantity}: a limit that nothing computes"):
+            Tally(replace(LIMITS, rules=(*LIMITS.rules, replace(LIMITS.rules[0], quantity=quantity))), ["a"])
 
 
 def test_a_drift_is_held_against_hard_limits_only() -> None:
