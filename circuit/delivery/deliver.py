@@ -136,6 +136,8 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
         through = f" ({signed(low)} … {signed(high)} V through driver.transconductance_A_per_V = {gain:g})"
         least = np.ceil(100 * least - 1e-6) / 100
         cure = f"raise that to {least:g} if the current source can, or use a device of more volts"
+    if low >= 0.0 and wanted_A.min() < -1e-9:
+        peak, cure = float(wanted_A.min()), "use a device of both signs"
     text = (
         f"{device.name} plays {signed(narrow_driver.current_min_A)} … {signed(narrow_driver.current_max_A)} A{through}"
         f", the design needs up to {signed(peak, '.3g')} A; {cure}"

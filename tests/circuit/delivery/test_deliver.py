@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -101,6 +102,14 @@ def test_a_range_too_small_is_told_with_the_cure_and_used_as_well_as_it_can_be()
     assert rms_K(found) < 0.01  # the display catches up after the corner
     stronger = weak.with_(**{"driver.transconductance_A_per_V": 0.12})
     assert deliver(step, stronger, Device.load("dac-16")).device_warnings == ()
+
+
+def test_a_device_of_one_sign_is_not_cured_by_more_gain() -> None:
+    sixteen = Device.load("dac-16")
+    records = (replace(each, low=0.0) if each.quantity == "output range" else each for each in sixteen.records)
+    positive = replace(sixteen, name="half", records=tuple(records))
+    (said,) = deliver(load_library("six-icons")["warming-step"], RIG, positive).device_warnings
+    assert re.search(r"^half plays 0 … .* the design needs up to −[\d.]+ A; use a device of both signs$", said)
 
 
 @pytest.mark.parametrize("name", ["thenar", "forearm", "hand-dorsum", "fingertip", "shani2021"])
