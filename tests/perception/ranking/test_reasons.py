@@ -10,8 +10,10 @@ import pytest
 from thermicon.circuit import Rig, Trace, simulate
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, Percept, perceive
+from thermicon.perception.identification.confusion import NOISES
 from thermicon.perception.identification.episodes import PARTS, dprime_from_memory, remembered
-from thermicon.perception.ranking.reasons import DistanceComponent, components_of, pair_reasons
+from thermicon.perception.kernels import episodes
+from thermicon.perception.ranking.reasons import FEATURES, FIELDS, DistanceComponent, components_of, pair_reasons
 from thermicon.perception.ranking.rules import load_rules
 from thermicon.perception.sensation.features import attack_K_per_s, delay_s, excursion_K, peak_change_K
 
@@ -32,6 +34,13 @@ def parts_of(a: Trace, b: Trace, observer: Observer | None = None) -> dict[str, 
     assert tuple(part.name for part in parts) == PARTS
     assert math.hypot(*(part.value for part in parts)) == pytest.approx(dprime_from_memory(*felt, person), rel=1e-9)
     return {part.name: part for part in parts}
+
+
+def test_parts_of_a_distance_are_direction_and_the_features_that_the_kernel_makes_noisy() -> None:
+    assert PARTS == ("direction", *FEATURES) == ("direction", *FIELDS)
+    noisy = (episodes.INTENSITY, episodes.RATE, episodes.LENGTH, episodes.PAUSE)
+    assert noisy == tuple(range(episodes.QUALITY + 1, episodes.NOISE)), "features stand between quality and noise"
+    assert len(noisy) == NOISES == len(FEATURES)
 
 
 def largest(parts: dict[str, DistanceComponent]) -> str:
