@@ -294,7 +294,7 @@ class TestSidecar:
         assert told["predicted"]["skin_min_C"] == pytest.approx(26.92, abs=0.01)
         assert set(told["delivered_minus_designed"]) == {"skin", "cold receptor", "warm receptor"}
         assert (told["safety"]["colour"], told["safety"]["findings"]) == ("green", [])
-        assert (told["safety"]["scenarios"], len(told["safety"]["checks"])) == (195, 22)
+        assert (told["safety"]["scenarios"], len(told["safety"]["checks"])) == (195, len(RIG.limits.rules))
         assert [record["quantity"] for record in told["stated_losses"]] == [
             "receptor difference", "detection drop", "relative d′ drop", "least d′ drop",
         ]  # fmt: skip
