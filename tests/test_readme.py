@@ -129,7 +129,7 @@ def broken_links(text: str, page: Path) -> list[str]:
 )
 def test_a_page_shows_what_happens(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
-    assert masked(regenerated(text)) == masked(text)
+    assert masked(regenerated(text)) == masked(text), "if it is right: python tests/test_readme.py"
 
 
 def test_the_readme_begins_with_the_two_commands() -> None:

@@ -99,7 +99,7 @@ def row_of(rig: str, device: str, cases: Iterable[Case]) -> str:
 @pytest.mark.parametrize(("rig", "device"), QUICK)
 def test_the_table_says_what_becomes_of_everyday_steps(rig: str, device: str) -> None:
     cases = steps_on(rig, device)
-    assert row_of(rig, device, cases) in ROWS
+    assert row_of(rig, device, cases) in ROWS, "if it is right: python tests/circuit/delivery/test_everyday_cues.py"
     for case in cases:
         assert (case.why == "") == (case.mark == "yes")
         assert {name for name, why in case.forms if why} <= {"wav"}, case.forms
