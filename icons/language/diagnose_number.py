@@ -129,6 +129,9 @@ def _wrong_kind(case: FailedStatement, kind: Kind, others: list[Kind]) -> Findin
     if kind == "absolute" and bad.text == "K":
         kelvin = "K is for differences; an absolute temperature is in °C"
         return at(bad, "E104", kelvin, EXAMPLES[kind], swap(bad, "°C"))
+    help = EXAMPLES[kind]
+    if "current" in others and kind in ("difference", "absolute"):
+        help += '; a current moves by "to 0.5 A at 1 A/s"'
     meaning = "a temperature" if "absolute" in others else KIND_WORDS[others[0]]
     what = f'"{bad.text}" makes it {meaning}; {KIND_WORDS[kind]} is needed'
     # "°C" where a rate belongs was most likely meant per second, and the other way round.
@@ -138,7 +141,7 @@ def _wrong_kind(case: FailedStatement, kind: Kind, others: list[Kind]) -> Findin
         cures = (Edit(bad.start, case.rest[1].end, whole),) if per and whole in UNITS[kind] else ()
         return at(bad, "E104", what, EXAMPLES[kind], *cures)
     similar = [text for text in (bad.text + "/s", bad.text.split("/")[0]) if text in UNITS[kind]]
-    return at(bad, "E104", what, EXAMPLES[kind], *(swap(bad, text) for text in similar[:1]))
+    return at(bad, "E104", what, help, *(swap(bad, text) for text in similar[:1]))
 
 
 def _periods(case: FailedStatement) -> Finding | None:
