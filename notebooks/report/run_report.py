@@ -158,7 +158,10 @@ def sweep_lines(frame: pd.DataFrame, names: Sequence[str], keys: Sequence[str]) 
             parts = [f"reached at {int(judged['reached'].sum())} of {len(rows)} {points}"]
             parts.append("everywhere within 1 mK" if miss.max() < 1e-3 else said)
         parts += [f"NOT SAFE at {unsafe}"] if (unsafe := int((~ran["safe"]).sum())) else []
-        parts += [f"impossible at {len(rows) - len(ran)}"] if len(ran) < len(rows) else []
+        missing = len(rows) - len(ran)
+        parts += (
+            [f"{missing} of {len(rows)} {points} {'is' if missing == 1 else 'are'} not possible"] if missing else []
+        )
         yield f"{name}: {', '.join(parts)}"
     for column, words in (("correct", "correct"), ("correct_95", "correct for 95 % of people")):
         if column in frame and (rows := frame[(frame["icon"] == ALL) & frame[column].notna()]).size:

@@ -65,8 +65,8 @@ QUANTITIES: Mapping[str, Quantity] = {
 }
 NEEDS_DRAWS = (
     "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: leave --intervals out or ask for 2 or more (parameters=128 in Python), by the model, with an observer "
-    "that has draws"
+    "posterior: leave --intervals out or ask for 2 or more (in Python: parameters=128, and not by rules), and use an "
+    "observer that has draws"
 )
 SAFETY = "safety"
 VERDICTS = ("green", "amber")

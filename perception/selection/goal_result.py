@@ -212,7 +212,7 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
     largest = outcome.durations_s if part.quantity == "time" else outcome.energies_J
     if np.isnan(largest).any():
         return "a thermode states no energy"
-    return f"{outcome.names[int(largest.argmax())]} takes most"
+    return f"{outcome.names[int(largest.argmax())]} takes most {part.quantity}"
 
 
 def _listed(names: Sequence[str]) -> str:
