@@ -223,3 +223,12 @@ def fragment(name: str, *values: object) -> str:
     """
     macro = getattr(environment().get_template("workbench.html.j2").module, name)
     return str(macro(*values)).strip()
+
+
+def printed_unit(unit: str) -> str:
+    """The unit of a record as it is printed; nothing for a pure number.
+
+    >>> printed_unit("degC"), printed_unit("ln per d'"), printed_unit("1")
+    ('°C', 'ln per d′', '')
+    """
+    return "" if unit == "1" else unit.replace("degC", "°C").replace("d'", "d′")

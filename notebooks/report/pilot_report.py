@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import percent, percent_span, seconds, signed
 
-from .blocks import Block, Bullets, Grid, Heading, Text, grid
+from .blocks import Block, Bullets, Grid, Heading, Text, grid, printed_unit
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.conditioning import Answered, Measured
@@ -92,7 +92,7 @@ def constants(found: Observed[Any, Any]) -> list[Block]:
     if not moved:
         return [Text("No constant moved by more than chance.")]
     points = [
-        f"{each.name}: {_three(each.before)} → {_three(each.after)}{f' {each.unit}' if each.unit else ''}"
+        f"{each.name}: {_three(each.before)} → {_three(each.after)} {printed_unit(each.unit)}".rstrip()
         for each in moved[:MOST_CONSTANTS]
     ]
     return [Text("What moved or narrowed most (median and 95 %, before → after):"), Bullets(tuple(points))]

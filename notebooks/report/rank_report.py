@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span, seconds
 
-from .blocks import Block, Bullets, Cards, Cell, Grid, Heading, Text, grid
+from .blocks import Block, Bullets, Cards, Cell, Grid, Heading, Text, grid, printed_unit
 from .choices import choice_lines, goal_lines, laboratory
 from .rank_details import (
     caveat,
@@ -32,6 +32,8 @@ MOST_LINES = 20
 """Lines of a ranking without details, at 80 columns."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
+LARGEST_CM2 = 36.0
+"""Contact that is advised at most: four times that of the shipped modules; assumed."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
 RANKED = ("icon", "detected", "onset", "channel", "correct", "most confused with")
@@ -173,7 +175,7 @@ def next_step(ranking: Ranking, has_families: bool) -> Step:
     """Choose the command that helps a set most, from the records of its ranking.
 
     What cannot be played goes first; then icons that are hardly felt get a contact twice as wide, unless a current is
-    prescribed; then come icons that are not distinguished, and at last the export.
+    prescribed or that were too large; then come icons that are not distinguished, and at last the export.
     """
     from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 
@@ -182,8 +184,12 @@ def next_step(ranking: Ranking, has_families: bool) -> Step:
         return Step("simulate")
     weak = [pair for pair in ranking.pairs if pair.d_prime < DISTINGUISHABLE_DPRIME]
     current = ranking.job.icons[0].context.control == "current"
-    if len(fine) == len(ranking.icons) and not current and min(i.detected_probability for i in ranking.icons) < BARELY:
-        return Step("rank", ("--set", f"contact.area_cm2={2e4 * ranking.job.rig.contact.area_m2:.4g}"))
+    twice_cm2, faint = (
+        2e4 * ranking.job.rig.contact.area_m2,
+        min(i.detected_probability for i in ranking.icons) < BARELY,
+    )
+    if len(fine) == len(ranking.icons) and not current and faint and twice_cm2 <= LARGEST_CM2 + 1e-9:
+        return Step("rank", ("--set", f"contact.area_cm2={twice_cm2:.4g}"))
     if weak and has_families:
         return Step("improve")
     left = set(fine)
@@ -203,7 +209,7 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
     rows = [
         (
             effect.constant,
-            f"{effect.low:.3g} to {effect.high:.3g}{'' if effect.unit in ('', '1') else f' {effect.unit}'}",
+            f"{effect.low:.3g} to {effect.high:.3g} {printed_unit(effect.unit)}".rstrip(),
             percent(effect.proportion_correct),
             percent(effect.information_bits),
             f"{percent(effect.at_low)} – {percent(effect.at_high)}",

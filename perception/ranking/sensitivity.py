@@ -267,7 +267,7 @@ def sensitivity(
 
 
 def _effects(names: tuple[str, ...], values: Array, each: LaboratoryDraws, model: ObserverModel) -> tuple[Effect, ...]:
-    units = {base_name(record.quantity): record.unit for record in model.records}
+    units = {base_name(record.quantity): record.unit for record in model.records} | {CONTACT: "m²·K/W", LAYER: "mm"}
     correct, bits = explained(values, each.proportion_correct), explained(values, each.information_bits)
     found = []
     for place, name in enumerate(names):
