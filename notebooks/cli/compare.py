@@ -69,7 +69,7 @@ def compare_command(
     said = ""
     if kind == "rig":
         icons = pick(read_set([file or DEFAULT_SET]), icon or (DEFAULT_ICON if file is None else None))
-        one, other = (load_rig(name, rig.changes) for name in both)
+        one, other = (load_rig(name, rig.changes, named=True) for name in both)
         made = [_played(each.name, (each, each), (one, other), both) for each in icons]
     elif kind == "icon":
         used = rig.load()

@@ -23,7 +23,7 @@ def row(said: Any, name: str) -> list[str]:
 
 def test_two_rigs_play_the_cooling_step_unless_told(cli: Cli) -> None:
     said = cli.good("compare", "thenar", "shani2021")
-    assert "1046 W/m²" in said.stderr
+    assert "warning: shani2021: skin at rest loses 1046 W/m²" in said.stderr
     lines = said.stdout.splitlines()
     assert lines[:2] == ["cooling-step", "A  thenar: 8 s, reached (everywhere within 1 mK)"]
     assert lines[2].startswith("B  shani2021: 8 s, NOT reached: misses its target by 0.42 K at 2.00 s")
