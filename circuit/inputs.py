@@ -106,7 +106,7 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[Exception] = 
         return read_limited(path, int(limit_MB * 1e6))
     except NotRegular as found:
         if found.kind == "folder":
-            raise error(f"{path}: this is a directory, not a {what}") from None
+            raise error(f"{path}: this is a folder, not a {what}") from None
         raise error(f"{path}: {found}; save its output as a {what}, and give that file") from None
     except TooLarge as found:
         raise error(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import stat
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -190,7 +191,8 @@ def verify_folder(folder: Path) -> None:
             note(f"note: {_clean(str(finding))}")
     wrong = [finding for finding in found.findings if finding.kind == "wrong"]
     for finding in wrong:
-        note(f"wrong: {_clean(str(finding))}", always=True)
+        told = replace(finding, file=str(folder)) if finding.file == "." else finding
+        note(f"wrong: {_clean(str(told))}", always=True)
     if wrong:
         note(f"{folder}: {len(wrong)} {'thing does' if len(wrong) == 1 else 'things do'} not belong together")
         raise typer.Exit(BAD_INPUT)

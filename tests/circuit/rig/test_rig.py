@@ -97,7 +97,7 @@ def test_files_that_are_no_rig(tmp_path: Path) -> None:
         path.write_bytes(data)
         with pytest.raises(RigError, match=words):
             Rig.load(path)
-    with pytest.raises(RigError, match="this is a directory, not a rig file"):
+    with pytest.raises(RigError, match="this is a folder, not a rig file"):
         Rig.load(tmp_path)
     with pytest.raises(RigError, match="no such rig file"):
         Rig.load(tmp_path / "absent.toml")
@@ -192,7 +192,7 @@ def test_a_folder_does_not_hide_a_shipped_rig(tmp_path: Path, monkeypatch: pytes
     (tmp_path / "thenar").mkdir()
     (tmp_path / "mine").mkdir()
     assert Rig.load("thenar") == THENAR
-    with pytest.raises(RigError, match="is a directory"):
+    with pytest.raises(RigError, match="is a folder"):
         Rig.load("mine")
 
 

@@ -151,7 +151,7 @@ class TestRefused:
 @pytest.mark.parametrize(
     ("name", "more", "words"),
     [
-        ("warm-step.csv", (), "warm-step.csv already exists and was kept; --force replaces it"),
+        ("warm-step.csv", (), "warm-step.csv already exists and was kept; --force replaces the folder"),
         ("cool-step.json", ("--force",), "cool-step.json was not written by an export, since no sidecar lists it"),
     ],
 )

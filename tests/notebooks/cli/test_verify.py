@@ -211,3 +211,7 @@ class TestCommand:
         done = cli("export", "--verify", out)
         assert done.exit_code == 1
         assert not {"\x07", "\x1b"} & set(done.stdout + done.stderr)
+
+    def test_a_folder_without_sidecars_is_named(self, cli: Cli, tmp_path: Path) -> None:
+        (tmp_path / "notes.txt").write_text("mine")
+        assert f"wrong: {tmp_path}: holds no sidecar" in cli("export", "--verify", tmp_path).stderr

@@ -55,7 +55,7 @@ def test_files_that_cannot_be_are_told(tmp_path: Path) -> None:
     (tmp_path / "folder.cue").mkdir()
     with pytest.raises(OutputError, match=r"bytes\.cue: it is not UTF-8 text"):
         Document.open(tmp_path / "bytes.cue")
-    with pytest.raises(OutputError, match=r"folder\.cue: this is a directory, not a cue file"):
+    with pytest.raises(OutputError, match=r"folder\.cue: this is a folder, not a cue file"):
         Document.open(tmp_path / "folder.cue")
     with pytest.raises(OutputError, match=r"none\.cue: no such cue file"):
         Document.open(tmp_path / "none.cue")

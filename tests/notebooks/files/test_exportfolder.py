@@ -139,7 +139,9 @@ class TestFiles:
     def test_a_folder_is_kept_unless_forced_and_stands_beside_the_new_one(self, tmp_path: Path) -> None:
         out = tmp_path / "out"
         assert publish(drive("a", b"1"), out) is None
-        with pytest.raises(OutputError, match=r"a\.csv and 1 more already exist and were kept; --force replaces"):
+        with pytest.raises(
+            OutputError, match=r"a\.csv and 1 more already exist and were kept; --force replaces the folder"
+        ):
             publish(drive("b", b"2"), out)
         assert held(out) == drive("a", b"1")
         for content, before in ((b"2", b"1"), (b"3", b"2")):
