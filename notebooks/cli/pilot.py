@@ -43,7 +43,7 @@ def pilot_command(
     rig: RigOptions,
     figure: FigureOptions,
     answers: Annotated[
-        Path | None,
+        list[Path] | None,
         out(
             "TRIALS.csv",
             "Sharpen the prediction by answers: columns participant, trial, presented, responded and, if recorded, "
@@ -93,15 +93,17 @@ def pilot_command(
     answers, FILE is the set that was presented; further ones are predicted for the laboratory too. A laboratory is one
     draw of the posterior with people of its own: those that make the answers likely count more.
     """
+    if answers is not None and len(answers) > 1:
+        raise usage("give one file of answers or of measurements, not both", "--answers' / '--measurements")
     planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
     observed = {"--keep": keep, "--figure": figure.figure}
     for option, value in (planned if answers is not None else observed).items():
         if value is not None:
             raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
     if json is not None:
-        check_output(json, (), "JSON")
+        check_output(json, (".json",), "JSON")
     if answers is not None:
-        condition(answers, files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
+        condition(answers[0], files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
         return
     people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
     times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)

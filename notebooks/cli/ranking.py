@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -169,7 +169,7 @@ def rank_command(
         if report == STDOUT:
             raise usage("- is not a file; give the name of a page, such as report.html", "--report")
     if json is not None:
-        check_output(json, (), "JSON")
+        check_output(json, (".json",), "JSON")
     check_separate(files, [json, report, figure.picture])
     here = read_workers(workers)
     if doubt:
@@ -250,6 +250,9 @@ def _following(ranking: Ranking, icons: IconSet, files: Sequence[str], rig: RigO
     from thermicon.icons import Family
 
     step = next_step(ranking, any(isinstance(each, Family) for each in getattr(icons, "entries", ())))
+    if step.options[:1] == ("--set",):  # the new value stands in place of the earlier one
+        key = step.options[1].partition("=")[0]
+        rig = replace(rig, set=[change for change in rig.changes if change.partition("=")[0].strip() != key] or None)
     groups = (rig, crowd) if step.command in ("rank", "improve") else (rig,)
     return f"{command_text(files, *groups, paths=True, command=step.command)} {shlex.join(step.options)}".rstrip()
 

@@ -352,7 +352,7 @@ def read_vary(text: str) -> Vary:
     if not number.isdecimal():
         raise no(f"{parts[2]!r} is not a number of values; {FORM}")
     if not 2 <= int(number) <= MOST_VALUES:
-        raise no(f"{number} values is outside 2 to {MOST_VALUES}")
+        raise no(f"{number} {'value is' if int(number) == 1 else 'values are'} outside 2 to {MOST_VALUES}")
     if low == high:
         raise no(f"both ends are {low:g}; a sweep needs two different ends")
     if log and not (low > 0 and high > 0):

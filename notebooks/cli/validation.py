@@ -24,7 +24,7 @@ def validate_command(
     if draws == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
     if json is not None:
-        check_output(json, (), "JSON")
+        check_output(json, (".json",), "JSON")
     from thermicon.perception.evidence.validate import validate
     from thermicon.perception.evidence.validate_file import report_file
 

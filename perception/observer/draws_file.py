@@ -169,7 +169,8 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
     lines = read_text(path, "table of posterior draws", MOST_MB, RecordError).splitlines()
     head = [line for line in lines if line.startswith("#")]
     if not head or not head[0].startswith((FIRST_LINE, LABORATORY_LINE)):
-        raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}")
+        laboratory = "pilot FILE --answers TRIALS.csv --keep LAB.toml makes one of answers"
+        raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}; {laboratory}")
     header = _header(path.name, head)
     _check_table(path.name, head, lines[len(head) :])
     rows = [line.split(",") for line in lines[len(head) :]]

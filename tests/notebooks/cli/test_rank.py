@@ -16,6 +16,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.icons.number_text import percent_span
 from thermicon.notebooks.cli import ranking
+from thermicon.notebooks.cli.options import CrowdOptions, RigOptions
 from thermicon.notebooks.report.rank_report import Step, next_step
 from thermicon.perception.observer.observer import DATA
 
@@ -97,6 +98,12 @@ def test_the_next_command_is_chosen_by_what_was_found(
     job = SimpleNamespace(icons=tuple(load_library("six-icons")), rig=Rig.load("thenar"))
     found: Any = SimpleNamespace(icons=icons, pairs=pairs, job=job)
     assert next_step(found, families) == step
+    if step.command == "rank":
+        rig = RigOptions(set=["driver.current_limit_A=1", "contact.area_cm2=9"])
+        said = ranking._following(found, load_library("six-icons"), ["six-icons"], rig, CrowdOptions())
+        assert said == "thermicon rank six-icons --set driver.current_limit_A=1 --set contact.area_cm2=18"
+    job.rig = Rig.load("thenar").with_(**{"contact.area_cm2": 18.1})
+    assert next_step(found, families).command != "rank", "no contact of over 36 cm² is advised"
 
 
 def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -223,5 +230,7 @@ def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_
     assert "Measure first, by the share of the variance of the proportion correct that would go: - " in words
     assert effects[0]["constant"].split()[0] in words
     assert "64 draws for 3 virtual people on the thenar rig with contact.area_cm2=4 (seed 0, episodes norm): " in words
-    assert {"memory noise (episodes)", "contact resistance"} <= {each["constant"] for each in effects}
+    units = {each["constant"]: each["unit"] for each in effects}
+    assert (units["contact resistance"], units["thickness of the outermost layer"]) == ("m²·K/W", "mm")
+    assert "memory noise (episodes)" in units and "degC" not in words and "d'" not in words
     assert picture.stat().st_size > 10_000

@@ -92,7 +92,7 @@ def test_what_is_done_is_not_overwritten_and_is_joined(script: Runner, done: Pat
     again = script("--participant", "A", "--simulate", "--resume", output=done)
     assert again.returncode == 0 and "A: done before, 8 answers; there is nothing to resume" in again.stdout
     assert (answers(done), sorted(done.rglob("*"))) == (before, files)
-    assert "16 answers of 2 participants" in script("--collect", output=done).stdout
+    assert "16 answers of 2 participants\n" in script("--collect", output=done).stdout
     joined = rows_of(done / "answers.csv")
     assert list(joined[0]) == COLUMNS
     assert [row["participant"] for row in joined] == ["A"] * 8 + ["B"] * 8
