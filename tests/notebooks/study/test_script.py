@@ -82,6 +82,7 @@ def test_equal_seeds_give_equal_answers(script: Runner, tmp_path: Path) -> None:
         script("--participant", "A", "--simulate", "--seed", seed, output=tmp_path / folder)
     one, two, three = (answers(tmp_path / folder) for folder in ("one", "two", "three"))
     assert one == two != three
+    assert "8 answers of 1 participant\n" in script("--collect", output=tmp_path / "one").stdout
 
 
 def test_what_is_done_is_not_overwritten_and_is_joined(script: Runner, done: Path) -> None:
