@@ -37,15 +37,16 @@ def _page(package: str) -> Iterator[str]:
     module = import_module(f"thermicon.{package}")
     yield f"# `thermicon.{package}`\n"
     yield f"{(module.__doc__ or '').strip()}\n"
-    yield "| name | what it is |\n|---|---|"
     seen: Counter[str] = Counter()
-    names = listed(module)
-    for name in names:
-        slug = name.lower() + (f"-{seen[name.lower()]}" if seen[name.lower()] else "")
-        seen[name.lower()] += 1
-        yield f"| [`{name}`](#{slug}) | {plain(_summary(getattr(module, name)))} |"
-    yield ""
-    for name in names:
+    rooms = listed(module)
+    for room, names in rooms.items():
+        yield f"| {room} | what it is |\n|---|---|"
+        for name in names:
+            slug = name.lower() + (f"-{seen[name.lower()]}" if seen[name.lower()] else "")
+            seen[name.lower()] += 1
+            yield f"| [`{name}`](#{slug}) | {plain(_summary(getattr(module, name)))} |"
+        yield ""
+    for name in (name for names in rooms.values() for name in names):
         value = getattr(module, name)
         kind = "class" if isinstance(value, type) else "function" if callable(value) else "data"
         kind = "exception" if isinstance(value, type) and issubclass(value, BaseException) else kind
@@ -53,10 +54,14 @@ def _page(package: str) -> Iterator[str]:
         yield f"## `{name}`\n\n```{{eval-rst}}\n.. auto{kind}:: thermicon.{package}.{name}{members}\n```\n"
 
 
-def listed(module: ModuleType) -> list[str]:
-    """Return the public names of a package in the order in which its stub lists them: that of the flow."""
+def listed(module: ModuleType) -> dict[str, list[str]]:
+    """Return the public names of a package by the room that they come from, in the order of the flow."""
     tree = ast.parse(Path(str(module.__file__)).with_suffix(".pyi").read_text(encoding="utf-8"))
-    return [alias.name for node in tree.body if isinstance(node, ast.ImportFrom) for alias in node.names]
+    rooms: dict[str, list[str]] = {}
+    for node in tree.body:
+        if isinstance(node, ast.ImportFrom) and node.module:
+            rooms.setdefault(node.module.partition(".")[0], []).extend(alias.name for alias in node.names)
+    return rooms
 
 
 def _summary(value: object) -> str:
