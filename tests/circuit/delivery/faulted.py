@@ -89,6 +89,9 @@ def _currents(
                 _until(player, at, current, span, cut["react_within_s"], found, "hangs until the cut-off")
             for end in ends if cut["react_within_s"] else ():
                 _until(player, at, end, span, cut["react_within_s"], found, "stuck until the cut-off")
+        if demand["rest_before_first_play_s"] is not None:  # on a display that was without power
+            begun = player.hold(player.modes(0.0, 0.0).steady(), held.rest, float(demand["rest_before_first_play_s"]))
+            found.note("first play after the rest", player.play(held, begun)[0])
         found.tried["no watchdog is quick enough"] += not watchdog_s
         found.tried["no cut-off is quick enough"] += not cut["react_within_s"]
 
