@@ -1,4 +1,4 @@
-"""What tests of several rooms build: key words of messages, and the observer file of a laboratory."""
+"""What tests of several rooms build: key words of messages, the observer file of a laboratory, weighted quantiles."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 def messages(beside: str, name: str = "messages.toml") -> dict[str, Any]:
@@ -34,3 +37,12 @@ def few_draws(path: Path, count: int, resampled: str = "", rig: str = "") -> Pat
     header = replace(shipped.header, resampled=resampled, rig=rig)
     path.write_text(to_text(header, shipped.names, values), encoding="utf-8")
     return path
+
+
+def weighted_quantile(
+    values: NDArray[np.float64], weights: NDArray[np.float64], shares: tuple[float, ...]
+) -> tuple[float, ...]:
+    """Quantiles of weighted values, linear between the middles of their weights."""
+    order = np.argsort(values, kind="stable")
+    place = np.cumsum(weights[order]) - 0.5 * weights[order]
+    return tuple(float(q) for q in np.interp(shares, place, values[order]))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from tests.weights import weighted_quantile
+from tests.builders import weighted_quantile
 from thermicon.perception.pilot import conditioning
 from thermicon.perception.pilot.conditioning import Answered, condition, systematic
 from thermicon.perception.pilot.laboratory_file import off_middle

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.builders import weighted_quantile
 from tests.perception.pilot.madeup import USUAL, measurements_of
-from tests.weights import weighted_quantile
 from thermicon.circuit import Rig
 from thermicon.circuit.cores import quiet_blas
 from thermicon.icons import read_cue
