@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -103,15 +102,6 @@ def test_a_page_that_cannot_be_staged_is_named(
     site = staging.Staging(tmp_path, {"gallery": str})
     with pytest.raises(staging.StagingError, match=fault):
         site.filled(site.linked(text, PurePosixPath("docs/x.md"), PurePosixPath("x.md")), PurePosixPath("docs/x.md"))
-
-
-def test_a_page_that_did_not_change_keeps_its_time(builder: dict[str, ModuleType], tmp_path: Path) -> None:
-    page = staged(builder, tmp_path) / "how-to" / "simulate.md"
-    os.utime(page, (1, 1))
-    (tmp_path / "left-over.md").write_text("x", encoding="utf-8")
-    staged(builder, tmp_path)
-    assert page.stat().st_mtime == 1
-    assert not (tmp_path / "left-over.md").exists()
 
 
 def test_every_option_of_every_command_is_listed(builder: dict[str, ModuleType]) -> None:
