@@ -99,13 +99,18 @@ def examine() -> Iterator[Finding]:
 def check_python() -> Iterator[Finding]:
     """State the Python that runs, and on what; and the installed thermicon."""
     text = f"{platform.python_version()} ({sys.executable}) on {platform.platform(terse=True)} {platform.machine()}"
-    yield Finding("Python", "ok", text)
-    here, found = Path(__file__).parents[1], installed_version(PROGRAM)
+    yield Finding("Python", "ok", _readable(text))
+    here, found = _readable(str(Path(__file__).parents[1])), installed_version(PROGRAM)
     if found is None:
         cure = f"in the folder of its pyproject.toml: {PIP} install -e ."
         yield Finding(PROGRAM, "fault", f"runs from {here}, but is not installed", cure)
     else:
         yield Finding(PROGRAM, "ok", f"{found} in {here}")
+
+
+def _readable(text: str) -> str:
+    """Letters of paths that Python read without knowing their encoding, as with LC_ALL=C."""
+    return text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
 
 
 def check_required() -> Iterator[Finding]:
