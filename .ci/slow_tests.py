@@ -21,15 +21,16 @@ SHOWN_IN_A_BROWSER = ("notebooks/workbench", "notebooks/report", "notebooks/canv
 SHOWN_IN_PAGES = ("README.md", "docs/", "notebooks/cli", "notebooks/report", "circuit/delivery", "circuit/safety")
 ARCHIVED = ("thermicon/", "pyproject.toml", "MANIFEST.in", "LICENSE", *(f"{package}/" for package in PACKAGES))
 MINUTES = {
-    "tests/browser": 12.0,
-    "tests/circuit/delivery": 9.0,
+    "tests/browser": 3.0,
+    "tests/circuit/delivery": 10.0,
     "tests/circuit/fitting": 8.0,
-    "tests/notebooks/cli": 4.0,
-    "tests/notebooks/test_tutorials.py": 4.0,
+    "tests/docs": 2.5,
+    "tests/icons/language": 1.0,
+    "tests/notebooks/cli": 1.0,
+    "tests/notebooks/test_tutorials.py": 1.0,
     "tests/perception/evidence": 8.0,
-    "tests/perception/pilot": 6.0,
-    "tests/test_package.py": 2.0,
-    "tests/test_readme.py": 3.0,
+    "tests/test_package.py": 1.0,
+    "tests/test_readme.py": 1.0,
 }
 """Of the tests that take longer than `A_TEST` minutes, on two cores."""
 A_TEST = 0.3
