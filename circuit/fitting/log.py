@@ -258,7 +258,7 @@ def _temperature_fault(column: str, there: Array) -> str | None:
     return None
 
 
-MOST_MB, MOST_SIDECAR_MB = 200.0, 1.0
+MOST_MB = 200.0
 OTHER_UNIT = {
     "time_ms": ("time_s", "divide it by 1000"),
     "time_min": ("time_s", "multiply it by 60"),
