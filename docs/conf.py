@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from importlib.metadata import distribution
 from importlib.metadata import version as version_of
-from typing import Any
 
 from sphinx.errors import ConfigError
 
@@ -83,10 +82,3 @@ html_theme_options = {
 }
 html_context = {"default_mode": "auto"}
 html_sidebars = {"index": [], "gallery": []}
-
-
-def setup(app: Any) -> None:
-    """Give Sphinx the colours of notebook cells, under the name that a kernel gives their language."""
-    from cell_lexer import CellLexer
-
-    app.add_lexer("ipython3", CellLexer)

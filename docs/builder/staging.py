@@ -27,9 +27,8 @@ MOVED = {
 
 LINK = re.compile(r"(?P<before>\]\()(?P<target>(?!\w+:)[^)\s#]+)(?P<anchor>#[^)\s]*)?(?=\))")
 FENCE = re.compile(r"^(?P<indent> *)```(?P<kind>[\w{}-]*)\n.*?^ *```", re.MULTILINE | re.DOTALL)
-NO_LEXER = ("csv",)
+NO_LEXER = ("csv", "cue")
 """Languages of blocks that a code host colours and Pygments does not know."""
-CUE_TEXT = re.compile(r"^ *```\n\s*(cue 1|icon |set )")
 SLOT = re.compile(r"<!-- site: (?P<name>[\w ]+) -->\n(?P<meanwhile>.*?)<!-- end of site -->\n?", re.DOTALL)
 """What only the site has, made from the program; a code host shows the sentences between the marks instead."""
 
@@ -118,11 +117,11 @@ def _notebook(path: Path) -> str:
 
 
 def _coloured(fence: str) -> str:
-    """A block of code with its language: cue text has a lexer, a block without a language is plain text."""
+    """A block of code with its language: cue text and a block without a language are plain text."""
     kind = re.match(r" *```(\S*)", fence)
     language = kind[1] if kind else ""
     if not language:
-        language = "cue" if CUE_TEXT.match(fence) else "text"
+        language = "text"
     elif language in NO_LEXER:
         return fence.replace(f"```{language}", "```text", 1)
     elif not language.startswith("{") and language != "math":

@@ -34,6 +34,8 @@ VOCABULARY: dict[str, tuple[str, ...]] = {
     "repeat": _STATEMENTS,
     "header": _KEYS,
 }
+CLAUSES = ("by", "to", "at", "over", "for", "every", "in", "step", "starting", "cut", "most", "least", "up", "down")
+"""Words inside of statements."""
 CONTROLS: tuple[str, ...] = get_args(Control)
 
 _TABLES = tomllib.loads(resources.files("thermicon.icons").joinpath("data/words.toml").read_text(encoding="utf-8"))

@@ -78,16 +78,16 @@ def _shortened(script: str) -> str:
 
 
 def cue_words() -> dict[str, Any]:
-    """Words to colour, from the lexer, so that the page never knows another language than the parser."""
-    from thermicon.icons.language.highlight import KEYWORDS, SPELLINGS
-    from thermicon.icons.model.words import CONTROLS, STARTS
+    """Words to colour, so that the page never knows another language than the parser."""
+    from thermicon.icons.model.units import UNITS
+    from thermicon.icons.model.words import CLAUSES, CONTROLS, STARTS, VOCABULARY
 
     from ..editing.completions import completions
 
-    keywords = sorted({*KEYWORDS, *CONTROLS, *STARTS.values(), "most", "least"})
+    units = {unit for kind in UNITS.values() for unit in kind if unit}
     return {
-        "keywords": keywords,
-        "units": sorted(SPELLINGS, key=lambda unit: (-len(unit), unit)),
+        "keywords": sorted({*CLAUSES, *CONTROLS, *STARTS.values()}.union(*VOCABULARY.values())),
+        "units": sorted(units, key=lambda unit: (-len(unit), unit)),
         "next": completions(),
     }
 

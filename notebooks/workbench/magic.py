@@ -42,9 +42,7 @@ def cue(shell: InteractiveShell, line: str, cell: str) -> IconSet:
     ``%%cue``. When something is wrong with the cell, all of it is reported, the cell fails so that "Run all" stops, and
     NAME keeps what it held before.
 
-    JupyterLab colours the cell as if it were Python: it takes no other language from a magic unless one of its own
-    extensions brings it. Text in Markdown blocks marked ``cue`` is coloured by tools that use Pygments, such as
-    mkdocs and Sphinx.
+    JupyterLab colours the cell as if it were Python: it takes no other language from a magic.
     """
     from thermicon.icons import parse
 
