@@ -2,13 +2,11 @@
 
 import re
 from bisect import bisect_right
-from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 from typing import TYPE_CHECKING
 
-from ..atomic import NotPrivate, cache_folder, private_folder
 from ..model.errors import CueError, whole_file
 
 if TYPE_CHECKING:
@@ -192,14 +190,8 @@ def utf8_of(data: bytes, file: str, rule: str = "a cue file is plain UTF-8 text"
 
 @cache
 def grammar() -> "Lark":
-    """The parser made of ``grammar.lark``; lark keeps its tables in the user's private cache folder, if there is one.
-
-    Making them takes longer than reading a file.
-    """
+    """The parser made of ``grammar.lark``."""
     from lark import Lark
 
     text = resources.files("thermicon.icons").joinpath("grammar.lark").read_text(encoding="utf-8")
-    kept: str | bool = False
-    with suppress(NotPrivate):
-        kept = str(private_folder(cache_folder() / "grammar") / "cue")
-    return Lark(text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False, cache=kept)
+    return Lark(text, parser="lalr", lexer="contextual", propagate_positions=True, maybe_placeholders=False)

@@ -1,41 +1,15 @@
-"""The kept tables of the grammar read as the grammar does; and what recovery relies on in lark's private state.
+"""What recovery relies on in lark's private state.
 
 A new version of lark that changes it fails here first.
 """
 
 from importlib import resources
-from pathlib import Path
 
-import pytest
 from lark import Token
 
 from thermicon.icons.language.source import grammar
 
 CUE = resources.files("thermicon.icons").joinpath("library", "six-icons.cue").read_text(encoding="utf-8")
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    tmp_path.chmod(0o700)
-    monkeypatch.setenv("THERMICON_CACHE", str(tmp_path))
-    return tmp_path / "grammar"
-
-
-def test_kept_tables_read_as_the_grammar_does_and_damaged_ones_are_made_again(folder: Path) -> None:
-    first = grammar.__wrapped__()
-    (kept,) = folder.iterdir()
-    whole = kept.read_bytes()
-    assert grammar.__wrapped__().parse(CUE) == first.parse(CUE)
-    kept.write_bytes(whole[: len(whole) // 2])
-    assert grammar.__wrapped__().parse(CUE) == first.parse(CUE)
-    assert len(kept.read_bytes()) > 0.9 * len(whole)
-    assert folder.stat().st_mode & 0o077 == 0
-
-
-def test_without_a_private_folder_the_grammar_is_read_all_the_same(folder: Path) -> None:
-    folder.parent.chmod(0o777)
-    assert grammar.__wrapped__().parse(CUE).data == "start"
-    assert not folder.exists() or not list(folder.iterdir())
 
 
 def test_the_lexer_can_be_moved_to_an_offset() -> None:
