@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterator
-from itertools import pairwise
 
 import numpy as np
 
@@ -178,22 +177,13 @@ def _electrical(rig: Rig, corners: list[tuple[float, float]]) -> Iterator[str]:
 
 
 def _module(rig: Rig) -> Iterator[str]:
-    """Both plates and the legs between them, which store heat in so many cells, or conduct alone where that is 0."""
-    module, cells = rig.module, rig.module.leg_nodes
-    alpha, square = repr(module.seebeck_V_per_K), "I(Vsense)*I(Vsense)"
-    joule = "" if cells else f"{module.resistance_ohm / 2!r}*{square}"
+    """Both plates and the legs between them."""
+    module, alpha = rig.module, repr(rig.module.seebeck_V_per_K)
+    joule = f"{module.resistance_ohm / 2!r}*I(Vsense)*I(Vsense)"
     yield from _section(f"the module's thermal side; {ZERO_C_IN_K!r} makes kelvin of degC")
-    yield f"Bcold cold 0 I={alpha}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense){joule and '-' + joule}"
-    yield f"Bhot 0 hot I={alpha}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense){joule and '+' + joule}"
-    if cells:
-        yield "* the legs: cells that store heat, from the hot plate to the cold one"
-    chain = ["hot", *(f"leg{cell + 1}" for cell in range(cells)), "cold"]
-    for place, (above, below) in enumerate(pairwise(chain)):
-        part = max(1, 2 * cells if place in (0, cells) else cells)
-        yield f"Rtheta{place if cells else ''} {above} {below} {module.thermal_resistance_K_per_W / part!r}"
-    for leg in chain[1:-1]:
-        yield f"C{leg} {leg} 0 {module.leg_capacity_J_per_K / cells!r}"
-        yield f"B{leg} 0 {leg} I={module.resistance_ohm / cells!r}*{square}"
+    yield f"Bcold cold 0 I={alpha}*(V(cold)+{ZERO_C_IN_K!r})*I(Vsense)-{joule}"
+    yield f"Bhot 0 hot I={alpha}*(V(hot)+{ZERO_C_IN_K!r})*I(Vsense)+{joule}"
+    yield f"Rtheta hot cold {module.thermal_resistance_K_per_W!r}"
     yield f"Chot hot 0 {module.hot_plate_J_per_K!r}"
     yield f"Ccold cold 0 {module.cold_plate_J_per_K!r}"
 

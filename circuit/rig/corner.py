@@ -29,7 +29,7 @@ def perturbed(
     """Return a rig whose numbers deviate from those of its file, beyond whose bounds they may lie.
 
     Shares (−0.3 is 30 % less) of contact resistance, Seebeck coefficient, thermal conductance of the module (its
-    resistance goes the other way) and heat capacities of plates and legs; K of the room air, and of the heat sink, its
+    resistance goes the other way) and heat capacities of the plates; K of the room air, and of the heat sink, its
     set point, or a passive sink and its air. Bare skin rests as given; blood is solved again where the rig solves it.
     Raises RigError for what is physically impossible.
     """
@@ -120,16 +120,13 @@ def _module(rig: Rig, seebeck: float, conductance: float, plates: float) -> Pelt
             nominal.thermal_resistance_K_per_W / (1.0 + conductance),
             nominal.hot_plate_J_per_K * (1.0 + plates),
             nominal.cold_plate_J_per_K * (1.0 + plates),
-            nominal.leg_nodes,
-            nominal.leg_capacity_J_per_K * (1.0 + plates),
         )
     except ValueError as problem:  # a share so large that nothing finite is left
         raise RigError(f"rig {rig.name}, one corner of it: {problem}; use less") from None
 
 
 def _module_table(module: Peltier) -> dict[str, Any]:
-    legs = ("leg_nodes", "leg_capacity_J_per_K") if module.leg_nodes else ()
-    return {key: getattr(module, key) for key in (*PARAMETERS, "hot_plate_J_per_K", "cold_plate_J_per_K", *legs)}
+    return {key: getattr(module, key) for key in (*PARAMETERS, "hot_plate_J_per_K", "cold_plate_J_per_K")}
 
 
 def _check(rig: Rig, shares: dict[str, float], shifts: dict[str, tuple[float, float]]) -> None:

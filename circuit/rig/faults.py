@@ -148,7 +148,7 @@ def heat_sink_faults(table: HeatSinkTable) -> Iterator[str]:
 
 
 def module_faults(table: ModuleTable) -> Iterator[str]:
-    """Faults in how a rig file gives its module: by parameters, data sheets or a name, and its legs."""
+    """Faults in how a rig file gives its module: by parameters, data sheets or a name."""
     stated = [key for key in PARAMETERS if getattr(table, key) is not None]
     ways = [*stated[:1], *(key for key in ("datasheet", "name") if getattr(table, key) is not None)]
     missing = [key for key in PARAMETERS if stated and key not in stated]
@@ -162,7 +162,3 @@ def module_faults(table: ModuleTable) -> Iterator[str]:
             yield sentence("faults.module_extraction")
     elif table.datasheet is not None and len(table.datasheet) not in (1, 2):
         yield sentence("faults.module_sheets", count=len(table.datasheet))
-    elif table.leg_nodes and table.leg_capacity_J_per_K is None:
-        yield sentence("faults.legs_capacity")
-    elif table.leg_capacity_J_per_K is not None and not table.leg_nodes:
-        yield sentence("faults.legs_nodes", capacity=table.leg_capacity_J_per_K)

@@ -23,7 +23,7 @@ class Peltier:
     """A module with its two plates.
 
     `seebeck_V_per_K` α, `resistance_ohm` R, `thermal_resistance_K_per_W` Θ between the plates; plate capacities in J/K.
-    `leg_nodes` divide the legs into cells that store heat, `leg_capacity_J_per_K` in all; 0: legs without capacity.
+    The legs between them store no heat.
     """
 
     seebeck_V_per_K: float
@@ -31,16 +31,12 @@ class Peltier:
     thermal_resistance_K_per_W: float
     hot_plate_J_per_K: float
     cold_plate_J_per_K: float
-    leg_nodes: int = 0
-    leg_capacity_J_per_K: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in self.__slots__[:5]:
+        for name in self.__slots__:
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
                 raise ValueError(f"module.{name} = {value}: must be a positive number")
-        if self.leg_nodes and not (math.isfinite(self.leg_capacity_J_per_K) and self.leg_capacity_J_per_K > 0):
-            raise ValueError(f"module.leg_capacity_J_per_K = {self.leg_capacity_J_per_K}: must be a positive number")
 
     def heat_absorbed_W(self, current_A: float, cold_C: float, hot_C: float) -> float:
         """Heat taken from the skin side in W: αTcI − I²R/2 − (Th − Tc)/Θ."""

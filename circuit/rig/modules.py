@@ -99,12 +99,9 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
     `source` is what the rig's own `[source]` says of its module.
     """
     plates = (table.hot_plate_J_per_K, table.cold_plate_J_per_K)
-    legs = (table.leg_nodes, table.leg_capacity_J_per_K or 0.0)
     if table.name is None and table.datasheet is None:
         alpha, ohm, theta = (float(getattr(table, key)) for key in PARAMETERS)
-        return Peltier(alpha, ohm, theta, *plates, *legs), ModuleOrigin(
-            f"parameters given: {source or 'no source stated'}"
-        )
+        return Peltier(alpha, ohm, theta, *plates), ModuleOrigin(f"parameters given: {source or 'no source stated'}")
     what, warnings = f"data sheet given in the rig ({source or 'no source stated'})", []
     if table.name is not None:
         try:
@@ -130,7 +127,7 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
         sentence += f", taken at a mean module temperature of {min(max(mean_C, low), high):.1f} °C"
         if not low <= mean_C <= high:
             warnings.append(_beyond_sheets(extractions, mean_C, (low, high), own=table.name is None))
-    return Peltier(*at_mean_C(extractions, mean_C), *plates, *legs), ModuleOrigin(sentence + ".", tuple(warnings))
+    return Peltier(*at_mean_C(extractions, mean_C), *plates), ModuleOrigin(sentence + ".", tuple(warnings))
 
 
 def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tuple[float, float], *, own: bool) -> str:

@@ -63,8 +63,6 @@ Perfusion = Annotated[float, Field(ge=0, le=1)]
 Film = Annotated[float, Field(ge=1e-3, le=1e6)]
 
 Positive = Annotated[float, Field(gt=0)]
-MOST_LEG_NODES = 20
-"""Five nodes are within some millikelvins of the field in the legs; more only cost time."""
 MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
 """Skin models have a handful of layers and rigs a few probes; each costs time in every step."""
 
@@ -104,8 +102,6 @@ class ModuleTable(_Table):
     extraction: Literal["three", "four"] | None = None
     hot_plate_J_per_K: Ideal
     cold_plate_J_per_K: Ideal
-    leg_nodes: Annotated[int, Field(ge=0, le=MOST_LEG_NODES)] = 0
-    leg_capacity_J_per_K: Annotated[float, Field(ge=1e-3, le=1e3)] | None = None
 
     def faults(self) -> Iterable[str]:
         """See `module_faults`."""

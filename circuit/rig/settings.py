@@ -89,8 +89,7 @@ def put(document: dict[str, Any], key: str, value: object) -> None:
     generic = ".".join([*plain, parts[-1]])
     if generic not in rig_keys() or isinstance(place, list):
         raise RigError(unknown_key(generic).replace(".0.", f".{parts[2] if len(parts) > 3 else 0}."))
-    own = key.endswith(("plate_J_per_K", "leg_nodes", "leg_capacity_J_per_K"))
-    if parts[0] == "module" and not own and place.get(parts[-1]) != value:
+    if parts[0] == "module" and not key.endswith("plate_J_per_K") and place.get(parts[-1]) != value:
         document.get("source", {}).pop("module", None)
     if value is None:
         place.pop(parts[-1], None)

@@ -29,16 +29,14 @@ class Bank:
     probe_start: Index
     probe_weight: Array
     face_share: Array
-    legs: int = 0
     passive: bool = False
 
     @staticmethod
     def of(networks: Sequence[Network]) -> Bank:
-        """Stack networks; RigError where they differ in the nodes of their legs or the kind of their heat sinks."""
-        if len({(network.legs, network.passive) for network in networks}) > 1:
+        """Stack networks; RigError where only some have a passive heat sink."""
+        if len({network.passive for network in networks}) > 1:
             raise RigError(
-                "rigs of one batch must share module.leg_nodes, and all have a passive heat sink "
-                "(heat_sink.air_resistance_K_per_W) or none"
+                "rigs of one batch must all have a passive heat sink (heat_sink.air_resistance_K_per_W) or none"
             )
         count = np.array([len(network.capacity_J_per_K) for network in networks], dtype=np.int64)
         most = int(count.max())
@@ -59,7 +57,6 @@ class Bank:
             np.array([network.probe_start for network in networks]),
             np.array([network.probe_weight for network in networks]),
             np.array([network.face_share for network in networks]),
-            networks[0].legs,
             networks[0].passive,
         )
 
@@ -68,14 +65,9 @@ class Bank:
         """What the kernels take of a bank."""
         return self.count, self.plates, self.capacity, self.conductance, self.perfusion
 
-    @property
-    def extras(self) -> int:
-        """Number of states between the last lump and the deep node."""
-        return self.legs + self.passive
-
     def states(self, states: Sequence[Array]) -> Array:
         """Stack starting states, one per lane, padded to (lanes, nodes)."""
-        rows = np.zeros((len(states), self.capacity.shape[1] + self.extras + 3))
+        rows = np.zeros((len(states), self.capacity.shape[1] + self.passive + 3))
         for row, state in zip(rows, states, strict=True):
             row[: len(state)] = state
         return rows
@@ -159,7 +151,6 @@ def run_on(
 ) -> tuple[Array, State]:  # fmt: skip
     """`run_forward` from any states, also returns those at the end; the last `alone` lanes have their own steps."""
     from .kernel import forward
-    from .kernel_legs import leg_room
 
     which = [RECORDED.index(probe) for probe in probes]
     places = np.ascontiguousarray(bank.probe_start[:, which])
@@ -174,7 +165,7 @@ def run_on(
     def work(wide: tuple[int, ...], blocks: Index) -> None:
         forward(
             wide, blocks, rig_of, cue_of, intervals.edges_s, intervals.start_A, intervals.end_A, intervals.row_of,
-            bank.arrays, places, weights, state.nodes_C, sinks, out, final, leg_room(wide, bank.legs),
+            bank.arrays, places, weights, state.nodes_C, sinks, out, final,
         )  # fmt: skip
 
     _in_blocks(work, len(rig_of), len(intervals.edges_s), alone)
@@ -188,7 +179,7 @@ def run_follow(
     from .kernel_follow import follow
 
     share = bank.face_share if skin_control else np.ones_like(bank.face_share)
-    return _run_periods(follow, 2, bank, rig_of, state, (cue_of, period_s, target_C, share))
+    return _run_periods(follow, bank, rig_of, state, (cue_of, period_s, target_C, share))
 
 
 def run_regulate(
@@ -204,21 +195,18 @@ def run_regulate(
     """Return (current A, display °C, limit code), each (lanes, periods), of a PID loop; `gains` (rigs, 5)."""
     from .kernel_follow import regulate
 
-    return _run_periods(regulate, 1, bank, rig_of, state, (cue_of, period_s, setpoint_C, gains, bias_A))
+    return _run_periods(regulate, bank, rig_of, state, (cue_of, period_s, setpoint_C, gains, bias_A))
 
 
 def _run_periods(
-    kernel: Callable[..., None], rooms: int, bank: Bank, rig_of: Index, state: Array, given: tuple[Any, ...]
+    kernel: Callable[..., None], bank: Bank, rig_of: Index, state: Array, given: tuple[Any, ...]
 ) -> tuple[Array, Array, Index]:
-    """Run a kernel that finds the current of each period of its third argument, a target, with rooms for legs."""
-    from .kernel_legs import leg_room
-
+    """Run a kernel that finds the current of each period of its third argument, a target."""
     shape = (len(rig_of), given[2].shape[1])
     current, reached, why = np.empty(shape), np.empty(shape), np.empty(shape, dtype=np.int64)
 
     def work(wide: tuple[int, ...], blocks: Index) -> None:
-        legs = (leg_room(wide, bank.legs) for _ in range(rooms))
-        kernel(wide, blocks, rig_of, *given, bank.arrays, state, current, reached, why, *legs)
+        kernel(wide, blocks, rig_of, *given, bank.arrays, state, current, reached, why)
 
     _in_blocks(work, len(rig_of))
     return current, reached, why

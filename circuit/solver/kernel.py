@@ -24,18 +24,6 @@ import numpy as np
 
 from ..compiled import kernel
 from ..rig.module import ZERO_C_IN_K
-from .kernel_legs import (
-    ACROSS,
-    COOL,
-    MIDDLE,
-    NEAR,
-    WARM,
-    factor_legs,
-    legs_heat,
-    load_legs,
-    step_legs,
-    store_legs,
-)
 from .network import (
     ALPHA,
     COLD_J_PER_K,
@@ -103,7 +91,7 @@ def room(wide, bank):
 
 
 @compiled
-def begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg):
+def begin(wide, block, rig_of, bank, state, x, p, skin, sink):
     """Load a block's rigs and states (lane, nodes) in °C; returns h, half the largest number of lumps.
 
     Shorter columns are padded at the deep end. The conductance to the deep node is added to the last lump's perfusion
@@ -133,9 +121,8 @@ def begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg):
         for k in range(SINK_NUMBERS):  # a slice as target would compile the text of its errors as well
             sink[k, lane] = 0.0
         sink[TEMPERATURE, lane] = p[SINK_C, lane]
-        place = load_legs(state[block[lane]], n + 2, lane, p[DEEP_C, lane], leg)
         if p[SINK_AIR_W_PER_K, lane] > 0.0:
-            sink[TEMPERATURE, lane] = state[block[lane], place]
+            sink[TEMPERATURE, lane] = state[block[lane], n + 2]
         elif p[SINK_J_PER_K, lane] > 0.0:
             power = -p[SINK_W_PER_K, lane] * (state[block[lane], 0] - p[SINK_C, lane])
             sink[POWER, lane] = sink[REST_POWER, lane] = power
@@ -213,7 +200,7 @@ def regulate_sink(step, p, sink):
 
 
 @inlined
-def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, rows, whole, leg):
+def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, rows, whole):
     """One trapezoidal step in place, with the step's mean current and mean squared current; factors are for step/2.
 
     `first` is `weighed` of the lumps, and becomes that of the new ones; `y` and `total` are scratch. The plates obey
@@ -221,39 +208,31 @@ def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, ro
         C_h·dT_h/dt = αI·T_h + I²R/2 + (T_c − T_h)/Θ + (T_s − T_h)/R_s,
         C_c·dT_c/dt = −αI·T_c + I²R/2 + (T_h − T_c)/Θ + g_0·(T_1 − T_c),
 
-    T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system. With
-    cells in the legs (`leg` is not None) the terms in Θ and R/2 are those of `kernel_legs`, which keeps the form.
+    T_h and T_c in kelvin in the Peltier terms; the implicit half step makes them a symmetric 2 × 2 system.
     """
     lanes = len(wide)
     keep, link, back, weight = rows[KEEP], rows[LINK], rows[BACK], rows[WEIGHT]
     for lane in range(lanes):
         if whole[SINK_SHARE, lane] > 0.0:
             regulate_sink(step, p[:, lane], sink[:, lane])
-    legs_heat(squared, p, leg, leg)
     for lane in range(lanes):
         hot0, cold0, kelvin, leak = (
             x[PLATES, lane], x[PLATES, lanes + lane], ZERO_C_IN_K + p[DEEP_C, lane], p[CONDUCTANCE, lane],
         )  # fmt: skip
         pump, joule = p[ALPHA, lane] * current[lane], 0.5 * p[RESISTANCE, lane] * squared[lane]
-        near, warm, cool = leak, joule, joule
-        if leg is not None:
-            near, leak, warm, cool = leg[1][NEAR, lane], leg[1][ACROSS, lane], leg[1][WARM, lane], leg[1][COOL, lane]
         share = whole[SINK_SHARE, lane]  # the heat sink's in its own implicit step: 0 where it is ideal
         hot_store, cold_store, out = (
             whole[HOT_STORE, lane], whole[COLD_STORE, lane], p[SINK_W_PER_K, lane] * (1.0 - share),
         )  # fmt: skip
         sink_K = sink[TEMPERATURE, lane] - p[DEEP_C, lane]
-        a11, a22 = hot_store + out + near - pump, cold_store + near + pump + g0[lane] * (1.0 - whole[COLD_SHARE, lane])
-        b1 = hot_store * hot0 + out * sink_K + share * sink[POWER, lane] + pump * kelvin + warm
-        b2 = cold_store * cold0 - pump * kelvin + cool + g0[lane] * first[lane]
-        inverse = 1.0 / (a11 * a22 - leak * leak)  # both off-diagonal elements are −1/Θ, or −ACROSS
+        a11, a22 = hot_store + out + leak - pump, cold_store + leak + pump + g0[lane] * (1.0 - whole[COLD_SHARE, lane])
+        b1 = hot_store * hot0 + out * sink_K + share * sink[POWER, lane] + pump * kelvin + joule
+        b2 = cold_store * cold0 - pump * kelvin + joule + g0[lane] * first[lane]
+        inverse = 1.0 / (a11 * a22 - leak * leak)  # both off-diagonal elements are −1/Θ
         hot, cold = (b1 * a22 + leak * b2) * inverse, (a11 * b2 + leak * b1) * inverse
         x[PLATES, lane], x[PLATES, lanes + lane] = 2.0 * hot - hot0, 2.0 * cold - cold0
         sink[TEMPERATURE, lane] += 2.0 * share * (sink[POWER, lane] / p[SINK_W_PER_K, lane] + hot - sink_K)
         y[0, lane], y[0, lanes + lane] = cold, 0.0
-        if leg is not None:
-            leg[1][MIDDLE, lane] = hot
-    step_legs(squared, y[0], p, leg)
     for j in range(h):  # elimination of both halves, towards their meeting
         for c in range(2 * lanes):
             y[j + 1, c] = link[j, c] * y[j, c] + keep[j, c] * x[LUMPS + j, c]
@@ -275,15 +254,13 @@ def advance(wide, h, step, current, squared, p, g0, x, y, total, first, sink, ro
 @compiled
 def forward(
     wide, blocks, rig_of, cue_of, edges, start_A, end_A, row_of, bank, places, weights, state, sinks, out, final,
-    leg,
 ):  # fmt: skip
     """Step every lane in `blocks` (blocks, lanes) through the intervals between `edges`, and write the probes of rows.
 
     Lanes of a block share their steps. `bank` holds rigs as `Bank.arrays` gives them; `start_A`, `end_A` (interval,
     cue) are the currents at both ends of an interval; `row_of` (interval + 1,) the row to write at an edge, or −1;
     `state` (lane, nodes) the start in °C; `out` (probe, lane, row) and `final` (lane, nodes) are filled. `sinks`
-    (lane, 4) holds each lane's heat sink that has a controller (NaN: start at its set-point), and is left as it ends;
-    `leg` is `leg_room`.
+    (lane, 4) holds each lane's heat sink that has a controller (NaN: start at its set-point), and is left as it ends.
     """
     lanes, probes = len(wide), places.shape[1]
     x, p, skin, sink, y, total, first = room(wide, bank)
@@ -292,7 +269,7 @@ def forward(
     at, weight = np.empty((probes, 3, lanes), dtype=np.int64), np.empty((probes, 4, lanes))
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg)
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink)
         for lane in range(lanes):
             r = rig_of[block[lane]]
             if p[SINK_AIR_W_PER_K, lane] == 0.0 and not math.isnan(sinks[block[lane], TEMPERATURE]):
@@ -327,7 +304,6 @@ def forward(
                 step = left / math.ceil(left / min(LONGEST_STEP_S, max(SHORTEST_STEP_S, 0.25 * since)) - 1e-9)
                 if abs(step - factored) > 1e-12:
                     factor(wide, h, 0.5 * step, p, skin, rows, whole)
-                    factor_legs(0.5 * step, p, leg)
                     weighed(wide, h, rows[WEIGHT], x, first)
                     factored = step
                 early, late = done / length, (done + step) / length
@@ -336,7 +312,7 @@ def forward(
                     begins, rise = start_A[k, c], end_A[k, c] - start_A[k, c]
                     i, e = begins + rise * early, begins + rise * late
                     current[lane], squared[lane] = 0.5 * (i + e), (i * i + i * e + e * e) * THIRD
-                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole, leg)
+                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole)
                 done += step
                 since += step
         for lane in range(lanes):
@@ -345,8 +321,6 @@ def forward(
                 sinks[block[lane], k] = sink[k, lane]
             for k in range(n + 2):
                 last[k] = flat[place_of(k, n, h, lane, lanes)] + deep
-            place = store_legs(last, n + 2, lane, deep, leg)
+            last[n + 2] = deep
             if p[SINK_AIR_W_PER_K, lane] > 0.0:
-                last[place] = sink[TEMPERATURE, lane]
-                place += 1
-            last[place] = deep
+                last[n + 2], last[n + 3] = sink[TEMPERATURE, lane], deep

@@ -26,16 +26,6 @@ from .kernel import (
     room,
     weighed,
 )
-from .kernel_legs import (
-    ACROSS,
-    COOL,
-    EDGE,
-    HEATED,
-    NEAR,
-    WARM,
-    factor_legs,
-    legs_heat,
-)
 from .network import (
     ALPHA,
     COLD_J_PER_K,
@@ -86,7 +76,7 @@ def limited(amperes, hot, cold, sink, p):
 
 
 @compiled
-def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p, leg, lane):
+def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p):
     """Current for the next period and the code of what limits it, from one implicit step over the period.
 
     After that step the first lump is z0 + elim0 · (cold plate), and what is controlled is `share` of the cold plate and
@@ -94,67 +84,54 @@ def wanted(target, share, z0, elim0, g0, period, hot, cold, sink, guess, p, leg,
     the current alone (`network.current_for_heat_A`):
 
         αI·T_aim − I²R/2 − (T_h − T_aim)/Θ = g_0·(z0 + (elim0 − 1)·T_aim) − C_c·(T_aim − T_c)/period.
-
-    Where legs store heat, `leg` is factored for the period, and its sums stand in place of the terms in Θ and R.
     """
     alpha, ohm, leak = p[ALPHA], p[RESISTANCE], p[CONDUCTANCE]
-    near, warm = leak, 0.0
     aim = (target - (1.0 - share) * z0) / (share + (1.0 - share) * elim0)
     heat = g0 * (z0 + (elim0 - 1.0) * aim) - p[COLD_J_PER_K] / period * (aim - cold)
-    if leg is not None:
-        rows, sums = leg
-        deep = p[DEEP_C] * (sums[NEAR, lane] - sums[ACROSS, lane])  # sums are above the deep node, plates here in °C
-        near, leak, warm = sums[NEAR, lane], sums[ACROSS, lane], sums[WARM, lane] + deep
-        ohm = 2.0 * sums[EDGE, lane] * sums[HEATED, lane] * ohm / rows.shape[1]
-        heat += sums[COOL, lane] + deep - (near - leak) * aim
     out, hot_store = p[SINK_W_PER_K], p[HOT_J_PER_K] / period
-    base, total = hot_store * hot + out * sink + leak * aim + warm, hot_store + out + near
+    base, total = hot_store * hot + out * sink + leak * aim, hot_store + out + leak
     amperes = current_for_heat(heat, aim, base, total, alpha, ohm, leak, ANY_A, guess, CLOSE_A)
     return limited(amperes, hot, cold, sink, p)
 
 
 @compiled
 def follow(
-    wide, blocks, rig_of, cue_of, period, target, face_share, bank, state, current_out, reached, why, leg, period_leg,
+    wide, blocks, rig_of, cue_of, period, target, face_share, bank, state, current_out, reached, why,
 ):  # fmt: skip
     """Find the held current of every period that takes skin or display to its target at the period's end.
 
     `target` (cue, period) in °C; `face_share` (rig,) is the weight of the cold plate in what follows it, 1 for the
     display; `state` (lane, nodes) is a steady state; `current_out`, `reached` and `why` (lane, period) get the current
     A, the controlled temperature °C at the period's end, and the code of what limited the current. The current comes
-    from a damped prediction (one implicit step over the period); the state moves by the accurate rule. `leg` and
-    `period_leg` are `leg_room`.
+    from a damped prediction (one implicit step over the period); the state moves by the accurate rule.
     """
     lanes = len(wide)
     x, p, skin, sink, y, total, first = room(wide, bank)
     rows, whole = np.empty((4, len(y), 2 * lanes)), np.empty((5, lanes))
     period_rows, period_whole = np.empty((4, len(y), 2 * lanes)), np.empty((5, lanes))
-    current, squared, z0, none = np.empty(lanes), np.empty(lanes), np.empty(lanes), np.zeros(lanes)
+    current, squared, z0 = np.empty(lanes), np.empty(lanes), np.empty(lanes)
     pieces = math.ceil(period / LONGEST_STEP_S - 1e-9)
     step = period / pieces
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg)
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink)
         factor(wide, h, 0.5 * step, p, skin, rows, whole)
         factor(wide, h, period, p, skin, period_rows, period_whole)
-        factor_legs(0.5 * step, p, leg)
-        factor_legs(period, p, period_leg)
         weighed(wide, h, rows[WEIGHT], x, first)
         current.fill(0.0)
         for k in range(target.shape[1]):
             weighed(wide, h, period_rows[WEIGHT], x, z0)
-            legs_heat(none, p, period_leg, leg)
             for lane in range(lanes):
                 share, elim, deep = face_share[rig_of[block[lane]]], period_whole[COLD_SHARE, lane], p[DEEP_C, lane]
                 amperes, code = wanted(
                     target[cue_of[block[lane]], k], share, z0[lane] + deep * (1.0 - elim), elim, skin[1, 0, lane],
                     period, x[PLATES, lane] + deep, x[PLATES, lanes + lane] + deep, sink[TEMPERATURE, lane],
-                    current[lane], p[:, lane], period_leg, lane,
+                    current[lane], p[:, lane],
                 )  # fmt: skip
                 current[lane], squared[lane] = amperes, amperes * amperes
                 current_out[block[lane], k], why[block[lane], k] = amperes, code
             for _ in range(pieces):
-                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole, leg)
+                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole)
             for lane in range(lanes):
                 share = face_share[rig_of[block[lane]]]
                 face = share * x[PLATES, lanes + lane] + (1.0 - share) * x[LUMPS, lane]
@@ -163,7 +140,7 @@ def follow(
 
 @compiled
 def regulate(
-    wide, blocks, rig_of, cue_of, period, setpoint, gains, bias, bank, state, current_out, reached, why, leg,
+    wide, blocks, rig_of, cue_of, period, setpoint, gains, bias, bank, state, current_out, reached, why,
 ):  # fmt: skip
     """Find the held current of every period as the controller of each rig gives it.
 
@@ -185,9 +162,8 @@ def regulate(
     past = np.empty((delay.max() + 1, lanes))
     for b in range(blocks.shape[0]):
         block = blocks[b]
-        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink, leg)
+        h = begin(wide, block, rig_of, bank, state, x, p, skin, sink)
         factor(wide, h, 0.5 * step, p, skin, rows, whole)
-        factor_legs(0.5 * step, p, leg)
         weighed(wide, h, rows[WEIGHT], x, first)
         for lane in range(lanes):
             lag = gains[rig_of[block[lane]], LAG_S]
@@ -215,7 +191,7 @@ def regulate(
             for _ in range(pieces):
                 for lane in range(lanes):
                     display[lane] = x[PLATES, lanes + lane] + p[DEEP_C, lane]
-                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole, leg)
+                advance(wide, h, step, current, squared, p, skin[1, 0], x, y, total, first, sink, rows, whole)
                 for lane in range(lanes):
                     now = x[PLATES, lanes + lane] + p[DEEP_C, lane]
                     felt[lane] = decay[lane] * felt[lane] + (mean[lane] - decay[lane]) * display[lane]

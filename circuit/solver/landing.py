@@ -15,7 +15,7 @@ from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import Bank, Intervals, State, bank_of, run_on
 from .network import COLD, SINK_START_C, SKIN, network_of
-from .steady import bare_plates, extras_between, state_under_current
+from .steady import bare_plates, sink_under, state_under_current
 
 
 def refuse_landing(rig: Rig, what: str) -> None:
@@ -57,7 +57,7 @@ def landing_state(rig: Rig, *, current_A: float | None = None, display_C: float 
     network = network_of(rig)
     film_W_per_K = rig.ambient.film_W_per_m2K * rig.contact.area_m2
     try:
-        current, cold, hot = bare_plates(network, film_W_per_K, rig.ambient.temperature_C, current_A, display_C)
+        _, cold, hot = bare_plates(network, film_W_per_K, rig.ambient.temperature_C, current_A, display_C)
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: before the hand lands, {problem}; use less current") from None
     if display_C is not None and abs(cold - display_C) > 1e-6:
@@ -69,8 +69,8 @@ def landing_state(rig: Rig, *, current_A: float | None = None, display_C: float 
     state[:SKIN] = hot, cold
     state[SKIN : SKIN + len(network.capacity_J_per_K)] = _resting_lumps(rig)
     state[-1] = network.deep_C
-    if network.extras:
-        state[SKIN + len(network.capacity_J_per_K) : -1] = extras_between(network, current, hot, cold)
+    if network.passive:
+        state[-2] = sink_under(network, hot)
     return state
 
 
@@ -113,7 +113,7 @@ def led(bank: Bank, rig_of: Index, cue_of: Index, currents: Array, rig: Rig, sta
         states = run_on(bank, rig_of, cue_of, intervals, State.settled(states), ("skin_C",))[1].nodes_C
     if bank.passive:
         states = states.copy()
-        at = bank.count[rig_of] + SKIN + bank.legs
+        at = bank.count[rig_of] + SKIN
         start = bank.plates[rig_of, SINK_START_C]
         lanes = np.flatnonzero(~np.isnan(start))
         states[lanes, at[lanes]] = start[lanes]

@@ -21,9 +21,7 @@ from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
 from .network import (
     COLD,
-    CONDUCTANCE,
     HOT,
-    LEG_J_PER_K,
     RECORDED,
     SINK_AIR_W_PER_K,
     SINK_C,
@@ -59,7 +57,7 @@ class ConstantCurrent:
 
     @staticmethod
     def of(networks: Sequence[Network], mean_A: Array, square_A2: Array) -> ConstantCurrent:
-        """Modes of networks with equally many lumps and the same extras; mean current and mean square of it (r,).
+        """Modes of networks with equally many lumps and sinks of one kind; mean current and mean square of it (r,).
 
         A bridge that switches heats with the mean square, which is larger than the square of the mean.
         """
@@ -84,7 +82,7 @@ class ConstantCurrent:
         source[:, SKIN:] = perfusion * deep[:, np.newaxis]
         source[:, -1] += g[:, -1] * deep
         lumps_end = count
-        capacity, matrix, source = _with_extras(networks, capacity, matrix, source, joule)
+        capacity, matrix, source = _with_sinks(networks, capacity, matrix, source)
         count = capacity.shape[1]
         root = np.sqrt(capacity)
         rates, vectors = np.linalg.eigh(matrix / (root[:, :, np.newaxis] * root[:, np.newaxis, :]))
@@ -97,7 +95,7 @@ class ConstantCurrent:
         for rig, network in enumerate(networks):
             for row, start in enumerate(network.probe_start[: len(READ)].tolist()):
                 for place, weight in zip(range(start, start + 3), network.probe_weight[row].tolist(), strict=True):
-                    if weight:  # behind the lumps, extras stand before the deep node
+                    if weight:  # behind the lumps, a passive sink stands before the deep node
                         weights[rig, row, place if place < lumps_end else count] += weight
         level = np.einsum("rpk,rk->rp", weights[:, :, :-1], rest) + weights[:, :, -1] * deep[:, np.newaxis]
         return ConstantCurrent(rates, to_modes, from_modes, rest, weights[:, :, :-1] @ from_modes, level)
@@ -133,43 +131,25 @@ class ConstantCurrent:
         return matrix, self.rest_C - np.einsum("rkm,rm->rk", matrix, self.rest_C)
 
 
-def _with_extras(
-    networks: Sequence[Network], capacity: Array, matrix: Array, source: Array, joule: Array
+def _with_sinks(
+    networks: Sequence[Network], capacity: Array, matrix: Array, source: Array
 ) -> tuple[Array, Array, Array]:
-    """The system with cells of the legs between the plates and a passive heat sink under the hot one; `joule` (r,)."""
-    legs, extras = networks[0].legs, networks[0].extras
-    if not extras:
+    """The system with a passive heat sink under the hot plate, where the networks have one."""
+    if not networks[0].passive:
         return capacity, matrix, source
     rigs, inner = capacity.shape
-    grown = np.zeros((rigs, inner + extras, inner + extras))
+    grown = np.zeros((rigs, inner + 1, inner + 1))
     grown[:, :inner, :inner] = matrix
-    capacity = np.concatenate([capacity, np.zeros((rigs, extras))], axis=1)
-    source = np.concatenate([source, np.zeros((rigs, extras))], axis=1)
+    capacity = np.concatenate([capacity, np.zeros((rigs, 1))], axis=1)
+    source = np.concatenate([source, np.zeros((rigs, 1))], axis=1)
     for rig, network in enumerate(networks):
-        leak, to_sink = float(network.plates[CONDUCTANCE]), float(network.plates[SINK_W_PER_K])
-        if legs:  # in place of 1/Θ and I²R/2: half a cell, cells, half a cell
-            capacity[rig, inner : inner + legs] = network.plates[LEG_J_PER_K] / legs
-            source[rig, [HOT, COLD]] -= joule[rig]
-            source[rig, inner : inner + legs] = 2.0 * joule[rig] / legs
-            _join(grown[rig], HOT, COLD, -leak)
-            chain = [HOT, *range(inner, inner + legs), COLD]
-            for place, (above, below) in enumerate(pairwise(chain)):
-                _join(grown[rig], above, below, leak * legs * (2.0 if place in (0, legs) else 1.0))
-        if network.passive:
-            air = float(network.plates[SINK_AIR_W_PER_K])
-            capacity[rig, -1] = network.plates[SINK_J_PER_K]
-            source[rig, HOT] -= to_sink * network.plates[SINK_C]  # of an ideal one
-            grown[rig, HOT, HOT] -= to_sink
-            _join(grown[rig], HOT, inner + extras - 1, to_sink)
-            grown[rig, -1, -1] += air
-            source[rig, -1] = air * network.plates[SINK_C]
+        to_sink, air = float(network.plates[SINK_W_PER_K]), float(network.plates[SINK_AIR_W_PER_K])
+        capacity[rig, -1] = network.plates[SINK_J_PER_K]
+        source[rig, HOT] -= to_sink * network.plates[SINK_C]  # of an ideal one
+        grown[rig, HOT, -1] = grown[rig, -1, HOT] = -to_sink  # its share at the hot plate is there already
+        grown[rig, -1, -1] = to_sink + air
+        source[rig, -1] = air * network.plates[SINK_C]
     return capacity, grown, source
-
-
-def _join(matrix: Array, one: int, other: int, conductance: float) -> None:
-    """Add a conductance between two nodes."""
-    matrix[[one, other], [one, other]] += conductance
-    matrix[[one, other], [other, one]] -= conductance
 
 
 FELT = RECORDED[RECORDED.index("display_C") :]

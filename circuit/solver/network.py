@@ -1,7 +1,7 @@
 """The circuit as numbers: plates, skin lumps and probes of a rig, ready for stepping, and the balance of its plates.
 
-State vector: hot plate, cold plate (the display), skin lumps from the surface down, then the `extras` of a rig that has
-them (cells of the legs from the hot plate to the cold one, a passive heat sink), deep node (constant), all in °C.
+State vector: hot plate, cold plate (the display), skin lumps from the surface down, then a passive heat sink of a rig
+that has one, deep node (constant), all in °C.
 
 The functions of the plates are plain Python, which the kernels compile as they are (so none of them calls another) and
 the steady state runs uncompiled. The hot plate enters through `base` (W), the heat that reaches it without current, and
@@ -33,14 +33,14 @@ LOWEST_A, HIGHEST_A, COMPLIANCE_V = range(8, 11)
 SINK_J_PER_K, SINK_KP, SINK_KI, SINK_POWER_W = range(11, 15)
 """Places of a heat sink's own controller: heat capacity (0: the sink is ideal), W/K, W/(K·s), greatest power."""
 
-SINK_AIR_W_PER_K, SINK_START_C, LEG_J_PER_K = range(15, 18)
-"""Places of a passive heat sink's conductance to air (0: it is not passive; SINK_C is then the air's temperature), of
-its temperature at the start (NaN: where the current and the air leave it), and of the heat capacity of all legs."""
+SINK_AIR_W_PER_K, SINK_START_C = range(15, 17)
+"""Places of a passive heat sink's conductance to air (0: it is not passive; SINK_C is then the air's temperature), and
+of its temperature at the start (NaN: where the current and the air leave it)."""
 
-PAST_MOST_COOLING = 18
+PAST_MOST_COOLING = 17
 """Place of 1 for a loop that does not know at which current its module cools most, and runs to the driver's limit."""
 
-PLATE_NUMBERS = 19
+PLATE_NUMBERS = 18
 
 TEMPERATURE, INTEGRAL, POWER, REST_POWER = range(4)
 """Places in the state of a heat sink with a controller: °C, integral of its error K·s, power W now and at rest."""
@@ -129,8 +129,8 @@ class Network:
     """A rig as lumps; n skin lumps, arrays read-only.
 
     `capacity_J_per_K` (n,), `conductance_W_per_K` (n + 1,): cold plate to first lump, between lumps, last lump to deep;
-    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for RECORDED, as if there were no extras;
-    `plates` (19,) for the kernel, in the order of their places above; `legs` is the number of cells of the legs.
+    `perfusion_W_per_K` (n,); `probe_start` (8,) and `probe_weight` (8, 3) for RECORDED, as if no heat sink were
+    passive; `plates` (18,) for the kernel, in the order of their places above.
     """
 
     capacity_J_per_K: Array
@@ -139,7 +139,6 @@ class Network:
     probe_start: Index
     probe_weight: Array
     plates: Array
-    legs: int = 0
 
     def __post_init__(self) -> None:
         for array in (self.capacity_J_per_K, self.conductance_W_per_K, self.perfusion_W_per_K):
@@ -158,14 +157,9 @@ class Network:
         return bool(self.plates[SINK_AIR_W_PER_K] > 0)
 
     @property
-    def extras(self) -> int:
-        """Number of states between the last lump and the deep node."""
-        return self.legs + self.passive
-
-    @property
     def nodes(self) -> int:
         """Length of the state vector."""
-        return len(self.capacity_J_per_K) + self.extras + 3
+        return len(self.capacity_J_per_K) + self.passive + 3
 
     @property
     def face_share(self) -> float:
@@ -177,7 +171,7 @@ class Network:
         """Value of one of the RECORDED quantities at a state (nodes,) in °C."""
         row = RECORDED.index(probe)
         start = int(self.probe_start[row])
-        if self.extras:
+        if self.passive:
             state_C = np.append(state_C[: SKIN + len(self.capacity_J_per_K)], state_C[-1])
         return float(self.probe_weight[row] @ state_C[start : start + 3])
 
@@ -213,8 +207,7 @@ def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
         plates[[SINK_J_PER_K, SINK_C, SINK_KP]] = passive.capacity_J_per_K, passive.air_C, conductance
         plates[[SINK_AIR_W_PER_K, SINK_POWER_W]] = conductance, np.inf
         plates[SINK_START_C] = np.nan if passive.steady else rig.heat_sink.temperature_C
-    plates[LEG_J_PER_K] = module.leg_capacity_J_per_K
-    return replace(_network(rig, column, plates), legs=module.leg_nodes)
+    return _network(rig, column, plates)
 
 
 def unpowered(network: Network, sink_C: float) -> Network:

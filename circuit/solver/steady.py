@@ -69,8 +69,8 @@ def state_under_current(network: Network, current_A: float, in_the_end: bool = F
     plates, (z, e) = _plates(network, in_the_end), _column(network)
     cold, hot = _balance(plates, current_A, float(network.conductance_W_per_K[0]), z[0], e[0])
     state = _fill(network, cold, hot, z, e)
-    if network.extras:
-        state[SKIN + len(z) : -1] = extras_between(network, current_A, hot, cold, in_the_end)
+    if network.passive:
+        state[-2] = sink_under(network, hot, in_the_end)
     state.setflags(write=False)
     return state
 
@@ -104,18 +104,10 @@ def bare_plates(
     return (current_A, *_balance(plates, current_A, film_W_per_K, air_C, 0.0))
 
 
-def extras_between(network: Network, current_A: float, hot: float, cold: float, in_the_end: bool = False) -> Array:
-    """The cells of the legs, then a passive heat sink, in steady state between the plates."""
-    values, (*_, sink, out) = np.empty(network.extras), _plates(network, in_the_end)
-    place = (np.arange(network.legs) + 0.5) / max(network.legs, 1)  # of a cell, from the hot plate
-    ohm, leak = float(network.plates[RESISTANCE]), float(network.plates[CONDUCTANCE])
-    # The parabola of evenly spread Joule heat at the middle of a cell, less what its half cell's resistance has.
-    raised = 0.5 * ohm * current_A**2 / leak * (place * (1.0 - place) + 0.25 / max(network.legs, 1) ** 2)
-    values[: network.legs] = hot + (cold - hot) * place + raised
-    if network.passive:
-        to_sink = float(network.plates[SINK_W_PER_K])
-        values[-1] = hot - out * (hot - sink) / to_sink
-    return values
+def sink_under(network: Network, hot: float, in_the_end: bool = False) -> float:
+    """A passive heat sink in °C, in steady state under the hot plate."""
+    *_, sink, out = _plates(network, in_the_end)
+    return hot - out * (hot - sink) / float(network.plates[SINK_W_PER_K])
 
 
 def _fill(network: Network, cold: float, hot: float, z: Array, e: Array) -> Array:

@@ -48,10 +48,7 @@ def is_linear(rigs: Sequence[Rig], nominal: Rig, probes: Sequence[str], rows_s: 
         and update_Hz * LONGEST_PERIOD_S >= 1.0 - 1e-9
         and float(np.abs(rows_s * update_Hz - np.rint(rows_s * update_Hz)).max()) < 1e-6
         and all(
-            rig.contact.lands_s is None
-            and rig.module.leg_nodes == 0
-            and rig.heat_sink.passive is None
-            and rig.heat_sink.controller is None
+            rig.contact.lands_s is None and rig.heat_sink.passive is None and rig.heat_sink.controller is None
             for rig in (*rigs, nominal)
         )
     )

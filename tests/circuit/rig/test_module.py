@@ -48,16 +48,10 @@ def test_electrical_power_is_the_difference_of_the_heats() -> None:
     assert power == pytest.approx(heat_rejected_W(MODULE, current, TC, TH) - MODULE.heat_absorbed_W(current, TC, TH))
 
 
-@pytest.mark.parametrize("field", [field.name for field in fields(Peltier)[:5]])
+@pytest.mark.parametrize("field", [field.name for field in fields(Peltier)])
 def test_a_module_proves_itself(field: str) -> None:
     with pytest.raises(ValueError, match=rf"module\.{field} = 0\.0: must be a positive number"):
         replace(MODULE, **{field: 0.0})
-
-
-@pytest.mark.parametrize("capacity", [0.0, -1.0, float("nan")])
-def test_legs_with_nodes_prove_their_capacity(capacity: float) -> None:
-    with pytest.raises(ValueError, match=r"module\.leg_capacity_J_per_K = .*: must be a positive number"):
-        replace(MODULE, leg_nodes=3, leg_capacity_J_per_K=capacity)
 
 
 def _plates(cold: float, out: float) -> tuple[float, float]:

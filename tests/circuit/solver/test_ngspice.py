@@ -84,12 +84,10 @@ BESIDE = Drive([0, 1.0000003, 1.9999996, 2.5, 2.5000005, 4], [0.1, 0.9, -0.4, 0.
 
 
 BODIES = {
-    "legs": {"module.leg_nodes": 4, "module.leg_capacity_J_per_K": 0.8},
     "warm sink": {"heat_sink.temperature_C": 28.0, "heat_sink.capacity_J_per_K": 40.0,
                   "heat_sink.air_resistance_K_per_W": 1.5},
-    "steady sink and legs": {"heat_sink.temperature_C": None, "heat_sink.capacity_J_per_K": 40.0,
-                             "heat_sink.air_resistance_K_per_W": 1.5, "module.leg_nodes": 3,
-                             "module.leg_capacity_J_per_K": 0.8},
+    "steady sink": {"heat_sink.temperature_C": None, "heat_sink.capacity_J_per_K": 40.0,
+                    "heat_sink.air_resistance_K_per_W": 1.5},
     "metal block": {"load.capacity_J_per_K": 25.0, "load.conductance_W_per_K": 0.3,
                     "contact.resistance_m2K_per_W": 2e-4},
     "air": {"load.film_W_per_m2K": 20.0},
@@ -256,8 +254,7 @@ LANDINGS = {
     "skin": ("skin", {}, -0.5),
     "at the start": ("display", {}, 0.0),
     "loop": ("display", {"controller.kp_A_per_K": 0.6, "controller.ki_A_per_Ks": 0.1, "controller.lag_s": 0.1}, -1.0),
-    "legs": ("display", BODIES["legs"], -1.0),
-    "steady sink": ("display", BODIES["steady sink and legs"], -1.0),
+    "steady sink": ("display", BODIES["steady sink"], -1.0),
 }
 
 

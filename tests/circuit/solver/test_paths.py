@@ -23,7 +23,6 @@ from thermicon.icons import Icon, load_library, parse
 CIRCUIT = Path(__file__).resolve().parents[3] / "circuit"
 THENAR = Rig.load("thenar")
 KEYS: dict[str, dict[str, object]] = {
-    "legs": {"module.leg_nodes": 3, "module.leg_capacity_J_per_K": 0.8},
     "passive sink": {
         "heat_sink.temperature_C": 28.0,
         "heat_sink.capacity_J_per_K": 40.0,
@@ -100,9 +99,8 @@ def test_the_loop_of_a_pid_controller_takes_the_key(key: str) -> None:
         assert np.abs(PATHS[name](rig, icon) - reference).max() < 2e-4, name
 
 
-@pytest.mark.parametrize("key", ["legs", "passive sink"])
-def test_the_gate_plays_holds_and_repeats_with_the_key(key: str) -> None:
-    rig = THENAR.with_(**KEYS[key])
+def test_the_gate_plays_holds_and_repeats_with_a_passive_sink() -> None:
+    rig = THENAR.with_(**KEYS["passive sink"])
     drive = Drive([0, 1, 3], [0.3, 0.9, 0.9], held=True)
     every = Ensemble.of(rig)
     start = every.at_rest(0.3)
@@ -118,25 +116,15 @@ def test_the_gate_plays_holds_and_repeats_with_the_key(key: str) -> None:
     assert np.abs(moved.nodes_C - after.nodes_C).max() < 1e-6
 
 
-@pytest.mark.parametrize("key", ["legs", "passive sink"])
-def test_corners_keep_the_key(key: str) -> None:
-    rig = THENAR.with_(**KEYS[key])
-    for corner in corners_of(rig):
-        assert corner.rig.module.leg_nodes == rig.module.leg_nodes
-        assert (corner.rig.heat_sink.passive is None) == (rig.heat_sink.passive is None)
-    if rig.heat_sink.passive is not None:
-        air = {corner.rig.heat_sink.passive.air_C for corner in corners_of(rig) if corner.rig.heat_sink.passive}
-        starts = {corner.rig.heat_sink.temperature_C for corner in corners_of(rig)}
-        assert (air, starts) == ({23.0, 24.0, 25.0}, {27.0, 28.0, 29.0})
-    else:
-        capacity = {round(corner.rig.module.leg_capacity_J_per_K, 6) for corner in corners_of(rig)}
-        assert capacity == {0.64, 0.8, 0.96}
+def test_corners_keep_a_passive_sink() -> None:
+    sinks = [corner.rig.heat_sink for corner in corners_of(THENAR.with_(**KEYS["passive sink"]))]
+    assert {sink.passive.air_C for sink in sinks} == {23.0, 24.0, 25.0}
+    assert {sink.temperature_C for sink in sinks} == {27.0, 28.0, 29.0}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("key", ["legs", "passive sink"])
-def test_a_verdict_takes_the_key(key: str) -> None:
-    rig, icon = THENAR.with_(**KEYS[key]), cue("display")
+def test_a_verdict_takes_a_passive_sink() -> None:
+    rig, icon = THENAR.with_(**KEYS["passive sink"]), cue("display")
     plan = design(icon, rig, END_S)
     ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
     verdict = gate(ended, rig, rest_A=plan.rest_A)
