@@ -9,7 +9,7 @@ RUN apt-get update \
     && rm -rf /var/lib/apt/lists/*
 
 COPY . /opt/thermicon
-RUN pip install --no-cache-dir "/opt/thermicon[page,hardware,parquet,study]" jupyterhub
+RUN pip install --no-cache-dir "/opt/thermicon[hardware,parquet,study]" jupyterhub
 
 # The name and the number that hubs expect.
 RUN useradd --create-home --uid 1000 jovyan

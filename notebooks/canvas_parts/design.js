@@ -36,9 +36,8 @@ class DesignView {
     this.noteList = make("ul", { class: "tm-notes", "aria-label": "Notes", hidden: true });
     const picker = make("label", { class: "tm-pick" }, "Icon ", this.picker);
     const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.badge.element);
-    this.measured = make("p", { class: "tm-measured", hidden: true });
     const split = make("div", { class: "tm-split" }, this.editor.element, this.timeline.element);
-    return make("div", { class: "tm-design" }, bar, this.measured, split, this.noteList);
+    return make("div", { class: "tm-design" }, bar, split, this.noteList);
   }
 
   edited(text) {
@@ -72,8 +71,6 @@ class DesignView {
     this.redo.disabled = !frame.can_redo;
     this.badge.show(frame.badge);
     this.showNotes(frame.notes);
-    this.measured.hidden = !frame.measured;
-    setText(this.measured, frame.measured);
     this.timeline.show(frame);
     Object.assign(this.root.dataset, { icon: frame.icon ?? "", colour: frame.badge.colour });
   }

@@ -24,16 +24,13 @@ function luminance(colour) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }
 
-/** Where JupyterLab, which has a setting of its own, gives no theme, the system's wish decides: on Voila's page too. */
+/** Where JupyterLab, which has a setting of its own, gives no theme, the system's wish decides. */
 function followSystem() {
   const { body } = document;
-  const voila = body.dataset.voila !== undefined;
-  if (body.dataset.thermiconTheme || (body.dataset.jpThemeLight !== undefined && !voila)) return;
-  body.dataset.thermiconTheme = "system";
+  if (body.dataset.jpThemeLight !== undefined) return;
   const system = matchMedia("(prefers-color-scheme: dark)");
   const follow = () => {
     body.dataset.jpThemeLight = String(!system.matches);
-    body.classList.toggle("thermicon-dark", voila && system.matches);
   };
   system.addEventListener("change", follow);
   follow();

@@ -1,6 +1,6 @@
-// The newest text, kept in the page's session for the bench that is made anew after a restart of the kernel or, under
-// Voila, a reload: what was typed when no kernel was there, which offers it with what kernels before it wrote. A bench
-// finds what belongs to it by the text that it begins with.
+// The newest text, kept in the page's session for the bench that is made anew after a restart of the kernel: what was
+// typed when no kernel was there, which offers it with what kernels before it wrote. A bench finds what belongs to it by
+// the text that it begins with.
 
 const KEPT = "thermicon kept";
 

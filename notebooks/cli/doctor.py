@@ -23,7 +23,6 @@ PIP = f'"{sys.executable}" -m pip'
 REPORTED = ("numpy", "scipy", "pandas", "matplotlib", "numba", "pydantic", "typer", "jupyterlab", "ipywidgets")
 """Packages whose versions a report of a fault should state."""
 EXTRAS = {
-    "page": ("voila", "the workbench as a web page (lab --page)"),
     "hardware": ("npTDMS", "drives in TDMS, the format of National Instruments"),
     "parquet": ("pyarrow", "traces in Parquet (simulate -o OUT.parquet)"),
     "cluster": ("distributed", "ranking on a dask cluster (rank --workers ADDRESS)"),

@@ -12,7 +12,7 @@ from thermicon.circuit.inputs import read_bytes
 from thermicon.icons.atomic import OutputError, complete_or_absent
 from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
 
-from .outputs import below_start, check_output
+from .outputs import check_output
 from .versions import Version, Versions
 
 MOST_BYTES = 4_000_000
@@ -126,13 +126,11 @@ class Document:
     @property
     def folder(self) -> Path:
         """Where files are looked for and new ones are written."""
-        return below_start(Path() if self.path is None else self.path.parent)
+        return Path() if self.path is None else self.path.parent
 
     def place(self, name: str) -> Path:
-        """The path of a name in the folder of the text, or of a path; OutputError outside the folder of a page."""
-        path = Path(name).expanduser()
-        whole = path if path.is_absolute() else self.folder / path
-        return below_start(whole.parent) / whole.name
+        """The path of a name in the folder of the text, or of a path."""
+        return self.folder / Path(name).expanduser()
 
     @property
     def title(self) -> str:
@@ -222,12 +220,7 @@ class Document:
         return path
 
     def _versions(self) -> Versions:
-        if not self.keeps:
-            return Versions(None)
-        try:
-            return Versions(self.path or self.folder / f"{Path(self.name).stem}.cue")
-        except OutputError:
-            return Versions(None)
+        return Versions((self.path or self.folder / f"{Path(self.name).stem}.cue") if self.keeps else None)
 
     def _changed_on_disk(self) -> bool:
         """Whether the file is another now: read again only when its time, size or place differ, as every frame asks."""

@@ -1,4 +1,4 @@
-"""Names of files that a command or a page will write: looked at before long work starts, and below a page's folder."""
+"""Names of files that a command or a page will write: looked at before long work starts."""
 
 from __future__ import annotations
 
@@ -12,11 +12,6 @@ STDOUT = Path("-")
 TRACE_SUFFIXES = (".csv", ".parquet")
 NETLIST_SUFFIXES = (".cir", ".net", ".sp")
 FIGURE_SUFFIXES = (".png", ".pdf", ".svg")
-PAGE_FOLDER = "THERMICON_PAGE_FOLDER"
-"""Set for the kernels of ``thermicon lab --page``; a notebook's own kernel, in which anything can be run, has none."""
-FILE, RIG, OBSERVER = "THERMICON_PAGE_FILE", "THERMICON_PAGE_RIG", "THERMICON_PAGE_OBSERVER"
-"""Set for the kernels of ``thermicon lab --page FILE --rig RIG --observer FILE``: what a workbench of no arguments is
-made with."""
 
 
 def check_output(path: Path, suffixes: Sequence[str], what: str) -> None:
@@ -51,20 +46,3 @@ def check_separate(inputs: Sequence[str | Path], outputs: Sequence[Path | None])
         if place in seen:
             raise OutputError(f"cannot write {path}: the file {seen[place]}; give another name")
         seen[place] = "is another output of this command"
-
-
-def below_start(folder: Path) -> Path:
-    """Return a folder to write into, with links followed; OutputError where it is not below that of the page."""
-    start = os.environ.get(PAGE_FOLDER)
-    if start is None:
-        return folder
-    try:
-        root = Path(start).resolve(strict=True)
-        goal = (root / folder).resolve()
-    except (OSError, RuntimeError, ValueError):
-        raise OutputError(f"{folder} is not a usable folder; give the name of one below {start}") from None
-    if not goal.is_relative_to(root):
-        raise OutputError(
-            f"{folder} is outside the folder of this page; it writes only below {root}, into a folder such as drives"
-        )
-    return goal

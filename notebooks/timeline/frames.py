@@ -14,8 +14,6 @@ import numpy as np
 
 from thermicon.icons.number_text import signed
 
-from .measured import DOTS, Measured, beside, shown_curves
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -105,10 +103,8 @@ class _Curves:
         }
 
 
-def frame_of(scene: Scene, measured: Measured | None = None, points: int = MOST_POINTS) -> CanvasFrame:
+def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
     """Return the frame of a scene in the design view; ``numbered`` makes it the answer to a message.
-
-    A ``measured`` log lies over the curves, and ``meta["measured"]`` says how far apart they are.
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.notebooks.timeline.scene import scene
@@ -131,13 +127,6 @@ def frame_of(scene: Scene, measured: Measured | None = None, points: int = MOST_
         panels.append(_current(drawing, curves))
     if len(drawing.percept.psi_cold) >= rows:
         panels.append(_sensation(drawing, curves))
-    laid = None
-    if measured is not None:
-        laid, meta["measured"] = beside(measured, trace)
-    for panel, key, label, role, values in () if laid is None else shown_curves(laid, trace.time_s):
-        for each in panels:
-            if each["key"] == panel:
-                each["series"].append(curves.take(key, label, values, role, *DOTS))
     meta["time"] = {"t0": float(trace.time_s[0]), "dt": dt * every, "n": len(curves.buffers[0])}
     meta["handles"] = [] if scene.stale else _handles(drawing)
     return CanvasFrame({**meta, "panels": panels}, tuple(curves.buffers))

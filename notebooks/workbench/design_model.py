@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import time
 from collections.abc import Callable, Mapping
@@ -13,13 +12,11 @@ from ..editing.cue_check import mended
 from ..files.document import Document
 from ..timeline.dragging import drag
 from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
-from ..timeline.measured import Measured, aligned
 from ..timeline.scene import Scene, scene, with_notes
 from .knobs import apply, knobs_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.circuit.fitting.log import Log
     from thermicon.perception import Observer
     from thermicon.perception.observer.observer_model import ObserverModel
 
@@ -49,7 +46,6 @@ class DesignModel:
         self.nominal = rig
         self.model = model
         self.values: dict[str, float | str] = {}
-        self.measured: Measured | None = None
         self._applied = apply(rig, {}, None if model is None else model.nominal)
         self._drag: _Drag | None = None
         self._moving = False
@@ -107,7 +103,6 @@ class DesignModel:
             self._drag, self.document = None, document
             self.scene = scene(self.text, self.rig, None, self._applied.observer, notes=self._applied.notes)
             self.document.history = self.document.history.chosen(self.scene.icon)
-            self._align()
             return self.text
 
         return self._answer(act)
@@ -120,25 +115,6 @@ class DesignModel:
             self._set({})
 
         return self._answer(act)
-
-    def take_log(self, log: Log | None) -> CanvasFrame:
-        """Lay a measured log over the curves, aligned with the icon that is shown; None takes it away.
-
-        Raises LogError where it has nothing in common with the icon, and ValueError where nothing is drawn.
-        """
-        if log is not None and self.scene.drawing is None:
-            raise ValueError("no icon is drawn that a log could be laid over: mend the text first")
-        self.measured = None if log is None or self.scene.drawing is None else aligned(log, self.scene.drawing.trace)
-        return self.frame()
-
-    def shift_log(self, shift_s: float | None) -> CanvasFrame:
-        """Set what is added to the times of the log, in s; None aligns it anew. Raises as ``take_log``."""
-        if self.measured is None:
-            raise ValueError("there is no log yet: load one first")
-        if shift_s is None:
-            return self.take_log(self.measured.log)
-        self.measured = Measured(self.measured.log, shift_s, by_hand=True)
-        return self.frame()
 
     def frame(self) -> CanvasFrame:
         """The frame as it is now, with the text."""
@@ -154,7 +130,7 @@ class DesignModel:
             self.scene = with_notes(self.scene, f"the action failed: {wrong or type(wrong).__name__}")
             shown = self.text
         try:
-            made = frame_of(self.scene, self.measured, DRAGGED_POINTS if self._moving else MOST_POINTS)
+            made = frame_of(self.scene, DRAGGED_POINTS if self._moving else MOST_POINTS)
         except Exception as wrong:
             self.scene = replace(with_notes(self.scene, f"drawing failed: {wrong}"), drawing=None, stale=True)
             made = frame_of(self.scene)
@@ -243,22 +219,10 @@ class DesignModel:
 
     def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:
         rig, observer, told = self._applied
-        shown = self.scene.icon
         self.scene = scene(self.text, rig, icon, observer, self.scene, (*notes, *told))
         if self.scene.icon != (history := self.document.history).now.icon:
             # The icon that is shown is no step of its own; typing over its name goes on as one step.
             self.document.history = replace(history, now=replace(history.now, icon=self.scene.icon))
-        if shown != self.scene.icon:
-            self._align()
-
-    def _align(self) -> None:
-        """Align the log with another icon; one that does not fit it stays, and the frame says why it is not drawn."""
-        from thermicon.circuit.fitting.log import LogError
-
-        measured, drawing = self.measured, self.scene.drawing
-        if measured is not None and not measured.by_hand and drawing is not None:
-            with contextlib.suppress(LogError, ValueError):
-                self.measured = aligned(measured.log, drawing.trace)
 
 
 def _float(value: object) -> float:

@@ -14,7 +14,7 @@ from thermicon.icons.files.shipped import library_names
 from ..files.document import Document
 from ..report.blocks import fragment
 from .live_view import button
-from .panels import LogPanel, document_of, help_html
+from .panels import document_of, help_html
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -42,7 +42,6 @@ class DocumentBar:
                 ("Save", "to the file it came from (Ctrl+S)", self.save),
                 ("Save as", "under another name", lambda: self._toggle("save")),
                 ("Download", "text, rig and pictures", lambda: self._toggle("download")),
-                ("Log", "a measured log over the curves", lambda: self._toggle("log")),
                 ("Undo", "Ctrl+Z in text or time line", lambda: self._step("undo")),
                 ("Redo", "Ctrl+Shift+Z in text or time line", lambda: self._step("redo")),
                 ("?", "what can be dragged, clicked and pressed", lambda: self._toggle("help")),
@@ -53,8 +52,6 @@ class DocumentBar:
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
         self._panels = {"open": self._open_panel(), "save": self._save_panel()}
-        self.log = LogPanel(view, lambda name: self.document.place(name), self._safely, self.say)
-        self._panels["log"] = self.log.box
         self.links = widgets.HTML()
         self._panels["download"] = self.links
         self._panels["help"] = widgets.VBox([widgets.HTML(help_html())])
@@ -62,7 +59,7 @@ class DocumentBar:
         self.shown: str | None = None
         self.offered_text: Version | None = None
         self.offer = self._offer_panel()
-        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download", "Log")]
+        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download")]
         rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
         self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
@@ -81,8 +78,6 @@ class DocumentBar:
         document, history = self.document, self.document.history
         if self.shown == "download":
             self._open(None)  # its links hold the text, the rig and the picture as they were
-        elif self.shown == "log":
-            self.log.renew()
         kind = "th-caution" if document.dirty else ""
         self._set(self.title, fragment("marked", document.title, f"thermicon-file {kind}".strip()))
         self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.past, not history.future
@@ -231,8 +226,6 @@ class DocumentBar:
             self.files.options = [*self._files("*.cue")[:MOST_FILES], *(f"{SHIPPED}{name}" for name in library_names())]
         elif name == "save" and not self.name.value:
             self.name.value = f"{self.document.name.removesuffix('.cue')}.cue"
-        elif name == "log":
-            self.log.renew()
         elif name == "download":
             self._offer_downloads()
         self.panel.children = () if name is None else (self._panels[name],)
@@ -250,10 +243,10 @@ class DocumentBar:
         self._set(self.links, " · ".join(link(name, data) for name, data in files.items()))
 
     def _files(self, pattern: str) -> list[str]:
-        """Names of files of the folder, without hidden ones; none of a folder that a page may not look into."""
+        """Names of files of the folder, without hidden ones; none of a folder that cannot be read."""
         try:
             return sorted(path.name for path in self.document.folder.glob(pattern) if not path.name.startswith("."))
-        except (OSError, OutputError):
+        except OSError:
             return []
 
     def _button(self, name: str, hint: str, act: Callable[[], None]) -> widgets.Button:

@@ -13,7 +13,6 @@ from thermicon.icons.atomic import OutputError
 
 from ..editing.cue_check import read_text
 from ..files.exporting import felt_beside, others
-from ..files.outputs import below_start
 from ..report.blocks import fragment
 from .live_view import Job, LiveView
 from .set_model import MOST_RANKED
@@ -115,7 +114,7 @@ class ExportView(LiveView[ExportRequest]):
         if self.ready is None or self._request() != self._finished:
             raise OutputError("the drives are not ready yet")
         try:
-            folder = below_start(Path(self.folder.value.strip() or ".").expanduser())
+            folder = Path(self.folder.value.strip() or ".").expanduser()
             ready = replace(self.ready, force=self.insist.value)
             before = ready.write(folder, self.overwrite.value, "tick overwrite to replace it")
         except (OutputError, ValueError, RuntimeError) as wrong:

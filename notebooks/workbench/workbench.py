@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -11,8 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from thermicon.icons import CueErrors, Icon, IconSet, parse
 from thermicon.icons.atomic import OutputError
 
-from ..files.outputs import FILE, OBSERVER, RIG
-from ..timeline.measured import read_measured
 from .design_model import DesignModel
 from .panels import document_of
 
@@ -52,8 +49,6 @@ class Workbench:
         Folder into which drives are exported.
     goal
         What is wanted of the set, as `Goal.parse` reads it; the set view says whether it is met.
-    measured
-        Path of a measured log that is laid over the curves of the design view, aligned with the icon.
     observer
         Observer file that predicts in place of the shipped one, as ``rank --observer`` takes it: the draws that
         ``pilot --keep lab.csv`` wrote, or one observer's records (.toml).
@@ -66,8 +61,8 @@ class Workbench:
         For a rig that does not exist, or cannot be.
     ValueError
         For a cue file that cannot be edited (unreadable, not UTF-8, or too large), an icon that the set does not have,
-        a goal that cannot be read (`GoalError`), a log that cannot be used (`LogError`), and an observer file that
-        cannot be read or is of another version (`RecordError`).
+        a goal that cannot be read (`GoalError`), and an observer file that cannot be read or is of another version
+        (`RecordError`).
 
     Examples
     --------
@@ -85,23 +80,18 @@ class Workbench:
         icon: str | None = None,
         folder: str | Path = "drives",
         goal: Goal | str | None = None,
-        measured: str | Path | None = None,
         observer: str | Path | None = None,
     ) -> None:
         from thermicon.circuit import Rig
         from thermicon.perception.selection.goal import Goal
 
-        source = text if text is not None else os.environ.get(FILE) or None
-        chosen = rig if rig is not None else os.environ.get(RIG) or "thenar"
-        loaded = chosen if isinstance(chosen, Rig) else Rig.load(chosen)
+        loaded = rig if isinstance(rig, Rig) else Rig.load("thenar" if rig is None else rig)
         try:
-            document = document_of(source, keeps=has_kernel())
+            document = document_of(text, keeps=has_kernel())
         except OutputError as wrong:
             raise ValueError(str(wrong)) from None
         self._design = DesignModel(document, loaded, icon, _observer_of(observer))
         self._check_icon(icon)
-        if measured is not None:
-            self._design.take_log(read_measured(Path(measured)))
         self._folder = Path(folder)
         self._goal = "" if goal is None else (Goal.parse(goal) if isinstance(goal, str) else goal).text
         self._ranked: tuple[object, Ranking] | None = None
@@ -280,13 +270,12 @@ class Workbench:
 
 
 def _observer_of(file: str | Path | None) -> ObserverModel | None:
-    """The observer of a file, or of that with which the page was started; None: the shipped one."""
-    chosen = os.environ.get(OBSERVER) if file is None else file
-    if not chosen:
+    """The observer of a file; None: the shipped one."""
+    if file is None:
         return None
     from thermicon.perception.observer.observer_model import ObserverModel
 
-    return ObserverModel.load(chosen)
+    return ObserverModel.load(file)
 
 
 def has_kernel() -> bool:

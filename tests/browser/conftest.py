@@ -1,4 +1,4 @@
-"""A real browser, JupyterLab on the shipped notebooks, and Voila; each test gets a page of 1280 x 800."""
+"""A real browser and JupyterLab on the shipped notebooks; each test gets a page of 1280 x 800."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from tests.browser.jupyter import Server, end_kernels, page_of, running
+from tests.browser.jupyter import Server, end_kernels, errors_in, open_notebook, run_all, running
 from thermicon.notebooks.cli.lab import PROMPT
 
 if TYPE_CHECKING:
@@ -34,7 +33,6 @@ LAB = (
 
 SMOKE = {
     "test_text_and_curve_stay_in_step",  # JupyterLab
-    "test_the_page_starts_and_shows_the_curve_of_what_is_typed",  # the page under Voila
     "test_a_view_greets_and_draws_the_first_frame",  # the canvas alone
 }
 """The tests of this folder that belong to the ordinary suite; all others are slow, or benchmarks, which run alone."""
@@ -92,10 +90,15 @@ def lab(jupyterlab: Server) -> Iterator[Server]:
 
 
 @pytest.fixture
-def serve_page(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Callable[..., Server]]:
-    """``serve_page(place, "--rig", name)`` serves the workbench of a folder or of a cue file, as the command does."""
-    with ExitStack() as stack:
-        yield lambda place, *options: stack.enter_context(page_of(place, tmp_path_factory.mktemp("page"), *options))
+def bench(page: Page, lab: Server) -> Page:
+    """JupyterLab with the workbench notebook run, its views at the top of the window."""
+    from tests.browser.onbench import wait_until_drawn
+
+    open_notebook(page, lab, "workbench.ipynb")
+    run_all(page)
+    assert errors_in(page) == []
+    wait_until_drawn(page)
+    return page
 
 
 @pytest.fixture

@@ -1,10 +1,9 @@
-"""Driving JupyterLab and Voila in a real browser: servers of our own, and what a person does with a notebook."""
+"""Driving JupyterLab in a real browser: servers of our own, and what a person does with a notebook."""
 
 from __future__ import annotations
 
 import json
 import os
-import re
 import socket
 import subprocess
 import sys
@@ -46,19 +45,6 @@ def running(module: str, options: Sequence[str], folder: Path, own: Path) -> Ite
     address = f"http://127.0.0.1:{port}"
     with _started(command, folder, environment(own), log, f"{address}/api"):
         yield Server(address, folder, log)
-
-
-@contextmanager
-def page_of(place: Path, own: Path, *options: str) -> Iterator[Server]:
-    """The page of a folder or of a cue file as ``thermicon lab --page`` serves it; its address has the token."""
-    own.mkdir(parents=True, exist_ok=True)
-    port, log = free_port(), own / "page.log"
-    words = ["lab", "--page", str(place), *options, "--no-browser", f"--port={port}"]
-    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", *words]
-    with _started(command, own, environment(own), log, f"http://localhost:{port}"):
-        told = re.search(rf"http://localhost:{port}/\?token=\S+", log.read_text(encoding="utf-8"))
-        assert told is not None, log.read_text(encoding="utf-8")
-        yield Server(told[0], place, log)
 
 
 @contextmanager

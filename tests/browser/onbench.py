@@ -1,4 +1,4 @@
-"""What a person does with the workbench in a browser, the same in JupyterLab and under Voila."""
+"""What a person does with the workbench in a browser."""
 
 from __future__ import annotations
 

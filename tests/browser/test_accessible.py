@@ -1,4 +1,4 @@
-"""What axe, an independent checker, finds in the views of the workbench, its page and a report: nothing serious."""
+"""What axe, an independent checker, finds in the views of the workbench and in a report: nothing serious."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
-from tests.browser.jupyter import Server
-from tests.browser.onbench import TWO, open_tab, type_text, wait_until_drawn, wait_until_refined
+from tests.browser.jupyter import dark
+from tests.browser.onbench import TWO, open_tab, type_text, wait_until_refined
 
 RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
 SERIOUS = ("serious", "critical")
 
 
-def findings(page: Page, within: str | None = None) -> list[dict[str, Any]]:
+def findings(page: Page, within: str | None = ".thermicon") -> list[dict[str, Any]]:
     """What is serious or critical, with the elements."""
     found = Axe().run(page, context=within, options=RULES).response["violations"]
     return [
@@ -33,16 +33,13 @@ def told(found: list[dict[str, Any]]) -> str:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_no_view_of_the_page_has_a_serious_finding(
-    page: Page, serve_page: Callable[[Path], Server], tmp_path: Path, shot: Callable[[str], Path], scheme: Any
-) -> None:
-    page.emulate_media(color_scheme=scheme)
-    page.goto(serve_page(tmp_path).url)
-    wait_until_drawn(page)
+def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, shot: Callable[[str], Path], scheme: str) -> None:
+    page = bench
+    dark(page, scheme == "dark")
     wrong = {"design": findings(page)}
-    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    ground = page.locator(".tm-root").first.evaluate("e => getComputedStyle(e).backgroundColor")
     assert (ground == "rgb(20, 23, 26)") == (scheme == "dark")
-    for name in ("Open", "Save as", "Log", "?"):
+    for name in ("Open", "Save as", "?"):
         page.get_by_role("button", name=name, exact=True).click()
         page.wait_for_timeout(300)
         wrong[name] = findings(page, ".thermicon-project")
@@ -88,5 +85,5 @@ def test_a_report_has_no_serious_finding(page: Page, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["rank", str(cue), "--people", "4", "--intervals", "0", "--report", str(report)])
     assert done.exit_code == 0, done.output
     page.goto(report.as_uri())
-    found = findings(page)
+    found = findings(page, None)
     assert found == [], told(found)

@@ -5,32 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from playwright.sync_api import Page, expect
 
-from tests.browser.jupyter import Server, dark, errors_in, open_notebook, reload, restart_kernel, run_all, save
+from tests.browser.jupyter import Server, dark, open_notebook, reload, restart_kernel, run_all, save
 from tests.browser.onbench import (
     TWO,
+    click_a_confusion,
     expect_text,
     root,
     text_of,
+    type_below_the_first_screen,
     type_drag_and_err,
     type_text,
     wait_until_drawn,
+    write_drives,
 )
 
 Shot = Callable[[str], Path]
 MOST_SAVED = 300_000
-
-
-@pytest.fixture
-def bench(page: Page, lab: Server) -> Page:
-    """JupyterLab with the workbench notebook run, its views at the top of the window."""
-    open_notebook(page, lab, "workbench.ipynb")
-    run_all(page)
-    assert errors_in(page) == []
-    wait_until_drawn(page)
-    return page
 
 
 def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
@@ -44,6 +36,49 @@ def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
     shot("lab-design-dark")
     dark(bench, False)
     type_drag_and_err(bench)
+
+
+def test_it_designs_compares_and_exports(bench: Page, lab: Server, shot: Shot) -> None:
+    bench.set_viewport_size({"width": 900, "height": 800})
+    type_below_the_first_screen(bench)
+    bench.set_viewport_size({"width": 1280, "height": 800})
+    type_text(bench, TWO)
+    click_a_confusion(bench)
+    shot("lab-set")
+    write_drives(bench, lab.folder / "drives")
+    shot("lab-export")
+    assert (lab.folder / "drives" / "near.csv").exists()
+
+
+def test_unsaved_text_of_a_closed_tab_is_offered_and_saved_to_its_file(page: Page, lab: Server) -> None:
+    file = lab.folder / "alerts.cue"
+    file.write_text(TWO, encoding="utf-8")
+    notebook = lab.folder / "workbench.ipynb"
+    one = notebook.read_text(encoding="utf-8").replace("Workbench()", "Workbench('alerts.cue', 'fingertip')")
+    notebook.write_text(one, encoding="utf-8")
+    open_notebook(page, lab, "workbench.ipynb")
+    run_all(page)
+    wait_until_drawn(page)
+    expect(page.locator(".thermicon-file")).to_have_text("alerts.cue")
+    expect(page.locator(".thermicon-bar select")).to_have_value("fingertip")
+    typed = TWO.replace("icon near ", "icon nigh ")
+    type_text(page, typed)
+    expect(page.locator(".thermicon-file")).to_have_text("alerts.cue, unsaved changes")
+    page.wait_for_timeout(1000)
+    again = page.context.browser.new_context().new_page()  # type: ignore[union-attr]
+    page.close()
+    open_notebook(again, lab, "workbench.ipynb")
+    run_all(again)
+    wait_until_drawn(again)
+    expect_text(again, TWO)
+    offer = again.locator(".thermicon-offer")
+    expect(offer).to_contain_text("Unsaved text of alerts.cue was typed a moment ago")
+    offer.get_by_role("button", name="Restore it").click()
+    expect_text(again, typed)
+    again.locator(".cm-content").press("Control+s")
+    expect(again.locator(".thermicon-project")).to_contain_text("saved alerts.cue")
+    assert file.read_text(encoding="utf-8") == typed
+    assert not list(lab.folder.glob(".alerts*"))
 
 
 CUT = """all => all.filter((label) => {

@@ -16,12 +16,11 @@ from typing import Any
 
 import pytest
 
-from tests.builders import few_draws
 from thermicon.notebooks.cli import lab
-from thermicon.notebooks.workbench.workbench import Workbench
 
 Cli = Callable[..., Any]
 FIRST = "01_first_icon.ipynb"
+TRAPS = ("jupyterlab", "json", "numba", "IPython", "ipykernel", "jupyter_server_config")
 ALL = [*sorted(path.name for path in (Path(__file__).parents[3] / "notebooks").glob("*.ipynb"))]
 
 
@@ -40,35 +39,14 @@ def test_the_notebooks_are_put_into_a_folder_and_what_is_there_is_kept(cli: Cli,
     assert "%load_ext" in first.read_text(encoding="utf-8")
 
 
-def test_without_voila_the_cure_is_told_and_nothing_written(
+def test_without_jupyterlab_the_cure_is_told_and_nothing_written(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(lab, "find_spec", lambda _: None)
-    said = cli("lab", tmp_path / "mine", "--page")
+    said = cli("lab", tmp_path / "mine")
     assert said.exit_code == 1
-    assert said.stderr == "--page needs voila, which is not installed: pip install 'thermicon[page]'\n"
+    assert said.stderr == "lab needs jupyterlab, which is not installed: pip install jupyterlab\n"
     assert not (tmp_path / "mine").exists()
-
-
-def test_a_page_knows_file_rig_folder_and_observer(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    served: list[tuple[list[str], dict[str, str]]] = []
-    monkeypatch.setattr(lab, "find_spec", lambda _: True)
-    monkeypatch.setattr(lab, "serve", lambda command, program, told: served.append((command, dict(told))))
-    file = tmp_path / "alerts.cue"
-    file.write_text("cue 1; icon a { hold for 1 s }", encoding="utf-8")
-    said = cli("lab", "--page", file, "--rig", "fingertip", "--no-browser")
-    assert (said.exit_code, said.stdout) == (0, "")
-    command, told = served[0]
-    page = {"THERMICON_PAGE_FOLDER": str(tmp_path), "THERMICON_PAGE_FILE": str(file)}
-    assert told == {**page, "THERMICON_PAGE_RIG": "fingertip"}
-    assert str(tmp_path / "workbench.ipynb") not in command
-    assert [each.name for each in tmp_path.iterdir()] == ["alerts.cue"]
-    own = few_draws(tmp_path / "lab.csv", 2, "by weights from 4 laboratories", "hand-dorsum")
-    said = cli.good("lab", "--page", file, "--observer", own, "--no-browser")
-    assert "lab.csv was conditioned on the hand-dorsum rig, not on thenar" in said.stderr
-    assert served[1][1] == {**page, "THERMICON_PAGE_OBSERVER": str(own)}
-    monkeypatch.setenv("THERMICON_PAGE_OBSERVER", str(own))
-    assert Workbench(file).ranking(2).observer == "lab.csv"
 
 
 def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,24 +58,20 @@ def test_a_server_that_fails_is_told(cli: Cli, tmp_path: Path, monkeypatch: pyte
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals work differently there")
-@pytest.mark.parametrize(
-    ("words", "path", "how"),
-    [
-        ((), "/api", "Ctrl-C"),
-        pytest.param((), "/api", "asked to end", marks=pytest.mark.slow),
-        pytest.param(("--page",), "/voila/static/style.css", "Ctrl-C", marks=pytest.mark.slow),
-        pytest.param(("--page",), "/voila/static/style.css", "asked to end", marks=pytest.mark.slow),
-    ],
-)
-def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: str, how: str) -> None:
+@pytest.mark.parametrize("how", ["Ctrl-C", pytest.param("asked to end", marks=pytest.mark.slow)])
+def test_a_server_starts_and_ends_and_imports_nothing_from_the_folder(tmp_path: Path, how: str) -> None:
+    folder = tmp_path / "mine"
+    folder.mkdir()
+    for name in TRAPS:
+        (folder / f"{name}.py").write_text(f"open({str(tmp_path / ('ran-' + name))!r}, 'w')\n")
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    words = words or ("--allow-root",)
     own = {f"JUPYTER_{name.upper()}_DIR": str(tmp_path / name) for name in ("config", "data", "runtime")}
-    command = [sys.executable, "-m", "thermicon.notebooks.cli.main", "lab", tmp_path / "mine", "--no-browser"]
+    command = [sys.executable, "-P", "-m", "thermicon.notebooks.cli.main", "lab", ".", "--no-browser", "--allow-root"]
     program = subprocess.Popen(
-        [*command, *words, "--port", str(port)],
+        [*command, "--port", str(port)],
+        cwd=folder,
         env={**os.environ, **own},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
@@ -107,7 +81,7 @@ def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: 
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     try:
-        wait_for(f"http://127.0.0.1:{port}{path}")
+        wait_for(f"http://127.0.0.1:{port}/api")
         if how == "Ctrl-C":
             os.killpg(program.pid, signal.SIGINT)
         else:
@@ -120,6 +94,7 @@ def test_a_server_starts_and_ends(tmp_path: Path, words: tuple[str, ...], path: 
     assert program.returncode == 130, said
     assert said.splitlines()[-1] == "interrupted"
     assert "Traceback" not in said
+    assert not list(tmp_path.glob("ran-*")), "a file of the folder was imported"
     with socket.socket() as again, pytest.raises(ConnectionRefusedError):
         again.connect(("127.0.0.1", port))
 

@@ -14,7 +14,6 @@ import pytest
 from tests.notebooks.workbench.openbench import TEXT, TYPED, opened, said, title
 from thermicon.circuit import Rig
 from thermicon.icons.atomic import OutputError
-from thermicon.notebooks.files.outputs import FILE, PAGE_FOLDER, RIG
 from thermicon.notebooks.workbench.document_bar import DocumentBar
 
 
@@ -88,26 +87,6 @@ class TestFiles:
         open_file(bar, "sub/deep.cue")
         bar.buttons["Save as"].click()
         assert (bench.text, bar.name.value) == (TYPED, "deep.cue")
-
-    def test_a_page_opens_and_saves_only_below_its_folder(
-        self, path: Path, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
-    ) -> None:
-        outside = path.parent.parent / "outside.cue"
-        for name, value in ((PAGE_FOLDER, str(path.parent)), (FILE, str(path)), (RIG, "fingertip")):
-            monkeypatch.setenv(name, value)
-        bench, bar = opened(None)
-        assert (bench.text, bench.rig.name, title(bar)) == (TEXT, "fingertip", "alerts.cue")
-        bar.name.value = str(outside)
-        bar._safely(bar._save_as)
-        assert "is outside the folder of this page" in said(bar)
-        assert not outside.exists()
-        open_file(bar, "../../etc/passwd")
-        assert "is outside the folder of this page" in said(bar)
-        monkeypatch.setenv(PAGE_FOLDER, str(tmp_path_factory.mktemp("elsewhere")))
-        bench, bar = opened(path)  # a link out of the folder
-        assert bench.text == TEXT
-        bar.buttons["Open"].click()
-        assert bar.files.options[0].startswith("shipped: ")
 
 
 def test_downloads_follow_the_text(path: Path) -> None:
