@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -235,33 +235,6 @@ def _repeated(text: str, icon: Icon, count: int) -> str | None:
     inner = "".join([f"{indent}  {lines[0]}", *(f"  {line}" if line.strip() else line for line in lines[1:])])
     between = body[len(body.rstrip()) :]
     return f"{head}repeat {count} {{\n{inner}\n{indent}}}{between}{tail}"
-
-
-def only(text: str, chosen: tuple[str, ...]) -> str:
-    """A text with the chosen icons alone, all else as it is written; raises CannotEdit where they cannot stand alone.
-
-    Where that is not enough, as for some members of a family, the set is written out, without comments.
-
-    >>> only("cue 1\\nicon a { hold for 1 s }\\nicon b { hold for 2 s } # two\\n", ("a",))
-    'cue 1\\nicon a { hold for 1 s }\\n'
-    """
-    icons = read_text(text).icons
-    if icons is None:
-        raise CannotEdit("the text has errors: mend them first")
-    shorter = text
-    for entry in icons.entries:
-        here = re.search(rf"(?:^|(?<=;))[ \t]*icon\s+{re.escape(entry.name)}(?![\w-])[^{{]*{{", shorter, re.MULTILINE)
-        if entry.name not in chosen and here is not None:
-            head, rest = shorter[: here.start()], shorter[_closing(shorter, here.end()) + 1 :]
-            line_end = "\n?" if head.endswith("\n") else ""
-            shorter = head + re.sub(rf"^[ \t;]*(#[^\n]*)?{line_end}", "", rest)
-    if sorted(read_text(shorter).names) == sorted(chosen):
-        return shorter
-    kept = [icon for name in chosen if (icon := icons.find(name)) is not None]
-    try:
-        return str(replace(icons, entries=tuple(kept)))
-    except ValueError as wrong:
-        raise CannotEdit(f"the chosen icons cannot stand alone: {wrong}") from None
 
 
 def _closing(text: str, begin: int) -> int:

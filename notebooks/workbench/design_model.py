@@ -13,7 +13,7 @@ from ..files.document import Document
 from ..timeline.dragging import drag
 from ..timeline.frames import DRAGGED_POINTS, MOST_POINTS, CanvasFrame, frame_of
 from ..timeline.scene import Scene, scene, with_notes
-from .knobs import apply, knobs_of
+from .knobs import knobs_of, turned
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -36,7 +36,7 @@ class DesignModel:
     """The document, icon and knobs of one workbench, and the scene that they make.
 
     ``receive`` takes a message of the page and ``turn`` a knob; both return the frame to draw and raise nothing.
-    ``model`` is the observer that predicts; None: the shipped one.
+    ``rig`` is that with the knobs set; ``model`` is the observer that predicts; None: the shipped one.
     """
 
     def __init__(
@@ -45,11 +45,11 @@ class DesignModel:
         self.document = text if isinstance(text, Document) else Document(text)
         self.nominal = rig
         self.model = model
-        self.values: dict[str, float | str] = {}
-        self._applied = apply(rig, {}, None if model is None else model.nominal)
+        self.rig, self._told = rig, tuple[str, ...]()
+        self.values: dict[str, float] = {}
         self._drag: _Drag | None = None
         self._moving = False
-        self.scene: Scene = scene(self.text, rig, icon, self._applied.observer)
+        self.scene: Scene = scene(self.text, rig, icon, self.observer)
         self.document.history = self.document.history.chosen(self.scene.icon)
         self._tell: list[Callable[[], None]] = []
 
@@ -59,14 +59,11 @@ class DesignModel:
         return self.document.text
 
     @property
-    def rig(self) -> Rig:
-        """The rig with the knobs set."""
-        return self._applied.rig
-
-    @property
     def observer(self) -> Observer:
-        """The nominal person, of the age that is set."""
-        return self._applied.observer
+        """The nominal person."""
+        from thermicon.perception import Observer
+
+        return Observer.load() if self.model is None else self.model.nominal
 
     def on_change(self, tell: Callable[[], None]) -> None:
         """Call a function after each message that changed the text, the rig or the icon that is shown."""
@@ -77,7 +74,7 @@ class DesignModel:
         seq = message.get("seq", 0)
         return self._answer(lambda: self._act(message), seq if isinstance(seq, int) else 0)
 
-    def turn(self, values: Mapping[str, float | str]) -> CanvasFrame:
+    def turn(self, values: Mapping[str, float]) -> CanvasFrame:
         """Set knobs, by key; the others stay where they are."""
         return self._answer(lambda: self._set({**self.values, **values}))
 
@@ -101,7 +98,7 @@ class DesignModel:
 
         def act() -> str:
             self._drag, self.document = None, document
-            self.scene = scene(self.text, self.rig, None, self._applied.observer, notes=self._applied.notes)
+            self.scene = scene(self.text, self.rig, None, self.observer, notes=self._told)
             self.document.history = self.document.history.chosen(self.scene.icon)
             return self.text
 
@@ -211,15 +208,14 @@ class DesignModel:
         self._draw()
         return new
 
-    def _set(self, values: Mapping[str, float | str]) -> None:
+    def _set(self, values: Mapping[str, float]) -> None:
         own = {knob.key: knob.value for knob in knobs_of(self.nominal)}
         self.values = {key: value for key, value in values.items() if own.get(key) != value}
-        self._applied = apply(self.nominal, self.values, None if self.model is None else self.model.nominal)
+        self.rig, self._told = turned(self.nominal, self.values)
         self._draw()
 
     def _draw(self, icon: str | None = None, notes: tuple[str, ...] = ()) -> None:
-        rig, observer, told = self._applied
-        self.scene = scene(self.text, rig, icon, observer, self.scene, (*notes, *told))
+        self.scene = scene(self.text, self.rig, icon, self.observer, self.scene, (*notes, *self._told))
         if self.scene.icon != (history := self.document.history).now.icon:
             # The icon that is shown is no step of its own; typing over its name goes on as one step.
             self.document.history = replace(history, now=replace(history.now, icon=self.scene.icon))

@@ -81,13 +81,21 @@ class DesignView:
     def _knob(self, knob: Knob) -> widgets.VBox:
         label = widgets.HTML()
         self._labels[knob.key] = label
-        self.sliders[knob.key] = made = _control(knob)
+        digits = len(f"{knob.step:g}".partition(".")[2])
+        self.sliders[knob.key] = made = widgets.FloatSlider(
+            value=knob.value,
+            min=knob.low,
+            max=knob.high,
+            step=knob.step,
+            readout_format=f".{digits}f",
+            layout=widgets.Layout(width="auto"),
+        )
         made.tooltip = f"{knob.what} ({knob.source})"
         made.observe(lambda change: self._turned(knob.key, change["new"]), "value")
         self._tell(knob)
         return widgets.VBox([label, made]).add_class("thermicon-knob")
 
-    def _turned(self, key: str, value: float | str) -> None:
+    def _turned(self, key: str, value: float) -> None:
         self.send(self.design.turn({key: value}))
         self._tell(next(knob for knob in knobs_of(self.design.nominal) if knob.key == key))
 
@@ -98,25 +106,7 @@ class DesignView:
     def _tell(self, knob: Knob) -> None:
         """The knob's name, and what the rig has where that is another value."""
         changed = knob.key in self.design.values
-        unit = f" ({knob.unit})" if knob.unit else ""
-        said = f"{knob.label}{unit}" + (f" · rig {knob.shown(knob.value)}" if changed else "")
+        said = f"{knob.label} ({knob.unit})" + (f" · rig {knob.shown(knob.value)}" if changed else "")
         text = f'<span class="{"changed" if changed else ""}" title="{escape(knob.what)}">{escape(said)}</span>'
         if self._labels[knob.key].value != text:
             self._labels[knob.key].value = text
-
-
-def _control(knob: Knob) -> Any:
-    """A slider for a range, a list for a choice."""
-    layout = widgets.Layout(width="auto")
-    if knob.options:
-        return widgets.Dropdown(options=knob.options, value=knob.value, layout=layout)
-    digits = len(f"{knob.step:g}".partition(".")[2])
-    return widgets.FloatSlider(
-        value=float(knob.value),
-        min=knob.low,
-        max=knob.high,
-        step=knob.step,
-        readout_format=f".{digits}f",
-        continuous_update=True,
-        layout=layout,
-    )

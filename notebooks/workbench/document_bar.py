@@ -41,7 +41,6 @@ class DocumentBar:
                 ("Open", "a cue file or a shipped set", lambda: self._toggle("open")),
                 ("Save", "to the file it came from (Ctrl+S)", self.save),
                 ("Save as", "under another name", lambda: self._toggle("save")),
-                ("Download", "text, rig and pictures", lambda: self._toggle("download")),
                 ("Undo", "Ctrl+Z in text or time line", lambda: self._step("undo")),
                 ("Redo", "Ctrl+Shift+Z in text or time line", lambda: self._step("redo")),
                 ("?", "what can be dragged, clicked and pressed", lambda: self._toggle("help")),
@@ -52,14 +51,12 @@ class DocumentBar:
         self._offer_rigs()
         self.rig.observe(lambda change: self._safely(lambda: self._take_rig(change["new"])), "value")
         self._panels = {"open": self._open_panel(), "save": self._save_panel()}
-        self.links = widgets.HTML()
-        self._panels["download"] = self.links
         self._panels["help"] = widgets.VBox([widgets.HTML(help_html())])
         self.panel = widgets.VBox([]).add_class("thermicon-panel")
         self.shown: str | None = None
         self.offered_text: Version | None = None
         self.offer = self._offer_panel()
-        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as", "Download")]
+        buttons = [self.buttons[name] for name in ("Open", "Save", "Save as")]
         rest = [self.buttons[name] for name in ("Undo", "Redo", "?")]
         self.bar = widgets.Box([self.title, *buttons, self.rig, *rest]).add_class("thermicon-bar")
         self.box = widgets.VBox([self.offer, self.said, self.bar, self.panel]).add_class("thermicon-project")
@@ -76,8 +73,6 @@ class DocumentBar:
     def renew(self) -> None:
         """Say anew what the document is, and what may cost somebody their text."""
         document, history = self.document, self.document.history
-        if self.shown == "download":
-            self._open(None)  # its links hold the text, the rig and the picture as they were
         kind = "th-caution" if document.dirty else ""
         self._set(self.title, fragment("marked", document.title, f"thermicon-file {kind}".strip()))
         self.buttons["Undo"].disabled, self.buttons["Redo"].disabled = not history.past, not history.future
@@ -226,21 +221,7 @@ class DocumentBar:
             self.files.options = [*self._files("*.cue")[:MOST_FILES], *(f"{SHIPPED}{name}" for name in library_names())]
         elif name == "save" and not self.name.value:
             self.name.value = f"{self.document.name.removesuffix('.cue')}.cue"
-        elif name == "download":
-            self._offer_downloads()
         self.panel.children = () if name is None else (self._panels[name],)
-
-    def _offer_downloads(self) -> None:
-        """Links to the text, the rig and the picture of the icon that is shown."""
-        from ..figures.overview import scene_figure
-        from .versions_view import figure_files, link
-
-        design = self.design
-        stem = Path(self.document.name).stem
-        files = {f"{stem}.cue": design.text.encode(), f"{design.rig.name}.toml": design.rig.toml.encode()}
-        if design.scene.drawing is not None:
-            files |= figure_files(f"{design.scene.icon}-on-{design.rig.name}", scene_figure(design.scene))
-        self._set(self.links, " · ".join(link(name, data) for name, data in files.items()))
 
     def _files(self, pattern: str) -> list[str]:
         """Names of files of the folder, without hidden ones; none of a folder that cannot be read."""

@@ -16,7 +16,6 @@ from ..files.exporting import felt_beside, others
 from ..report.blocks import fragment
 from .live_view import Job, LiveView
 from .set_model import MOST_RANKED
-from .versions_view import link, zipped
 from .view_blocks import delivered_html, gate_html, written_html
 
 if TYPE_CHECKING:
@@ -64,8 +63,6 @@ class ExportView(LiveView[ExportRequest]):
         self.overwrite = widgets.Checkbox(value=False, description="overwrite existing files", indent=False)
         self.insist = widgets.Checkbox(value=False, description="also export lossy or unreached icons", indent=False)
         self.button = widgets.Button(description="Write", button_style="primary", disabled=True)
-        self.download = widgets.Button(description="Download", disabled=True, tooltip="the same files as one archive")
-        self.download.on_click(lambda _: self._safely(self.offer_download))
         for control in (self.device, self.form, self.folder, self.which, self.pause):
             control.style.description_width = "52px"
         self.said = {name: widgets.HTML() for name in ("status", "written", "delivered", "figure", "gate")}
@@ -77,7 +74,7 @@ class ExportView(LiveView[ExportRequest]):
         self.button.on_click(lambda _: self._safely(self.write))
         said = self.said
         controls = [self.device, self.form, self.which, self.pause, self.folder]
-        controls += [self.overwrite, self.insist, widgets.Box([self.button, self.download])]
+        controls += [self.overwrite, self.insist, self.button]
         left = widgets.VBox([*controls, said["status"], said["written"]], layout={"flex": "1 1 300px"})
         self.body = widgets.VBox(
             [said["delivered"], said["gate"], said["figure"]], layout={"flex": "3 1 700px", "min_width": "0"}
@@ -87,7 +84,7 @@ class ExportView(LiveView[ExportRequest]):
         self._say("drives are prepared when this tab opens")
 
     def _mark_outdated(self, request: ExportRequest) -> None:
-        self.button.disabled = self.download.disabled = True
+        self.button.disabled = True
         self.said["written"].value = ""
         super()._mark_outdated(request)
 
@@ -123,15 +120,6 @@ class ExportView(LiveView[ExportRequest]):
             return
         self.said["written"].value = written_html(ready, folder, before)
         self._say("")
-
-    def offer_download(self) -> None:
-        """Offer the files as one archive, under the same conditions as they are written."""
-        if self.ready is None or self._request() != self._finished:
-            raise OutputError("the drives are not ready yet")
-        files = replace(self.ready, force=self.insist.value).files
-        self.said["written"].value = (
-            link("drives.zip", zipped(files)) if files else fragment("block", "nothing to download", "th-bad")
-        )
 
     def _forget_result(self) -> None:
         """A result for another folder does not apply to this one."""
@@ -180,7 +168,7 @@ class ExportView(LiveView[ExportRequest]):
         if self.ready is None or self._request() != self._finished:
             return
         stops = [refusal for _, refusal in replace(self.ready, force=self.insist.value).barred]
-        self.button.disabled = self.download.disabled = bool(stops)
+        self.button.disabled = bool(stops)
         if not stops:
             self._say("ready to be written", "th-good")
         elif all(refusal.forcible for refusal in stops):

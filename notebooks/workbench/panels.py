@@ -35,11 +35,7 @@ SHEET: tuple[tuple[str, tuple[str, ...]], ...] = (
     ),
     (
         "Set",
-        (
-            "click a cell, or choose it with arrows and Enter: both icons, why they are confused, the cheapest edit",
-            "choose: the best few icons; Keep these takes the others out of the text (Undo brings them back)",
-            "goal: what is wanted of the set, in words; which parts are met, by how much, and what binds",
-        ),
+        ("click a cell, or choose it with arrows and Enter: both icons, why they are confused, the cheapest edit",),
     ),
     (
         "Versions",

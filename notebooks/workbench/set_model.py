@@ -11,7 +11,6 @@ import numpy as np
 
 from ..cli.options import MOST_ICONS
 from ..editing.cue_check import Reading, read_text
-from ..report.set_report import SetReport
 from ..timeline.frames import MOST_POINTS, CanvasFrame, terms_of
 from ..timeline.scene import draw
 
@@ -22,8 +21,6 @@ if TYPE_CHECKING:
     from thermicon.perception.identification.map import PerceptualMap
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.ranking.scores import PairScore
-    from thermicon.perception.selection.goal import Goal
-    from thermicon.perception.selection.request import Selection
 
 QUICK, WELL = (6, 0), (200, 128)
 """How many people, and how many draws of the parameters: at once, and when there is time."""
@@ -39,7 +36,7 @@ PANELS = (
 
 @dataclass(frozen=True, slots=True)
 class RankedSet:
-    """A ranking with choice and goal, its text and rig, its map, the order of its heat maps, and what it took (ms).
+    """A ranking, its text and rig, its map, the order of its heat maps, and what it took (ms).
 
     ``observer`` is what it is predicted with; None: the shipped one.
     """
@@ -47,16 +44,11 @@ class RankedSet:
     text: str
     rig: Rig
     icons: tuple[Icon, ...]
-    report: SetReport
+    ranking: Ranking
     map: PerceptualMap | None
     order: tuple[int, ...]
     ms: float
     observer: ObserverModel | None = None
-
-    @property
-    def ranking(self) -> Ranking:
-        """The ranking."""
-        return self.report.ranking
 
     @property
     def labels(self) -> list[str]:
@@ -83,21 +75,17 @@ def rank_set(
     rig: Rig,
     people: int,
     parameters: int,
-    choosing: Selection | None = None,
     reference: PerceptualMap | None = None,
     progress: Callable[[int, int], None] | None = None,
-    goal: Goal | None = None,
     observer: ObserverModel | None = None,
 ) -> RankedSet:
     """Rank the set of a text; its map is laid onto the ``reference``. Raises ValueError where it cannot be.
 
-    A ``goal`` about a share of people is judged with draws of the parameters only; of these, all are used where the
-    ``observer`` has fewer than ``parameters``.
+    Where the ``observer`` has fewer draws than ``parameters``, all are used.
     """
-    from thermicon.perception import choose, rank
+    from thermicon.perception import rank
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import clustered_order
-    from thermicon.perception.selection.goal_result import judge_goal
 
     began = time.perf_counter()
     reading = read_text(text)
@@ -105,21 +93,11 @@ def rank_set(
         raise ValueError(why)
     draws = parameters if observer is None else observer.most_draws(parameters)
     draws = 0 if draws == 1 else draws  # an interval needs two
-    judged = goal if goal is None or draws or not goal.single_people else None
-    made = rank(
-        reading.icons,
-        rig,
-        people=people,
-        parameters=draws if choosing is None else 0,
-        progress=progress,
-        observer=observer,
-    )
-    picked = None if choosing is None else choose(made, choosing, parameters=draws, progress=progress)
-    report = SetReport(made, picked, None if judged is None else judge_goal(judged, made, picked))
+    made = rank(reading.icons, rig, people=people, parameters=draws, progress=progress, observer=observer)
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
     ms = 1e3 * (time.perf_counter() - began)
-    return RankedSet(text, rig, tuple(reading.icons), report, laid, order, ms, observer)
+    return RankedSet(text, rig, tuple(reading.icons), made, laid, order, ms, observer)
 
 
 def why_not(reading: Reading) -> str | None:

@@ -1,4 +1,4 @@
-"""The set view: confusions, the selected pair with its cheapest edit, the perceptual map, and the best few icons."""
+"""The set view: confusions, the selected pair with its cheapest edit, and the perceptual map."""
 
 from __future__ import annotations
 
@@ -8,28 +8,24 @@ from typing import TYPE_CHECKING, Any
 import ipywidgets as widgets
 
 from ..editing.cue_check import read_text
-from ..editing.number_literals import only, with_edit
+from ..editing.number_literals import with_edit
 from ..figures.print_figure import themed_svg
 from ..report.blocks import Bullets, fragment, shown
-from ..report.choices import NAMES
+from ..report.set_report import SetReport
 from .design_view import SideCanvas
-from .goal_field import GoalField
 from .live_view import BackgroundWorker, Job, LiveView
 from .set_model import QUICK, WELL, RankedSet, heat_frame, overlay_frame, rank_set, why_not
-from .view_blocks import chosen_html, edit_html, pair_html, set_html
+from .view_blocks import edit_html, pair_html, set_html
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.perception.identification.map import PerceptualMap
     from thermicon.perception.selection.edit import Edit, NoEdit
-    from thermicon.perception.selection.goal import Goal
-    from thermicon.perception.selection.request import Selection
 
     from .design_model import DesignModel
 
 ShowText = Callable[[str], None]
-SetRequest = tuple[str, "Rig", "Selection | None", "Goal | None"]
-"""Text, rig, the choice of a few icons, if any, and the goal, if any."""
+SetRequest = tuple[str, "Rig"]
 SHARES = 10
 SMALL = """cue 1
 icon dip { cool by 2 K at 2 K/s; return at 2 K/s }
@@ -62,25 +58,13 @@ class SetView(LiveView[SetRequest]):
     def _build(self) -> None:
         self.heat, self.overlay = SideCanvas("heat"), SideCanvas("traces")
         self.heat.on_message(self._receive)
-        names = ("scores", "status", "table", "notes", "pair", "edit_text", "why", "map", "choice", "caveat")
+        names = ("scores", "status", "table", "notes", "pair", "edit_text", "why", "map", "caveat")
         self.said = {name: widgets.HTML() for name in names}
         said = self.said
-        self.count = widgets.Dropdown(options=[("all", 0)], value=0, description="choose", layout={"width": "150px"})
-        by = [(name, key) for key, name in NAMES.items()]
-        self.objective = widgets.Dropdown(options=by, value="worst", description="by", layout={"width": "210px"})
-        for control in (self.count, self.objective):
-            control.style.description_width = "auto"
-            control.observe(lambda _: self._safely(lambda: self.renew(0.0)), "value")
         self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
         self.apply.on_click(lambda _: self._safely(self.apply_edit))
-        self.take = widgets.Button(description="Keep these", layout={"width": "100px", "display": "none"})
-        self.take.tooltip = "take the other icons out of the text, as one step that can be undone"
-        self.take.on_click(lambda _: self._safely(self.keep_chosen))
         top = _row(said["scores"], said["status"]).add_class("thermicon-top")
-        self.goal = GoalField(lambda: self._safely(lambda: self.renew(0.0)))
-        choosing = _row(self.count, self.objective, self.take)
-        table = widgets.VBox([said["table"], choosing, said["choice"], self.goal.box])
-        self._table = table.add_class("thermicon-side")
+        table = self._table = widgets.VBox([said["table"]]).add_class("thermicon-side")
         self._maps = widgets.VBox([self.heat], layout={"flex": WIDE, "min_width": "0"})
         overlay = widgets.VBox([self.overlay], layout={"flex": "3 1 400px", "min_width": "0"})
         reasons = widgets.VBox([said["pair"], said["edit_text"], self.apply, said["why"]], layout={"flex": "3 1 300px"})
@@ -99,7 +83,7 @@ class SetView(LiveView[SetRequest]):
         rank_set(SMALL, self.design.nominal, *QUICK, progress=job.go_on)
 
     def _mark_outdated(self, request: SetRequest) -> None:
-        self._mark(self.made is not None and request[:2] != self._source())
+        self._mark(self.made is not None and request != self._source())
 
     def _obstacle(self, request: SetRequest) -> str | None:
         reason = why_not(read_text(request[0]))
@@ -108,10 +92,8 @@ class SetView(LiveView[SetRequest]):
         return f"{reason}; the last valid set is shown, for {self.made.ranking.people} people"
 
     def _job(self, request: SetRequest) -> Callable[[Job], None]:
-        quick = self.made is None or request[:2] != self._source()
-        doing = "choosing" if request[2] else "judging the goal" if request[3] else "ranking"
-        self._say("ranking …" if quick else f"{doing} …")
-        return lambda job: self._rank(job, request, quick)
+        self._say("ranking …")
+        return lambda job: self._rank(job, request)
 
     def _show_finished(self) -> None:
         if self.made is not None:
@@ -154,37 +136,28 @@ class SetView(LiveView[SetRequest]):
         self.said["edit_text"].value = fragment("marked", f"applied: {edit.new}", "th-good")
         self._show_text(text)
 
-    def keep_chosen(self) -> None:
-        """Take the icons that were not chosen out of the text, as one step that can be undone."""
-        chosen = None if self.made is None else self.made.report.choice
-        if chosen is None:
-            raise ValueError("no icons are chosen yet: say above how many")
-        self._show_text(only(self.design.text, tuple(chosen.icons)))
-        self.take.layout.display = "none"
-        self.count.value = 0
-
-    def _rank(self, job: Job, request: SetRequest, quick: bool) -> None:
+    def _rank(self, job: Job, request: SetRequest) -> None:
         """The background job: a quick ranking with a few people, then one with enough for the final numbers."""
-        text, rig, choosing, goal = request
-        if quick:
-            reference = None if self.made is None else self.made.map
-            first = rank_set(text, rig, *QUICK, None, reference, job.go_on, goal, self.design.model)
+        if self.made is None or request != self._source():
+            first = self._ranked(request, QUICK, job.go_on)
             job.on_page(lambda: self._show(first, request, False))
-        reference = None if self.made is None else self.made.map
-        reported = [0]
+        reported = 0
 
         def progress(done: int, total: int) -> None:
+            nonlocal reported
             job.go_on()
             share = SHARES * done // max(total, 1)
-            if share != reported[0]:  # it starts again where icons are chosen after the ranking
-                reported[0] = share
-                doing = "choosing" if choosing is not None and not quick else "refining"
-                status = f"{doing} with {WELL[0]} people … {100 * share // SHARES} %"
+            if share != reported:
+                reported = share
+                status = f"refining with {WELL[0]} people … {100 * share // SHARES} %"
                 job.on_page(lambda: self._say(status))
 
-        well = rank_set(text, rig, *WELL, choosing, reference, progress, goal, self.design.model)
+        well = self._ranked(request, WELL, progress)
         picture = "" if well.map is None else map_html(well.map)
         job.on_page(lambda: self._show(well, request, True, picture))
+
+    def _ranked(self, request: SetRequest, how: tuple[int, int], progress: Callable[[int, int], None]) -> RankedSet:
+        return rank_set(*request, *how, None if self.made is None else self.made.map, progress, self.design.model)
 
     def _failed(self, message: str) -> None:
         super()._failed(f"not ranked: {message}")
@@ -209,15 +182,11 @@ class SetView(LiveView[SetRequest]):
             frame = heat_frame(made, pair)
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
-        result = made.report.to_dict(mapped=False)  # the map exists already, aligned with the one before
+        result = SetReport(ranking).to_dict(mapped=False)  # the map exists already, aligned with the one before
         for name, html in set_html(ranking, result).items():
             said[name].value = html
-        said["choice"].value = chosen_html(made.report)
-        self.goal.show(made.report.goal, well)
-        self.take.layout.display = "none" if made.report.choice is None else ""
         people = f"{ranking.people} people"
-        self._say(f"{people}" if well else f"preliminary: {people}; refining …")
-        self._offer(len(made.icons))
+        self._say(people if well else f"preliminary: {people}; refining …")
         if alone:
             return
         if picture:  # the one before stays until the ranking is refined
@@ -259,20 +228,7 @@ class SetView(LiveView[SetRequest]):
         self.pick(*pair)
 
     def _request(self) -> SetRequest:
-        return self.design.text, self.design.rig, self._choosing(), self.goal.goal
-
-    def _choosing(self) -> Selection | None:
-        from thermicon.perception.selection.request import Selection
-
-        return Selection(self.count.value, self.objective.value) if self.count.value else None
-
-    def _offer(self, icons: int) -> None:
-        """Offer the possible numbers of chosen icons."""
-        options = [("all", 0), *((f"best {k}", k) for k in range(2, icons))]
-        if list(self.count.options) != options:
-            kept = self.count.value if any(value == self.count.value for _, value in options) else 0
-            self.count.options = options
-            self.count.value = kept
+        return self.design.text, self.design.rig
 
     def _source(self) -> tuple[str, Rig] | None:
         """Text and rig of the ranking on the page."""

@@ -1,14 +1,10 @@
-"""The versions view: texts that were kept, each with its difference from the editor's; and links that carry files."""
+"""The versions view: texts that were kept, each with its difference from the editor's."""
 
 from __future__ import annotations
 
 import difflib
-import io
 import time
-import zipfile
-from base64 import b64encode
-from collections.abc import Callable, Mapping
-from pathlib import Path
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import ipywidgets as widgets
@@ -17,23 +13,12 @@ from ..report.blocks import fragment
 from .live_view import button
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from ..files.versions import Version
     from .design_model import DesignModel
 
 NOTHING = "Keep the set as it is now as a version, and go on editing: here it can be compared with, and brought back."
 ABOUT = "− only in the version, + only in the editor"
 MOST_LINES = 200
-TYPES = {
-    ".cue": "text/plain",
-    ".toml": "text/plain",
-    ".png": "image/png",
-    ".svg": "image/svg+xml",
-    ".pdf": "application/pdf",
-    ".zip": "application/zip",
-}
-DPI = 200
 
 
 class VersionsView:
@@ -45,7 +30,7 @@ class VersionsView:
     def __init__(self, design: DesignModel, show_text: Callable[[str, str | None], None]) -> None:
         self.design, self._show_text = design, show_text
         self.shown = False
-        self.said = {name: widgets.HTML() for name in ("status", "about", "changes", "download")}
+        self.said = {name: widgets.HTML() for name in ("status", "about", "changes")}
         self.keep = button("Keep this version", "what is in the editor", self.keep_now)
         self.back = button("Restore", "into the editor, as a step that can be undone", self.restore)
         self.discard = button("Discard", "drop the version that is selected", self.drop)
@@ -53,7 +38,7 @@ class VersionsView:
         self.list.style.description_width = "36px"
         self.list.observe(lambda _: self._show(), "value")
         said = self.said
-        top = widgets.Box([self.keep, self.back, self.discard, said["download"], said["status"]])
+        top = widgets.Box([self.keep, self.back, self.discard, said["status"]])
         right = widgets.VBox([said["about"], said["changes"]], layout={"flex": "1 1 430px", "min_width": "0"})
         body = widgets.Box([self.list, right]).add_class("thermicon-row")
         self.box = widgets.VBox([top.add_class("thermicon-row"), body]).add_class("thermicon-versions")
@@ -101,10 +86,8 @@ class VersionsView:
         self._say("")
         if picked is None:
             self.said["about"].value = fragment("block", NOTHING, "th-soft")
-            self.said["changes"].value = self.said["download"].value = ""
+            self.said["changes"].value = ""
             return
-        name = f"{Path(self.design.document.name).stem}-{time.strftime('%d-%H%M%S', time.localtime(picked.at_s))}.cue"
-        self.said["download"].value = link(name, picked.text.encode())
         rows = changed_lines(picked.text, self.design.text)
         self.said["about"].value = fragment("block", ABOUT if rows else "as in the editor", "th-soft")
         self.said["changes"].value = fragment("changes", rows) if rows else ""
@@ -126,28 +109,3 @@ def _title(version: Version) -> str:
     """When a version was written, and whether by hand."""
     when = time.strftime("%d %b %H:%M:%S", time.localtime(version.at_s))
     return f"{when}{', unsaved text' if version.editor else ''}{f', {version.icon}' if version.icon else ''}"
-
-
-def link(name: str, data: bytes) -> str:
-    """A link that saves a file under a name."""
-    address = f"data:{TYPES.get(Path(name).suffix, 'application/octet-stream')};base64,{b64encode(data).decode()}"
-    return fragment("download", name, address)
-
-
-def figure_files(stem: str, figure: Figure) -> dict[str, bytes]:
-    """A figure as PNG, SVG and PDF, by file name."""
-    files = {}
-    for kind in ("png", "svg", "pdf"):
-        drawn = io.BytesIO()
-        figure.savefig(drawn, format=kind, dpi=DPI, bbox_inches="tight", facecolor="white")
-        files[f"{stem}.{kind}"] = drawn.getvalue()
-    return files
-
-
-def zipped(files: Mapping[str, bytes]) -> bytes:
-    """Files as one archive."""
-    held = io.BytesIO()
-    with zipfile.ZipFile(held, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in files.items():
-            archive.writestr(name, data)
-    return held.getvalue()

@@ -10,7 +10,7 @@ from thermicon.icons.number_text import number, percent
 
 from ..cli.export import warning_lines
 from ..report.blocks import Bullets, Cards, Cell, Facts, Heading, Text, fragment, grid, shown
-from ..report.choices import choice_lines, goal_lines, laboratory
+from ..report.choices import laboratory
 from ..report.gate_words import CAUTION, gate_words, short_scenario, steps_of
 from ..report.rank_details import caveat, edit_text, outside_lines, trouble_lines
 from ..report.rank_report import cards, icon_table
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from thermicon.perception.identification.delivered import PerceivedChange
     from thermicon.perception.ranking.scores import PairScore
     from thermicon.perception.selection.edit import Edit, NoEdit
-    from thermicon.perception.selection.goal_result import GoalResult
-
-    from ..report.set_report import SetReport
 
 ALONE = "The set has only one icon, so there are no distances to show."
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
@@ -72,21 +69,6 @@ def edit_html(edit: Edit | NoEdit | None) -> str:
     if isinstance(edit, NoEdit):
         return shown(Text(f"no edit: {edit.reason}", "soft"))
     return shown(Text(edit_text({"edit": edit.to_dict()})))
-
-
-def chosen_html(made: SetReport) -> str:
-    """Which icons were chosen, and how certain that choice is."""
-    if made.choice is None:
-        return ""
-    where = laboratory(made.ranking.observer, made.ranking.own_laboratory)
-    first, *rest = choice_lines(made.choice.to_dict(), where)
-    return shown(Heading(first), Bullets(tuple(rest)))
-
-
-def verdict_html(reached: GoalResult) -> str:
-    """Whether a goal is met, what is predicted of every part, how far it is from the limit, and what binds."""
-    first, *rest = goal_lines(reached.to_dict())
-    return shown(Text(first, "good" if reached.met else "bad"), Bullets(tuple(rest)))
 
 
 def delivered_html(ready: Export, remarks: Sequence[str] = ()) -> str:

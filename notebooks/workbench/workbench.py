@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.perception import Percept, Ranking
     from thermicon.perception.observer.observer_model import ObserverModel
-    from thermicon.perception.selection.goal import Goal
 
     from ..files.document import Document
     from ..timeline.scene import Scene
@@ -47,8 +46,6 @@ class Workbench:
         Name of the icon that is shown first; None: the first.
     folder
         Folder into which drives are exported.
-    goal
-        What is wanted of the set, as `Goal.parse` reads it; the set view says whether it is met.
     observer
         Observer file that predicts in place of the shipped one, as ``rank --observer`` takes it: the draws that
         ``pilot --keep lab.csv`` wrote, or one observer's records (.toml).
@@ -61,8 +58,7 @@ class Workbench:
         For a rig that does not exist, or cannot be.
     ValueError
         For a cue file that cannot be edited (unreadable, not UTF-8, or too large), an icon that the set does not have,
-        a goal that cannot be read (`GoalError`), and an observer file that cannot be read or is of another version
-        (`RecordError`).
+        and an observer file that cannot be read or is of another version (`RecordError`).
 
     Examples
     --------
@@ -79,11 +75,9 @@ class Workbench:
         rig: str | Path | Rig | None = None,
         icon: str | None = None,
         folder: str | Path = "drives",
-        goal: Goal | str | None = None,
         observer: str | Path | None = None,
     ) -> None:
         from thermicon.circuit import Rig
-        from thermicon.perception.selection.goal import Goal
 
         loaded = rig if isinstance(rig, Rig) else Rig.load("thenar" if rig is None else rig)
         try:
@@ -93,7 +87,6 @@ class Workbench:
         self._design = DesignModel(document, loaded, icon, _observer_of(observer))
         self._check_icon(icon)
         self._folder = Path(folder)
-        self._goal = "" if goal is None else (Goal.parse(goal) if isinstance(goal, str) else goal).text
         self._ranked: tuple[object, Ranking] | None = None
         self._page: Any = None
         self.design_view: DesignView | None = None
@@ -228,7 +221,6 @@ class Workbench:
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = DocumentBar(design)
         self.versions_view = versions = VersionsView(self._design, show_text)
-        ranked.goal.text.value = self._goal
         design.on_page = {"save": bar.saved_by_key, "left": bar.take_left}
         views = [design.box, ranked.box, export.box, versions.box]
         tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))

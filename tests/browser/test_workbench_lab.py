@@ -11,6 +11,7 @@ from tests.browser.jupyter import Server, dark, open_notebook, reload, restart_k
 from tests.browser.onbench import (
     TWO,
     click_a_confusion,
+    editor,
     expect_text,
     root,
     text_of,
@@ -75,7 +76,7 @@ def test_unsaved_text_of_a_closed_tab_is_offered_and_saved_to_its_file(page: Pag
     expect(offer).to_contain_text("Unsaved text of alerts.cue was typed a moment ago")
     offer.get_by_role("button", name="Restore it").click()
     expect_text(again, typed)
-    again.locator(".cm-content").press("Control+s")
+    editor(again).press("Control+s")
     expect(again.locator(".thermicon-project")).to_contain_text("saved alerts.cue")
     assert file.read_text(encoding="utf-8") == typed
     assert not list(lab.folder.glob(".alerts*"))

@@ -9,40 +9,6 @@ import pytest
 
 from thermicon.icons.language.source import grammar
 from thermicon.notebooks.editing.completions import CONTEXTS, completions
-from thermicon.notebooks.editing.cue_check import read_text
-from thermicon.notebooks.editing.number_literals import CannotEdit, only
-
-TEXT = """cue 1
-
-# about a
-icon a means "x } icon b" {
-  hold for 1 s  # }
-}
-
-icon b { play a; repeat 2 { warm by 1 K at 1 K/s; return at 1 K/s } }
-icon c { hold for 1 s }; icon d { hold for 2 s }
-# the end
-"""
-
-
-def names(text: str) -> tuple[str, ...]:
-    reading = read_text(text)
-    assert reading.troubles == ()
-    return reading.names
-
-
-def test_the_chosen_stay_and_a_family_is_written_out() -> None:
-    kept = only(TEXT, ("a", "c"))
-    assert names(kept) == ("a", "c")
-    assert [words in kept for words in ("# about a", 'means "x } icon b"', "# the end")] == [True] * 3
-    assert names(only(TEXT, ("a", "d"))) == ("a", "d")
-    family = "cue 1\nicon ramp(x in [1, 2, 3] K) { cool by x at 1 K/s; return at 1 K/s }\nicon b { hold for 1 s }\n"
-    assert names(only(family, ("ramp_x=2", "b"))) == ("ramp_x=2", "b")
-    with pytest.raises(CannotEdit, match="cannot stand alone: icon b plays a"):
-        only(TEXT, ("b",))
-    with pytest.raises(CannotEdit, match="the text has errors"):
-        only("cue 1; icon a { hold for 1 }", ("a",))
-
 
 PLAIN = {"NUMBER": "2", "NAME": "a", "STRING": '"a"', "TITLE": '"a"'}
 

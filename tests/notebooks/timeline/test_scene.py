@@ -12,7 +12,6 @@ from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import MOST_NAMES, mended
 from thermicon.notebooks.timeline.marks import missed_spans, threshold_change_K
 from thermicon.notebooks.timeline.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
-from thermicon.notebooks.workbench.knobs import aged
 from thermicon.perception import Observer, perceive
 from thermicon.perception.sensation.features import passing_s
 from thermicon.perception.sensation.sensation import receptor_drive, sensation
@@ -70,7 +69,7 @@ def test_a_change_at_the_edge_of_the_band_has_a_sensation_of_one(channel: str) -
     assert felt.max() == pytest.approx(1.0, abs=2e-3)
 
 
-def test_bands_begin_at_the_adaptation_level_and_widen_with_age(dip: Scene, rig: Rig) -> None:
+def test_bands_begin_at_the_adaptation_level_and_widen_with_the_threshold(dip: Scene, rig: Rig) -> None:
     assert dip.drawing is not None
     cold, warm = dip.drawing.bands
     assert cold.high_C == dip.drawing.trace.cold_receptor_C[0]
@@ -79,7 +78,9 @@ def test_bands_begin_at_the_adaptation_level_and_widen_with_age(dip: Scene, rig:
     assert passed is not None
     assert dip.drawing.percept.onset_s is not None
     assert passed < dip.drawing.percept.onset_s
-    old = scene(DIP, rig, observer=aged(Observer.load(), 65.0)).drawing
+    person = Observer.load()
+    dull = replace(person, cold=replace(person.cold, threshold_drive=1.5 * person.cold.threshold_drive))
+    old = scene(DIP, rig, observer=dull).drawing
     assert old is not None
     assert old.bands[0].change_K > 1.3 * cold.change_K
     flow = scene(DIP, rig, observer=Observer.load(variable="heat flow")).drawing

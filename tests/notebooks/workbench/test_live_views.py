@@ -3,33 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from threading import Event
 
 import ipywidgets as widgets
-import pytest
 
 from thermicon.circuit import Rig
-from thermicon.notebooks import Workbench
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import Job, LiveView
-from thermicon.notebooks.workbench.set_view import SetView
-from thermicon.perception.observer.observer import DATA
 
 TEXT = (
     "cue 1\n"
     "icon near { warm by 4 °C at 2 °C/s; return at 2 °C/s }\n"
     "icon far { cool by 4 °C at 2 °C/s; return at 2 °C/s }\n"
 )
-
-
-@pytest.fixture(autouse=True)
-def few_people(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
-    """Numbers are not what is tested here, so a few people do."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("thermicon.notebooks.workbench.set_view.WELL", (6, 0))
-    yield
 
 
 class Lengths(LiveView[str]):
@@ -90,35 +77,3 @@ def test_a_request_that_failed_says_so_again_and_ends_the_work_on_the_one_after_
     view.go.set()
     assert view.worker.wait()
     assert (view.words, view.shown_text) == ("it failed", None)
-
-
-def shown_set(bench: Workbench) -> SetView:
-    """The set view of a bench, shown and ranked."""
-    assert bench.page is not None
-    assert bench.set_view is not None
-    bench.tabs.selected_index = 1
-    assert bench.set_view.worker.wait()
-    return bench.set_view
-
-
-def test_a_goal_that_an_observer_cannot_judge_says_what_it_needs(tmp_path: Path) -> None:
-    file = tmp_path / "lab.toml"
-    file.write_bytes((DATA / "observer.toml").read_bytes())
-    view = shown_set(Workbench(TEXT, observer=file, goal="correct >= 50 % for 95 % of people"))
-    assert "not judged: a share of people takes draws of the model too" in view.goal.verdict.value
-    assert "pilot --keep" in view.goal.verdict.value
-    view.goal.text.value = "time <= 60 s"
-    assert view.worker.wait()
-    assert "Goal: met" in view.goal.verdict.value
-
-
-def test_chosen_icons_that_cannot_be_kept_can_still_be_kept_after_a_mend() -> None:
-    bench = Workbench(TEXT + "icon third { warm by 2 °C at 2 °C/s; return at 2 °C/s }\n")
-    view = shown_set(bench)
-    view.count.value = 2
-    assert view.worker.wait()
-    assert view.take.layout.display == ""
-    bench.text += "icon"
-    view.take.click()
-    assert "the text has errors: mend them first" in view.said["status"].value
-    assert view.take.layout.display == ""

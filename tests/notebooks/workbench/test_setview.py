@@ -12,6 +12,7 @@ from tests.builders import few_draws, missing
 from tests.notebooks.workbench.openbench import SAID
 from thermicon.circuit import Rig
 from thermicon.icons import parse
+from thermicon.notebooks import Workbench
 from thermicon.notebooks.editing.number_literals import CannotEdit, with_edit
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import BackgroundWorker, Job, Superseded
@@ -144,33 +145,6 @@ def test_an_edit_is_applied_and_undone_and_errors_keep_the_last_good_set_as_stal
     assert not bench.stale
 
 
-@pytest.mark.slow
-def test_a_goal_is_judged_with_what_is_predicted_how_far_that_is_and_what_binds() -> None:
-    bench = Bench(THREE)
-    goal = bench.view.goal
-    goal.text.value = "correct >= 99.9 % for 95 % of people, time <= 90 s, count 3"
-    assert "judged after refining" in goal.verdict.value
-    bench.wait()
-    words = ["Goal: NOT met", ", missed by ", " points", "near and nearer are confused most"]
-    assert missing(words, goal.verdict.value) == []
-    goal.text.value = "count 3"
-    bench.wait()
-    assert "Goal: met" in goal.verdict.value
-    assert bench.view.worker.busy is False
-
-
-@pytest.mark.parametrize("typed", SAID["goals"])
-def test_a_goal_that_cannot_be_read_says_why_and_judges_nothing(ranked: Bench, typed: str) -> None:
-    goal = ranked.view.goal
-    goal.text.value = typed
-    assert missing(SAID["goals"][typed], goal.said.value) == []
-    assert "<script>" not in goal.said.value
-    assert (goal.text.value, goal.verdict.value) == (typed, "")
-    assert "24 people" in ranked.said("status")
-    goal.text.value = ""
-    assert goal.said.value == ""
-
-
 def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
     design = DesignModel(TWO, Rig.load("thenar"))
     view = SetView(design, lambda text: None)
@@ -191,23 +165,6 @@ def test_a_set_of_one_says_that_it_is_never_confused() -> None:
 @pytest.mark.parametrize("text", SAID["texts"])
 def test_what_cannot_be_ranked_is_said(text: str) -> None:
     assert missing(SAID["texts"][text], Bench(text).said("status")) == []
-
-
-@pytest.mark.slow
-def test_the_best_few_are_chosen_marked_and_kept() -> None:
-    bench = Bench(THREE)
-    bench.view.count.value = 2
-    bench.wait()
-    assert "Best 2 of 3" in bench.said("choice")
-    assert bench.said("table").count("✓") == 2
-    bench.view.objective.value = "bits"
-    bench.wait()
-    assert "by bits" in bench.said("choice")
-    assert bench.view.take.layout.display == ""
-    chosen = bench.made.report.choice.icons if bench.made.report.choice else ()
-    bench.view.take.click()
-    assert bench.design.scene.names == tuple(chosen)
-    assert bench.view.count.value == 0
 
 
 def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
@@ -257,3 +214,5 @@ def test_an_edit_that_does_not_fit_is_refused_with_what_to_do() -> None:
 def test_a_single_draw_gives_no_interval(tmp_path: Path) -> None:
     model = ObserverModel.load(few_draws(tmp_path / "lab.csv", 1, "by weights from 2 laboratories"))
     assert rank_set(TWO, Rig.load("thenar"), 2, 128, observer=model).ranking.new_laboratory is None
+    bench = Workbench(TWO, observer=few_draws(tmp_path / "two.csv", 2, "by weights from 4 laboratories"))
+    assert bench.ranking(2).observer == "two.csv"

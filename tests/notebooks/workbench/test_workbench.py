@@ -145,14 +145,14 @@ def test_a_message_that_makes_no_sense_is_a_note_and_the_page_goes_on(send: Send
 
 
 def test_an_impossible_value_is_told_and_reset_brings_all_back(bench: Workbench, send: Send) -> None:
-    turned(bench, "rest", 30.0)
-    answer = turned(bench, "limit", 0.1)
+    turned(bench, "skin.rest_C", 30.0)
+    answer = turned(bench, "driver.current_limit_A", 0.1)
     assert answer["notes"]
     assert send(type="text", text=DIP.replace("4 °C", "3 °C"))["icon"] == "dip"
     assert bench.design_view is not None
     bench.design_view.reset.click()
     assert bench.rig.driver.current_max_A == 1.5
-    assert bench.design_view.sliders["rest"].value == 32.0
+    assert bench.design_view.sliders["skin.rest_C"].value == 32.0
     assert bench.scene.notes == ()
 
 
@@ -163,7 +163,7 @@ def test_nothing_in_the_kernel_takes_long_for_a_frame_of_text_or_slider() -> Non
         text = design.text.replace("cool by 6 °C at 1", f"cool by {5 + step / 60:.3f} °C at 1")
         for name, act in (
             ("text", lambda text=text: design.receive({"type": "text", "text": text})),
-            ("slider", lambda step=step: design.turn({"contact": 1.0 + 0.05 * step})),
+            ("slider", lambda step=step: design.turn({"contact.resistance_m2K_per_W": 1.0 + 0.05 * step})),
         ):
             began = time.process_time()
             act()
