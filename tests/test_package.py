@@ -157,7 +157,7 @@ def test_the_installed_package_checks_exports_and_copies_notebooks(stranger: Str
 def test_the_doctor_finds_the_installed_package_sound(stranger: Stranger) -> None:
     run = stranger.run("doctor", "--json")
     findings = {each["check"]: each for each in json.loads(run.stdout)["findings"]}
-    assert "Größe mit Lücken" in findings["thermicon"]["text"]
+    assert "Größe mit Lücken" in findings["Python"]["text"]
     states = {check: findings[check]["state"] for check in ("Python", "packages", "self-test")}
     assert set(states.values()) == {"ok"}, findings
 

@@ -1,8 +1,7 @@
-"""``thermicon sweep``: one or two keys of the rig over a range, and every number of a run at each value."""
+"""``thermicon sweep``: one key of the rig over a range, and every number of a run at each value."""
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -34,12 +33,9 @@ from .options import (
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.figure import Figure
 
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon, IconSet
-
-    from ..figures.style import Look
 
 MOST_VALUES = 10_000
 FORM = (
@@ -65,22 +61,12 @@ class Measured:
     seed: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Vary:
-    """A dotted key of the rig file, `people.age_years` or `site`, and its values: in the file's unit, or names."""
-
-    key: str
-    values: tuple[float | str, ...]
-    log: bool
-
-
 def sweep(
     icons: Iterable[Icon],
     rig: Rig,
     key: str,
     values: Sequence[float | str],
     *,
-    second: tuple[str, Sequence[float | str]] | None = None,
     tail_s: float = 0.0,
     measured: Measured | None = None,
     progress: Progress | None = None,
@@ -97,8 +83,6 @@ def sweep(
         Dotted key of the rig file, `site` or `people.age_years`.
     values
         Its values, in the unit of the rig file; names of shipped rigs for `site`.
-    second
-        A second key and its values; every combination of both keys is played.
     tail_s
         Time in s that is simulated after the last corner.
     measured
@@ -109,7 +93,7 @@ def sweep(
     Returns
     -------
     pandas.DataFrame
-        One row per icon and value (or combination). Columns: icon, the key or keys, the fields of
+        One row per icon and value. Columns: icon, the key, the fields of
         `thermicon.circuit.safety.verdict.Summary`, what the receptors see, what is measured, and `reason`; with
         `measured` a last row of each value is that of the whole set. Where the rig is impossible or cannot play
         the icon, the row has only the reason.
@@ -135,33 +119,27 @@ def sweep(
     from thermicon.circuit.safety.verdict import Summary
     from thermicon.perception.ranking.swept import check_conditions
 
-    varied = [(key, values), *([second] if second is not None else [])]
-    for name, numbers in varied:
-        for value in numbers if name in (SITE, AGE) else numbers[:1]:
-            check_conditions({name: value}, rig)
-        if name == AGE and measured is None:
-            raise ValueError(f"{AGE} changes what people perceive only; say what to measure, such as correct")
-    keys = [name for name, _ in varied]
-    combinations = list(itertools.product(*(numbers for _, numbers in varied)))
+    for value in values if key in (SITE, AGE) else values[:1]:
+        check_conditions({key: value}, rig)
+    if key == AGE and measured is None:
+        raise ValueError(f"{AGE} changes what people perceive only; say what to measure, such as correct")
     played: list[Icon] = list(icons)
     rows: list[dict[str, Any]] = []
-    for combination in combinations:
-        changes: dict[str, float | str] = dict(zip(keys, combination, strict=True))
-        rows += [{"icon": icon.name, **changes, **_run(icon, rig, changes, tail_s)} for icon in played]
-        if measured is not None:
-            _measure(rows, [icon.name for icon in played], rig, changes, measured)
+    for value in values:
+        runs = [{"icon": icon.name, key: value, **_run(icon, rig, {key: value}, tail_s)} for icon in played]
+        rows += runs if measured is None else _with_people(runs, rig, {key: value}, measured)
         if progress is not None:
-            progress(len(rows), (len(played) + (measured is not None)) * len(combinations))
+            progress(len(rows), (len(played) + (measured is not None)) * len(values))
     summary = [field.name for field in fields(Summary) if field.name != "reason"]
     perceived = [] if measured is None else [name for each in measured.what for name in MEASURES[each]]
-    frame = pd.DataFrame(rows, columns=["icon", *keys, *perceived, *summary, *RECEPTORS, "reason"])
+    frame = pd.DataFrame(rows, columns=["icon", key, *perceived, *summary, *RECEPTORS, "reason"])
     words = dict.fromkeys(("icon", "safety", "reason", SITE), "string") | {"reached": "boolean", "safe": "boolean"}
     kinds: dict[str, Any] = {name: words.get(name, "float64") for name in frame.columns}
     order = {name: place for place, name in enumerate([*(icon.name for icon in played), ALL])}
     return frame.astype(kinds).sort_values("icon", key=lambda names: names.map(order), kind="stable", ignore_index=True)
 
 
-def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float) -> dict[str, Any]:
+def _run(icon: Icon, rig: Rig, change: Mapping[str, float | str], tail_s: float) -> dict[str, Any]:
     import numpy
 
     from thermicon.circuit import InputError, simulate
@@ -170,30 +148,27 @@ def _run(icon: Icon, rig: Rig, changes: Mapping[str, float | str], tail_s: float
 
     try:
         with numpy.errstate(all="ignore"):  # what overflows ends as a reason
-            trace = simulate(icon, rig_under(rig, changes), tail_s=tail_s)
+            trace = simulate(icon, rig_under(rig, change), tail_s=tail_s)
     except (InputError, ValueError, ArithmeticError) as problem:
         return {"reason": "; ".join(str(problem).splitlines())}
     return {**summarise(trace).to_dict(), **_receptors(trace)}
 
 
-def _measure(
-    rows: list[dict[str, Any]], names: Sequence[str], rig: Rig, changes: Mapping[str, float | str], measured: Measured
-) -> None:
-    """Add what people perceive to the last rows, those of the icons, and a row of the whole set."""
+def _with_people(
+    runs: Sequence[dict[str, Any]], rig: Rig, change: Mapping[str, float | str], measured: Measured
+) -> list[dict[str, Any]]:
+    """The rows of one value with what people perceive, and a row of the whole set."""
     from thermicon.circuit import InputError
     from thermicon.perception.ranking.swept import measured_rows
 
     try:
         found = measured_rows(
-            measured.icons, rig, changes, measured.what,
+            measured.icons, rig, change, measured.what,
             people=measured.people, parameters=measured.intervals, seed=measured.seed,
         )  # fmt: skip
     except (InputError, ValueError, ArithmeticError) as problem:
-        rows.append({"icon": ALL, **changes, "reason": "; ".join(str(problem).splitlines())})
-        return
-    for row in rows[-len(names) :]:
-        row.update(found[row["icon"]])
-    rows.append({"icon": ALL, **changes, **found[ALL]})
+        return [*runs, {"icon": ALL, **change, "reason": "; ".join(str(problem).splitlines())}]
+    return [*({**run, **found[run["icon"]]} for run in runs), {"icon": ALL, **change, **found[ALL]}]
 
 
 def _receptors(trace: Trace) -> dict[str, float | None]:
@@ -211,7 +186,7 @@ def sweep_command(
         opt(
             "KEY=LOW:HIGH:N",
             "A key of the rig, or people.age_years, and N values from LOW to HIGH, Nlog for equal ratios; or "
-            "values with commas, such as site=thenar,fingertip. Give it twice for a grid.",
+            "values with commas, such as site=thenar,fingertip.",
         ),
     ],
     rig: RigOptions,
@@ -231,16 +206,17 @@ def sweep_command(
     seed: Seed = 0,
     tail: Tail = 0.0,
 ) -> None:
-    """Vary one or two keys of the rig and write, for every icon, misses, extremes, receptor changes and safety.
+    """Vary a key of the rig and write, for every icon, misses, extremes, receptor changes and safety.
 
-    Two keys make a grid: every combination of their values is played, and the table has one row per icon and
-    combination. Values are in the unit that the key ends with. With --measure every value is ranked as by rank, for
+    Values are in the unit that the key ends with. With --measure every value is ranked as by rank, for
     --people and with --intervals, and a last row of each is that of the whole set; intervals are those of a new
     laboratory, 95 %.
     """
-    varied = read_varied(vary)
+    if len(vary) > 1:
+        raise usage("one key is varied at a time; for another one, give a second sweep, with --set", "--vary")
+    key, values, log = read_vary(vary[0])
     what = () if measure is None else read_measures(measure, intervals or 0)
-    if not what and any(each.key == AGE for each in varied):
+    if not what and key == AGE:
         raise usage(f"{AGE} changes what people perceive only; add --measure correct", "--vary")
     if output is None and figure.figure is None and not what:
         raise usage("give -o OUT for the table, --figure, or --measure to print what people perceive", "-o")
@@ -249,45 +225,22 @@ def sweep_command(
     check_separate([file], [output, figure.figure])
     where = rig.load()
     icons = pick(whole := read_set([file], where), icon)
-    first, *others = varied
+    measured = Measured(whole, what, people, intervals or 0, seed) if what else None
     with progress_bar("sweep") as progress:
-        frame = sweep(
-            icons,
-            where,
-            first.key,
-            first.values,
-            second=(others[0].key, others[0].values) if others else None,
-            tail_s=tail,
-            measured=Measured(whole, what, people, intervals or 0, seed) if what else None,
-            progress=progress,
-        )
-    keys = [each.key for each in varied]
+        frame = sweep(icons, where, key, values, tail_s=tail, measured=measured, progress=progress)
     if frame["duration_s"].isna().all():
-        count, reason = math.prod(len(each.values) for each in varied), frame["reason"].iloc[0]
-        fail(f"--vary {' and '.join(keys)}: none of the {count} values can be played; the first: {reason}")
-    for line in sweep_lines(frame, [each.name for each in icons], keys):
+        reason = frame["reason"].iloc[0]
+        fail(f"--vary {key}: none of the {len(values)} values can be played; the first: {reason}")
+    for line in sweep_lines(frame, [each.name for each in icons], key):
         note(line)
     if figure.figure is not None:
-        figure.write(_figure(frame, varied, figure.look, what))
+        from ..figures.sweep_figure import sweep_figure
+
+        figure.write(sweep_figure(frame, key, what, log=log, look=figure.look))
     if output is not None:
         write_frame(frame, output)
     elif what:
-        show(sweep_report(frame, keys, what))
-
-
-def _figure(frame: pd.DataFrame, varied: Sequence[Vary], look: Look, what: Sequence[str]) -> Figure:
-    """Lines over one key, heat maps over two: of what is measured, else of what the rig does."""
-    from ..figures.sweep_figure import LABELS, MOST_ROWS, SHADES, measure_figure, sweep_figure, sweep_map
-
-    columns, keys = [MEASURES[name] for name in what], [each.key for each in varied]
-    if len(varied) == 1 and columns:
-        return measure_figure(frame, keys[0], columns, ALL, log=varied[0].log, across=look.across(2))
-    if len(varied) == 1:
-        return sweep_figure(frame, keys[0], log=varied[0].log, across=look.across(3))
-    if (count := frame["icon"].nunique()) > MOST_ROWS:
-        note(f"the figure shows the first {MOST_ROWS} of {count} icons; --icon NAME selects another one")
-    maps = [(value, LABELS[value].replace(" (%)", ""), SHADES) for value, *_ in columns]
-    return sweep_map(frame, keys[0], keys[1], *([maps] if maps else []))
+        show(sweep_report(frame, key, what))
 
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:
@@ -305,23 +258,11 @@ def read_measures(text: str, intervals: int) -> tuple[str, ...]:
     return names
 
 
-def read_varied(texts: Sequence[str]) -> tuple[Vary, ...]:
-    """Read every ``--vary``: one key, or two for a grid of all their combinations; more are a usage error."""
-    varied = tuple(map(read_vary, texts))
-    if len(varied) > 2:
-        raise usage(f"{len(varied)} keys are given; at most 2 can be varied, and 2 make a grid", "--vary")
-    if len({vary.key for vary in varied}) < len(varied):
-        raise usage(f"{varied[0].key} is given twice; a grid needs two different keys", "--vary")
-    if (count := math.prod(len(vary.values) for vary in varied)) > MOST_VALUES:
-        raise usage(f"{count:,} combinations are more than {MOST_VALUES:,}; use fewer values", "--vary")
-    return varied
+def read_vary(text: str) -> tuple[str, tuple[float | str, ...], bool]:
+    """Read ``--vary``: a key, its values, and whether these are in equal ratios; another form is a usage error.
 
-
-def read_vary(text: str) -> Vary:
-    """Read one ``--vary``; a text of another form is a usage error that shows the form.
-
-    >>> read_vary("contact.area_cm2=4:9:3").values, read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log").values
-    ((4.0, 6.5, 9.0), (0.0001, 0.001, 0.01))
+    >>> read_vary("contact.area_cm2=4:9:3"), read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log")[1:]
+    (('contact.area_cm2', (4.0, 6.5, 9.0), False), ((0.0001, 0.001, 0.01), True))
     """
 
     def no(why: str) -> typer.BadParameter:
@@ -345,7 +286,7 @@ def read_vary(text: str) -> Vary:
         values = tuple(parts) if key == SITE else tuple(map(read, parts))
         if len(set(values)) < len(values):
             raise no("the same value is given twice")
-        return Vary(key, values, False)
+        return key, values, False
     if key == SITE:
         raise no("sites are names; give them as site=thenar,fingertip")
     low, high, log, number = read(parts[0]), read(parts[1]), parts[2].endswith("log"), parts[2].removesuffix("log")
@@ -359,4 +300,4 @@ def read_vary(text: str) -> Vary:
         raise no("equal ratios need both ends above 0; leave out log for equal steps")
     shares = [k / (int(number) - 1) for k in range(int(number))]
     values = tuple(low * (high / low) ** share if log else low + (high - low) * share for share in shares)
-    return Vary(key, tuple(float(f"{value:.12g}") for value in values), log)
+    return key, tuple(float(f"{value:.12g}") for value in values), log

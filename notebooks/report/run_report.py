@@ -138,30 +138,26 @@ def _dose_lines(session: Session) -> list[str]:
     return lines
 
 
-def sweep_lines(frame: pd.DataFrame, names: Sequence[str], keys: Sequence[str]) -> Iterator[str]:
+def sweep_lines(frame: pd.DataFrame, names: Sequence[str], key: str) -> Iterator[str]:
     """At how many values each icon was reached, where people are best and worst, and a first reason for none."""
     from thermicon.perception.ranking.swept import ALL
 
     def setting(row: pd.Series[Any]) -> str:
-        values = ((key, row[key]) for key in keys)
-        return ", ".join(f"{key} = {value if isinstance(value, str) else f'{value:g}'}" for key, value in values)
+        return f"{key} = {_value(row[key])}"
 
-    points = "combinations" if len(keys) > 1 else "values"
     for name in names:
         rows = frame[frame["icon"] == name]
         ran = rows[rows["duration_s"].notna()]
         judged = ran[ran["reached"].notna()]
-        parts = [f"played at {len(ran)} of {len(rows)} {points}"]
+        parts = [f"played at {len(ran)} of {len(rows)} values"]
         if len(judged):
             miss = judged["largest_miss_K"].abs()
             said = f"largest miss {span(float(miss.min()), float(miss.max()), 'K', 3)}"
-            parts = [f"reached at {int(judged['reached'].sum())} of {len(rows)} {points}"]
+            parts = [f"reached at {int(judged['reached'].sum())} of {len(rows)} values"]
             parts.append("everywhere within 1 mK" if miss.max() < 1e-3 else said)
         parts += [f"NOT SAFE at {unsafe}"] if (unsafe := int((~ran["safe"]).sum())) else []
         missing = len(rows) - len(ran)
-        parts += (
-            [f"{missing} of {len(rows)} {points} {'is' if missing == 1 else 'are'} not possible"] if missing else []
-        )
+        parts += [f"{missing} of {len(rows)} values {'is' if missing == 1 else 'are'} not possible"] * (missing > 0)
         yield f"{name}: {', '.join(parts)}"
     for column, words in (("correct", "correct"), ("correct_95", "correct for 95 % of people")):
         if column in frame and (rows := frame[(frame["icon"] == ALL) & frame[column].notna()]).size:
@@ -174,12 +170,12 @@ def sweep_lines(frame: pd.DataFrame, names: Sequence[str], keys: Sequence[str]) 
         yield f"impossible, as at {setting(row)}: {row['reason']}"
 
 
-def sweep_report(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[str]) -> list[Grid]:
+def sweep_report(frame: pd.DataFrame, key: str, quantities: Sequence[str]) -> list[Grid]:
     """Report one row per icon and value: each quantity with its 95 % interval for a new laboratory, where it has one.
 
     >>> import pandas as pd
     >>> row = {"icon": "dip", "contact.area_cm2": 4.0, "correct": 0.82, "correct_low": 0.7, "correct_high": 0.91}
-    >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), ["contact.area_cm2"], ["correct"])[0].rows[0]]
+    >>> [cell.text for cell in sweep_report(pd.DataFrame([row]), "contact.area_cm2", ["correct"])[0].rows[0]]
     ['dip', '4', '82 % (70–91)']
     """
     from thermicon.perception.ranking.swept import ALL, OF_THE_SET
@@ -188,10 +184,13 @@ def sweep_report(frame: pd.DataFrame, keys: Sequence[str], quantities: Sequence[
     rows = []
     for row in frame.to_dict("records"):
         if of_icons or row["icon"] == ALL:
-            settings = [row[key] if isinstance(row[key], str) else f"{row[key]:g}" for key in keys]
-            rows.append((str(row["icon"]), *settings, *(_cell(row, quantity) for quantity in quantities)))
-    columns = ("icon", *keys, *quantities)
-    return [grid(columns, rows, keys, columns)]
+            rows.append((str(row["icon"]), _value(row[key]), *(_cell(row, quantity) for quantity in quantities)))
+    columns = ("icon", key, *quantities)
+    return [grid(columns, rows, (key,), columns)]
+
+
+def _value(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"
 
 
 def _cell(row: Mapping[Any, Any], quantity: str) -> str:
