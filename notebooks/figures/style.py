@@ -96,11 +96,11 @@ def on_one_clock(figure: Figure, axes: Sequence[Axes], time: str, title: str) ->
     figure.suptitle(title, fontsize=11, wrap=True)
 
 
-def skin_limits(ax: Axes, session: Session, near_K: float = NEAR_K, name: str = "limit of skin") -> None:
+def skin_limits(ax: Axes, session: Session) -> None:
     """Draw the limits of the skin that are near to what is drawn: hard ones as lines, others dashed."""
     low, high = ax.get_ylim()
     for rule in session.limits.rules:
-        if rule.quantity == "skin surface" and not rule.relative and low - near_K < rule.limit < high + near_K:
+        if rule.quantity == "skin surface" and not rule.relative and low - NEAR_K < rule.limit < high + NEAR_K:
             width, dashes = (1.4, "-") if rule.severity == "hard" else (0.9, (0, (4, 3)))
-            label = f"{rule.severity} {name}, {rule.limit:g} °C"
+            label = f"{rule.severity} limit of skin, {rule.limit:g} °C"
             ax.axhline(rule.limit, color=LIMIT, lw=width, ls=dashes, label=label)

@@ -213,20 +213,13 @@ def _icons(plan: Plan) -> str:
 
 
 def _timeline(plan: Plan) -> dict[str, bytes]:
-    """Orders and a session on the clock; of a threshold, whose orders are found as it runs, its longest session."""
+    """The first session that was judged, on the clock; nothing for a thermode, which has none."""
     from ..figures.session_figure import session_figure
-    from ..figures.study_figure import study_figure
 
-    label, first = next(iter(plan.judged.sessions.items()), ("", None))
-    if plan.materials.study.threshold is not None:
-        if first is None:
-            return {}
-        figure = session_figure(first)
-    else:
-        course = next((course for course in plan.courses if course.label == label), plan.courses[0])
-        plays = planned_plays(course, plan.durations_s, pace_of(plan))
-        figure = study_figure(plan.courses, course, plays, pace_of(plan), first)
+    if not plan.judged.sessions:
+        return {}
     content = io.BytesIO()
+    figure = session_figure(next(iter(plan.judged.sessions.values())))
     figure.savefig(content, dpi=130, format="png", metadata={"Software": None})
     return {"timeline.png": content.getvalue()}
 
