@@ -205,10 +205,6 @@ class FigureOptions(Options):
         if self.figure is None and self.paper is not None:
             raise usage("belongs to a figure; name its file with --figure", "--paper")
         read_width_mm(self.paper or "85mm")
-        self.check_place()
-
-    def check_place(self) -> None:
-        """Fail where the figure cannot be written."""
         if self.figure is not None:
             check_output(self.figure, FIGURE_SUFFIXES, "a figure")
 

@@ -12,7 +12,6 @@ from thermicon.icons.atomic import OutputError, complete_or_absent
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import note, progress_bar, usage
 from .options import (
-    FigureOptions,
     FileNames,
     Json,
     ObserverOptions,
@@ -41,7 +40,6 @@ def pilot_command(
     files: FileNames,
     crowd: ObserverOptions,
     rig: RigOptions,
-    figure: FigureOptions,
     answers: Annotated[
         list[Path] | None,
         out(
@@ -96,14 +94,13 @@ def pilot_command(
     if answers is not None and len(answers) > 1:
         raise usage("give one file of answers or of measurements, not both", "--answers' / '--measurements")
     planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
-    observed = {"--keep": keep, "--figure": figure.figure}
-    for option, value in (planned if answers is not None else observed).items():
+    for option, value in (planned if answers is not None else {"--keep": keep}).items():
         if value is not None:
             raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
     if json is not None:
         check_output(json, (".json",), "JSON")
     if answers is not None:
-        condition(answers[0], files, crowd, rig, figure, keep, draws or USUAL_DRAWS, json)
+        condition(answers[0], files, crowd, rig, keep, draws or USUAL_DRAWS, json)
         return
     people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
     times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)
@@ -144,7 +141,6 @@ def condition(
     files: Sequence[str],
     crowd: ObserverOptions,
     rig: RigOptions,
-    figure: FigureOptions,
     keep: Path | None,
     draws: int,
     json: Path | None,
@@ -156,7 +152,7 @@ def condition(
         if keep == STDOUT:
             raise usage("- is not a file; give a name such as lab.toml", "--keep")
         check_output(drawn, (".csv",), "a table of draws")
-    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, figure.figure, keep, drawn])
+    check_separate([answers, *files, *([crowd.observer] if crowd.observer else [])], [json, keep, drawn])
     if there := [str(path) for path in (keep, drawn) if path is not None and path.exists()]:
         raise OutputError(f"{' and '.join(there)} already there and kept; give --keep another name, or move them away")
     from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
@@ -182,10 +178,6 @@ def condition(
         )
     if json is not None:
         write_text(found.to_json() + "\n", json)
-    if figure.figure is not None:
-        from ..figures.observed_figure import observed_figure
-
-        figure.write(observed_figure(found, stacked=figure.look.narrow))
     last = KEEP_IT
     if keep is not None and drawn is not None:
         _keep(found, keep, drawn)

@@ -8,15 +8,13 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from json import dumps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from thermicon.icons.atomic import check_folder
-
-from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output, check_separate
+from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import check_draws, fail, note, progress_bar, usage
-from ..report.rank_report import MOST_LINES, doubt_report, next_step, rank_report
+from ..report.rank_report import doubt_report, next_step, rank_report
 from ..report.terminal import show
 from .options import (
     MOST_ICONS,
@@ -37,53 +35,10 @@ from .options import (
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
     from thermicon.perception import Ranking, Task
-    from thermicon.perception.observer.observer_model import ObserverModel
 
 TRIALS, MOST_WORKERS = 48, 1024
 TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s"), "context": (0.0, 1.0, ""), "bias": (0.0, 5.0, "")}
 """Keys of --task with their limits, those of `thermicon.perception.Task`, repeated here to avoid its imports."""
-
-
-@dataclass(frozen=True)
-class SetFigureOptions(FigureOptions):
-    """All figures of a set in a folder, or the one of the whole set."""
-
-    figure: Annotated[
-        Path | None,
-        out("DIR|OUT", "Write all figures to the folder DIR, or that of the set to a .pdf, .svg or .png file."),
-    ] = None
-
-    def check_place(self) -> None:
-        """Fail where figures can neither go to a folder, nor one of the set to a file."""
-        if self.picture is not None:
-            check_output(self.picture, FIGURE_SUFFIXES, "a figure")
-        elif self.figure is not None:
-            check_folder(self.figure)
-
-    @property
-    def picture(self) -> Path | None:
-        """The file of the one figure of the set, where one was asked for: a name with an ending."""
-        single = self.figure is not None and self.figure.suffix and not self.figure.is_dir()
-        return self.figure if single else None
-
-
-@dataclass(frozen=True)
-class RankedBy(CrowdOptions):
-    """Virtual people with a form of memory, or the rules of the literature, which have no draws."""
-
-    norm: Annotated[
-        Literal["episodes", "naming", "rules"],
-        typer.Option("--norm", "--by", help="How icons are remembered; rules: by the literature's rules, not people."),
-    ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
-
-    @property
-    def asked(self) -> dict[str, Any]:
-        """Arguments of `rank`."""
-        return {**super().asked, "norm": "episodes", "by": "rules"} if self.norm == "rules" else super().asked
-
-    def draws(self, model: ObserverModel) -> int:
-        """How many draws to use."""
-        return 0 if self.norm == "rules" else super().draws(model)
 
 
 @dataclass(frozen=True)
@@ -136,14 +91,12 @@ def _read_task(text: str) -> tuple[str, float]:
 
 def rank_command(
     files: FileNames,
-    crowd: RankedBy,
+    crowd: CrowdOptions,
     task: TaskOptions,
     rig: RigOptions,
-    figure: SetFigureOptions,
+    figure: FigureOptions,
     json: Json = None,
-    report: Annotated[
-        Path | None, out("OUT", "Write a report: one .html file, or .md without pictures.", "--report")
-    ] = None,
+    report: Annotated[Path | None, out("OUT.html", "Write a report as one page to mail.", "--report")] = None,
     doubt: Annotated[
         bool, flag("--doubt", "Instead: which constants carry the doubt, and what to measure first.")
     ] = False,
@@ -165,20 +118,18 @@ def rank_command(
     constants their differences come from.
     """
     if report is not None:
-        check_output(report, (".html", ".htm", ".md"), "a report")
+        check_output(report, (".html", ".htm"), "a report")
         if report == STDOUT:
             raise usage("- is not a file; give the name of a page, such as report.html", "--report")
     if json is not None:
         check_output(json, (".json",), "JSON")
-    check_separate(files, [json, report, figure.picture])
+    check_separate(files, [json, report, figure.figure])
     here = read_workers(workers)
     if doubt:
         given = {"--task": task.task, "--report": report, "--workers": workers, "--details": details}
         for option, value in {**given, "--tracking": crowd.tracking}.items():
             if value:
                 raise usage("belongs to a ranking; leave it out, or --doubt", option)
-        if crowd.norm == "rules":
-            raise usage("is about predictions for people: leave out --by rules", "--doubt")
         doubt_about(files, crowd, rig, figure, json)
         return
     icons = read_set(files)
@@ -195,34 +146,29 @@ def rank_command(
     draws = crowd.draws(model)
     _say_if_first()
     asked = {**crowd.asked, "trials": task.trials, "task": task.load(), "observer": model}
-    ruled = crowd.norm == "rules"
-    edits: Literal["none", "worst"] = "none" if ruled else "worst"
-    found = report_of(icons, where, draws, edits=edits, warnings=warnings, workers=here, **asked)
+    found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
     if figure.figure is not None:
-        from ..figures.set_figures import write_figures
+        from ..figures.set_figures import set_figure
 
-        write_figures(found.ranking, icons, where, figure.figure, figure.look)
+        figure.write(set_figure(found.ranking, stacked=figure.look.narrow))
     near = cures(found.ranking, icons, where) if report is not None or json != STDOUT else {}
     if report is not None:
         from ..report.rank_page import report as page
 
         command = command_text(files, rig, crowd, task)
-        write_text(page(found, icons, where, command, near, as_text=report.suffix.lower() == ".md"), report)
+        write_text(page(found, icons, where, command, near), report)
     if json == STDOUT:
         typer.echo(found.to_json())
     else:
-        following = "" if ruled else _following(found.ranking, icons, files, rig, crowd)
-        show(rank_report(found, icons.title, near, following, details), None if details or ruled else MOST_LINES)
+        show(rank_report(found, icons.title, near, _following(found.ranking, icons, files, rig, crowd), details))
 
 
 def doubt_about(
-    files: Sequence[str], crowd: CrowdOptions, rig: RigOptions, figure: SetFigureOptions, json: Path | None
+    files: Sequence[str], crowd: CrowdOptions, rig: RigOptions, figure: FigureOptions, json: Path | None
 ) -> None:
     """Study which constants carry the doubt about a set: the table on stdout, other outputs on request."""
-    if figure.figure is not None and figure.picture is None:
-        raise usage("with --doubt there is one figure: name a .pdf, .svg or .png file", "--figure")
     from thermicon.perception.ranking.sensitivity import DRAWS, FEWEST_DRAWS, sensitivity
 
     if crowd.intervals is not None and crowd.intervals < FEWEST_DRAWS:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -13,7 +14,7 @@ import typer
 
 from thermicon.icons.atomic import complete_or_absent
 
-from ..figures.overview import FELT_TAIL_S, draw_overview
+from ..figures.overview import FELT_TAIL_S, felt_overview
 from ..files.outputs import (
     NETLIST_SUFFIXES,
     STDOUT,
@@ -157,13 +158,11 @@ def simulate_file(
         pictures = [figure.figure.with_stem(f"{figure.figure.stem}-{each.name}") for each in icons]
     _check_outputs(file, output, pictures)
     traces = [simulate(each, rig, rate_Hz=rate_Hz, tail_s=tail_s or 0.0) for each in icons]
+    near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
+    tell(traces, rig, output, [None if found is None else found.sentence for found in near])
     for each, picture in zip(icons, pictures, strict=False):
         played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
-        draw_overview(played, picture, rig.changes, figure.look)
-    near = [
-        None if trace.reachable else nearest_reachable(each, rig) for each, trace in zip(icons, traces, strict=True)
-    ]
-    tell(traces, rig, output, pictures, [None if found is None else found.sentence for found in near])
+        replace(figure, figure=picture).write(felt_overview(played, rig.changes))
 
 
 def simulate_drive(
@@ -173,13 +172,11 @@ def simulate_drive(
     from thermicon.circuit.solver.drive import read_drive
     from thermicon.circuit.solver.simulate import simulate_current
 
-    pictures = [] if figure.figure is None else [figure.figure]
-    _check_outputs(drive, output, pictures)
+    _check_outputs(drive, output, [] if figure.figure is None else [figure.figure])
     played = read_drive(drive, hold=hold)
-    trace = simulate_current(played, rig, rate_Hz=rate_Hz)
-    for picture in pictures:
-        draw_overview(simulate_current(played, rig), picture, rig.changes, figure.look)
-    tell([trace], rig, output, pictures, [None])
+    tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
+    if figure.figure is not None:
+        figure.write(felt_overview(simulate_current(played, rig), rig.changes))
 
 
 def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Path]) -> None:
@@ -189,27 +186,19 @@ def _check_outputs(read: str | Path, output: Path | None, pictures: Sequence[Pat
         check_output(output, TRACE_SUFFIXES, "a trace")
 
 
-def tell(
-    traces: Sequence[Trace], rig: Rig, output: Path | None, pictures: Sequence[Path], cures: Sequence[str | None]
-) -> None:
-    """Warnings and files on stderr, then a summary or the traces on stdout, whose reader may not wait for files."""
-    if output is not None and output != STDOUT:
-        write_traces(traces, output)
+def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence[str | None]) -> None:
+    """Warn, and write the traces or print a summary of each."""
     for trace in traces:
         for warning in (*trace.warnings, *trace.beyond, *unsafe(trace)):
             if warning not in rig.warnings:  # already reported when the rig was loaded
                 note(f"warning: {trace.icon or 'drive'}: {warning}")
-    if output is not None:
-        for trace, better in zip(traces, cures, strict=True):
+    for trace, better in zip(traces, cures, strict=True):
+        if output is not None:
             note(headline(trace) + (f"; {better}" if better else ""))
-    for path in (output, *pictures):
-        if path not in (None, STDOUT):
-            note(f"wrote {path}")
-    if output is None:
-        for trace, better in zip(traces, cures, strict=True):
+        else:
             typer.echo(describe(trace) + (f"\n  nearest   {better}" if better else ""))
-    elif output == STDOUT:
-        write_traces(traces, STDOUT)
+    if output is not None:
+        write_traces(traces, output)
 
 
 def unsafe(trace: Trace) -> list[str]:
@@ -235,6 +224,7 @@ def write_traces(traces: Sequence[Trace], output: Path) -> None:
         return
     with complete_or_absent(output) as draft:
         write_trace(list(traces), draft)
+    note(f"wrote {output}")
 
 
 def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path) -> None:
@@ -293,7 +283,6 @@ def session_file(
         write_text(session_text(session, icons, rig), output)
     elif output is not None:
         write_traces([session.trace], output)
-        note(f"wrote {output}")
     if figure.figure is not None:
         from ..figures.session_figure import session_figure
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 import dataclasses
 import textwrap
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy
 
 from thermicon.circuit.rig.parts import LOAD_SITES
 
-from .print_figure import write_figure
-from .style import COOL, GREY, INK, LIMIT, PLACES, SCREEN, TARGET, WARM, Look, key_beside, on_one_clock
+from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, key_beside, on_one_clock
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -119,21 +117,15 @@ def _sensation(percept: Percept, ax: Axes) -> None:
     ax.set_ylabel("sensation (d′)\nreceptor clock")
 
 
-def draw_overview(
-    trace: Trace,
-    picture: Path,
-    rig_changes: Sequence[str] = (),
-    look: Look = SCREEN,
-) -> None:
-    """Write the overview figure of one trace, its percept included where there is skin."""
+def felt_overview(trace: Trace, rig_changes: Sequence[str] = ()) -> Figure:
+    """Draw the overview of one trace, what is felt included where there is skin."""
     from thermicon.perception import perceive
 
-    trace = evenly_timed(trace)
-    figure = overview(trace, None if trace.site in LOAD_SITES else perceive(trace), rig_changes)
-    write_figure(figure, picture, look)
+    trace = _evenly_timed(trace)
+    return overview(trace, None if trace.site in LOAD_SITES else perceive(trace), rig_changes)
 
 
-def evenly_timed(trace: Trace) -> Trace:
+def _evenly_timed(trace: Trace) -> Trace:
     """Drop the last row where it comes off the beat, as when a drive ends between two rows."""
     steps = numpy.diff(trace.time_s)
     if len(steps) < 2 or abs(steps[-1] - steps[0]) < 1e-6 * steps[0]:

@@ -1,4 +1,4 @@
-"""What a result says, as blocks of text, tables and figures: `terminal`, `as_html` and `as_markdown` render the same.
+"""What a result says, as blocks of text, tables and figures: `terminal` and `as_html` render the same.
 
 In HTML nothing is fetched from anywhere, there are no scripts and no dates, and equal blocks give equal bytes.
 """
@@ -6,7 +6,6 @@ In HTML nothing is fetched from anywhere, there are no scripts and no dates, and
 from __future__ import annotations
 
 import base64
-import re
 import unicodedata
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -96,28 +95,16 @@ class Cards:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure as ``data``.
-
-    ``alt`` is the text for screen readers (default: the caption), ``media`` the image type, ``width`` in CSS pixels.
-    """
+    """A figure as PNG ``data``, with ``alt``, the text for screen readers, and its ``width`` in CSS pixels."""
 
     type: ClassVar[str] = "picture"
     caption: str
-    alt: str = ""
-    media: str = "png"
-    width: int | None = None
-    data: bytes = b""
+    alt: str
+    width: int
+    data: bytes
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
-    """Blocks side by side where the page is wide enough; HTML only."""
-
-    type: ClassVar[str] = "row"
-    blocks: tuple[Code | Picture, ...]
-
-
-Block = Heading | Text | Code | Bullets | Grid | Facts | Cards | Picture | Row
+Block = Heading | Text | Code | Bullets | Grid | Facts | Cards | Picture
 
 
 def grid(
@@ -165,7 +152,7 @@ def as_html(blocks: Sequence[Block], title: str) -> str:
     """Render the page as one HTML file."""
 
     def address(picture: Picture) -> str:
-        return f"data:image/{picture.media};base64,{base64.b64encode(picture.data).decode('ascii')}"
+        return f"data:image/png;base64,{base64.b64encode(picture.data).decode('ascii')}"
 
     return environment().get_template("page.html.j2").render(title=title, blocks=blocks, address=address) + "\n"
 
@@ -173,46 +160,6 @@ def as_html(blocks: Sequence[Block], title: str) -> str:
 def shown(*blocks: Block) -> str:
     """Render single blocks for the workbench, in its style; the `kind` of a text is one of its classes `th-…`."""
     return fragment("shown", blocks)
-
-
-def as_markdown(blocks: Sequence[Block]) -> str:
-    """Write the blocks as Markdown, as a code host or a notebook shows it; without pictures.
-
-    >>> print(as_markdown([Heading("Icons", 2), grid(("a", "n"), [("x|y", "2")], ("n",))]), end="")
-    ## Icons
-    <BLANKLINE>
-    | a | n |
-    |---|--:|
-    | x\\|y | 2 |
-    """
-    return "\n\n".join(text for block in blocks if (text := _markdown(block))) + "\n"
-
-
-def _markdown(block: Block) -> str:
-    if isinstance(block, Heading):
-        return f"{'#' * block.level} {_marked(block.text)}"
-    if isinstance(block, Text):
-        return "  \n".join(_marked(line.strip()) for line in block.text.split("\n"))
-    if isinstance(block, Code):
-        return f"```\n{block.text}\n```"
-    if isinstance(block, Bullets):
-        return "\n".join(f"- {_marked(point)}" for point in block.points)
-    if isinstance(block, Row):
-        return "\n\n".join(filter(None, map(_markdown, block.blocks)))
-    if isinstance(block, Picture):
-        return ""
-    if isinstance(block, (Facts, Cards)):
-        rows = block.rows if isinstance(block, Facts) else block.cards
-        block = grid(("", ""), rows)
-    rules = ["--:" if column in block.numbers else "---" for column in block.columns]
-    cells = [[_marked(cell.text) for cell in row] for row in block.rows]
-    lines = [" | ".join(row) for row in ([_marked(column) for column in block.columns], *cells)]
-    return "\n".join([f"| {lines[0]} |", f"|{'|'.join(rules)}|", *(f"| {line} |" for line in lines[1:])])
-
-
-def _marked(text: str) -> str:
-    """Text whose letters Markdown does not take for its own marks."""
-    return re.sub(r"([\\`*_\[\]<>#|])", r"\\\1", visible(text))
 
 
 def fragment(name: str, *values: object) -> str:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 from thermicon.icons.number_text import number, percent
 
 from ..figures.print_figure import small_png
-from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Row, Text, as_html, as_markdown, grid
+from .blocks import Block, Bullets, Cell, Code, Facts, Heading, Picture, Text, as_html, grid
 from .rank_report import rank_report
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from thermicon.circuit import Rig
-    from thermicon.icons import Icon, IconSet
+    from thermicon.icons import IconSet
     from thermicon.perception import Ranking
 
     from .set_report import SetReport
@@ -51,18 +51,14 @@ def report(
     rig: Rig,
     command: str = "",
     cures: Mapping[str, str] | None = None,
-    as_text: bool = False,
 ) -> str:
-    """Write the page as HTML text, or as Markdown without pictures: the same bytes for the same arguments.
+    """Write the page as HTML text: the same bytes for the same arguments.
 
     ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
     an icon could be reached. No date is printed.
     """
     result = made.to_dict(mapped=False)  # the map is drawn, not printed
     title, count = icons.title or "Thermal icons", len(result["icons"])
-    if result["by"] == "rules":
-        parts = rank_report(made, title)
-        return as_markdown(parts) if as_text else as_html(parts, f"{title}: by rules")
     lead = f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon"
     parts = [
         Heading(title, 1),
@@ -81,7 +77,7 @@ def report(
         Heading("Safety"),
         Text(SAFETY),
     ]
-    return as_markdown(parts) if as_text else as_html(parts, f"{title}: predicted ranking")
+    return as_html(parts, f"{title}: predicted ranking")
 
 
 def _settings(result: dict[str, Any], rig: Rig, command: str) -> Iterator[Block]:
@@ -133,7 +129,6 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance, plot_places
     from thermicon.perception.plots.draw_map import plot_map
-    from thermicon.perception.plots.plot import plot_roc
 
     yield Heading("Pictures of the set")
     confused = "Rows: the icon presented. Columns: the response. The diagonal is correct. Similar icons are adjacent."
@@ -150,25 +145,23 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     if ranking.spread is not None and ranking.people > 1:
         places = "Each person ranks the icons by how often they are named correctly; ties share their ranks."
         yield _drawn(plot_places(ranking), "probability of each place for each icon", places)
-    worst = next((pair for pair in ranking.pairs if (pair.a, pair.b) == ranking.worst_pair), None)
-    if worst is not None:
-        roc = "Hits against false alarms for the pair that is confused most often, whatever the criterion."
-        yield _drawn(plot_roc(worst), "receiver operating characteristic of the worst pair", roc)
 
 
 def _drawn(axes: Axes, said: str, caption: str) -> Picture:
     figure: Any = axes.figure
-    return Picture(caption, said, "png", round(96 * figure.get_figwidth()), small_png(figure, MAPS))
+    return Picture(caption, said, round(96 * figure.get_figwidth()), small_png(figure, MAPS))
 
 
 def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
-    """Yield every icon: what it scores, its cue text, its course and an overview of its run."""
-    from thermicon.icons.pictures.draw import as_svg
+    """Yield every icon: what it scores, its cue text, and an overview of its run."""
+    from thermicon.circuit import simulate
+
+    from ..figures.overview import FELT_TAIL_S, felt_overview
 
     members = list(icons)
     yield Heading("Icons")
     if len(members) > MOST_OVERVIEWS:
-        yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; --figure DIR writes all of them.")
+        yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; simulate FILE --figure OUT draws all of them.")
     for place, (icon, score) in enumerate(zip(members, result["icons"], strict=True)):
         yield Heading(icon.name, 3)
         facts = [
@@ -177,26 +170,10 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
         ]
         peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())
         yield Text("; ".join([*facts, "largest change " + ", ".join(peaks)]) + ".", "lead")
-        small = as_svg(icon.plot()).encode("utf-8")
-        course = Picture("", f"prescribed course of {icon.name}", "svg+xml", 320, small)
-        yield Row((Code(cue_text(icon)), course))
+        text = str(icon)  # without the head of its file
+        yield Code(text[text.find("\nicon ") + 1 :].rstrip("\n"))
         if place < MOST_OVERVIEWS:
-            yield _overview(icon, rig, len(members))
-
-
-def cue_text(icon: Icon) -> str:
-    """The statement of one icon in canonical form, without the head of its file."""
-    text = str(icon)
-    return text[text.find("\nicon ") + 1 :].rstrip("\n")
-
-
-def _overview(icon: Icon, rig: Rig, count: int) -> Picture:
-    from thermicon.circuit import simulate
-    from thermicon.perception import perceive
-
-    from ..figures.overview import FELT_TAIL_S, evenly_timed, overview
-
-    trace = evenly_timed(simulate(icon, rig, tail_s=FELT_TAIL_S))
-    data = small_png(overview(trace, perceive(trace), rig.changes), LARGE if count <= FEW else SMALL)
-    alt = f"temperatures, heat flow, current and sensation of {icon.name}"
-    return Picture("", alt, "png", OVERVIEW_PIXELS, data)
+            figure = felt_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), rig.changes)
+            data = small_png(figure, LARGE if len(members) <= FEW else SMALL)
+            alt = f"temperatures, heat flow, current and sensation of {icon.name}"
+            yield Picture("", alt, OVERVIEW_PIXELS, data)

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
     from .set_report import SetReport
 
-MOST_LINES = 20
-"""Lines of a ranking without details, at 80 columns."""
+MOST_ROWS = 8
+"""Icons in the table of a ranking without details, which then has about twenty lines at 80 columns."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
 LARGEST_CM2 = 36.0
@@ -56,8 +56,6 @@ def rank_report(
     ``details``, all but the first note, the reasons and what the numbers depend on are left out.
     """
     result = made.to_dict(mapped=False)  # the map is drawn, not printed
-    if result["by"] == "rules":
-        return rules_blocks(made.ranking, title)
     place = {row["icon"]: k for k, row in enumerate(made.ranking.rows())}
     icons = sorted(result["icons"], key=lambda icon: place[icon["name"]])
     notes = [*trouble_lines(result["icons"], cures or {}), *outside_lines(icons)]
@@ -78,39 +76,9 @@ def rank_report(
         *told,
         *([] if details else edits_blocks(result)),
         *(Text(note, "note" if note.startswith("Outside") else "warn") for note in notes),
-        icon_table(icons, result),
+        icon_table(icons, result, None if details else MOST_ROWS),
         *(detail_blocks(result) if details else []),
         Text(caveat(result) if details else f"{short} More: {'rank ' * (not following)}--details"),
-    ]
-
-
-def rules_blocks(ranking: Ranking, title: str) -> list[Block]:
-    """Report a set by rules alone: one row per icon, the best first, and what each rule found."""
-    numbers = ("score", "rules passed", "distinct pairs", "margin")
-    rows = [
-        (
-            row["icon"],
-            percent(row["rules_score"]),
-            f"{row['rules_passed']} of {row['rules']}",
-            f"{row['pairs_distinguishable_by_rules']} of {len(ranking.icons) - 1}",
-            "–" if row["rules_margin"] is None else f"{1.0 + row['rules_margin']:.3g} ×",
-        )
-        for row in ranking.rows()
-    ]
-    points = [f"{icon.name}: {rule.text}" for icon in ranking.icons for rule in icon.rules if not rule.from_model]
-    points += [rule.text for rule in ranking.rules]
-    worst = [pair for pair in ranking.pairs if (pair.a, pair.b) == ranking.worst_pair]
-    points += [f"worst pair, {pair.a} and {pair.b}: {rule.text}" for pair in worst for rule in pair.rules]
-    apart = sum(pair.rules_pass for pair in ranking.pairs)
-    return [
-        *([Heading(title, 1)] if title else []),
-        grid(("icon", *numbers), rows, numbers, ("icon", *numbers)),
-        Text(f"{apart} of {count_of(len(ranking.pairs), 'pair')} distinguishable by the rules:"),
-        Bullets(tuple(points)),
-        Text(
-            "Scored by rules of thumb alone: the share of rules passed, equally weighted, then the smallest margin as "
-            "a multiple of its threshold. Rules on latency and felt peak need the model and are not counted."
-        ),
     ]
 
 
@@ -143,8 +111,11 @@ def cards(result: Mapping[str, Any], where: str) -> tuple[tuple[str, str], ...]:
     )
 
 
-def icon_table(icons: Sequence[dict[str, Any]], result: Mapping[str, Any]) -> Grid:
-    """One row per icon in this order; those that are unsafe or not reached have a star and stand apart."""
+def icon_table(icons: Sequence[dict[str, Any]], result: Mapping[str, Any], most: int | None = None) -> Grid:
+    """One row per icon in this order; those that are unsafe or not reached have a star and stand apart.
+
+    Of more than `most`, the last row says how many were left out.
+    """
     apart = len(playable(icons))
     labels, chosen = result["confusion"]["labels"], (result["chosen"] or {"icons": ()})["icons"]
     rows: list[tuple[str | Cell, ...]] = [
@@ -158,6 +129,8 @@ def icon_table(icons: Sequence[dict[str, Any]], result: Mapping[str, Any]) -> Gr
         )
         for place, icon in enumerate(icons)
     ]
+    if most is not None and len(rows) > most + 1:
+        rows = [*rows[:most], (f"and {len(rows) - most} more", *[""] * (len(RANKED) - 1))]
     return grid(RANKED, rows, ("detected", "onset", "correct"), RANKED, apart)
 
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import typer
 
-from .blocks import Block, Bullets, Cards, Cell, Code, Facts, Grid, Heading, Picture, Row, Text
+from .blocks import Block, Bullets, Cards, Code, Facts, Grid, Heading, Picture, Text
 
 if TYPE_CHECKING:
     from rich.console import JustifyMethod
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
 _ABOVE: dict[type, tuple[type, ...]] = {Bullets: (Text, Heading), Text: (Cards,)}
 """What a block belongs to, so that no empty line stands between."""
 WIDEST = 1000
-LEAST_ROWS = 3
 VALUE = re.compile(r"(?<=\d) (?=(?:%|°C|°C/s|K|K/s|m?s|mm|cm²|A|J|bits|bits/s)(?![\w/]))")
 """The space between a number and its unit."""
 KEPT = "\u00a0"
@@ -28,45 +26,24 @@ COMMAND = ("thermicon ", "Next: thermicon ")
 """How lines begin that stay whole, so that they can be copied."""
 
 
-def show(blocks: Sequence[Block | str], most: int | None = None) -> None:
-    """Print blocks on stdout; a text alone is a paragraph. Never markup taken from people's text.
-
-    On a terminal and in a pipe, tables are shortened until there are ``most`` lines.
-    """
+def show(blocks: Sequence[Block | str]) -> None:
+    """Print blocks on stdout; a text alone is a paragraph. Never markup taken from people's text."""
     from rich.console import Console
 
     terminal = Console()
     told: list[Block] = [Text(block) if isinstance(block, str) else block for block in blocks]
-    if most is not None:
-        told = shortened(told, most, terminal.width, terminal.is_terminal)
     for line in lines(told, terminal.width, terminal.is_terminal):
         typer.echo(line)
 
 
 def lines(blocks: Sequence[Block], width: int, is_terminal: bool = True) -> list[str]:
     """Return the lines of blocks at this width, with an empty one between two that do not belong together."""
-    shown = [
-        block for block in blocks if not isinstance(block, (Picture, Row)) and block not in (Bullets(()), Text(""))
-    ]
+    shown = [block for block in blocks if not isinstance(block, Picture) and block not in (Bullets(()), Text(""))]
     said = list(_block(shown[0], width, is_terminal)) if shown else []
     for before, block in pairwise(shown):
         joined = isinstance(block, Bullets | Text) and isinstance(before, _ABOVE[type(block)])
         said += [*([] if joined else [""]), *_block(block, width, is_terminal)]
     return said
-
-
-def shortened(blocks: Sequence[Block], most: int, width: int, is_terminal: bool = True) -> list[Block]:
-    """Take rows from the end of the table where there are more lines than `most`, and say how many."""
-    over = len(lines(blocks, width, is_terminal)) - most
-    return [_short(block, over) if isinstance(block, Grid) and over > 0 else block for block in blocks]
-
-
-def _short(block: Grid, over: int) -> Grid:
-    kept = max(LEAST_ROWS, len(block.rows) - over - 1)
-    if (more := len(block.rows) - kept) < 2:
-        return block
-    last = (Cell(f"and {more} more"), *(Cell("") for _ in block.columns[1:]))
-    return replace(block, rows=(*block.rows[:kept], last))
 
 
 def _block(block: Block, width: int, is_terminal: bool) -> Iterator[str]:

@@ -45,21 +45,20 @@ def told(said: Any, *words: str) -> str:
 
 @pytest.mark.slow
 def test_answers_print_write_and_keep(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
-    out, lab, picture = tmp_path / "out.json", tmp_path / "lab.toml", tmp_path / "out.png"
+    out, lab = tmp_path / "out.json", tmp_path / "lab.toml"
     asked = ("pilot", two, "six-icons", "--answers", answers, *QUICK, "--seed", 4)
-    said = cli(*asked, "--json", out, "--keep", lab, "--figure", picture)
+    said = cli(*asked, "--json", out, "--keep", lab)
     told(
         said,
         *("Two for a test trials correct 95 % bits 95 % further trials time ", "bob 6 83 % 44–97 %"),
         *("One trial only: dan", "bias (Miller–Madow)", "Test of fit (posterior predictive): p = "),
         *("two.cue before", "six-icons before", "effective sample size ", " of 24 draws"),
     )
-    assert said.stderr == f"wrote {out}\nwrote {picture}\nwrote {lab} and {lab.with_suffix('.csv')}\n"
+    assert said.stderr == f"wrote {out}\nwrote {lab} and {lab.with_suffix('.csv')}\n"
     own = json.loads(out.read_text(encoding="utf-8"))
     assert (own["participants"], own["trials"], own["single_trial"], own["seed"]) == (4, 19, ["dan"], 4)
     assert len(own["predictions"]) == 2
     assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 12
-    assert picture.stat().st_size > 10_000
     assert not list(tmp_path.glob(".*"))
     assert cli(*asked, "--json", "-").stdout == out.read_text(encoding="utf-8"), "the same question, the same bytes"
 
@@ -89,9 +88,9 @@ def test_plan_of_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path: Path) -> None:
-    path, lab, picture, out = (tmp_path / name for name in ("v.csv", "lab.toml", "v.png", "v.json"))
+    path, lab, out = (tmp_path / name for name in ("v.csv", "lab.toml", "v.json"))
     path.write_text(VALUES, encoding="utf-8")
-    said = cli("pilot", two, "--answers", path, "--draws", 40, "--keep", lab, "--figure", picture, "--json", out)
+    said = cli("pilot", two, "--answers", path, "--draws", 40, "--keep", lab, "--json", out)
     told(
         said,
         *("cold, limits, 1 K/s 2 1.79 K", "warm, choice reaction 2 1.89 s", "Test of fit (posterior predictive): p = "),
@@ -102,5 +101,4 @@ def test_a_table_of_measurements_conditions_a_set(cli: Cli, two: Path, tmp_path:
     found = json.loads(out.read_text(encoding="utf-8"))
     assert (found["participants"], found["values"], found["errors_assumed"]) == (2, 5, 1)
     assert len(PosteriorDraws.load(lab.with_suffix(".csv"))) == 20
-    assert picture.stat().st_size > 10_000
     cli.good("pilot", two, "--answers", path, "--draws", 20, "--observer", lab.with_suffix(".csv"))

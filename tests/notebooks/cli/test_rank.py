@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
@@ -65,13 +64,13 @@ def test_the_json_has_the_promised_keys_and_the_details_its_numbers(cli: Cli, tw
     assert max(len(line) for line in said.stdout.splitlines() if not line.startswith("Next: ")) <= 80
 
 
-def test_what_is_asked_first_stands_in_twenty_lines(process: Cli) -> None:
+def test_what_is_asked_first_stands_in_a_few_lines(process: Cli) -> None:
     said = process("rank", "wave-confusions", "--people", 4, "--intervals", 0).stdout.splitlines()
-    assert len(said) <= 20
+    assert len(said) <= 24
     assert "\x1b" not in "".join(said)
     assert [line.split()[0] for line in said[2:6]] == [said[2].split()[0], said[3].split()[0], said[4].split()[0], "d′"]
     assert any(line.startswith("Next: thermicon improve wave-confusions --people 4 --intervals 0 ") for line in said)
-    assert any(line.startswith("and ") and line.endswith(" more") for line in said)
+    assert any(line.split()[:3] == ["and", "4", "more"] for line in said)
 
 
 @pytest.mark.parametrize(
@@ -199,16 +198,6 @@ def test_workers_change_no_byte(cli: Cli, two: Path, tmp_path: Path) -> None:
         outs.append(tmp_path / f"{len(outs)}.json")
         cli.good("rank", two, "--people", 5, "--intervals", 0, "--json", outs[-1], *extra)
     assert len({out.read_bytes() for out in outs}) == 1
-
-
-def test_a_set_is_ranked_by_rules_alone(cli: Cli, tmp_path: Path) -> None:
-    page = tmp_path / "page.md"
-    said = cli.good("rank", "six-icons", "--by", "rules", "--report", page)
-    words = " ".join(said.stdout.split())
-    assert "15 of 15 pairs distinguishable by the rules" in words
-    assert re.search(r"cooling-step: rate of change \(ROC\) at the receptor \(cold\): \S+ K/s against at least", words)
-    assert "correct" not in words
-    assert "rate of change (ROC)" in page.read_text(encoding="utf-8")
 
 
 def test_a_cluster_that_is_not_there_is_bad_input(cli: Cli, two: Path) -> None:

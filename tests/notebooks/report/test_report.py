@@ -102,7 +102,7 @@ def test_the_page_stands_alone(made: str) -> None:
     assert "url(" not in made
     assert 'name="viewport"' in made
     assert "@media print" in made
-    assert reader.seen.count("img") == 5 + 2 * 3  # the set's pictures, then course and overview of each icon
+    assert reader.seen.count("img") == 4 + 3  # the set's pictures, then the overview of each icon
     assert all(re.search(r'alt="[^"]+"', image) for image in re.findall(r"<img[^>]{0,200}", made))
 
 
@@ -139,14 +139,6 @@ def test_it_is_the_same_every_time_without_a_date(made: str, ranking: Ranking, i
     assert report(SetReport(ranking, edits=cheapest_edits(ranking)), icons, rig, "thermicon rank a&b.cue") == made
     assert re.findall(r"20\d\d-\d\d-\d\d", read(made).text) == []
     assert len(made) < 1_500_000
-
-
-def test_the_report_as_markdown_has_the_same_words_and_no_pictures(ranking: Ranking, icons: IconSet, rig: Rig) -> None:
-    said = report(SetReport(ranking), icons, rig, as_text=True)
-    assert said.startswith("# Hot & \\<b\\>cold\\</b\\>")
-    assert "| icon | detected | onset | channel | correct | most confused with |" in said
-    assert "data:image" not in said
-    assert "![" not in said
 
 
 def test_one_icon_has_no_pairs(rig: Rig) -> None:
