@@ -14,7 +14,6 @@ from thermicon.icons import Icon
 from thermicon.icons.number_text import signed
 
 from ..arrays import Array
-from ..rig.parts import refuse_load
 from ..rig.rig import Rig
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.drive import Drive
@@ -40,7 +39,6 @@ BRIDGE_ROUNDS = 3
 
 def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0) -> DeliveredDrive:
     """Return what a device delivers of a cue on a rig."""
-    refuse_load(rig, "safety for people")
     refuse_landing(rig, "what a device delivers is judged for a hand that rests on the display")
     if device.driven_by == "set-points":
         return deliver_setpoints(icon, rig, device, tail_s)

@@ -136,9 +136,6 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
         f"{names[2] if names[2] != 'skin' else names[3]} ... {names[-2]}": "into the skin, depths given below",
         "deep, blood": "deep tissue at the last layer's end, and the blood that perfuses",
     }
-    if rig.bench_load is not None:
-        nodes = dict(list(nodes.items())[:-3])
-        nodes |= {names[2]: f"{rig.site} in place of skin", "deep": "the room"}
     probes = {
         ", ".join(probe for probe in RECORDED if probe.endswith("_C")): "temperatures, 1 V is 1 degC",
         ", ".join(probe for probe in RECORDED if not probe.endswith("_C")): "heat flow into the skin, 1 V is 1 W/m2",
@@ -231,15 +228,15 @@ def _skin(rig: Rig, net: Network) -> tuple[list[str], list[str]]:
         lines += contact_lines(rig, contact, names[2])
     if not in_face:
         lines.append(f"Rface skin {names[2]} {resistance[0] - contact!r}")
-    lines += _section("skin" if rig.bench_load is None else rig.bench_load.site)
+    lines += _section("skin")
     ends, layer = np.cumsum([layer.thickness_m for layer in rig.skin.layers]).tolist(), -1
     for i in range(count):
         depth = float(rig.column.depth_m[i])
-        while rig.bench_load is None and layer + 1 < len(ends) and (layer < 0 or depth >= ends[layer] - 1e-9):
+        while layer + 1 < len(ends) and (layer < 0 or depth >= ends[layer] - 1e-9):
             layer += 1
             lines += _comment(f"{rig.skin.layers[layer].name}, down to {ends[layer] * 1e3:.4g} mm")
         name, below = names[2 + i], names[3 + i]
-        lines.append(f"* {name}: {depth * 1e3:.4g} mm" if rig.bench_load is None else f"* {name}: {rig.site}")
+        lines.append(f"* {name}: {depth * 1e3:.4g} mm")
         lines.append(f"C{name} {name} 0 {float(net.capacity_J_per_K[i])!r}")
         if net.perfusion_W_per_K[i] > LEAST_PERFUSION_W_PER_K:
             lines.append(f"Rblood_{name} {name} blood {1 / float(net.perfusion_W_per_K[i])!r}")

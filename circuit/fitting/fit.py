@@ -36,7 +36,6 @@ def fit(
     rig: Rig,
     *,
     free: Sequence[str],
-    held: bool | None = None,
     offset_K: float = OFFSET_SD_K,
     fixed_skin: bool = False,
 ) -> RigFit:
@@ -51,9 +50,6 @@ def fit(
         The rig to begin with; what is not free stays as it is.
     free
         Dotted keys to fit, such as `contact.resistance_m2K_per_W`.
-    held
-        Whether the drive of a row lasts until the next row (True), or is linear between rows (False); None: whichever
-        fits the logs better.
     offset_K
         Standard deviation in K of what every temperature sensor may read off; 0 for calibrated sensors.
     fixed_skin
@@ -71,7 +67,8 @@ def fit(
 
     Notes
     -----
-    The rig is taken as steady at the first row, under its drive or the one before it.
+    The rig is taken as steady at the first row. Its drive lasts until the next row or is linear between rows, whichever
+    fits the logs better.
     Robust least squares (Huber, beyond three standard deviations) with bounds, by `scipy.optimize.least_squares`. The
     noise of each channel comes from its residuals; where neighbouring residuals are alike, because the model leaves
     something out, intervals are widened accordingly, as by the error of the skin's mesh. Intervals allow for skin that
@@ -91,33 +88,16 @@ def fit(
     keys = free_keys(free, rig)
     read = _logs(logs)
     begin = _explicit(rig, keys)
-    runs = runs_of(read, begin, held is not False)
-
-    def begun(*, steady_before: bool) -> Problem:
-        return aligned(Problem.of(begin, keys, runs, steady_before, offset_K, fixed_skin))
-
-    problem = begun(steady_before=False)
+    problem = aligned(Problem.of(begin, keys, runs_of(read, held=True), offset_K, fixed_skin))
     check_sensors(problem)
-    problem, solution = _solved(problem, held)
-    if unsteady(problem, solution.theta):
-        # As in a trace, whose first row has the drive from then on: steady it was under the drive before.
-        other, found = _solved(begun(steady_before=True), held)
-        if not unsteady(other, found.theta):
-            problem, solution = other, found
+    solution = solve(problem)
+    linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs))
+    if fits_better(linear, problem, solution):
+        problem, solution = linear, solve(linear, solution.theta)
     check_clocks(problem, solution.theta)
     sources = tuple((log.name, log.sha256) for log in read)
     notes = [note for log in read for note in log.notes]
     return _result(problem, solution, rig, keys, sources, notes)
-
-
-def _solved(problem: Problem, held: bool | None) -> tuple[Problem, Solution]:
-    """The solution of a problem, and of its variant with a linear drive where that fits better and is open."""
-    solution = solve(problem)
-    if held is None:
-        linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs))
-        if fits_better(linear, problem, solution):
-            return linear, solve(linear, solution.theta)
-    return problem, solution
 
 
 def _logs(logs: Log | str | Path | Sequence[Log | str | Path]) -> list[Log]:
@@ -162,10 +142,9 @@ def _result(
         **{item.key: item.value for item in parameters if item.identified},
     )
     measured = any(channel.column.endswith("_C") for _, _, channel in problem.channels())
-    skin = start.bench_load is None
     if not measured:  # a voltage alone cannot show what the rig leaves out
         notes = [*notes, "no temperature was logged: the uncertainty of the rig stays what it was"]
-    elif stated := uncertainties(keys, parameters, before=start.uncertainty, skin=skin, misfit=misfit):
+    elif stated := uncertainties(keys, parameters, before=start.uncertainty, misfit=misfit):
         changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
         reason = {} if misfit else {"uncertainty.reason": reason_of(start, sources)}
         fitted = fitted.with_(**changes, **reason)

@@ -1,15 +1,13 @@
-"""Pictures of a fit: residuals against time, and measured points on the curves of a trace."""
+"""Pictures of a fit: both courses with their residuals, and measured points on the curves of a trace."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number
 
 from ..arrays import Array
-from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM, new_axes, tidy
-from .notes import milli
+from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,17 +23,6 @@ COLORS = {"display_C": DISPLAY, "skin_C": SKIN, "hot_plate_C": WARM, "voltage_V"
 POINTS = "#b9bec4"
 MOST_POINTS = 4000
 """More points than a page has dots to the inch show nothing more."""
-
-
-def plot_residuals(channels: Sequence[ChannelFit], ax: Axes | None = None) -> Axes:
-    """Draw measured minus fitted of columns; K and V share the axis only if both are there."""
-    ax = new_axes(ax, (7.0, 2.6))
-    ax.axhline(0.0, color="#999999", lw=0.8)
-    for each in channels:
-        label = f"{_words(each.column)}\nrms {milli(each.rms, each.unit)}\nlargest {milli(each.largest, each.unit)}"
-        ax.plot(*_few(each.time_s, each.difference), ".", ms=2.0, color=COLORS.get(each.column, PROBE), label=label)
-    units = " or ".join(sorted({each.unit for each in channels}))
-    return tidy(ax, channels[0].time_s, f"measured − fitted ({units})")
 
 
 def fit_figure(fit: RigFit, across: int = 2) -> Figure:

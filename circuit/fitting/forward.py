@@ -15,17 +15,13 @@ import numpy as np
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
-from ..solver.displayed import part_of, trace_of_display
 from ..solver.drive import Drive
 from ..solver.landing import start_under
-from ..solver.modes import shown
-from ..solver.simulate import rows_until, simulate_current
+from ..solver.simulate import simulate_current
 from ..solver.trace import Trace
 from .log import DRIVES, Log, LogError
 
 RATE_HZ = 100.0
-SETTLED_A, MOST_TURNS = 1e-8, 40
-"""A drive in volts is solved for its current to 10 nA, far below what any log resolves."""
 
 STEADY_SPREAD = 6.0
 """Noise of a logged current, in its standard deviations, within which the first rows count as one level."""
@@ -36,7 +32,7 @@ class Prediction:
     """What a run should have measured: columns at rows, and the current at any time."""
 
     trace: Trace
-    drive: Drive | None
+    drive: Drive
     resistance_ohm: float
     display_probe: str | None
 
@@ -48,7 +44,6 @@ class Prediction:
         """
         time_s = drive_s + late_s
         if column == "voltage_V":
-            assert self.drive is not None
             jump = self.drive.at(np.clip(drive_s, 0.0, self.trace.time_s[-1])) * self.resistance_ohm
             return self._smooth(self.trace.voltage_V - self.resistance_ohm * self.trace.current_A, time_s) + jump
         if column == "display_C" and self.display_probe is not None:
@@ -61,44 +56,19 @@ class Prediction:
         return np.asarray(np.interp(time_s, self.trace.time_s, values), dtype=np.float64)
 
 
-def predict(rig: Rig, run: Run, before_A: float = 0.0) -> Prediction:
-    """Simulate a run; `before_A` is how much more current than the first row's it was steady under.
-
-    Raises RigError where the run is not physical on this rig.
-    """
-    if rig.thermode is not None:
-        return _on_thermode(rig, run)
+def predict(rig: Rig, run: Run) -> Prediction:
+    """Simulate a run from rest under its first drive; RigError where it is not physical on this rig."""
     sensed, display_probe = _with_thermistor(rig)
-    ohm = rig.module.resistance_ohm
-    if run.driven_by != "voltage_V":
-        gain = rig.driver.transconductance_A_per_V if run.driven_by == "command_V" else 1.0
-        drive = Drive(run.time_s, gain * run.drive, run.held)
-        return Prediction(_play(sensed, drive, before_A), drive, ohm, display_probe)
-    current = run.drive / ohm
-    for _ in range(MOST_TURNS):
-        drive = Drive(run.time_s, current, run.held)
-        found = Prediction(_play(sensed, drive, before_A), drive, ohm, display_probe)
-        seebeck_V = found.at("voltage_V", run.time_s) - drive.at(run.time_s) * ohm
-        better = (run.drive - seebeck_V) / ohm
-        change, current = float(np.abs(better - current).max()), better
-        if change < SETTLED_A:
-            return found
-    others = f"; columns that are not used: {run.unused}" if run.unused else ""
-    raise RigError(
-        f"rig {rig.name}: no current follows from voltage_V of {run.name}, which is taken as the drive since there is "
-        f"no column current_A or command_V{others}; give the current as current_A, or check voltage_V and the module"
-    )
-
-
-def _play(rig: Rig, drive: Drive, before_A: float) -> Trace:
-    level = steady_level(drive.current_A)
-    if not before_A and level == drive.current_A[0]:
-        return simulate_current(drive, rig, rate_Hz=RATE_HZ)
-    try:
-        state = start_under(rig, level + before_A)
-    except ArithmeticError as problem:
-        raise RigError(f"rig {rig.name}: {problem}; begin the log with a smaller current") from None
-    return simulate_current(drive, rig, rate_Hz=RATE_HZ, start_C=state)
+    gain = rig.driver.transconductance_A_per_V if run.driven_by == "command_V" else 1.0
+    drive = Drive(run.time_s, gain * run.drive, run.held)
+    level, state = steady_level(drive.current_A), None
+    if level != drive.current_A[0]:
+        try:
+            state = start_under(sensed, level)
+        except ArithmeticError as problem:
+            raise RigError(f"rig {rig.name}: {problem}; begin the log with a smaller current") from None
+    trace = simulate_current(drive, sensed, rate_Hz=RATE_HZ, start_C=state)
+    return Prediction(trace, drive, rig.module.resistance_ohm, display_probe)
 
 
 def steady_level(current_A: Array) -> float:
@@ -120,27 +90,6 @@ def _with_thermistor(rig: Rig) -> tuple[Rig, str | None]:
     return rig.with_(probe=[*others, added]), name
 
 
-def _on_thermode(rig: Rig, run: Run) -> Prediction:
-    """A thermode follows its logged set-points; without them, the logged display is what the skin gets."""
-    thermode = rig.thermode
-    assert thermode is not None
-    rows = rows_until(float(run.time_s[-1]), RATE_HZ)
-    step = part_of(1.0 / thermode.update_Hz)
-    times: Array = np.arange(int(np.ceil(rows[-1] / step - 1e-9)) + 1, dtype=np.float64) * step
-    level = np.interp(times, run.time_s, run.drive)
-    if run.driven_by == "setpoint_C":
-        if run.held:
-            place = np.searchsorted(run.time_s, times + 1e-9, side="right") - 1
-            level = run.drive[np.clip(place, 0, len(run.drive) - 1)]
-        limits = thermode.lowest_C, thermode.highest_C
-        level = shown(np.clip(level, *limits), step, thermode.lag_s, thermode.slew_K_per_s)
-    nothing = np.full(len(rows), np.nan)
-    trace = trace_of_display(
-        rig, step, level, rows, icon=None, control="drive", target_C=nothing, outcome=None,
-    )  # fmt: skip
-    return Prediction(trace, None, float("nan"), None)
-
-
 MOST_GAP_S, MOST_GAP_ROWS = 0.5, 10
 """A gap in the drive above both needs the same drive on both sides of it."""
 
@@ -151,8 +100,6 @@ MAD_TO_SD = 1.4826
 """Standard deviation of normal noise over its median absolute deviation: 1/Φ⁻¹(3/4)."""
 
 SHORTEST_S = 5.0
-MOST_OF_LIMIT = 20.0
-"""A current of more than 20 times the driver's limit is in another unit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -182,8 +129,7 @@ class Run:
     """One run from its first row on: `drive` (rows,) of the column `driven_by` at `time_s`, and what was measured.
 
     `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
-    first row by the drive's own clock; `clocks` names the files of the further clocks, `unused`
-    the columns that are not used.
+    first row by the drive's own clock; `clocks` names the files of the further clocks.
     """
 
     name: str
@@ -194,23 +140,19 @@ class Run:
     begin_s: float
     channels: tuple[Channel, ...]
     clocks: tuple[str, ...] = ()
-    unused: str = ""
 
 
-def runs_of(logs: Sequence[Log], rig: Rig, held: bool) -> tuple[Run, ...]:
+def runs_of(logs: Sequence[Log], held: bool) -> tuple[Run, ...]:
     """Return the runs of logs; a log without a drive goes with the one before it, or with the only one there is.
 
     Raises LogError for logs without a drive, without a measured column, or with a drive that is not known throughout.
     """
     if not logs:
         raise LogError("no log; name one or several files")
-    driven = [log for log in logs if _drive_of(log, rig) is not None]
+    driven = [log for log in logs if log.drive is not None]
     if not driven:
         found = "; ".join(f"{log.name} has {', '.join(dict(log.columns))}" for log in logs)
-        raise LogError(
-            f"no log has a drive: one of {', '.join(DRIVES if rig.pump else DRIVES[-1:])} is needed for rig {rig.name} "
-            f"({found})"
-        )
+        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed ({found})")
     groups: dict[int, list[Log]] = {id(log): [] for log in driven}
     last = driven[0]
     for log in logs:
@@ -218,7 +160,7 @@ def runs_of(logs: Sequence[Log], rig: Rig, held: bool) -> tuple[Run, ...]:
             last = log
         else:
             groups[id(last)].append(log)
-    runs = tuple(_run(log, groups[id(log)], rig, held) for log in driven)
+    runs = tuple(_run(log, groups[id(log)], held) for log in driven)
     silent = [run.name for run in runs if not run.channels]
     if silent:
         raise LogError(
@@ -228,30 +170,24 @@ def runs_of(logs: Sequence[Log], rig: Rig, held: bool) -> tuple[Run, ...]:
     return runs
 
 
-def _drive_of(log: Log, rig: Rig) -> str | None:
-    """The column that drives a rig: set-points (or else the display) a thermode, a current or voltage a module."""
-    there = dict(log.columns)
-    if rig.thermode is None:
-        return next((name for name in DRIVES[:-1] if name in there), None)
-    if "setpoint_C" in there:
-        return "setpoint_C"
-    return "display_C" if "display_C" in there and "skin_C" in there else None
-
-
-def _run(log: Log, sensors: Sequence[Log], rig: Rig, held: bool) -> Run:
-    driven_by = _drive_of(log, rig)
+def _run(log: Log, sensors: Sequence[Log], held: bool) -> Run:
+    driven_by = log.drive
     assert driven_by is not None
     time, drive = log.time_s, log.column(driven_by)
     known = np.isfinite(drive)
     time, drive = time[known], drive[known]
     _check_gaps(log.name, driven_by, time, drive, log.time_s)
-    _check_size(log.name, driven_by, drive, rig)
+    if np.ptp(drive) == 0.0:
+        raise LogError(
+            f"{log.name}: {driven_by} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; "
+            f"log a run that warms and cools, such as the shipped cue calibration-drive"
+        )
     begin = float(time[0])
-    channels = [_channel(log, name, 0) for name in log.measured if name != driven_by]
+    channels = [_channel(log, name, 0) for name in log.measured]
     for clock, sensor in enumerate(sensors, 1):
         channels += [_channel(sensor, name, clock) for name in sensor.measured]
     clocks = tuple(sensor.name for sensor in sensors)
-    return Run(log.name, driven_by, time - begin, drive, held, begin, tuple(channels), clocks, log.unused)
+    return Run(log.name, driven_by, time - begin, drive, held, begin, tuple(channels), clocks)
 
 
 def _channel(log: Log, name: str, clock: int) -> Channel:
@@ -278,20 +214,4 @@ def _check_gaps(name: str, column: str, time: Array, drive: Array, rows: Array) 
         raise LogError(
             f"{name}: {column} is not known from {time[k]:g} to {time[k + 1]:g} s, and differs on both sides "
             f"({drive[k]:.4g} and {drive[k + 1]:.4g}); cut the log there into two files, or log it again"
-        )
-
-
-def _check_size(name: str, column: str, drive: Array, rig: Rig) -> None:
-    if np.ptp(drive) == 0.0:
-        raise LogError(
-            f"{name}: {column} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; log a run "
-            f"that warms and cools, such as the shipped cue calibration-drive"
-        )
-    if column != "current_A":
-        return
-    limit, most = rig.driver.current_max_A, float(np.abs(drive).max())
-    if most > MOST_OF_LIMIT * limit:
-        raise LogError(
-            f"{name}: current_A reaches {most:g} A, the driver of rig {rig.name} gives {limit:g} A: it looks like "
-            f"milliamperes; divide the column by 1000"
         )

@@ -167,9 +167,7 @@ def cures(problem: Problem, theta: Array, wanting: Sequence[int], correlation: A
     if not wanting:
         return {}
     logged = {channel.column for _, _, channel in problem.channels()}
-    driven = {run.driven_by for run in problem.runs}
-    thermode = problem.rig.thermode is not None
-    options = [name for name in FURTHER if name not in logged | driven and not (thermode and name != "skin_C")]
+    options = [name for name in FURTHER if name not in logged]
     gains = {name: expected_sd(with_channels(problem, theta, [name]), theta) for name in options}
     return {place: _cure(problem, place, gains, correlation) for place in wanting}
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import InputError
-from ..rig.parts import METAL
 from ..rig.rig import Rig
 from ..rig.rigfile import rig_keys, unknown_key
 from ..rig.settings import flattened
@@ -75,23 +74,9 @@ _KEYS = {
                "a thermometer in the room"),
         FitKey("skin.rest_C", "skin at rest", False, 8.0, 1.0, "", "an infrared thermometer on the bare skin"),
         FitKey("controller.lag_s", "lag of the controller's thermistor", False, 30.0, 0.1, "", _LAG),
-        FitKey("load.capacity_J_per_K", "load", True, 30.0, 0.3, "", "the mass of the block times its specific heat"),
-        FitKey("load.conductance_W_per_K", "load to the room", True, 30.0, 0.3, "",
-               "how fast the warm block alone cools in the room"),
-        FitKey("load.film_W_per_m2K", "film of air", True, 30.0, 0.3, "", "a log of the display in still air"),
-        FitKey("thermode.lag_s", "lag of the thermode", False, 10.0, 0.1, "", "the set-points, logged as setpoint_C"),
-        FitKey("thermode.slew_K_per_s", "ramp rate of the thermode", True, 30.0, 0.3, "",
-               "a step of 10 K, logged as setpoint_C and display_C"),
     )
 }  # fmt: skip
 _PROBE = re.compile(r"probe\.(?P<name>[\w-]+)\.lag_s")
-
-GIVEN = ("heat_sink.capacity_J_per_K", *(key for key in _KEYS if key.startswith("load.")))
-"""Keys that can be fitted only where the rig has them."""
-
-WITHOUT_SKIN = ("skin.rest_C",)
-WITHOUT_CONTACT = (*WITHOUT_SKIN, CONTACT)
-"""Keys that act on nothing under a block of metal, and under air."""
 
 COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
 """What a log of display and voltage identifies on every rig with a module."""
@@ -99,22 +84,16 @@ COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
 
 def fittable(rig: Rig) -> tuple[str, ...]:
     """Return the keys that can be fitted on a rig, in the order of the circuit."""
-    parts = {"load": rig.bench_load, "controller": rig.controller, "thermode": rig.thermode}
-    absent = {table for table, part in parts.items() if part is None}
-    absent |= {"module", "heat_sink", "driver"} if rig.pump is None else set()
-    without = () if rig.bench_load is None else WITHOUT_SKIN if rig.bench_load.site == METAL else WITHOUT_CONTACT
     known = [
-        key
-        for key in _KEYS
-        if key.partition(".")[0] not in absent
-        and key not in without
-        and not (key in GIVEN and value_of(rig, key) is None)
+        key for key in _KEYS if value_of(rig, key) is not None and (rig.controller or not key.startswith("controller."))
     ]
     return (*known, *(f"probe.{probe.name}.lag_s" for probe in rig.probes))
 
 
 def free_keys(keys: Sequence[str], rig: Rig) -> tuple[FitKey, ...]:
     """Return the parameters to fit; raises FitError for none, one twice, and one that cannot be fitted."""
+    if rig.thermode is not None:
+        raise FitError(f"rig {rig.name} is a thermode: it has no module to fit; use a rig with a module")
     names = [key.strip() for key in keys if key.strip()]
     if not names:
         raise FitError(f"no key to fit; name one or several, such as {COMMON[0]}")
@@ -151,7 +130,7 @@ def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
 
 def value_of(rig: Rig, key: str) -> float | None:
     """Return the value of a key that can be fitted, in the unit of the rig file; None where it is not given."""
-    if key.startswith("module.") and rig.pump is not None:
+    if key.startswith("module."):
         return float(getattr(rig.module, key.partition(".")[2]))
     if match := _PROBE.fullmatch(key):
         return next((probe.lag_s for probe in rig.probes if probe.name == match["name"]), None)

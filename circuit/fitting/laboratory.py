@@ -32,8 +32,6 @@ CHOICES = (
 )
 """Sets of sensors, the least first."""
 
-THERMODE_CHOICES = (("display_C",), ("display_C", "skin_C"))
-
 DRIVE_SET, DRIVE_ICON = "calibration-drive", "calibration"
 
 
@@ -60,12 +58,10 @@ def synthetic_log(
     `rate_Hz` is that of rows and of the driver's updates, `noise_K` and `noise_V` the SD of a reading, `offset_sd_K`
     that of each temperature sensor's zero. The log goes on for `tail_s` after the cue.
     """
-    if rig.thermode is None:
-        rig = rig.with_(**{"driver.update_Hz": rate_Hz})
-    trace = simulate(icon or calibration_icon(), rig, rate_Hz=rate_Hz, tail_s=tail_s)
+    played = rig.with_(**{"driver.update_Hz": rate_Hz})
+    trace = simulate(icon or calibration_icon(), played, rate_Hz=rate_Hz, tail_s=tail_s)
     random = np.random.default_rng(seed)
-    values = {"time_s": trace.time_s, ("current_A" if trace.has_current else "setpoint_C"): (
-        trace.current_A if trace.has_current else trace.target_C)}  # fmt: skip
+    values = {"time_s": trace.time_s, "current_A": trace.current_A}
     for column in columns:
         exact = trace.probe(column[6:-2]) if column.startswith("probe_") else getattr(trace, column)
         temperature = column.endswith("_C")
@@ -105,11 +101,10 @@ def plan(
     From the curvature of the sum of squares at the rig as given, with ten rows a second of white noise: what is left
     out of the rig adds to it. `offset_K` is the SD of a sensor's zero; `fixed_skin` takes the layers as known.
     """
+    keys = free_keys(free, rig)
     log = synthetic_log(rig, seed=0, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=10.0)
-    runs = runs_of([log], rig, False)
-    problem = Problem.of(rig, free_keys(free, rig), runs, offset_sd_K=offset_K, fixed_skin=fixed_skin)
-    choices = CHOICES if rig.thermode is None else THERMODE_CHOICES
-    return tuple(_expected(problem, columns) for columns in choices)
+    problem = Problem.of(rig, keys, runs_of([log], held=False), offset_K, fixed_skin)
+    return tuple(_expected(problem, columns) for columns in CHOICES)
 
 
 def _expected(problem: Problem, columns: tuple[str, ...]) -> Expected:

@@ -6,7 +6,7 @@ import hashlib
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +24,7 @@ from .keys import FitError
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-DRIVES = ("current_A", "command_V", "voltage_V", "setpoint_C")
+DRIVES = ("current_A", "command_V")
 """What can drive a run, in the order of preference; a column behind the first that is there counts as measured."""
 
 TEMPERATURES = ("display_C", "skin_C", "hot_plate_C")
@@ -33,9 +33,6 @@ MEASURED = (*TEMPERATURES, "voltage_V")
 FEWEST_ROWS, MOST_ROWS = 20, 1_000_000
 MOST_SIZE = 1e12
 """Times by the clock of a computer have ten digits; what reads a wire that is off has fewer."""
-UNEQUAL = 0.02
-"""Share of the rows that may be empty at the end of a column: more is a column that ended earlier."""
-
 COLDEST_C, HOTTEST_C = -40.0, 150.0
 """Outside, a sensor of a display on skin is unplugged or its wire broken."""
 
@@ -59,7 +56,7 @@ class Log:
     """A log of one clock: `time_s` (rows,) in s, increasing, and columns (rows,), NaN where nothing was recorded.
 
     `sha256` is the digest of its file, empty where it came from none; `notes` say what was adjusted or left out on
-    reading, `unused` names the columns that are not used.
+    reading.
 
     Examples
     --------
@@ -72,8 +69,7 @@ class Log:
     sha256: str
     time_s: Array
     columns: tuple[tuple[str, Array], ...]
-    notes: tuple[str, ...] = field(default=())
-    unused: str = ""
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         span = self.time_s[-1] - self.time_s[0]
@@ -109,7 +105,6 @@ class Log:
                 f"{name}: no column of a log; needed is one of {', '.join(DRIVES)}, and any of "
                 f"{', '.join(MEASURED)}; found time_s, {', '.join(values)}"
             )
-        _check_ends(name, used)
         for key, column in used.items():
             if fault := _unit_fault(key, column):
                 raise LogError(f"{name}: {fault}")
@@ -117,7 +112,7 @@ class Log:
         more = (f"{name}: columns that are not used: {unused}",) if unused else ()
         for array in (time, *used.values()):
             array.setflags(write=False)
-        return Log(name, sha256, time, tuple(used.items()), (*notes, *more), unused)
+        return Log(name, sha256, time, tuple(used.items()), (*notes, *more))
 
     @property
     def drive(self) -> str | None:
@@ -199,19 +194,6 @@ def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
         )
     if fault := _unit_fault("time_s", time):
         raise LogError(f"{name}: {fault}")
-
-
-def _check_ends(name: str, values: Mapping[str, Array]) -> None:
-    """A column that ends well before the others was cut, or its logger stopped."""
-    last = {key: int(np.flatnonzero(np.isfinite(column))[-1]) for key, column in values.items()
-            if np.isfinite(column).any()}  # fmt: skip
-    longest = max(last.values(), default=0)
-    for key, row in last.items():
-        if longest - row > max(UNEQUAL * longest, 2):
-            raise LogError(
-                f"{name}: unequal lengths: {key} ends in row {row + 1}, the log in row {longest + 1}; cut the log "
-                f"there, or save the columns of each instrument as a file of its own"
-            )
 
 
 def _unit_fault(column: str, values: Array) -> str | None:

@@ -77,11 +77,6 @@ def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[st
     sentences = [*_slow_drives(problem), *unsteady(problem, theta)]
     sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
     for r, run in enumerate(problem.runs):
-        if problem.steady_before and (change := problem.nuisance(theta, "start", r, 0)):
-            sentences.append(
-                f"{run.name}: the first row's drive has just begun; the start is taken as steady under "
-                f"{abs(change):.2f} A {'less' if change < 0 else 'more'}"
-            )
         for clock, name in enumerate(run.clocks, 1):
             shift = problem.nuisance(theta, "shift", r, clock)
             drift = problem.nuisance(theta, "drift", r, clock)
@@ -114,7 +109,7 @@ def _slow_drives(problem: Problem) -> list[str]:
     sentences = []
     for run in problem.runs:
         step, update = float(np.median(np.diff(run.time_s))), 1.0 / problem.rig.update_Hz
-        if run.driven_by != "display_C" and step > MOST_UPDATES * update:
+        if step > MOST_UPDATES * update:
             sentences.append(
                 f"{run.name}: rows are {1e3 * step:.0f} ms apart, and the rig's driver may change every "
                 f"{1e3 * update:.0f} ms: what it did in between is not in the log; log the drive at its own rate"

@@ -1,8 +1,7 @@
 """The fit as numbers: free keys and what is fitted along with them, residuals of all channels, and their derivatives.
 
 Along with the keys go the zero of every temperature sensor, how far the sensors are from the drive within a row, shift
-and drift of every further clock, unless left out the layers of the skin, and, where a run needs it, the current that
-the rig was steady under before the first row.
+and drift of every further clock and, unless left out, the layers of the skin.
 Scales are fitted as logarithms, so that they stay positive and intervals are relative.
 
 Nobody's skin is that of the rig file: the prior of a factor of its layers is the spread between people. What is a times
@@ -31,10 +30,8 @@ OFFSET_SD_K = 0.1
 STEP_LOG, STEP_LINEAR = 1e-3, 5e-3
 """Steps of derivatives: 0.1 % of a scale, 5 mK or 5 ms of the others."""
 
-START_SD_A = 0.5
 SHIFT_SD_S, DRIFT_SD = 30.0, 0.02
-"""How far the current before the first row may be from that of the first row, and clocks from each other, where the
-fit decides: standard deviations."""
+"""How far clocks may be from each other, where the fit decides: standard deviations."""
 
 ROW_SHARE = 0.5
 """A row's temperature may belong half a row earlier or later than its drive (standard deviation): a logged current is
@@ -58,7 +55,7 @@ Factors = Mapping[tuple[str, int], float]
 class Unknown:
     """One number of a fit: a key of the rig, a scale as its logarithm, or something fitted along with the keys.
 
-    A kind is key, offset, row, shift, drift, start, one of LAYER_KINDS, whose place is the layer, or, where a column is
+    A kind is key, offset, row, shift, drift, one of LAYER_KINDS, whose place is the layer, or, where a column is
     tried to be late, late. The fit begins at `first` and stays between `low` and `high`; `sd` is that of the prior
     about 0, of a key, which has none, a usual change; `step` is that of the derivative.
     """
@@ -80,7 +77,6 @@ class Problem:
     rig: Rig
     keys: tuple[FitKey, ...]
     runs: tuple[Run, ...]
-    steady_before: bool
     offset_sd_K: float
     fixed_skin: bool
     unknowns: tuple[Unknown, ...]
@@ -91,7 +87,6 @@ class Problem:
         rig: Rig,
         keys: tuple[FitKey, ...],
         runs: tuple[Run, ...],
-        steady_before: bool = False,
         offset_sd_K: float = OFFSET_SD_K,
         fixed_skin: bool = False,
     ) -> Problem:
@@ -99,10 +94,10 @@ class Problem:
         layers = {} if fixed_skin else layer_priors(rig)
         unknowns = (
             *(_key(rig, key, place) for place, key in enumerate(keys)),
-            *_along(runs, steady_before, offset_sd_K),
+            *_along(runs, offset_sd_K),
             *(Unknown(kind, 0, k, sd, low=-1.0, high=1.0, step=STEP_LOG) for (kind, k), sd in layers.items()),
         )
-        return Problem(rig, keys, runs, steady_before, offset_sd_K, fixed_skin, unknowns)
+        return Problem(rig, keys, runs, offset_sd_K, fixed_skin, unknowns)
 
     @property
     def first(self) -> Array:
@@ -121,7 +116,7 @@ class Problem:
 
     def again(self, rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...]) -> Problem:
         """Another rig, keys or runs, with the same fitted along."""
-        return Problem.of(rig, keys, runs, self.steady_before, self.offset_sd_K, self.fixed_skin)
+        return Problem.of(rig, keys, runs, self.offset_sd_K, self.fixed_skin)
 
     def values(self, theta: Array) -> dict[str, float]:
         """Values of the free keys in the units of the rig file."""
@@ -140,15 +135,14 @@ class Problem:
         return {(item.kind, item.place): float(value) for item, value in all_ if item.kind in LAYER_KINDS}
 
     def simulated(self, theta: Array) -> tuple[Prediction, ...]:
-        """All runs at a point; raises RigError where the rig cannot exist. Depends on keys, skin and starts alone."""
-        moving = [k for k, item in enumerate(self.unknowns) if item.kind in ("key", "start", *LAYER_KINDS)]
+        """All runs at a point; raises RigError where the rig cannot exist. Depends on keys and skin alone."""
+        moving = [k for k, item in enumerate(self.unknowns) if item.kind in ("key", *LAYER_KINDS)]
         token = theta[moving].tobytes()
         if token not in self._kept:
             if len(self._kept) > 4 * (len(moving) + 1):
                 self._kept.clear()
             rig = self.rig_at(theta)
-            before = [self.nuisance(theta, "start", k, 0) for k in range(len(self.runs))]
-            self._kept[token] = tuple(predict(rig, run, more) for run, more in zip(self.runs, before, strict=True))
+            self._kept[token] = tuple(predict(rig, run) for run in self.runs)
         return self._kept[token]
 
     def predictions(self, theta: Array) -> tuple[Prediction, ...] | None:
@@ -241,12 +235,10 @@ def _key(rig: Rig, key: FitKey, place: int) -> Unknown:
     return Unknown("key", 0, place, 1.0, value, low, value + key.room)
 
 
-def _along(runs: Sequence[Run], steady_before: bool, offset_sd_K: float) -> list[Unknown]:
-    """Start, place within the row, clocks and offsets of every run."""
+def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
+    """Place within the row, clocks and offsets of every run."""
     extra = []
     for r, run in enumerate(runs):
-        if steady_before and run.driven_by not in ("setpoint_C", "display_C"):
-            extra.append(Unknown("start", r, 0, START_SD_A))
         if any(not channel.clock for channel in run.channels):
             extra.append(Unknown("row", r, 0, ROW_SHARE * float(np.median(np.diff(run.time_s))), step=1e-3))
         for clock in range(1, len(run.clocks) + 1):
@@ -262,9 +254,7 @@ def _along(runs: Sequence[Run], steady_before: bool, offset_sd_K: float) -> list
 
 
 def layer_priors(rig: Rig) -> dict[tuple[str, int], float]:
-    """Return the standard deviation of the logarithm of every layer's factors; nothing on a rig without skin."""
-    if rig.bench_load is not None:
-        return {}
+    """Return the standard deviation of the logarithm of every layer's factors."""
     known = {record.quantity: math.log1p(record.central) for record in layer_spreads()}
     priors = {(kind, k): known[f"layer {kind} spread"] for k in range(len(rig.skin.layers)) for kind in LAYER_KINDS}
     return {**priors, (THICKNESS, 0): known["outermost layer thickness spread"]}
@@ -282,7 +272,7 @@ def changed_layers(rig: Rig, factors: Factors) -> dict[str, float]:
 
 
 def finely_divided(rig: Rig) -> Rig | None:
-    """The rig with a fine mesh of its skin; None where it states its elements, or has no skin."""
-    if rig.skin.elements is not None or rig.bench_load is not None:
+    """The rig with a fine mesh of its skin; None where it states its elements."""
+    if rig.skin.elements is not None:
         return None
     return rig.with_(**{"skin.elements": [FINE_ELEMENTS] * len(rig.skin.layers)})

@@ -26,7 +26,6 @@ from .problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,12 +103,6 @@ class RigFit:
 
         names = ("key", "unit", "start", "value", "low", "high", "identified", "cure")
         return pd.DataFrame([{name: getattr(item, name) for name in names} for item in self.parameters])
-
-    def plot(self, ax: Axes | None = None, column: str | None = None) -> Axes:
-        """Draw the residuals of every column, or of one, in K (voltages in V) against time; returns the Axes."""
-        from .fit_figure import plot_residuals
-
-        return plot_residuals([each for each in self.channels if column in (None, each.column)], ax)
 
     def rig_text(self, name: str | None = None) -> str:
         """Return the rig file of the fitted rig, every fitted value with interval and logs; None keeps its name."""
@@ -194,21 +187,17 @@ def uncertainties(
     parameters: Sequence[Parameter],
     *,
     before: Uncertainty,
-    skin: bool = True,
     misfit: bool = False,
 ) -> dict[str, float]:
     """Return the keys of [uncertainty] with half widths of intervals, for what was identified.
 
-    Both plates share one key: it is the wider of both, and nothing where only one was fitted. Contact with a load
-    (`skin` is False) says nothing of contact with skin. After a `misfit`, and for what was not identified, only what
-    must be wider is returned, so that what the rig held `before` still is.
+    Both plates share one key: it is the wider of both, and nothing where only one was fitted. After a `misfit`, and for
+    what was not identified, only what must be wider is returned, so that what the rig held `before` still is.
     """
     stated: dict[str, float] = {}
     identified = {item.key for item in parameters if item.identified}
     for key, item in zip(keys, parameters, strict=True):
         if not key.uncertainty:
-            continue
-        if not skin and key.uncertainty == "contact_resistance_relative":
             continue
         held = getattr(before, key.uncertainty)
         if misfit or not item.identified:

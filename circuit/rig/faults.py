@@ -82,8 +82,8 @@ def sentence(which: str, /, **values: object) -> str:
 
 
 def rig_faults(table: RigTable) -> list[str]:
-    """Faults between tables of a rig file: of what warms and cools the display, else of a load, else of a landing."""
-    return list(_display(table)) or list(_load(table)) or list(_landing(table))
+    """Faults between tables of a rig file: of what warms and cools the display, else of a landing."""
+    return list(_display(table)) or list(_landing(table))
 
 
 def _display(table: RigTable) -> Iterator[str]:
@@ -98,27 +98,6 @@ def _display(table: RigTable) -> Iterator[str]:
         yield sentence("faults.neither")
     elif table.thermode is None:
         yield from (sentence("faults.part", key=key) for key in missing)
-
-
-def _load(table: RigTable) -> Iterator[str]:
-    """What goes with a load in place of skin."""
-    if table.load is None:
-        return
-    metal = {"capacity_J_per_K": table.load.capacity_J_per_K, "conductance_W_per_K": table.load.conductance_W_per_K}
-    given, air = [key for key, value in metal.items() if value is not None], table.load.film_W_per_m2K is not None
-    if air and given:
-        yield sentence("faults.load_two", key=given[0])
-    elif not air and not given:
-        yield sentence("faults.load_none")
-    elif not air and len(given) == 1:
-        yield sentence("faults.part", key="load." + next(key for key in metal if key not in given))
-    if table.thermode is not None:
-        yield sentence("faults.load_thermode")
-    if table.contact.lands_s is not None:
-        yield sentence("faults.load_lands")
-    deep = [probe.name for probe in table.probe if probe.place not in ("display", "interface")]
-    if deep:
-        yield sentence("faults.load_probe", name=deep[0])
 
 
 def _landing(table: RigTable) -> Iterator[str]:

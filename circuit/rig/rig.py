@@ -17,7 +17,7 @@ from ..inputs import read_text
 from .assemble import HeatPump, probes_of, pump_of, skin_of
 from .faults import sentence
 from .module import Peltier
-from .parts import AIR, NO_CONTACT_M2K_PER_W, Contact, Driver, HeatSink, Load, Probe, Uncertainty, load_of
+from .parts import Contact, Driver, HeatSink, Probe, Uncertainty
 from .rig_words import rig_summary, rig_warnings
 from .rigfile import Ambient, Controller, RigError, RigTable, Thermode, parse_toml, read_table
 from .rules import Limits
@@ -58,8 +58,6 @@ class Rig:
         Temperature controller around the module, if any.
     thermode
         Limits of a thermode, which takes temperatures in place of a current.
-    bench_load
-        What the display touches in place of skin, if anything; the deep node is then the room.
     changes
         What differs from the file, as `key=value`.
 
@@ -89,7 +87,6 @@ class Rig:
     probes: tuple[Probe, ...] = ()
     controller: Controller | None = None
     thermode: Thermode | None = None
-    bench_load: Load | None = None
     changes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
@@ -99,8 +96,6 @@ class Rig:
             else f"thermode {self.thermode.lowest_C:g} … {self.thermode.highest_C:g} °C"
         )
         rest = f"skin rests at {self.skin.rest_C:.1f} °C, blood {self.deep_C:.2f} °C"
-        if self.bench_load is not None:
-            rest = f"room {self.deep_C:.1f} °C"
         return f"Rig({self.name!r}, {self.site}, {self.contact.area_m2 * 1e4:g} cm², {rest}, {source})"
 
     def __hash__(self) -> int:
@@ -187,8 +182,8 @@ class Rig:
 
     @property
     def site(self) -> str:
-        """Skin site, as in `thenar`; on a load, what that is."""
-        return self.skin.site if self.bench_load is None else self.bench_load.site
+        """Skin site, as in `thenar`."""
+        return self.skin.site
 
     @property
     def blood_C(self) -> float:
@@ -283,19 +278,16 @@ def _build(document: Mapping[str, Any], where: str) -> Rig:
 
 def _assemble(table: RigTable, document: str) -> Rig:
     contact, skin, body = table.contact, table.skin, skin_of(table.skin)
-    area, load = contact.area_cm2 * 1e-4, load_of(table.load, contact.area_cm2 * 1e-4)
     blood = table.blood.density_kg_per_m3 * table.blood.heat_capacity_J_per_kgK
-    column = column_of(body, blood) if load is None else load.column(area)
+    column = column_of(body, blood)
     loss = table.ambient.film_W_per_m2K * (skin.rest_C - table.ambient.temperature_C)
     deep = skin.deep_C if skin.deep_C is not None else skin.rest_C - column.steady_drop_K(-loss)
-    deep = deep if load is None else table.ambient.temperature_C
-    touch = NO_CONTACT_M2K_PER_W if load is not None and load.site == AIR else contact.resistance_m2K_per_W
     return Rig(
         table.name,
         table.title,
         tuple(table.notes),
         pump_of(table),
-        Contact(area, touch, contact.lands_s),
+        Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W, contact.lands_s),
         table.ambient,
         body,
         column,
@@ -306,5 +298,4 @@ def _assemble(table: RigTable, document: str) -> Rig:
         probes_of(table.probe, body.thickness_m),
         table.controller,
         table.thermode,
-        load,
     )

@@ -12,7 +12,6 @@ from thermicon.icons.number_text import signed
 
 from .faults import sentence
 from .modules import build_of, module_names
-from .parts import with_article
 from .settings import changed
 from .uncertainty import tightened
 
@@ -61,7 +60,7 @@ def rig_summary(rig: Rig, for_methods: bool = False) -> str:
 
 
 def _rows(rig: Rig) -> list[tuple[str, str]]:
-    """Site, skin or load, and module or thermode, with their labels."""
+    """Site, skin, and module or thermode, with their labels."""
     flux = -rig.resting_flux_W_per_m2
     how = "from the heat balance" if rig.skin.deep_C is None else "given"
     skin = [
@@ -72,9 +71,6 @@ def _rows(rig: Rig) -> list[tuple[str, str]]:
         ),
         ("receptors", str(rig.receptor_depths())),
     ]
-    if (load := rig.bench_load) is not None:
-        words = f"{load.capacity_J_per_K:.3g} J/K, {load.conductance_W_per_K:.3g} W/K to a room of {rig.deep_C:g} °C"
-        skin = [("load", f"{with_article(load.site)} in place of skin: {words}; nothing is judged for people")]
     return [
         ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
         *skin,
@@ -97,10 +93,8 @@ def _wrapped(label: str, text: str) -> list[str]:
 @lru_cache(maxsize=512)
 def rig_warnings(rig: Rig) -> tuple[str, ...]:
     """Return a sentence for everything unusual: heat loss, blood, loosened limits, origin of the module's numbers."""
-    skin = _skin(rig) if rig.bench_load is None else ()
-    if rig.pump is None:
-        return (*skin, *_limits(rig), *_site(rig))
-    return (*skin, *_limits(rig), *_driver(rig), *rig.pump.origin.warnings, *_module(rig), *_site(rig))
+    pump = () if rig.pump is None else (*_driver(rig), *rig.pump.origin.warnings, *_module(rig))
+    return (*_skin(rig), *_limits(rig), *pump, *_site(rig))
 
 
 def _skin(rig: Rig) -> Iterator[str]:

@@ -175,14 +175,6 @@ class Thermode(_Table):
             yield f"thermode.lowest_C = {self.lowest_C:g} °C: must be below thermode.highest_C ({self.highest_C:g} °C)"
 
 
-class LoadTable(_Table):
-    """Keys of [load]: a block of metal has a heat capacity and a conductance to the room, air a film."""
-
-    capacity_J_per_K: Annotated[float, Field(ge=1e-3, le=1e6)] | None = None
-    conductance_W_per_K: Annotated[float, Field(ge=1e-6, le=1e4)] | None = None
-    film_W_per_m2K: Annotated[float, Field(ge=0.1, le=1e5)] | None = None
-
-
 class Ambient(_Table):
     """The air that bare skin rests in: temperature °C, film W/(m²·K)."""
 
@@ -302,7 +294,6 @@ class RigTable(_Table):
     thermode: Thermode | None = None
     contact: ContactTable
     ambient: Ambient
-    load: LoadTable | None = None
     skin: SkinTable
     blood: BloodTable
     probe: Annotated[list[ProbeTable], Field(max_length=MOST_PROBES)] = Field(default_factory=list)

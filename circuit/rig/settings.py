@@ -11,7 +11,7 @@ from .faults import PARAMETERS, sentence
 from .modules import build_of, module_names
 from .rigfile import RigError, parse_toml, rig_keys, unknown_key
 
-_OPTIONAL = ("controller", "load", "uncertainty", "safety")
+_OPTIONAL = ("controller", "uncertainty", "safety")
 """Tables that a rig need not have; setting a key creates one."""
 
 

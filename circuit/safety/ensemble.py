@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..arrays import Array, Index
-from ..rig.parts import refuse_load
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.batch_inputs import Bank, Intervals, State, cut, left_over, run_on
@@ -63,7 +62,6 @@ class Ensemble:
     @staticmethod
     def of(rig: Rig, bridge_A: float | None = None, averaged: bool = False) -> Ensemble:
         """All corners of a rig; raises DriveError for an impossible bridge."""
-        refuse_load(rig, "safety for people")
         refuse_landing(rig, "the gate of safety judges a hand that rests on the display")
         if bridge_A is not None and not (0 < bridge_A < np.inf):
             raise DriveError(f"a bridge of {bridge_A:g} A is not possible; its current must be above 0 A")

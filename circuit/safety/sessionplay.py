@@ -22,7 +22,6 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
 from ..cores import quiet_blas
-from ..rig.parts import refuse_load
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate
@@ -76,7 +75,6 @@ def drive_of(plan: SessionPlan, icons: Mapping[str, Icon], rig: Rig, tracking: s
     """
     if tracking not in TRACKINGS:
         raise SessionError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
-    refuse_load(rig, "safety for people")
     refuse_landing(rig, "a session is played to a hand that rests on the display")
     lasting = {name: duration_s(icons[name], rig) for name in plan.names}
     total = check_length([lasting[name] for name in plan.order], plan.gap_s)

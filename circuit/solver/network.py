@@ -232,7 +232,7 @@ def _probes(rig: Rig, resistance: Array) -> tuple[Index, Array]:
     place = np.concatenate([[0.0], np.cumsum(resistance)])  # of cold plate, lumps, deep node
     contact = rig.contact.resistance_m2K_per_W
     rows = [(HOT, (1.0, 0.0, 0.0)), (COLD, (1.0, 0.0, 0.0)), temperature_weights(contact, place)]
-    receptors = (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m) if rig.bench_load is None else (0.0, 0.0)
+    receptors = (rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)
     depths = [contact + rig.skin.resistance_to_m2K_per_W(depth) for depth in receptors]
     rows += [temperature_weights(depth, place) for depth in depths]
     rows += [flow_weights(0.5 * place[1], place)]

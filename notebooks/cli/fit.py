@@ -39,8 +39,8 @@ def fit_command(
             "Required: keys of the rig to fit. contact.resistance_m2K_per_W, contact.area_cm2; module. with "
             "seebeck_V_per_K, resistance_ohm, thermal_resistance_K_per_W, hot_plate_J_per_K, cold_plate_J_per_K; "
             "heat_sink. with temperature_C, resistance_K_per_W, capacity_J_per_K; driver.transconductance_A_per_V; "
-            "ambient.temperature_C; skin.rest_C; load. with capacity_J_per_K, conductance_W_per_K, film_W_per_m2K; "
-            "lags: controller.lag_s, probe.NAME.lag_s, thermode.lag_s; thermode.slew_K_per_s.",
+            "ambient.temperature_C; skin.rest_C; "
+            "lags: controller.lag_s, probe.NAME.lag_s.",
             name="--free",
         ),
     ] = None,
@@ -59,13 +59,6 @@ def fit_command(
     plan: Annotated[
         bool, flag("--plan", "Without a log: how well each choice of sensors will identify these keys.")
     ] = False,
-    hold: Annotated[
-        bool | None,
-        typer.Option(
-            "--hold/--linear",
-            help="Hold each row's drive until the next, or interpolate it.  [default: whichever fits better]",
-        ),
-    ] = None,
     offset: Annotated[
         float, opt("K", "What a temperature sensor may read off (standard deviation).", 0.0, MOST_OFFSET_K)
     ] = OFFSET_K,
@@ -79,7 +72,7 @@ def fit_command(
 ) -> None:
     """Fit parameters of a rig to measured logs: values with 95 % intervals, and what the logs do not identify.
 
-    A log has time_s, a drive (current_A, voltage_V or command_V; setpoint_C on a thermode), and what was measured:
+    A log has time_s, a drive (current_A or command_V), and what was measured:
     display_C, skin_C, hot_plate_C, and voltage_V beside a current. The rig to begin with is that of --rig and --set.
     """
     keys = tuple(key for part in free or [] for key in part.split(","))
@@ -106,7 +99,7 @@ def fit_command(
     if output is not None:
         check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
-    fitted = fit(list(logs), where, free=keys, held=hold, offset_K=offset, fixed_skin=fixed_skin)
+    fitted = fit(list(logs), where, free=keys, offset_K=offset, fixed_skin=fixed_skin)
     if output is not None:
         write_text(fitted.rig_text(name or output.stem[:LONGEST_NAME]), output)
     if figure.figure is not None:

@@ -202,12 +202,9 @@ def tell(traces: Sequence[Trace], rig: Rig, output: Path | None, cures: Sequence
 
 
 def unsafe(trace: Trace) -> list[str]:
-    """Return one sentence per exceeded safety limit, or the reason why the run cannot be judged."""
-    from thermicon.circuit.rig.parts import LOAD_SITES, without_skin
+    """Return one sentence per exceeded safety limit."""
     from thermicon.circuit.safety.verdict import judge_safety
 
-    if trace.site in LOAD_SITES:
-        return [without_skin(trace.site, "safety for people")]
     findings = judge_safety(trace).findings
     return [f"{'NOT SAFE: ' if finding.severity == 'hard' else ''}{finding}" for finding in findings]
 

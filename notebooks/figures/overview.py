@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from thermicon.circuit.rig.parts import LOAD_SITES
-
 from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, key_beside, on_one_clock
 
 if TYPE_CHECKING:
@@ -77,19 +75,13 @@ def _temperatures(trace: Trace, ax: Axes) -> None:
     if numpy.isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
         ax.plot(t, trace.target_C, color=TARGET, lw=5.0, solid_capstyle="butt", label="target")
     for name, (color, dashes, width) in PLACES.items():
-        if trace.site not in LOAD_SITES or "receptor" not in name:
-            shown = trace.site if trace.site in LOAD_SITES and name == "skin" else name
-            ax.plot(t, getattr(trace, f"{name.replace(' ', '_')}_C"), color=color, lw=width, ls=dashes, label=shown)
+        ax.plot(t, getattr(trace, f"{name.replace(' ', '_')}_C"), color=color, lw=width, ls=dashes, label=name)
     ax.set_ylabel("temperature (°C)")
 
 
 def _heat_flow(trace: Trace, ax: Axes) -> None:
     t = trace.time_s
     ax.axhline(0.0, color=GREY, lw=0.6)
-    if trace.site in LOAD_SITES:
-        ax.plot(t, trace.heat_flow_skin_W_per_m2 / 1e3, color=INK, lw=1.6, label="display")
-        ax.set_ylabel(f"heat flow into\nthe {trace.site} (kW/m²)")
-        return
     for name, (color, dashes, width) in list(PLACES.items())[1:]:
         flow = getattr(trace, f"heat_flow_{name.replace(' ', '_')}_W_per_m2") / 1e3
         ax.plot(t, flow, color=color, lw=width, ls=dashes, label=name)
@@ -118,11 +110,11 @@ def _sensation(percept: Percept, ax: Axes) -> None:
 
 
 def felt_overview(trace: Trace, rig_changes: Sequence[str] = ()) -> Figure:
-    """Draw the overview of one trace, what is felt included where there is skin."""
+    """Draw the overview of one trace, what is felt included."""
     from thermicon.perception import perceive
 
     trace = _evenly_timed(trace)
-    return overview(trace, None if trace.site in LOAD_SITES else perceive(trace), rig_changes)
+    return overview(trace, perceive(trace), rig_changes)
 
 
 def _evenly_timed(trace: Trace) -> Trace:

@@ -53,8 +53,6 @@ def _current(trace: Trace) -> str:
 
 def describe(trace: Trace) -> str:
     """Summarise a run: outcome, drive, extremes and changes at the receptors."""
-    from thermicon.circuit.rig.parts import LOAD_SITES
-
     peaks = []
     for name, column in (("cold receptor", trace.cold_receptor_C), ("warm receptor", trace.warm_receptor_C)):
         change = column - column[0]
@@ -67,9 +65,6 @@ def describe(trace: Trace) -> str:
         f"  skin      {span(float(trace.skin_C.min()), float(trace.skin_C.max()), '°C')}",
         f"  change    {'; '.join(peaks)}",
     ]
-    if trace.site in LOAD_SITES:
-        face = span(float(trace.skin_C.min()), float(trace.skin_C.max()), "°C")
-        lines[3:] = [f"  load      {face} ({trace.site})"]
     return "\n".join(lines)
 
 

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.circuit.records import Record
-from thermicon.circuit.rig.parts import refuse_load
 from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
@@ -76,7 +75,6 @@ class People:
 
     def rigs(self, rig: Rig) -> list[Rig]:
         """The rig as each person meets it: own contact resistance and own outermost layer."""
-        refuse_load(rig, "what people feel")
         columns = (self.contact_resistance.tolist(), self.outer_layer.tolist())
         return [_as_met(rig, contact, layer) for contact, layer in zip(*columns, strict=True)]
 

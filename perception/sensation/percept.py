@@ -14,9 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.circuit.rig.parts import LOAD_SITES, without_skin
-from thermicon.circuit.rig.rigfile import RigError
-
 from ..arrays import Array, as_rows
 from ..criteria import FELT_FROM
 from ..drawn import Drawn
@@ -175,8 +172,6 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
     >>> percept.felt, percept.channel, 1.0 < percept.onset_s < 1.3
     (True, 'cold', True)
     """
-    if trace.site in LOAD_SITES:
-        raise RigError(f"rig {trace.rig_name}: {without_skin(trace.site, 'what people feel')}")
     person = Observer.load() if observer is None else observer
     area = trace.area_m2 if area_m2 is None else area_m2
     dt, rows = uniform_clock(trace.time_s)

@@ -39,7 +39,6 @@ def at(row: int, value: float, column: str = "time_s") -> np.ndarray:
     [
         ({"current_A": TIME}, r"the column time_s \(time in s\) is missing; found current_A"),
         (changed(display_C=[32.0] * 99), "unequal lengths: time_s has 100 rows, display_C has 99; cut the longer"),
-        (changed(display_C=[*[32.0] * 60, *[np.nan] * 40]), "unequal lengths: display_C ends in row 60, the log in"),
         (changed(display_C=[np.nan] * 100), "display_C holds no number at all; remove the column, or connect"),
         (changed(time_s=at(50, 2.0)), "row 51: time_s 2 s does not come after 4.9 s; times must increase"),
         (changed(time_s=at(7, np.nan)), "row 8: time_s is empty; remove the row"),
@@ -50,7 +49,7 @@ def at(row: int, value: float, column: str = "time_s") -> np.ndarray:
         (changed(display_C=[-273.0] * 100), "reads -273 °C in 100 % of its rows: a sensor that is unplugged"),
         (changed(current_A=[400.0] * 100), "reaches 400 A, above 50 A: it looks like milliamperes; divide it by 1000"),
         (changed(voltage_V=[4000.0] * 100), "reaches 4000 V, above 200 V: it looks like millivolts"),
-        ({"time_s": TIME, "pressure": TIME}, "no column of a log; needed is one of current_A, .*found time_s, press"),
+        ({"time_s": TIME, "pressure": TIME}, "no column of a log; needed is one of current_A, com.*found time_s, pr"),
         ({"time_s": TIME[:5], "current_A": TIME[:5]}, "5 rows; a fit needs at least 20"),
         ({"time_s": range(1_000_001), "current_A": range(1_000_001)}, "1,000,001 rows; the limit is 1,000,000"),
     ],
@@ -80,40 +79,38 @@ def drive(**columns: object) -> Log:
          r"current_A is not known from 1.5 to 4 s, and differs on both sides \(0.1 and 0.4\)"),
         ({"current_A": np.where(TIME < 1, np.nan, PLAIN["current_A"])}, "current_A is empty until 1 s; cut the rows"),
         ({"current_A": np.full(100, 0.2)}, "current_A is 0.2 in every row: nothing changes"),
-        ({"current_A": 45.0 * (TIME > 1)}, "reaches 45 A, the driver of rig thenar gives 1.5 A: .*milliamperes"),
-        ({"current_A": np.where(TIME > 3, np.nan, PLAIN["current_A"]), "display_C": np.full(100, 32.0)},
-         "unequal lengths: current_A ends in row 31"),
+        ({"current_A": np.where(TIME > 3, np.nan, PLAIN["current_A"])}, "current_A is known for 3 s; a fit needs"),
     ],
 )  # fmt: skip
-def test_a_drive_must_be_known_throughout(columns: dict[str, object], message: str | None, thenar: Rig) -> None:
+def test_a_drive_must_be_known_throughout(columns: dict[str, object], message: str | None) -> None:
     if message is None:
-        assert runs_of([drive(**columns)], thenar, False)[0].begin_s == 0.1
+        assert runs_of([drive(**columns)], held=False)[0].begin_s == 0.1
         return
     with pytest.raises(LogError, match=message):
-        runs_of([drive(**columns)], thenar, False)
+        runs_of([drive(**columns)], held=False)
 
 
-def test_a_short_gap_is_bridged_and_a_long_one_under_a_constant_drive(thenar: Rig) -> None:
+def test_a_short_gap_is_bridged_and_a_long_one_under_a_constant_drive() -> None:
     current = np.where((TIME > 4) & (TIME < 8), np.nan, PLAIN["current_A"])
-    run = runs_of([drive(current_A=current)], thenar, False)[0]
+    run = runs_of([drive(current_A=current)], held=False)[0]
     assert len(run.time_s) == np.isfinite(current).sum()
 
 
 def test_logs_without_a_drive_or_without_a_sensor(thenar: Rig) -> None:
     sensor = Log.of("thermometer.csv", {"time_s": TIME, "display_C": PLAIN["display_C"]})
-    with pytest.raises(LogError, match=r"no log has a drive: one of current_A, .*thermometer.csv has display_C"):
-        runs_of([sensor], thenar, False)
+    with pytest.raises(LogError, match=r"no log has a drive: one of current_A or com.*thermometer.csv has display_C"):
+        runs_of([sensor], held=False)
     alone = Log.of("drive.csv", {"time_s": TIME, "current_A": PLAIN["current_A"]})
     with pytest.raises(LogError, match=r"drive.csv: nothing measured beside the drive; log display_C, and voltage_V"):
-        runs_of([alone], thenar, False)
+        runs_of([alone], held=False)
     with pytest.raises(LogError, match="no log; name one or several files"):
         fit([], thenar, free=CONTACT)
-    run = runs_of([alone, sensor], thenar, False)[0]
+    run = runs_of([alone, sensor], held=False)[0]
     assert (run.clocks, run.channels[0].clock) == (("thermometer.csv",), 1)
 
 
 def problem_of(log: Log, rig: Rig) -> Problem:
-    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log], rig, False))
+    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log], held=False))
 
 
 @pytest.mark.parametrize("part", [slice(None), slice(200, 700)])
@@ -229,16 +226,15 @@ def test_each_rig_offers_its_own_keys(thenar: Rig) -> None:
     sensed = thenar.with_(probe=[{"name": "thermistor", "place": "display", "lag_s": 0.2}])
     assert fittable(sensed)[-1] == "probe.thermistor.lag_s"
     assert value_of(sensed, "probe.thermistor.lag_s") == 0.2
-    thermode = Rig.load("tcs2")
-    assert {"thermode.lag_s", "thermode.slew_K_per_s"} < set(fittable(thermode))
-    assert not any(key.startswith(("module", "driver")) for key in fittable(thermode))
+    with pytest.raises(FitError, match="rig tcs2 is a thermode: it has no module to fit; use a rig with a module"):
+        free_keys(CONTACT, Rig.load("tcs2"))
     assert all(value_of(thenar, key) is not None for key in fittable(thenar))
 
 
 def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
     alone = Log.of("drive.csv", {"time_s": TIME, "current_A": PLAIN["current_A"]})
     sensor = Log.of("meter.csv", {"time_s": TIME, "display_C": PLAIN["display_C"]})
-    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([alone, sensor], thenar, True))
+    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([alone, sensor], held=True))
     drift = [item.kind for item in problem.unknowns].index("drift")
     theta = problem.first.copy()
     theta[drift] = 0.0019

@@ -39,11 +39,6 @@ def test_a_plan_is_what_a_fit_then_finds() -> None:
         assert item.half_width == pytest.approx(width, rel=0.25)
 
 
-def test_a_thermode_has_a_plan_of_its_own() -> None:
-    expected = plan(Rig.load("tcs2"), ["thermode.lag_s", "contact.resistance_m2K_per_W"])
-    assert [each.identified for each in expected] == [(True, False), (True, True)]
-
-
 def test_the_calibration_drive_is_reached_on_every_rig_with_a_module() -> None:
     icon = calibration_icon()
     assert icon.corners(32.0).duration_s == pytest.approx(60.0)

@@ -88,9 +88,6 @@ BODIES = {
                   "heat_sink.air_resistance_K_per_W": 1.5},
     "steady sink": {"heat_sink.temperature_C": None, "heat_sink.capacity_J_per_K": 40.0,
                     "heat_sink.air_resistance_K_per_W": 1.5},
-    "metal block": {"load.capacity_J_per_K": 25.0, "load.conductance_W_per_K": 0.3,
-                    "contact.resistance_m2K_per_W": 2e-4},
-    "air": {"load.film_W_per_m2K": 20.0},
 }  # fmt: skip
 
 

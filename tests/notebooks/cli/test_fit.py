@@ -90,9 +90,14 @@ def spoilt(text: str) -> str:
     [
         (lambda text: text.replace("display_C", "Display_c"), RATE, 1, ("Display_c: did you mean display_C?",)),
         (spoilt, RATE, 0, ("display_C is 'n/a' in 10 of",)),
-        (lambda text: text.replace("current_A", "amps"), RATE, 1, ("taken as the drive", "not used: amps")),
+        (
+            lambda text: text.replace("current_A", "amps"),
+            RATE,
+            1,
+            ("no log has a drive: one of current_A or",),
+        ),
         (lambda text: text, (*RATE, "rig.csv"), 1, ("has the same content as", "name it once")),
-        (lambda text: text, ("--rig", "tcs2"), 1, ("no log has a drive",)),
+        (lambda text: text, ("--rig", "tcs2"), 1, ("is a thermode: it has no module to fit",)),
     ],
     ids=["column", "cells", "drive", "twice", "thermode"],
 )
