@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 STEPS, TOLERANCE = 500, 1e-9
 PERSON_STEPS, PERSON_TOLERANCE = 100, 1e-6
+MOST_PEOPLE, MOST_CELLS = 64, 200_000
+"""How many people a map is drawn from, and how many d′ of them: fewer people of many icons."""
 ALIKE = 1e-6
 """Below this share of the size of a map, lengths count as nothing and axes as equally long."""
 
@@ -88,12 +90,12 @@ def perceptual_map(
 
 
 def map_of(ranking: Ranking, reference: PerceptualMap | None = None) -> PerceptualMap:
-    """Lay out the icons of a ranking by their median d′, with the spread over the people it kept.
+    """Lay out the icons of a ranking by their median d′, with the spread over its first people.
 
     With a reference, another map, it is laid onto that.
     """
-    people = None if ranking.spread is None else ranking.spread.d_prime
-    return perceptual_map(ranking.d_prime, ranking.labels, people, reference)
+    few = max(2, min(MOST_PEOPLE, MOST_CELLS // len(ranking.icons) ** 2))
+    return perceptual_map(ranking.d_prime, ranking.labels, ranking.felt.d_prime[:few], reference)
 
 
 def classical(distances: Array) -> Array:
@@ -168,43 +170,3 @@ def settled(points: Array) -> Array:
         first_off = off[int((np.abs(off) > ALIKE * size).argmax())]
         turned[:, axis] *= side if first_off > 0 else -side
     return np.asarray(turned)
-
-
-MOST_PEOPLE, MOST_CELLS = 64, 200_000
-"""How many people a map is drawn from, and how many d′ are kept for it: fewer people of many icons."""
-
-
-@dataclass(frozen=True, slots=True)
-class PersonSpread:
-    """Over people: `place_probability` (icons, places), whose rows and columns sum to 1; `d_prime` (few, icons, icons).
-
-    Places go from the icon that a person names best to the one named worst. Icons that agree to the whole per cent
-    share their places, since smaller differences are within the sampling error of the confusions.
-    """
-
-    place_probability: Array
-    d_prime: Array
-
-    def __post_init__(self) -> None:
-        own_arrays(self, "place_probability", "d_prime")
-
-
-def spread_over_people(d_prime: Array, correct: Array) -> PersonSpread:
-    """Places and a few d′ out of pairwise d′ (people, icons, icons) and proportions correct (people, icons)."""
-    icons = d_prime.shape[-1]
-    few = max(2, min(MOST_PEOPLE, MOST_CELLS // (icons * icons)))
-    return PersonSpread(place_probability(correct), d_prime[:few])
-
-
-def place_probability(correct: Array) -> Array:
-    """Probability (icons, places) over people that an icon is at a place, from proportions correct (people, icons)."""
-    whole = np.rint(100.0 * np.asarray(correct, dtype=np.float64))
-    people, icons = whole.shape
-    found, places = np.zeros((icons, icons)), np.arange(icons)
-    for person in whole:
-        better = (person[None, :] > person[:, None]).sum(axis=1)
-        equal = (person[None, :] == person[:, None]).sum(axis=1)
-        within = (places >= better[:, None]) & (places < (better + equal)[:, None])
-        found += within / equal[:, None]
-    found /= people
-    return found

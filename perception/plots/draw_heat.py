@@ -1,4 +1,4 @@
-"""Heat maps of a set: distances, answers and ranks, with similar icons adjacent.
+"""Heat maps of a set: distances and answers, with similar icons adjacent.
 
 One light map of one hue, so that a page stays printable and a grey copy keeps the order of the shades. Every cell says
 its number as long as it is large enough to hold one; then a colour bar says what the shades mean.
@@ -28,12 +28,12 @@ MOST_NUMBERED = 30
 LONGEST_LABEL = 44
 
 
-def plot_confusion(ranking: Ranking, ax: Axes | None = None, *, clustered: bool = True) -> Axes:
+def plot_confusion(ranking: Ranking, ax: Axes | None = None) -> Axes:
     """Draw the predicted answers in per cent: rows are the icon presented, columns the name answered.
 
-    The diagonal is correct. Icons that are often confused are adjacent; `clustered=False` keeps the order of the file.
+    The diagonal is correct. Icons that are often confused are adjacent.
     """
-    order = clustered_order(ranking.d_prime) if clustered else np.arange(len(ranking.labels))
+    order = clustered_order(ranking.d_prime)
     names = [ranking.marked[k] for k in order]
     axes = heat(names, names, 100.0 * ranking.confusion[np.ix_(order, order)], ax, top=100.0, bend=0.5)
     axes.set_xlabel("answered")
@@ -51,24 +51,6 @@ def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
     axes.set_xlabel("… and")
     axes.set_ylabel("d′ between …")
     axes.set_title(f"Predicted d′ between icons ({ranking.norm} norm)")
-    return axes
-
-
-def plot_places(ranking: Ranking, ax: Axes | None = None) -> Axes:
-    """Draw the probability over people, in per cent, that an icon has each rank; the best icon is at the top.
-
-    Raises `ValueError` for a ranking without results of single people.
-    """
-    if ranking.spread is None:
-        raise ValueError("this ranking has no results of single people: rank the icons again")
-    place = {name: k for k, name in enumerate(ranking.labels)}
-    order = [place[row["icon"]] for row in ranking.rows()] if ranking.by == "model" else list(place.values())
-    names = [ranking.marked[k] for k in order]
-    shares = 100.0 * ranking.spread.place_probability[order]
-    axes = heat([str(k + 1) for k in range(len(names))], names, shares, ax, top=100.0, upright=True)
-    axes.set_xlabel("place (1: named best)")
-    crowd = "1 person" if ranking.people == 1 else f"{ranking.people} people"
-    axes.set_title(f"place of each icon, % of {crowd}")
     return axes
 
 
@@ -94,20 +76,18 @@ def heat(
     values: Array,
     ax: Axes | None = None,
     top: float | None = None,
-    upright: bool = False,
     bend: float = 1.0,
 ) -> Axes:
     """One heat map of values of 0 and more, shape (rows, columns); `top` is the value of the darkest shade.
 
-    `bend` below 1 gives small values more of the shades. `upright` column names are short ones.
+    `bend` below 1 gives small values more of the shades.
     """
     from matplotlib.colors import PowerNorm
 
     room = 0.075 * max(map(len, map(short, rows)))
     cell = 0.55 if len(rows) <= 12 else 0.42 if len(rows) <= MOST_NUMBERED else 0.16
     width = 1.2 + room + cell * len(columns)
-    below = 0.9 if upright else 0.7 + 0.8 * room
-    axes = new_axes(ax, (max(4.6, width), max(2.2, cell * len(rows) + below + 0.4)))
+    axes = new_axes(ax, (max(4.6, width), max(2.2, cell * len(rows) + 1.1 + 0.8 * room)))
     highest = max(float(values.max()) if top is None else top, 1e-9)
     edges = [np.arange(count + 1) - 0.5 for count in (len(columns), len(rows))]
     norm = PowerNorm(bend, vmin=0.0, vmax=highest)
@@ -117,9 +97,8 @@ def heat(
     axes.set_ylim(len(rows) - 0.5, -0.5)
     size = 9.0 if len(rows) <= MOST_NUMBERED else 6.0
     axes.set_xticks(np.arange(len(columns)), [short(name) for name in columns], fontsize=size)
-    if not upright:
-        for label in axes.get_xticklabels():
-            label.set(rotation=45, ha="right", rotation_mode="anchor")
+    for label in axes.get_xticklabels():
+        label.set(rotation=45, ha="right", rotation_mode="anchor")
     axes.set_yticks(np.arange(len(rows)), [short(name) for name in rows], fontsize=size)
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)

@@ -25,38 +25,33 @@ HUES = {"cold": COOL, "warm": WARM}
 def plot_ranking(ranking: Ranking, ax: Axes | None = None, words: bool = True) -> Axes:
     """Icons from the best to the worst: a bar of per cent correct, detection, onset, channel and strongest rival.
 
-    By rules, the bar is the share of rules passed, and what only the model gives is left out. Without words only the
-    per cent stands beside the bars, as in a narrow column.
+    Without words only the per cent stands beside the bars, as in a narrow column.
     """
-    rows, model = ranking.rows(), ranking.by == "model"
+    rows = ranking.rows()
     names = [short(row["icon"], 36) for row in rows]
-    rivals = [short(_rival(ranking, row["icon"]), 42) for row in rows] if model else ["" for _ in rows]
+    rivals = [short(_rival(ranking, row["icon"]), 42) for row in rows]
     wide = LETTER * (max(map(len, names)) + max(map(len, rivals)))
     axes = new_axes(ax, (max(6.0, 5.4 + wide) if words else 4.4, 0.95 + LINE * len(rows)))
     places = np.arange(len(rows))
-    key = "proportion_correct" if model else "rules_score"
-    shares = [100.0 * row[key] for row in rows]
-    colours = [HUES.get(row["channel"] or "", "#9a9a9a") if model else "#9a9a9a" for row in rows]
+    shares = [100.0 * row["proportion_correct"] for row in rows]
+    colours = [HUES.get(row["channel"] or "", "#9a9a9a") for row in rows]
     axes.barh(places, shares, 0.62, color=colours)
     axes.set_xlim(0.0, 100.0)
     axes.set_ylim(len(rows) - 0.4, -1.2)
     axes.set_yticks(places, names)
     axes.tick_params(axis="y", length=0)
     axes.set_xticks([0, 25, 50, 75, 100])
-    axes.set_xlabel("correct (%)" if model else "rules passed and pairs distinguishable (%)")
+    axes.set_xlabel("correct (%)")
     axes.spines[["top", "right", "left"]].set_visible(False)
     axes.grid(axis="x", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    columns: list[tuple[str, list[str]]] = [("correct" if model else "score", [f"{share:.0f} %" for share in shares])]
-    if model:
-        columns += [
-            ("detected", [f"{100 * row['detected_probability']:.0f} %" for row in rows]),
-            ("onset", ["–" if row["onset_s"] is None else f"{row['onset_s']:.2f} s" for row in rows]),
-            ("felt as", [row["channel"] or "–" for row in rows]),
-            ("most confused with", rivals),
-        ]
-    else:
-        columns += [("rules passed", [f"{row['rules_passed']} of {row['rules']}" for row in rows])]
+    columns: list[tuple[str, list[str]]] = [
+        ("correct", [f"{share:.0f} %" for share in shares]),
+        ("detected", [f"{100 * row['detected_probability']:.0f} %" for row in rows]),
+        ("onset", ["–" if row["onset_s"] is None else f"{row['onset_s']:.2f} s" for row in rows]),
+        ("felt as", [row["channel"] or "–" for row in rows]),
+        ("most confused with", rivals),
+    ]
     if any(row["reason"] for row in rows):
         columns += [("plays", [_plays(row) for row in rows])]
     _columns(axes, columns if words else columns[:1])

@@ -12,7 +12,6 @@ from thermicon.circuit.program import own_version
 
 from ..identification.carry_over import prepare_task
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
-from ..identification.map import spread_over_people
 from ..identification.population import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import Progress, step_counter
@@ -23,13 +22,11 @@ from ..sensation.percept import perceive
 from .batches import Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
-from .scores import assemble, disagreements, objection, playable_pairs, worst_by_rules, worst_of
+from .scores import assemble, disagreements, objection, playable_pairs, worst_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
-
-RANKED_BY = ("model", "rules")
 
 
 def rank(
@@ -41,7 +38,6 @@ def rank(
     trials: int = 48,
     tracking: str | None = None,
     norm: str = USUAL_NORM,
-    by: str = "model",
     parameters: int | None = None,
     task: Task = USUAL,
     observer: ObserverModel | Path | str | None = None,
@@ -68,8 +64,6 @@ def rank(
     norm
         How episodes are remembered: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
         directly).
-    by
-        `model`, or `rules`: then rules of thumb alone rank the icons, and the model reports only where it disagrees.
     parameters
         Draws from the posterior of the constants, for the intervals that a new laboratory will find (None: 128, or as
         many as the observer has; 0: none).
@@ -111,10 +105,8 @@ def rank(
     if not members:
         raise ValueError("there is no icon to rank: the set is empty")
     chosen = check_norm(norm)
-    if by not in RANKED_BY:
-        raise ValueError(f"a ranking is by {' or '.join(RANKED_BY)}, not by {by!r}")
     model = ObserverModel.of(observer)
-    draws = model.draw_count(parameters, DRAWS) * (by == "model")
+    draws = model.draw_count(parameters, DRAWS)
     if isinstance(workers, int) and workers < 1:
         raise ValueError(f"at least one worker is needed, not {workers}")
     nominal = model.nominal
@@ -131,20 +123,17 @@ def rank(
 
     felt = collect_batches(job, workers, report)
     scored, pairs = assemble(members, traces, durations, percepts, felt, chosen, nominal)
-    counted = playable_pairs(scored, pairs)
     ranking = Ranking(
         version=own_version(),
         content_hash=_hash(icons, rig, model),
         job=job,
         model=model,
         felt=felt,
-        by=by,
         icons=scored,
         pairs=pairs,
-        worst_pair=worst_of(counted) if by == "model" else worst_by_rules(counted),
+        worst_pair=worst_of(playable_pairs(scored, pairs)),
         rules=rig_rules(rig),
         rules_disagree=disagreements(scored, pairs),
-        spread=spread_over_people(felt.d_prime, felt.each_correct),
         carry_over=left,
     )
     report()

@@ -1,7 +1,6 @@
 """A ranking as the plain data of `rank --json`: what does not exist is None, never NaN.
 
-By rules, everything that only the model gives is None, so that nobody takes a number for one of the rules'. So is what
-is asked of a ranking only afterwards: warnings, edits, a goal, a choice.
+So is what is asked of a ranking only afterwards: edits, a goal, a choice.
 """
 
 from __future__ import annotations
@@ -15,9 +14,9 @@ import numpy as np
 from .assumptions import doubts
 
 if TYPE_CHECKING:
-    from ..identification.laboratory import Interval, NewLaboratory
+    from ..identification.laboratory import NewLaboratory
     from .ranking import Ranking
-    from .scores import IconScore, PairScore
+    from .scores import IconScore
 
 
 ICON_KEYS = (
@@ -25,7 +24,6 @@ ICON_KEYS = (
     *("proportion_correct", "reachable", "safe", "reason", "cautions", "rules", "rules_score", "rules_margin"),
     "outside_data",
 )
-OF_MODEL = ("detected_probability", "onset_s", "channel", "proportion_correct")
 TWO_NUMBERS = ("peak_change_K", "attack_K_per_s", "delay_s")
 AT_RECEPTORS = ("cold_receptor", "warm_receptor")
 NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_laboratory_s")
@@ -33,8 +31,7 @@ NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_labora
 
 def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
     """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
-    model, assumptions = ranking.by == "model", ranking.assumptions
-    asked = ranking.new_laboratory if model else None
+    asked = ranking.new_laboratory
     elsewhere: list[dict[str, Any]] = (
         asked.rows(ranking.labels) if asked else [dict.fromkeys(NEW_LABORATORY) for _ in ranking.icons]
     )
@@ -49,27 +46,27 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "seed": ranking.seed,
             "people": ranking.people,
             "tracking": ranking.tracking,
-            "by": ranking.by,
+            "by": "model",
             "norm": ranking.norm,
             "content_hash": ranking.content_hash,
             "task": ranking.task.to_dict(),
             "icons": [
-                {**_icon(icon, model), **intervals, "carry_over": _carried(ranking, place)}
+                {**_icon(icon), **intervals, "carry_over": _carried(ranking, place)}
                 for place, (icon, intervals) in enumerate(zip(ranking.icons, elsewhere, strict=True))
             ],
-            "pairs": _pairs(ranking, model, asked),
+            "pairs": _pairs(ranking),
             "confusion": {
                 "labels": list(ranking.labels),
-                "probability": ranking.confusion.tolist() if model else None,
-                "standard_error": ranking.felt.standard_error if model else None,
-                "person_standard_error": ranking.felt.person_standard_error if model else None,
+                "probability": ranking.confusion.tolist(),
+                "standard_error": ranking.felt.standard_error,
+                "person_standard_error": ranking.felt.person_standard_error,
             },
-            "set": _set(ranking, model, asked),
-            "persons": {"proportion_correct": list(ranking.persons) if model else None},
-            "assumptions": None if assumptions is None else assumptions.to_dict(),
+            "set": _set(ranking, asked),
+            "persons": {"proportion_correct": list(ranking.persons)},
+            "assumptions": ranking.assumptions.to_dict(),
             "goal": None,
             "chosen": None,
-            "map": _map(ranking) if mapped and model and len(ranking.icons) > 1 else None,
+            "map": _map(ranking) if mapped and len(ranking.icons) > 1 else None,
         }
     )
     return made
@@ -111,11 +108,11 @@ def plain(held: Any) -> Any:
     return bool(held) if isinstance(held, np.bool_) else held
 
 
-def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str, Any]:
-    many = model and len(ranking.icons) > 1
+def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
+    many = len(ranking.icons) > 1
     return {
-        "proportion_correct": ranking.proportion_correct if model else None,
-        "proportion_correct_interval": list(ranking.proportion_correct_interval) if model else None,
+        "proportion_correct": ranking.proportion_correct,
+        "proportion_correct_interval": list(ranking.proportion_correct_interval),
         "information_bits": ranking.information_bits if many else None,
         "information_bits_interval": list(ranking.information_bits_interval) if many else None,
         "bits_per_s": ranking.bits_per_s if many else None,
@@ -125,8 +122,8 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
         "total_J": ranking.total_J,
         "worst_pair": None if ranking.worst_pair is None else list(ranking.worst_pair),
         "rules_disagree": list(ranking.rules_disagree),
-        "norm_sensitivity": ranking.norm_sensitivity if model else {},
-        "norm_changes": ranking.norm_changes if model else {},
+        "norm_sensitivity": ranking.norm_sensitivity,
+        "norm_changes": ranking.norm_changes,
         "proportion_correct_interval_new_laboratory": asked.proportion_correct if asked else None,
         "information_bits_interval_new_laboratory": asked.information_bits if asked and many else None,
         "posterior_draws": asked.draws if asked else None,
@@ -139,16 +136,15 @@ def _set(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> dict[str
     }
 
 
-def _icon(icon: IconScore, model: bool) -> dict[str, Any]:
+def _icon(icon: IconScore) -> dict[str, Any]:
     held: dict[str, Any] = {key: getattr(icon, key) for key in ICON_KEYS}
-    held |= {} if model else dict.fromkeys(OF_MODEL)
     held |= {key: dict(zip(AT_RECEPTORS, held[key], strict=True)) for key in TWO_NUMBERS}
     return {**held, "rules": [rule.to_dict() for rule in icon.rules]}
 
 
 def _carried(ranking: Ranking, place: int) -> dict[str, Any] | None:
     """After which icon this one feels least like itself; None where every icon comes after a long pause."""
-    if ranking.carry_over is None or ranking.by == "rules":
+    if ranking.carry_over is None:
         return None
     return ranking.carry_over.worst_of(place, ranking.norm, ranking.task.counted)
 
@@ -167,26 +163,22 @@ def _map(ranking: Ranking) -> dict[str, Any]:
     }
 
 
-def _pairs(ranking: Ranking, model: bool, asked: NewLaboratory | None) -> list[dict[str, Any]]:
-    place = {name: k for k, name in enumerate(ranking.labels)}
+def _pairs(ranking: Ranking) -> list[dict[str, Any]]:
+    place, elsewhere = {name: k for k, name in enumerate(ranking.labels)}, ranking.new_laboratory
     return [
-        _pair(pair, model, None if asked is None else asked.pair(place[pair.a], place[pair.b]))
+        {
+            "a": pair.a,
+            "b": pair.b,
+            "d_prime": pair.d_prime,
+            "d_prime_interval_new_laboratory": elsewhere and elsewhere.pair(place[pair.a], place[pair.b]),
+            "confused_probability": pair.confused_probability,
+            "why": list(pair.why),
+            "rules": [rule.to_dict() for rule in pair.rules],
+            "edit": None,
+            "distinguishable_by_rules": pair.rules_pass,
+            "rules_margin": pair.rules_margin,
+            "no_edit": None,
+            "parts": [part.to_dict() for part in pair.parts],
+        }
         for pair in ranking.pairs
     ]
-
-
-def _pair(pair: PairScore, model: bool, elsewhere: Interval | None) -> dict[str, Any]:
-    return {
-        "a": pair.a,
-        "b": pair.b,
-        "d_prime": pair.d_prime if model else None,
-        "d_prime_interval_new_laboratory": elsewhere,
-        "confused_probability": pair.confused_probability if model else None,
-        "why": list(pair.why) if model else [r.text for r in pair.rules],
-        "rules": [r.to_dict() for r in pair.rules],
-        "edit": None,
-        "distinguishable_by_rules": pair.rules_pass,
-        "rules_margin": pair.rules_margin,
-        "no_edit": None,
-        "parts": [part.to_dict() for part in pair.parts] if model else [],
-    }

@@ -16,7 +16,6 @@ from thermicon.icons.number_text import count_of
 from ..arrays import Array
 from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
-from ..identification.map import PersonSpread
 from .assumptions import Assumptions, assumptions_of
 from .rules import RuleResult
 from .scores import IconScore, PairScore, counted
@@ -50,9 +49,6 @@ class Ranking(Drawn):
         The observer with its people and draws.
     felt
         Responses of all people.
-    by
-        What the icons and the worst pair are ranked by, `model` or `rules`; the model's numbers are present in both
-        cases.
     icons, pairs
         Scores, in file order.
     worst_pair
@@ -61,8 +57,6 @@ class Ranking(Drawn):
         Rules on the rig.
     rules_disagree
         Where rules and model judge differently.
-    spread
-        What figures need of single people.
     carry_over
         What each icon leaves behind for the next where there is a gap; None: nothing.
     new_laboratory
@@ -83,13 +77,11 @@ class Ranking(Drawn):
     job: Job
     model: ObserverModel
     felt: PooledResult
-    by: str
     icons: tuple[IconScore, ...]
     pairs: tuple[PairScore, ...]
     worst_pair: tuple[str, str] | None
     rules: tuple[RuleResult, ...]
     rules_disagree: tuple[dict[str, Any], ...]
-    spread: PersonSpread | None = None
     carry_over: CarryOver | None = None
     new_laboratory: NewLaboratory | None = None
 
@@ -181,10 +173,8 @@ class Ranking(Drawn):
         return self.information_bits / (sum(icon.duration_s for icon in self.icons) / len(self.icons))
 
     @property
-    def assumptions(self) -> Assumptions | None:
-        """What the result depends on most, where people and draws show it; None by rules."""
-        if self.by == "rules":
-            return None
+    def assumptions(self) -> Assumptions:
+        """What the result depends on most, where people and draws show it."""
         crowd, elsewhere = self.model.people(self.people, self.seed), self.new_laboratory
         each = None if elsewhere is None else elsewhere.each
         return assumptions_of(self.felt.correct, crowd, self.job.rig, self.model.nominal, each)
@@ -239,19 +229,15 @@ class Ranking(Drawn):
         return sum(pair.rules_pass for pair in self.pairs) / len(self.pairs) if self.pairs else None
 
     def rows(self) -> list[dict[str, Any]]:
-        """One plain row per icon, the best first: by proportion correct, or by its rules when `by` is rules.
-
-        Icons that are not safe or not reached come last. By rules, what only the model provides is None.
-        """
-        model = self.by == "model"
+        """One plain row per icon, the best first; those that are not safe or not reached come last."""
         apart = Counter(name for pair in self.pairs if pair.rules_pass for name in (pair.a, pair.b))
         return [
             {
                 "icon": icon.name,
-                "proportion_correct": icon.proportion_correct if model else None,
-                "detected_probability": icon.detected_probability if model else None,
-                "onset_s": icon.onset_s if model else None,
-                "channel": icon.channel if model else None,
+                "proportion_correct": icon.proportion_correct,
+                "detected_probability": icon.detected_probability,
+                "onset_s": icon.onset_s,
+                "channel": icon.channel,
                 "peak_change_cold_K": icon.peak_change_K[0],
                 "peak_change_warm_K": icon.peak_change_K[1],
                 "rules_score": icon.rules_score,
@@ -263,7 +249,7 @@ class Ranking(Drawn):
                 "safe": icon.safe,
                 "reason": icon.reason,
             }
-            for icon in sorted(self.icons, key=self._order)
+            for icon in sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name))
         ]
 
     def to_frame(self) -> pd.DataFrame:
@@ -288,21 +274,11 @@ class Ranking(Drawn):
         low, high = self.proportion_correct_interval
         where = f"{count_of(len(self.icons), 'icon')} on {with_changes(self.rig, self.rig_changes)}"
         worst = "" if self.worst_pair is None else f", worst pair {self.worst_pair[0]} and {self.worst_pair[1]}"
-        if self.by == "rules":
-            apart = sum(pair.rules_pass for pair in self.pairs)
-            pairs = f", {apart} of {len(self.pairs)} pairs distinguishable" if self.pairs else ""
-            return f"Ranking(by rules: {where}{pairs}{worst})"
         crowd = count_of(self.people, "person", "people")
         spread = "" if self.people == 1 else f" [{100 * low:.0f}, {100 * high:.0f}]"
         bits = f", {self.information_bits:.2f} bits" if len(self.icons) > 1 else ""
         correct = f"{100 * self.proportion_correct:.1f} % correct"
         return f"Ranking(predicted: {where}, {crowd}, {correct}{spread}{bits}{worst})"
-
-    def _order(self, icon: IconScore) -> tuple[bool, float, float, str]:
-        if self.by == "rules":
-            margin = float("inf") if icon.rules_margin is None else icon.rules_margin
-            return (not icon.playable, -icon.rules_score, -margin, icon.name)
-        return (not icon.playable, -icon.proportion_correct, 0.0, icon.name)
 
 
 def with_changes(rig: str, changes: Sequence[str]) -> str:

@@ -1,7 +1,6 @@
 """Scores of the parts of a set, of one icon and of one pair, and where rules and model judge them differently.
 
-The score by rules is the share of rules passed, all with the same weight; among equals the one whose smallest margin,
-in shares of its threshold, is larger comes first. Nothing in it comes from the model.
+The score by rules is the share of rules passed, all with the same weight. Nothing in it comes from the model.
 """
 
 from __future__ import annotations
@@ -136,19 +135,6 @@ def icon_score(icon: Sequence[RuleResult], pairs: Sequence[tuple[bool, float | N
     margins = [r.normalised_margin for r in sized] + [margin for _, margin in pairs]
     known = [m for m in margins if m is not None]
     return passed / (len(own) + len(pairs)), min(known) if known else None
-
-
-def worst_by_rules(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
-    """The pair with the smallest margin by rules; equal ones by how few rules pass, then by name."""
-
-    def safety(pair: PairScore) -> tuple[bool, float, int, str, str]:
-        margin = float("inf") if pair.rules_margin is None else pair.rules_margin
-        return pair.rules_pass, margin, sum(r.passed for r in pair.rules), pair.a, pair.b
-
-    if not pairs:
-        return None
-    first = min(pairs, key=safety)
-    return first.a, first.b
 
 
 def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tuple[dict[str, Any], ...]:

@@ -65,7 +65,7 @@ QUANTITIES: Mapping[str, Quantity] = {
 }
 NEEDS_DRAWS = (
     "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: leave --intervals out or ask for 2 or more (in Python: parameters=128, and not by rules), and use an "
+    "posterior: leave --intervals out or ask for 2 or more (in Python: parameters=128), and use an "
     "observer that has draws"
 )
 SAFETY = "safety"

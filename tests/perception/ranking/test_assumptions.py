@@ -88,4 +88,3 @@ def test_a_ranking_keeps_its_assumptions() -> None:
     found = ranking.to_dict()["assumptions"]
     assert found["moving"] == [] and found["site"]["nearest_recorded"] == "thenar"
     assert "module, driver and heat sink" in found["not_varied"]
-    assert rank(load_library("six-icons"), THENAR, people=2, parameters=0, by="rules").to_dict()["assumptions"] is None

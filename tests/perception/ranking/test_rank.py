@@ -200,63 +200,27 @@ def test_identical_icons_are_guessed(rig: Rig) -> None:
     assert ranking.tracking == "display"
 
 
-def test_ranking_by_rules_orders_by_rules(rig: Rig) -> None:
-    rows = rank(load_library("wave-shapes"), rig, people=2, by="rules").rows()
-    keys = [(row["rules_score"], row["rules_margin"]) for row in rows]
-    assert keys == sorted(keys, reverse=True)
-    for row in rows:
-        assert row["rules_score"] == (row["rules_passed"] + row["pairs_distinguishable_by_rules"]) / (
-            row["rules"] + len(rows) - 1
-        )
-
-
-def test_by_rules_no_number_of_the_model_is_told(rig: Rig, ranking: Ranking) -> None:
-    by_rules = rank(load_library("six-icons"), rig, people=12, seed=7, by="rules")
-    held = json.loads(by_rules.to_json())
-    assert held["by"] == "rules"
-    assert list(held["set"]) == SET.split()
-    for icon in held["icons"]:
-        assert list(icon) == ICON.split()
-        for key in ("detected_probability", "onset_s", "channel", "proportion_correct", *ICON.split()[-3:-1]):
-            assert icon[key] is None, key
-        assert 0.0 <= icon["rules_score"] <= 1.0
-    for pair in held["pairs"]:
-        assert (pair["d_prime"], pair["confused_probability"]) == (None, None)
-        assert pair["why"] == [rule["text"] for rule in pair["rules"]]
-        assert pair["distinguishable_by_rules"] == pair["rules"][-1]["pass"]
-    whole = held["set"]
-    for key in [*SET.split()[:6], "proportion_correct_interval_new_laboratory", "posterior_draws"]:
-        assert whole[key] is None, key
-    assert whole["norm_sensitivity"] == {}
-    assert held["confusion"]["probability"] is None
-    assert whole["rules_score"] == 1.0
-    assert [rule["rule"] for rule in whole["rules"]] == ["depth (cold)", "depth (warm)"]
-    # Both modes name the same places where rules and model part, and the model changes nothing in the score.
-    model = json.loads(ranking.to_json())
-    assert whole["rules_disagree"] == model["set"]["rules_disagree"]
-    assert [icon["rules_score"] for icon in held["icons"]] == [icon["rules_score"] for icon in model["icons"]]
-    assert repr(by_rules).startswith("Ranking(by rules: 6 icons on thenar, 15 of 15 pairs distinguishable, worst pair ")
-
-
-def test_the_worst_pair_by_rules_is_the_one_nearest_to_failing(rig: Rig) -> None:
+def test_rules_use_no_number_of_the_model(rig: Rig) -> None:
+    """The score of an icon is the share of its rules and of its pairs that pass; the nearest pair has no margin."""
     head = "cue 1\nset s { control display; baseline 32 °C }\n"
     body = "; hold for 2 s; return at 3 °C/s }\n"
     icons = "".join(f"icon {n} {{ cool by {k} °C at 3 °C/s{body}" for n, k in (("a", 3), ("b", 3.05), ("c", 3.4)))
-    by_rules = rank(parse(head + icons), rig, people=2, by="rules")
-    assert by_rules.worst_pair == ("a", "b")
-    assert by_rules.rules_score == pytest.approx(2 / 3)
-    assert by_rules.rows()[0]["icon"] == "c"
-    (pair,) = (p for p in by_rules.pairs if {p.a, p.b} == {"a", "b"})
-    assert pair.rules_margin is not None
-    assert pair.rules_margin < 0
+    ranking = rank(parse(head + icons), rig, people=2, parameters=0)
+    for row in ranking.rows():
+        assert row["rules_score"] == (row["rules_passed"] + row["pairs_distinguishable_by_rules"]) / (row["rules"] + 2)
+    held = ranking.to_dict()
+    assert held["set"]["rules_score"] == ranking.rules_score == pytest.approx(2 / 3)
+    assert [rule["rule"] for rule in held["set"]["rules"]] == ["depth (cold)", "depth (warm)"]
+    assert [(pair["distinguishable_by_rules"], pair["rules_margin"] < 0) for pair in held["pairs"]] == [
+        (False, True), (True, False), (True, False),
+    ]  # fmt: skip
+    assert all(pair["distinguishable_by_rules"] == pair["rules"][-1]["pass"] for pair in held["pairs"])
 
 
 def test_messages(rig: Rig) -> None:
     icons = load_library("six-icons")
     with pytest.raises(ValueError, match=r"there is no norm 'mean'"):
         rank(icons, rig, norm="mean")
-    with pytest.raises(ValueError, match=r"a ranking is by model or rules, not by 'luck'"):
-        rank(icons, rig, by="luck")
 
 
 def test_direct_naming_states_the_error_of_its_own_trials(rig: Rig) -> None:
