@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 MOST_EXCLUDED = 3
 REFINING_PEOPLE = 24
-"""As in `thermicon.perception.selection.evaluator`, repeated here to avoid its imports."""
+"""As in `thermicon.perception.selection.search_run`, repeated here to avoid its imports."""
 
 
 def frontier_report(found: Frontier, title: str) -> list[Block]:

@@ -90,6 +90,11 @@ class GoalPart:
         return self.quantity == SAFETY or QUANTITIES[self.quantity].comparison == "<="
 
     @property
+    def whose(self) -> str:
+        """The share of people in words; empty for their mean."""
+        return "" if self.people is None else f" for {100.0 * self.people:g} % of people"
+
+    @property
     def text(self) -> str:
         """The part in canonical form."""
         if self.quantity == SAFETY:
@@ -97,8 +102,7 @@ class GoalPart:
         known = QUANTITIES[self.quantity]
         unit = next(iter(known.units))
         value = f"{self.limit / known.units[unit]:g} {unit}".rstrip()
-        people = "" if self.people is None else f" for {100.0 * self.people:g} % of people"
-        return f"{self.quantity} {known.comparison} {value}{people}"
+        return f"{self.quantity} {known.comparison} {value}{self.whose}"
 
 
 @dataclass(frozen=True, slots=True)

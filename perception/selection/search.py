@@ -11,21 +11,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..identification.laboratory import DRAWS
 from ..kernels.parallel import Progress
 from ..observer.channels import USUAL_NORM
 from ..observer.observer import check_norm
 from ..observer.observer_model import ObserverModel
-from .appraise import Appraisal
-from .candidates import Candidate, at_ends, found_set, names_of
-from .evaluator import Evaluator, FinalJudge
-from .goal import Goal
+from ..ranking.rank import rank
+from .appraise import Appraisal, appraise
+from .candidates import at_ends, found_set, names_of
+from .goal import Goal, GoalPart
 from .request import OBJECTIVES, ChoiceError, Objective
-from .search_run import SearchRun, better
+from .search_run import Evaluator, SearchRun
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -38,6 +39,8 @@ PER_ROUND = 3
 """Each round tries 16 variants per icon on the nominal person; a third as many rounds try 4 on a few people."""
 WIDEST, REFINED = 0.25, 0.05
 """First steps of both climbs, as shares of the range of a parameter."""
+JUDGED = ("correct", "bits", "d_prime")
+"""Quantities that sets are chosen by for their people's mean; `detected` only for a share of people."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +154,8 @@ def search(
     >>> result.after.d_prime >= result.before.d_prime
     True
     """
+    from thermicon.icons import IconSet
+
     if objective not in OBJECTIVES:
         raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
@@ -161,8 +166,11 @@ def search(
     run, model = SearchRun(icons, count, must), ObserverModel.of(observer)
     nominal = Evaluator(rig, objective, check_norm(norm), seed, model.nominal, tracking, wanted)
     few = nominal.with_people(model)
-    draws = model.draw_count(parameters, DRAWS)
-    judge = FinalJudge(nominal, model, model.people(people, seed), draws)
+    draws, parts = model.draw_count(parameters, DRAWS), _judged_by(wanted)
+    if wanted is not None:
+        wanted.check_draws(draws)
+    how: dict[str, Any] = {"seed": seed, "tracking": tracking, "norm": norm}
+    crowd = model.people(people, seed)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
     def tell(tried: int) -> None:
@@ -174,12 +182,17 @@ def search(
     last = max(1, rounds // PER_ROUND)
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)
     screened = run.tried
-    best = run.improve(better(few, start, held), few, last, REFINING, rng, REFINED, tell)
-    finalists = _different([start, best, held])
-    sets = [[candidate.icon for candidate in candidates] for candidates in finalists]
-    scores = [judge.appraisal(each) for each in sets]
-    merits = [judge.merit(each, score) for each, score in zip(sets, scores, strict=True)]
-    place = max(range(len(finalists)), key=lambda k: merits[k])
+    best = run.improve(max((start, held), key=few.score), few, last, REFINING, rng, REFINED, tell)
+    different = {frozenset(one.icon.name for one in each): each for each in (start, best, held)}
+    finalists = list(different.values())
+    sets = [tuple(candidate.icon for candidate in candidates) for candidates in finalists]
+    scores = [appraise(each, rig, people=crowd, observer=model.nominal, **how) for each in sets]
+    persons: list[dict[str, Array]] = [{} for _ in sets]
+    if any(part.people is not None for part in parts):
+        members = [IconSet("", "", each[0].context, each[0].metadata, each) for each in sets]
+        ranked = [rank(one, rig, people=people, parameters=draws, observer=model, **how) for one in members]
+        persons = [one.new_laboratory.persons for one in ranked if one.new_laboratory is not None]
+    place = max(range(len(sets)), key=lambda k: _merit(parts, objective, scores[k], persons[k]))
     best, after = finalists[place], scores[place]
     names = dict(zip((candidate.icon.name for candidate in best), names_of(best), strict=True))
     a, b = after.worst_pair
@@ -194,10 +207,28 @@ def search(
         refined=run.tried - screened,
         at_ends=at_ends(best),
         finalists=len(finalists),
-        chosen_by=judge.words,
+        chosen_by=" and ".join(part.quantity + part.whose for part in parts) or objective,
     )
 
 
-def _different(sets: Sequence[list[Candidate]]) -> list[list[Candidate]]:
-    """Each set once, by its icons in any order."""
-    return list({frozenset(each.icon.name for each in candidates): candidates for candidates in sets}.values())
+def _judged_by(goal: Goal | None) -> tuple[GoalPart, ...]:
+    """Parts of a goal that sets are judged by, those for a share of people first."""
+    held = () if goal is None else goal.parts
+    some = [part for part in held if part.quantity in JUDGED or part.people is not None]
+    return tuple(sorted(some, key=lambda part: (part.people is None, -(part.people or 0.0))))
+
+
+def _merit(
+    parts: Sequence[GoalPart], objective: Objective, scores: Appraisal, persons: dict[str, Array]
+) -> tuple[float, ...]:
+    """What the better set has more of: nearness to the goal, then values of its parts, then of the objective.
+
+    `persons` are values of single people of all draws, as in `rank`, for parts about a share of people.
+    """
+    means = {"correct": scores.proportion_correct, "bits": scores.information_bits, "d_prime": scores.d_prime}
+    values = [
+        means[part.quantity] if part.people is None else float(np.quantile(persons[part.quantity], 1.0 - part.people))
+        for part in parts
+    ]
+    missing = [max(0.0, 1.0 - value / part.limit) for part, value in zip(parts, values, strict=True)]
+    return (-max(missing, default=0.0), *values, scores.value(objective))

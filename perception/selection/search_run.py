@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Array
+from ..identification.population import ReceptorTemperatures, memory_dprime, respond
+from ..identification.task import USUAL
+from ..observer.observer import Norm, Observer
+from ..observer.observer_model import ObserverModel
+from ..observer.people import People
 from .candidates import Candidate, sample_candidates
-from .evaluator import Evaluator
-from .max_min_subset import Limits, max_min_subset, nearest_pair
-from .pool import Pool
-from .request import ChoiceError
-from .subset_identification import ALIKE, climb
+from .goal import Goal
+from .max_min_subset import max_min_subset, nearest_pair
+from .pool import POOL_HZ, Pool
+from .request import ChoiceError, Objective
+from .subset_identification import ALIKE, SubsetIdentification, climb
 
 if TYPE_CHECKING:
+    from thermicon.circuit import Rig
     from thermicon.icons import Family, Icon, IconSet
 
+PEOPLE = 24
 SAMPLED = 400
 """Listed icons that a search starts from, at most; of more, so many are drawn."""
 SHRINK, FINEST = 0.85, 0.005
@@ -26,17 +33,52 @@ SHRINK, FINEST = 0.85, 0.005
 
 
 @dataclass(frozen=True, slots=True)
-class JudgedPool:
-    """Candidates that can be chosen, with their d′ (people, n, n) and its median (n, n), and totals to keep.
+class Evaluator:
+    """How pools and sets are scored: by the nominal person unless there is a `crowd`, whose rigs are `rigs`.
 
-    Where each family gives one icon, its members are `ALIKE` in the median.
+    `goal` says what is asked of single icons and of totals.
     """
 
-    candidates: list[Candidate]
-    pool: Pool
-    d_prime: Array
-    middle: Array
-    limits: Limits
+    rig: Rig
+    objective: Objective
+    norm: Norm
+    seed: int
+    observer: Observer
+    tracking: str | None = None
+    goal: Goal | None = None
+    rigs: tuple[Rig, ...] = ()
+    crowd: People | None = None
+
+    def with_people(self, model: ObserverModel) -> Evaluator:
+        """The first 24 people of the seed, who differ in contact, skin and thresholds."""
+        crowd = model.people(PEOPLE, self.seed)
+        return replace(self, rigs=tuple(crowd.rigs(self.rig)), crowd=crowd)
+
+    @property
+    def totals(self) -> tuple[float | None, float | None]:
+        """Most time, s, and energy, J, of all icons together."""
+        return (None, None) if self.goal is None else self.goal.totals
+
+    def felt(self, candidates: Sequence[Candidate]) -> tuple[Pool, Array]:
+        """The candidates on the nominal rig, and their d′ (people, icons, icons) from memory."""
+        pool = Pool.of([candidate.icon for candidate in candidates], self.rig, self.observer)
+        if self.crowd is None:
+            return pool, pool.dprimes(pool, self.norm, self.observer)[None]
+        met = ReceptorTemperatures.simulated(pool.icons, self.rigs, self.rig, pool.end_s, POOL_HZ, self.tracking)
+        felt = respond(met, self.crowd, self.observer, detection=False)
+        return pool, memory_dprime(felt, self.norm, self.crowd.memory, self.observer, USUAL)
+
+    def namings(self, d_prime: Array, pool: Pool) -> SubsetIdentification:
+        """Who is named what, for the objectives that count errors."""
+        lapse = np.array([self.observer.lapse]) if self.crowd is None else self.crowd.lapse
+        return SubsetIdentification.of(d_prime, lapse, pool.durations_s, self.seed)
+
+    def score(self, candidates: Sequence[Candidate]) -> float:
+        """The objective of a whole set."""
+        pool, d = self.felt(candidates)
+        if self.objective == "worst":
+            return nearest_pair(np.median(d, axis=0), range(len(pool)))
+        return self.namings(d, pool).score(range(len(pool)), self.objective)
 
 
 class SearchRun:
@@ -52,15 +94,14 @@ class SearchRun:
         self.families, self.each = icons.families, count is None
         self.must = tuple(range(len(fixed)))
         self.count = len(fixed) + self.free
-        self.pool: list[Candidate] = []
         self.tried = 0
 
     def start(self, judge: Evaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
-        self.pool = [*self.fixed, *self.optional, *sample_candidates(self.families, SAMPLED, rng)]
-        found = self.best(self.pool, judge, None)
+        pool = [*self.fixed, *self.optional, *sample_candidates(self.families, SAMPLED, rng)]
+        found = self.best(pool, judge)
         if found is None:
-            raise ChoiceError(self._nothing(judge))
+            raise ChoiceError(self._nothing(judge, pool))
         return found
 
     def improve(
@@ -86,44 +127,39 @@ class SearchRun:
             tell(self.tried)
         return held
 
-    def best(self, pool: list[Candidate], judge: Evaluator, held: list[Candidate] | None) -> list[Candidate] | None:
-        """The best set out of a pool that begins with the held one, plain icons first; None: no set can be played."""
-        found = self._judged(pool, judge)
-        chosen = None if found is None else self._best_places(found, judge, held)
-        return None if found is None or chosen is None else self._ordered(found, chosen)
+    def best(
+        self, candidates: list[Candidate], judge: Evaluator, held: list[Candidate] | None = None
+    ) -> list[Candidate] | None:
+        """The best set out of a pool that begins with the held one, plain icons first; None: no set can be played.
 
-    def _best_places(self, pool: JudgedPool, judge: Evaluator, held: list[Candidate] | None) -> list[int] | None:
-        first = max_min_subset(pool.middle, self.count, self.must, pool.limits)
-        if first is None or nearest_pair(pool.middle, first.chosen) <= ALIKE:
-            return None
-        if judge.objective == "worst":
-            return list(first.chosen)
-        begin = first.chosen if held is None else range(self.count)
-        namings = judge.namings(pool.d_prime, pool.pool)
-        return climb(namings, begin, judge.objective, pool.middle, self.must, pool.limits)[0]
-
-    def _judged(self, candidates: list[Candidate], judge: Evaluator) -> JudgedPool | None:
-        """The icons that can be chosen, as people feel them; None where they are too few."""
+        Where each family gives one icon, its members are `ALIKE` in the median.
+        """
         self.tried += len(candidates)
-        pool = judge.pool([candidate.icon for candidate in candidates])
-        d = judge.d_prime(pool)
+        pool, d = judge.felt(candidates)
         good = self._good(pool, judge)
         if len(good) < self.count:
             return None
         left, d, pool = [candidates[k] for k in good], d[:, good][:, :, good], pool.some(good)
-        middle = np.median(d, axis=0)
+        family = np.array([-1 if one.family is None else self.families.index(one.family) for one in left])
+        middle, limits = np.median(d, axis=0), pool.limits(*judge.totals)
         if self.each:
-            own = np.array([self._place(candidate) for candidate in left])
-            middle[(own[:, None] == own) & (own >= 0)] = ALIKE
-        return JudgedPool(left, pool, d, middle, pool.limits(*judge.totals))
+            middle[(family[:, None] == family) & (family >= 0)] = ALIKE
+        first = max_min_subset(middle, self.count, self.must, limits)
+        if first is None or nearest_pair(middle, first.chosen) <= ALIKE:
+            return None
+        chosen = list(first.chosen)
+        if judge.objective != "worst":
+            begin = chosen if held is None else range(self.count)
+            chosen = climb(judge.namings(d, pool), begin, judge.objective, middle, self.must, limits)[0]
+        return [left[k] for k in sorted(chosen, key=lambda k: (k not in self.must, family[k], k))]
 
     def _good(self, pool: Pool, judge: Evaluator) -> list[int]:
         reasons = pool.objections(judge.goal, judge.observer)
         return [k for k, reason in enumerate(reasons) if k in self.must or reason is None]
 
-    def _nothing(self, judge: Evaluator) -> str:
+    def _nothing(self, judge: Evaluator, candidates: list[Candidate]) -> str:
         """Why no set of the first pool can be chosen."""
-        pool = judge.pool([candidate.icon for candidate in self.pool])
+        pool, _ = judge.felt(candidates)
         bad = [reason for reason in pool.objections(judge.goal, judge.observer) if reason is not None]
         left = pool.some(self._good(pool, judge))
         first = f", the first of which {bad[0]}" if bad else ""
@@ -132,26 +168,6 @@ class SearchRun:
             f"no {self.count} icons can be chosen within the limits: {len(bad)} of {len(pool)} that were tried cannot "
             f"be chosen at all{first}{over}"
         )
-
-    def _ordered(self, pool: JudgedPool, chosen: Sequence[int]) -> list[Candidate]:
-        order = sorted(chosen, key=lambda k: (k not in self.must, self._place(pool.candidates[k]), k))
-        return [pool.candidates[k] for k in order]
-
-    def _place(self, candidate: Candidate) -> int:
-        return -1 if candidate.family is None else self.families.index(candidate.family)
-
-
-def better(judge: Evaluator, *sets: list[Candidate]) -> list[Candidate]:
-    """The best of some sets for the people of an evaluator; the first of those that are equal."""
-
-    def value(candidates: list[Candidate]) -> float:
-        pool = judge.pool([candidate.icon for candidate in candidates])
-        d = judge.d_prime(pool)
-        if judge.objective == "worst":
-            return nearest_pair(np.median(d, axis=0), range(len(pool)))
-        return judge.namings(d, pool).score(range(len(pool)), judge.objective)
-
-    return max(sets, key=value)
 
 
 def split_icons(
