@@ -13,7 +13,7 @@ from .rank_details import trouble_lines
 from .rank_report import BARELY
 
 if TYPE_CHECKING:
-    from thermicon.perception.selection.frontier import Frontier, FrontierPoint
+    from thermicon.perception.selection.frontier import Frontier
     from thermicon.perception.selection.search import SearchResult
 
     from .set_report import SetReport
@@ -25,29 +25,32 @@ REFINING_PEOPLE = 24
 
 def frontier_report(found: Frontier, title: str) -> list[Block]:
     """Report one row for each number of icons, the names of the largest choices, and what was left out."""
-    heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goal)))
+    heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goals)))
     rows = [
         (
             str(len(point.icons)) + ("" if point.optimal else " *"),
-            percent(point.proportion_correct),
+            percent(point.at_own_range.proportion_correct),
             f"from {percent(point.reached)}",
-            number(point.d_prime),
-            f"{point.information_bits:.2f}",
+            number(point.at_own_range.d_prime),
+            f"{point.at_own_range.information_bits:.2f}",
             f"{number(point.total_s)} s",
             "–" if point.total_J != point.total_J else f"{number(point.total_J)} J",
-            *([] if point.goal is None else ["✓" if point.goal.met else "✗"]),
+            *("✓" if goal.met else "✗" for goal in found.goals[k : k + 1]),
         )
-        for point in found.points
+        for k, point in enumerate(found.points)
     ]
-    crowd = count_of(found.people, "virtual person", "virtual people")
-    what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
-    more = len(found.excluded) - MOST_EXCLUDED
+    job, largest = found.ranking.job, found.points[-1]
+    crowd = count_of(job.people, "virtual person", "virtual people")
+    what_if = f" with {', '.join(job.rig.changes)}" if job.rig.changes else ""
+    more = len(largest.excluded) - MOST_EXCLUDED
+    amber = found.amber(largest)
+    names = ", ".join(f"{name} (amber)" if name in amber else name for name in largest.icons)
     said = [
-        *(f"The {len(point.icons)}: {_named(point)}" for point in found.points[-1:]),
+        f"The {len(largest.icons)}: {names}",
         *(["* not proven to be the best of their number"] * any(not point.optimal for point in found.points)),
         *_amber(found),
         *_goal(found),
-        *(f"Left out: {name} {reason}" for name, reason in found.excluded[:MOST_EXCLUDED]),
+        *(f"Left out: {name} {reason}" for name, reason in largest.excluded[:MOST_EXCLUDED]),
         *([f"and {more} more left out"] if more > 0 else []),
     ]
     return [
@@ -55,27 +58,24 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
         grid(heads, rows, heads[:7]),
         Text("\n".join(said)),
         Text(
-            f"The best by {found.objective} of {found.pool} icons that can be {'chosen' if found.goal else 'played'}, "
-            f"for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}). {_reached(found)} These are "
+            f"The best by {largest.objective} of {largest.pool} icons that can be "
+            f"{'chosen' if found.goals else 'played'}, for {crowd} on the {job.rig.name} rig{what_if} (seed "
+            f"{job.seed}). {_reached(found)} These are "
             "predictions of a model, not measurements."
         ),
     ]
 
 
-def _named(point: FrontierPoint) -> str:
-    return ", ".join(f"{name} (amber)" if name in point.amber else name for name in point.icons)
-
-
 def _amber(found: Frontier) -> Iterator[str]:
     """From how many icons on a choice has one that passes a soft limit; nothing where none has."""
-    sizes = [str(len(point.icons)) for point in found.points if point.amber]
+    sizes = [str(len(point.icons)) for point in found.points if found.amber(point)]
     if sizes:
         yield f"With icons that pass a soft limit of safety (amber): the choices of {', '.join(sizes)}"
 
 
 def _goal(found: Frontier) -> Iterator[str]:
     """The largest choice that meets the goal with its parts, or the smallest with what is in its way."""
-    judged = [(len(point.icons), point.goal) for point in found.points if point.goal is not None]
+    judged = [(len(point.icons), goal) for point, goal in zip(found.points, found.goals, strict=False)]
     if not judged:
         return
     met = [each for each in judged if each[1].met]

@@ -86,9 +86,9 @@ def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
 
 def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     """Draw the mean over people, what 95 % of them reach, chance, and the total time at every point."""
-    axes = new_axes(ax, (8.2, 4.2))
+    axes, first = new_axes(ax, (8.2, 4.2)), found.points[0]
     sizes = np.array([len(point.icons) for point in found.points])
-    correct = np.array([100.0 * point.proportion_correct for point in found.points])
+    correct = np.array([100.0 * point.at_own_range.proportion_correct for point in found.points])
     low = np.array([100.0 * point.reached for point in found.points])
     reach = "95 % of people reach, people and model" if found.draws else "95 % of people reach, nominal model"
     axes.fill_between(sizes, low, correct, color="0.9", linewidth=0)
@@ -106,7 +106,7 @@ def plot_frontier(found: Frontier, ax: Axes | None = None) -> Axes:
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(axis="y", alpha=0.25, linewidth=0.6)
     axes.set_axisbelow(True)
-    axes.set_xlabel(f"number of icons, the best of {found.pool} by {found.objective}\n(above the points: total time)")
+    axes.set_xlabel(f"number of icons, the best of {first.pool} by {first.objective}\n(above the points: total time)")
     axes.set_ylabel("correct (%)")
     axes.set_title("How many icons are distinguishable", loc="left")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8)

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, cast
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,6 @@ from .pool import POOL_HZ, Pool
 
 if TYPE_CHECKING:
     from thermicon.icons import Icon
-    from thermicon.icons.model.statements import Statement
 
 FIELDS = (
     *("by_K", "to_C", "by_A", "to_A"),
@@ -69,14 +69,6 @@ def numbers_of(icon: Icon, baseline_C: float) -> tuple[Number, ...]:
     return tuple(_numbers(icon.statements, (), baseline_C))
 
 
-def statement_at(icon: Icon, path: Sequence[int]) -> Statement:
-    """The statement at a path through repeats."""
-    body: Sequence[Any] = icon.statements
-    for place in path[:-1]:
-        body = body[place].body
-    return cast("Statement", body[path[-1]])
-
-
 def with_number(icon: Icon, number: Number, value: float) -> Icon:
     """The icon with one number changed; raises what an icon raises that cannot be run so."""
     new = int(value) if number.field == "count" else value
@@ -96,7 +88,10 @@ def line_of(icon: Icon, path: Sequence[int]) -> str:
     """The line of text at a path: of a repeat its first line."""
     from thermicon.icons.model.format import statement_text
 
-    return statement_text(statement_at(icon, path), icon.context.control).split("\n")[0].strip()
+    body: Sequence[Any] = icon.statements
+    for place in path[:-1]:
+        body = body[place].body
+    return statement_text(body[path[-1]], icon.context.control).split("\n")[0].strip()
 
 
 def _numbers(body: Sequence[Any], before: tuple[int, ...], baseline_C: float) -> Iterator[Number]:
@@ -170,11 +165,17 @@ def worse(before: Array, after: Array, wanted: float) -> NDArray[np.bool_]:
 
 def offers(of: Screening, target: float, largest: float, vain: Vain) -> list[CandidateEdit]:
     """Edits that bring the pair to a target d′ for the nominal person, the cheapest first."""
-    free = [place for place in of.pair if not _played(of, place)]
+    from thermicon.circuit.solver.inverse import baseline_C
+    from thermicon.icons.model.icon import all_played
+
+    icons = of.kept.icons
+    # An icon that another one plays would change that one too.
+    played = {one.name for icon in icons for one in all_played(icon.statements)}
+    free = [place for place in of.pair if icons[place].name not in played]
     ways = [
         (place, number, up)
         for place in free
-        for number in numbers_of(of.kept.icons[place], _baseline(of, place))
+        for number in numbers_of(icons[place], baseline_C(icons[place], of.kept.rig))
         for up in (True, False)
     ]
     logs = np.log(largest) * np.linspace(0.0, 1.0, GRID + 1)[1:] ** 2
@@ -212,10 +213,11 @@ def _changed(of: Screening, way: Way, w: int, step: int, log: float, digits: int
         return []
     icon = of.kept.icons[place]
 
-    def described(new: Icon) -> tuple[str, str, float]:
-        return line_of(icon, number.path), line_of(new, number.path), number.ratio_to(value)
+    def made() -> tuple[Icon, str, str]:
+        new = with_number(icon, number, value)
+        return new, line_of(icon, number.path), line_of(new, number.path)
 
-    return _valid(of, place, lambda: with_number(icon, number, value), described, w, step)
+    return _valid(of, place, made, number.ratio_to(value), w, step)
 
 
 def _repeats(of: Screening, place: int) -> list[CandidateEdit]:
@@ -223,32 +225,26 @@ def _repeats(of: Screening, place: int) -> list[CandidateEdit]:
     count_of = len(icon.statements)
     once = "its one statement" if count_of == 1 else f"its {count_of} statements"
 
-    def tried(count: int) -> list[CandidateEdit]:
-        described = (once, f"repeat {count} {{ {once} }}", math.log(count))
-        return _valid(of, place, lambda: repeated(icon, count), lambda _: described, None, count)
+    def made(count: int) -> tuple[Icon, str, str]:
+        return repeated(icon, count), once, f"repeat {count} {{ {once} }}"
 
-    return [one for count in REPEATS for one in tried(count)]
+    return [one for n in REPEATS for one in _valid(of, place, partial(made, n), math.log(n), None, n)]
 
 
 def _valid(
-    of: Screening,
-    place: int,
-    make: Callable[[], Icon],
-    described: Callable[[Icon], tuple[str, str, float]],
-    way: int | None,
-    step: int,
+    of: Screening, place: int, make: Callable[[], tuple[Icon, str, str]], ratio: float, way: int | None, step: int
 ) -> list[CandidateEdit]:
+    """The edit of an icon into another, with its line before and after, unless that cannot be run or lasts too long."""
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.icons import CueErrors
 
     try:
-        new = make()
+        new, old, line = make()
         added = duration_s(new, of.kept.rig) - float(of.kept.durations_s[place])
     except (CueErrors, ValueError):
         return []
     if added > MOST_LONGER_S:
         return []
-    old, line, ratio = described(new)
     cost = ratio + PER_SECOND * max(added, 0.0)
     return [CandidateEdit(place, new, old, line, cost, added, way, step, np.empty(0))]
 
@@ -276,20 +272,6 @@ def _good(of: Screening, tried: Sequence[CandidateEdit], target: float, vain: Va
         else:
             good.append(replace(one, apart=row))
     return good
-
-
-def _played(of: Screening, place: int) -> bool:
-    """Whether another icon of the set plays this one, and would change with it."""
-    from thermicon.icons.model.icon import all_played
-
-    name = of.kept.icons[place].name
-    return any(one.name == name for icon in of.kept.icons for one in all_played(icon.statements))
-
-
-def _baseline(of: Screening, place: int) -> float:
-    from thermicon.circuit.solver.inverse import baseline_C
-
-    return baseline_C(of.kept.icons[place], of.kept.rig)
 
 
 def _outwards(value: float, number: Number, digits: int) -> float:

@@ -17,7 +17,7 @@ from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
 from ..kernels.parallel import Progress, step_counter
-from .appraise import Appraisal, appraise, nearest_two
+from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
 from .max_min_subset import SubsetChoice, max_min_subset, nearest_pair
 from .pool import Pool
@@ -74,6 +74,13 @@ class Choice:
     loss: float | None
     at_own_range: Appraisal
     new_laboratory: NewLaboratory | None = None
+
+    @property
+    def reached(self) -> float:
+        """Proportion correct that 95 % of people reach: with the uncertainty of the model, where there are draws."""
+        if self.new_laboratory is None:
+            return self.at_own_range.reached
+        return float(np.quantile(self.new_laboratory.persons["correct"], 1.0 - REACHED_BY))
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from ..drawn import Drawn
 from ..identification.laboratory import DRAWS
 from ..kernels.parallel import Progress, step_counter
@@ -19,7 +17,6 @@ from ..observer.channels import USUAL_NORM
 from ..observer.observer_model import ObserverModel
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
-from .appraise import REACHED_BY
 from .choose import Choice, Chooser
 from .goal import Goal
 from .goal_result import GoalResult, judge_goal
@@ -36,75 +33,43 @@ MOST = 12
 
 
 @dataclass(frozen=True, slots=True)
-class FrontierPoint:
-    """The best choice of one size, by names of its `icons`.
-
-    `proportion_correct` and `information_bits` are means over people, `low` the proportion correct that 95 % of them
-    reach at the nominal constants, `low_with_model` with the uncertainty of the model too (None: without draws);
-    `d_prime` is the median of the worst pair, `total_J` NaN on a thermode, which states no energy. `optimal` says
-    whether no other choice of the size is better; `amber` icons pass a soft limit of safety.
-    """
-
-    icons: tuple[str, ...]
-    proportion_correct: float
-    low: float
-    information_bits: float
-    d_prime: float
-    total_s: float
-    total_J: float
-    optimal: bool
-    low_with_model: float | None = None
-    amber: tuple[str, ...] = ()
-    goal: GoalResult | None = None
-
-    @property
-    def reached(self) -> float:
-        """What 95 % of people reach: with the uncertainty of the model, where there are draws of it."""
-        return self.low if self.low_with_model is None else self.low_with_model
-
-
-@dataclass(frozen=True, slots=True)
 class Frontier(Drawn):
-    """Best choices of rising size, the `points`, from one pool, and how they were made and judged.
+    """Best choices of rising size, the `points`, from one pool as it was ranked, with `draws` of the posterior.
 
-    Of the `pool` icons that could be chosen, others were `excluded` for a reason each; `draws` of the posterior are
-    behind `low_with_model`.
+    `goals` say of each point whether it meets the goal; empty without one.
 
     See Also
     --------
     frontier : Makes it.
     """
 
-    rig: str
-    rig_changes: tuple[str, ...]
-    people: int
-    seed: int
-    norm: str
-    objective: Objective
-    pool: int
-    excluded: tuple[tuple[str, str], ...]
-    points: tuple[FrontierPoint, ...]
-    draws: int = 0
-    goal: Goal | None = None
+    ranking: Ranking
+    points: tuple[Choice, ...]
+    goals: tuple[GoalResult, ...]
+    draws: int
+
+    def amber(self, point: Choice) -> tuple[str, ...]:
+        """Names of the icons of a choice that pass a soft limit of safety."""
+        return tuple(icon.name for icon in self.ranking.icons if icon.name in point.icons and icon.cautions)
 
     def rows(self) -> list[dict[str, Any]]:
         """One plain row for each size."""
         return [
             {
                 "icons": len(point.icons),
-                "proportion_correct": point.proportion_correct,
-                "proportion_correct_95_percent_of_people": point.low,
-                "information_bits": point.information_bits,
-                "d_prime": point.d_prime,
+                "proportion_correct": point.at_own_range.proportion_correct,
+                "proportion_correct_95_percent_of_people": point.at_own_range.reached,
+                "information_bits": point.at_own_range.information_bits,
+                "d_prime": point.at_own_range.d_prime,
                 "total_s": point.total_s,
                 "total_J": point.total_J,
                 "proven_best": point.optimal,
                 "names": " ".join(point.icons),
-                "proportion_correct_95_percent_of_people_and_model": point.low_with_model,
-                "amber": " ".join(point.amber),
-                "meets_goal": None if point.goal is None else point.goal.met,
+                "proportion_correct_95_percent_of_people_and_model": point.reached if self.draws else None,
+                "amber": " ".join(self.amber(point)),
+                "meets_goal": self.goals[k].met if self.goals else None,
             }
-            for point in self.points
+            for k, point in enumerate(self.points)
         ]
 
     def to_frame(self) -> pd.DataFrame:
@@ -114,8 +79,9 @@ class Frontier(Drawn):
         return pd.DataFrame(self.rows())
 
     def __repr__(self) -> str:
-        sizes = f"{len(self.points[0].icons)} to {len(self.points[-1].icons)}" if self.points else "no"
-        return f"Frontier({sizes} of {self.pool} icons by {self.objective} on {self.rig}, {self.people} people)"
+        first, job = self.points[0], self.ranking.job
+        sizes = f"{len(first.icons)} to {len(self.points[-1].icons)}"
+        return f"Frontier({sizes} of {first.pool} icons by {first.objective} on {job.rig.name}, {job.people} people)"
 
 
 def frontier(
@@ -193,43 +159,12 @@ def frontier(
     chooser = Chooser(ranking, asked, wanted)
     largest = min(most, len(chooser.pool))
     step = step_counter(progress, (largest - 1) * (1 + draws))
-    points: list[FrontierPoint] = []
+    points: list[Choice] = []
     for count in range(2, largest + 1):
-        choice = chooser.best(count, draws, step)
-        if choice is None:  # nor will more keep the limits
+        if (choice := chooser.best(count, draws, step)) is None:  # nor will more keep the limits
             break
-        points.append(_point(choice, ranking, wanted))
+        points.append(choice)
     if not points:
         raise ChoiceError(chooser.pool.nothing_fits(asked))
-    return Frontier(
-        rig=rig.name,
-        rig_changes=tuple(rig.changes),
-        people=people,
-        seed=seed,
-        norm=norm,
-        objective=objective,
-        pool=len(chooser.pool),
-        excluded=chooser.excluded,
-        points=tuple(points),
-        draws=draws,
-        goal=wanted,
-    )
-
-
-def _point(choice: Choice, ranking: Ranking, goal: Goal | None) -> FrontierPoint:
-    """A choice in the numbers of a frontier, and a goal judged for it."""
-    own, elsewhere = choice.at_own_range, choice.new_laboratory
-    low = None if elsewhere is None else float(np.quantile(elsewhere.persons["correct"], 1.0 - REACHED_BY))
-    return FrontierPoint(
-        icons=choice.icons,
-        proportion_correct=own.proportion_correct,
-        low=own.reached,
-        information_bits=own.information_bits,
-        d_prime=own.d_prime,
-        total_s=choice.total_s,
-        total_J=choice.total_J,
-        optimal=choice.optimal,
-        low_with_model=low,
-        amber=tuple(icon.name for icon in ranking.icons if icon.name in choice.icons and icon.cautions),
-        goal=None if goal is None else judge_goal(goal, ranking, choice),
-    )
+    goals = () if wanted is None else tuple(judge_goal(wanted, ranking, point) for point in points)
+    return Frontier(ranking, tuple(points), goals, draws)
