@@ -1,4 +1,3 @@
-from dataclasses import replace
 from itertools import combinations
 from statistics import NormalDist
 from types import SimpleNamespace
@@ -13,7 +12,6 @@ from thermicon.perception import Percept, Ranking, plot, rank
 from thermicon.perception.identification.map import MOST_CELLS, MOST_PEOPLE, between, map_of, perceptual_map
 from thermicon.perception.plots.draw_heat import clustered_order, heat, light_map, plot_confusion, plot_distance
 from thermicon.perception.plots.draw_map import label_offsets, plot_map, text_width
-from thermicon.perception.plots.draw_table import plot_ranking
 from thermicon.perception.plots.plot import plot_roc
 
 
@@ -116,20 +114,6 @@ def test_a_map_is_of_few_people_of_many_and_of_fewer_of_many_icons() -> None:
             SimpleNamespace(icons=range(icons), d_prime=apart, labels=[f"i{k}" for k in range(icons)], felt=felt)
         )  # type: ignore[arg-type]
         assert found.people == people
-
-
-def test_the_ranking_as_a_picture(ranking: Ranking) -> None:
-    axes = plot_ranking(ranking)
-    rows = ranking.rows()
-    assert [label.get_text() for label in axes.get_yticklabels()] == [row["icon"] for row in rows]
-    told = [t.get_text() for t in axes.texts]
-    for row in rows:
-        assert f"{100 * row['proportion_correct']:.0f} %" in told
-    assert {"correct", "detected", "onset", "felt as", "most confused with"} <= set(told)
-    assert "plays" not in told
-    broken = replace(ranking, icons=(replace(ranking.icons[0], safe=False, reason="hot"), *ranking.icons[1:]))
-    told = [t.get_text() for t in plot_ranking(broken).texts]
-    assert ("plays" in told, "not safe" in told) == (True, True)
 
 
 def test_hits_against_false_alarms_follow_d_prime(ranking: Ranking) -> None:
