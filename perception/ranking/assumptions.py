@@ -55,27 +55,18 @@ LEAST_SHARE = 0.02
 """Smaller shares are within what chance makes of 128 draws."""
 
 
-@dataclass(frozen=True, slots=True)
-class Doubt:
-    """One constant, and the share (0–1) of the variance of the proportion correct that a measurement would remove."""
+def doubts(each: LaboratoryDraws) -> list[dict[str, str | float]]:
+    """Constants that act on the set, with the share (0–1) of the variance of the proportion correct that would go.
 
-    name: str
-    share: float
-
-    def to_dict(self) -> dict[str, str | float]:
-        """The keys of the ranking file."""
-        return {"constant": self.name, "share_of_variance": self.share}
-
-
-def doubts(each: LaboratoryDraws) -> tuple[Doubt, ...]:
-    """Constants that act on the set and carry at least 2 % of the variance of the proportion correct, largest first."""
-    shares = explained(each.values, each.proportion_correct)
+    Those of at least 2 %, the largest first, with the keys of the ranking file.
+    """
+    shares = explained(each.values, each.proportion_correct).tolist()
     found = [
-        Doubt(name, float(share))
+        {"constant": name, "share_of_variance": share}
         for name, share, acts in zip(each.names, shares, each.acts, strict=True)
         if acts and share >= LEAST_SHARE
     ]
-    return tuple(sorted(found, key=lambda doubt: (-doubt.share, doubt.name)))
+    return sorted(found, key=lambda doubt: (-doubt["share_of_variance"], doubt["constant"]))
 
 
 def explained(values: Array, predicted: Array) -> Array:

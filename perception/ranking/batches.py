@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +25,6 @@ from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People
 from ..sensation.detection import Detection, report_step
 from ..sensation.detection import pooled as pooled_detection
 
@@ -113,7 +111,7 @@ def run(job: Job, number: int) -> BatchResult:
     """Compute one batch."""
     start, stop = job.span(number)
     model = ObserverModel.of(job.observer)
-    crowd, observer = _crowd(job.people, job.seed, model).part(start, stop), model.nominal
+    crowd, observer = model.people(job.people, job.seed).part(start, stop), model.nominal
     played = ReceptorTemperatures.simulated(job.icons, crowd.rigs(job.rig), job.rig, job.end_s, RATE_HZ, job.tracking)
     felt = respond(played, crowd, observer, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
@@ -198,16 +196,12 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
     """
     from thermicon.circuit.solver.simulate import rows_until
 
-    people = job.people
     parts: dict[int, BatchResult] = {}
-    pooled: dict[int, Array] = {}
-    reported: dict[int, Array] = {}
     blur = 0.0
     for number, found in _each_batch(job, workers):
-        pooled[number], reported[number] = found.confusion.sum(axis=0), found.reported[0]
         blur = max(blur, _sampling_error(job, found.confusion))
-        # Confusions and response times are most of a batch, and are needed only as their sum.
-        parts[number] = replace(found, confusion=np.empty((0, 0, 0)), reported=np.empty((0, 0, 0)))
+        # Confusions are most of a batch, and are needed only as their sum.
+        parts[number] = replace(found, confusion=found.confusion.sum(axis=0))
         step()
     ordered = [parts[number] for number in range(job.batches)]
 
@@ -215,9 +209,8 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
         found: Array = np.concatenate([getattr(part, name) for part in ordered])
         return found
 
-    total = _added([pooled[number] for number in range(job.batches)])
-    mean = normalised(total / people)
-    reports = _added([reported[number] for number in range(job.batches)])
+    mean = normalised(_added([part.confusion for part in ordered]) / job.people)
+    reports = _added([part.reported[0] for part in ordered])
     return PooledResult(
         detection=pooled_detection(joined("detected"), joined("cold_share"), reports, report_step(DT_S)),
         pairs=joined("d_prime"),
@@ -226,7 +219,7 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
         bits=joined("bits"),
         plugin=joined("plugin"),
         other_correct=joined("other_correct").mean(axis=0),
-        standard_error=_sampling_error(job, mean, people),
+        standard_error=_sampling_error(job, mean, job.people),
         person_standard_error=blur,
         thin=ReceptorTemperatures(
             joined("cold_C"),
@@ -263,11 +256,6 @@ def _added(parts: Sequence[Array]) -> Array:
     for part in parts:
         total += part
     return total
-
-
-@lru_cache(maxsize=2)
-def _crowd(people: int, seed: int, model: ObserverModel) -> People:
-    return model.people(people, seed)
 
 
 def code_digest() -> str:

@@ -130,7 +130,7 @@ def _set(ranking: Ranking, asked: NewLaboratory | None) -> dict[str, Any]:
         "posterior": asked.posterior if asked else None,
         "new_laboratory_people": asked.people if asked else None,
         "own_laboratory": ranking.own_laboratory,
-        "doubt": [doubt.to_dict() for doubt in doubts(asked.each)] if asked else [],
+        "doubt": doubts(asked.each) if asked else [],
         "rules_score": ranking.rules_score,
         "rules": [r.to_dict() for r in ranking.rules],
     }

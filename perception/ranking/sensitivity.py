@@ -13,11 +13,10 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -34,8 +33,6 @@ from .assumptions import explained, explained_together, scores_of
 from .ranking import with_changes
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
@@ -51,7 +48,6 @@ NOTEWORTHY = 0.02
 """Measurements that would take away less of the variance are not named as the first to make."""
 
 
-@lru_cache(maxsize=1)
 def load_measurements() -> Mapping[str, tuple[str, ...]]:
     """What a laboratory can measure, and the constants, by name, that each measurement would determine."""
     rows = tomllib.loads((DATA / "measurements.toml").read_text("utf-8"))["measurement"]
@@ -107,15 +103,6 @@ def _parabola(share: float) -> Array:
     return np.array([2.0 * (share - 0.5) * (share - 1.0), 4.0 * share * (1.0 - share), 2.0 * share * (share - 0.5)])
 
 
-ROW = {
-    "proportion_correct": "proportion_correct_share",
-    "information_bits": "information_bits_share",
-    "at_low": "proportion_correct_at_low",
-    "at_high": "proportion_correct_at_high",
-}
-"""Keys of a row that say more than the field of an effect."""
-
-
 @dataclass(frozen=True, slots=True)
 class Effect:
     """Influence of one constant, whose draws have their 95 % interval from `low` to `high` in its `unit`.
@@ -169,16 +156,6 @@ class Sensitivity(Drawn):
     def first(self) -> tuple[Reduction, ...]:
         """Measurements that would take away at least 2 % of the variance of the proportion correct."""
         return tuple(each for each in self.reductions if each.proportion_correct >= NOTEWORTHY)
-
-    def rows(self) -> list[dict[str, Any]]:
-        """One plain row for each constant."""
-        return [{ROW.get(key, key): value for key, value in asdict(each).items()} for each in self.effects]
-
-    def to_frame(self) -> pd.DataFrame:
-        """The rows as a table."""
-        import pandas as pd
-
-        return pd.DataFrame(self.rows())
 
     def __repr__(self) -> str:
         first = self.first[0].measurement if self.first else "nothing"

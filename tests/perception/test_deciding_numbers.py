@@ -49,7 +49,7 @@ def test_ends_of_constants_are_those_of_95_per_cent(observer: Observer) -> None:
 
 def test_doubts_from_two_per_cent_of_the_variance_on() -> None:
     values = np.random.default_rng(0).standard_normal((4000, 3))
-    shares = [doubt.name for doubt in doubts(drawn(values, values @ [1.0, 0.22, 0.1]))]
+    shares = [doubt["constant"] for doubt in doubts(drawn(values, values @ [1.0, 0.22, 0.1]))]
     assert shares == ["constant 0", "constant 1"]  # 95, 5 and 1 % of the variance
     some = np.random.default_rng(1).standard_normal((12, 1))
     predicted = some[:, 0] + np.random.default_rng(2).standard_normal(12)

@@ -126,4 +126,4 @@ def test_a_search_and_a_frontier_follow_another_observer(draws_file: Path) -> No
     searched = [search(parse(text), rig, evaluations=10, people=4, observer=each) for each in (None, draws_file)]
     assert searched[1].before.d_prime < searched[0].before.d_prime
     chosen = [frontier(six, rig, people=8, most=2, objective="worst", observer=each) for each in (None, draws_file)]
-    assert chosen[1].points[0].d_prime < chosen[0].points[0].d_prime
+    assert chosen[1].points[0].at_own_range.d_prime < chosen[0].points[0].at_own_range.d_prime

@@ -12,6 +12,7 @@ from thermicon.icons import parse
 from thermicon.perception import Observer, Ranking, draw_people, perceive, rank
 from thermicon.perception.identification.delivered import detected_as_delivered
 from thermicon.perception.identification.population import ReceptorTemperatures, population_detection, run_end_s
+from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.observer.people import People
 from thermicon.perception.ranking import batches
 
@@ -30,7 +31,7 @@ def ranking() -> Ranking:
 
 
 def test_one_nominal_person_is_the_percept(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batches, "_crowd", lambda people, seed, model: People.nominal(people))
+    monkeypatch.setattr(ObserverModel, "people", lambda model, people, seed: People.nominal(people))
     found = rank(ICONS, RIG, people=1, parameters=0, tracking="replay")
     traces = {trace.icon: trace for trace in simulate_all(list(ICONS), RIG, end_s=END_S)}
     assert {icon.name for icon in found.icons} == set(traces)

@@ -1,9 +1,11 @@
-import numpy as np
+from dataclasses import replace
+
 import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse
 from thermicon.perception import choose, frontier, rank
+from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.selection.frontier import Frontier
 from thermicon.perception.selection.goal import GoalError
 from thermicon.perception.selection.goal_result import judge_goal
@@ -19,24 +21,14 @@ def found(six: IconSet, rig: Rig) -> Frontier:
     return frontier(six, rig, people=12, seed=3, objective="worst", most=5, parameters=0)
 
 
-def test_every_size_has_its_best_choice(found: Frontier) -> None:
+def test_every_size_has_its_best_choice(found: Frontier, six: IconSet, rig: Rig) -> None:
     assert [len(point.icons) for point in found.points] == [2, 3, 4, 5]
-    correct = [point.proportion_correct for point in found.points]
-    assert correct == sorted(correct, reverse=True)
-    worst = [point.d_prime for point in found.points]
-    assert worst == sorted(worst, reverse=True)
-    for point in found.points:
-        assert point.low <= point.proportion_correct <= 1.0
-        assert 0.0 < point.information_bits <= np.log2(len(point.icons))
-        assert point.total_s > 0.0
-
-
-def test_a_choice_is_that_of_choose(found: Frontier, six: IconSet, rig: Rig) -> None:
+    for key in ("proportion_correct", "d_prime"):
+        values = [getattr(point.at_own_range, key) for point in found.points]
+        assert values == sorted(values, reverse=True)
+    assert all(point.reached <= point.at_own_range.proportion_correct <= 1.0 for point in found.points)
     chosen = choose(rank(six, rig, people=12, seed=3, parameters=0), Selection(3, "worst"), parameters=0)
-    point, own = found.points[1], chosen.at_own_range
-    assert (point.icons, point.total_s, point.total_J) == (chosen.icons, chosen.total_s, chosen.total_J)
-    assert point.optimal is chosen.optimal
-    assert (point.d_prime, point.proportion_correct, point.low) == (own.d_prime, own.proportion_correct, own.reached)
+    assert found.points[1] == replace(chosen, best_share=None, loss=None)
 
 
 def test_direct_naming_of_all_icons_is_that_of_rank(rig: Rig) -> None:
@@ -50,6 +42,7 @@ def test_direct_naming_of_all_icons_is_that_of_rank(rig: Rig) -> None:
 def test_as_a_table_and_a_picture(found: Frontier) -> None:
     frame = found.to_frame()
     assert list(frame["icons"]) == [2, 3, 4, 5]
+    assert frame["proportion_correct_95_percent_of_people_and_model"].isna().all()
     assert frame["names"][0].split() == list(found.points[0].icons)
     axes = found.plot()
     assert axes.get_ylabel() == "correct (%)"
@@ -78,12 +71,10 @@ def test_what_95_percent_reach_is_the_number_of_a_goal(six: IconSet, rig: Rig) -
     chosen = choose(ranking, Selection(3, "worst", most_s=30.0), parameters=8)
     point = seen.points[1]
     assert point.icons == chosen.icons
-    assert point.goal is not None
-    value = judge_goal(goal, ranking, chosen).parts[0].value
-    assert value == point.goal.parts[0].value == point.low_with_model == point.reached
-    row = seen.rows()[1]
-    assert row["proportion_correct_95_percent_of_people_and_model"] == point.low_with_model
-    assert row["meets_goal"] is point.goal.met
+    value, row = judge_goal(goal, ranking, chosen).parts[0].value, seen.rows()[1]
+    assert value == seen.goals[1].parts[0].value == point.reached
+    assert row["proportion_correct_95_percent_of_people_and_model"] == value
+    assert row["meets_goal"] is seen.goals[1].met
 
 
 def test_a_goal_leaves_icons_out_and_says_why(rig: Rig) -> None:
@@ -92,14 +83,12 @@ def test_a_goal_leaves_icons_out_and_says_why(rig: Rig) -> None:
         "icon glow { warm by 3 K at 2 K/s }"
     )
     seen = frontier(icons, rig, people=4, parameters=0, goal="detected >= 90 %")
-    assert [name for name, _ in seen.excluded] == ["faint"]
-    assert "of trials only" in seen.excluded[0][1]
+    ((name, why),) = seen.points[0].excluded
+    assert (name, "of trials only" in why) == ("faint", True)
     with pytest.raises(ChoiceError, match=r"^2 icons cannot be chosen: none is left \(faint is "):
         frontier(icons, rig, people=4, parameters=0, goal="onset <= 0.01 s")
     with pytest.raises(GoalError, match="needs draws"):
         frontier(icons, rig, people=4, parameters=0, goal="correct >= 9 % for 95 % of people")
-    with pytest.raises(ValueError, match="at least two draws"):
-        frontier(icons, rig, people=4, parameters=1)
 
 
 def test_amber_icons_are_named_or_left_out(rig: Rig) -> None:
@@ -109,14 +98,30 @@ def test_amber_icons_are_named_or_left_out(rig: Rig) -> None:
     )
     rig = rig.with_(**{"driver.current_limit_A": 4.0})
     named = frontier(icons, rig, people=2, parameters=0)
-    assert named.points[-1].amber == ("deep",)
     assert named.rows()[-1]["amber"] == "deep"
     green = frontier(icons, rig, people=2, parameters=0, goal="safety green")
-    assert green.excluded[0][0] == "deep"
-    assert green.excluded[0][1].startswith("is amber: ")
-    assert green.points[-1].amber == ()
+    ((name, why),) = green.points[-1].excluded
+    assert (name, why.startswith("is amber: ")) == ("deep", True)
+    assert green.rows()[-1]["amber"] == ""
 
 
 def test_a_thermode_has_no_energy_to_limit() -> None:
     with pytest.raises(ChoiceError, match=r"a thermode, which states no energy: leave out .*energy of the goal"):
         frontier(parse(THREE), Rig.load("tcs2"), people=2, parameters=0, goal="energy <= 3 J")
+
+
+def test_draws_are_counted_and_refused_in_the_same_words(rig: Rig, six: IconSet) -> None:
+    model = ObserverModel.load()
+    posterior = model.posterior
+    assert posterior is not None
+    lab = replace(model, name="lab.csv", posterior=replace(posterior, draws=posterior.draws[:6]))
+    seen = frontier(six, rig, people=4, most=2, observer=lab)
+    assert seen.draws == 6  # without a number all draws of a small observer are used
+    assert seen.points[0].new_laboratory is not None
+    for judge in (rank, frontier):
+        with pytest.raises(ValueError, match=r"^9 draws of the parameters were asked for; lab.csv has 6$"):
+            judge(six, rig, people=4, parameters=9, observer=lab)  # type: ignore[operator]
+        with pytest.raises(ValueError, match=r"needs at least two draws of the parameters, or 0 for none, not 1$"):
+            judge(six, rig, people=4, parameters=1)  # type: ignore[operator]
+    plain = replace(model, posterior=None)
+    assert [plain.draw_count(asked, 128) for asked in (None, 0, 64)] == [0, 0, 0]

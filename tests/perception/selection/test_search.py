@@ -1,15 +1,13 @@
-from collections.abc import Sequence
-
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.verdict import judge_safety
-from thermicon.icons import Icon, IconSet, load_library, parse
+from thermicon.icons import IconSet, load_library, parse
 from thermicon.perception import rank, search
-from thermicon.perception.selection.appraise import Appraisal, appraise
+from thermicon.perception.selection import search as searching
+from thermicon.perception.selection.appraise import appraise
 from thermicon.perception.selection.candidates import candidate_at, member, sample_candidates, value_at
-from thermicon.perception.selection.evaluator import FinalJudge
 from thermicon.perception.selection.goal import GoalError
 from thermicon.perception.selection.goal_result import judge_goal
 from thermicon.perception.selection.request import ChoiceError
@@ -146,23 +144,18 @@ def test_only_icons_that_must_stay_do(small: IconSet, rig: Rig) -> None:
 def test_of_the_sets_held_at_the_end_the_goal_chooses(
     small: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    merits: dict[tuple[str, ...], tuple[float, ...]] = {}
-    true_merit = FinalJudge.merit
-
-    def merit(judge: FinalJudge, icons: Sequence[Icon], scores: Appraisal) -> tuple[float, ...]:
-        held = true_merit(judge, icons, scores)
-        merits[tuple(icon.name for icon in icons)] = held
-        return held
-
-    monkeypatch.setattr(FinalJudge, "merit", merit)
+    merits: list[tuple[float, ...]] = []
+    true_merit = searching._merit
+    monkeypatch.setattr(searching, "_merit", lambda *given: merits.append(true_merit(*given)) or merits[-1])
     goal = "correct >= 99 % for 95 % of people"
-    asked = {"count": 4, "objective": "correct", "evaluations": 150, "people": 12, "seed": 5}
-    result = search(small, rig, goal=goal, parameters=8, **asked)  # type: ignore[arg-type]
+    result = search(
+        small, rig, goal=goal, parameters=8, count=4, objective="correct", evaluations=150, people=12, seed=5
+    )
     assert result.finalists == len(merits) > 1
     assert result.chosen_by == "correct for 95 % of people"
-    ranking = rank(result.found, rig, people=12, seed=5, parameters=8)
-    best = max(merits.values())
+    best = max(merits)
     # Nearness to the goal first, then what 95 % of people reach: the same number as in a ranking.
+    ranking = rank(result.found, rig, people=12, seed=5, parameters=8)
     assert judge_goal(goal, ranking).parts[0].value == pytest.approx(best[1], abs=0.02)
     assert best[0] == pytest.approx(-max(0.0, 1.0 - best[1] / 0.99))
 
