@@ -123,11 +123,11 @@ def _pairs(result: dict[str, Any]) -> Iterator[Block]:
 
 
 def view_parts(ranking: Ranking) -> Iterator[Block]:
-    """Yield heat maps, perceptual map and places; nothing for one icon."""
+    """Yield heat maps and perceptual map; nothing for one icon."""
     if len(ranking.icons) < 2:
         return
     from thermicon.perception.identification.map import map_of
-    from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance, plot_places
+    from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance
     from thermicon.perception.plots.draw_map import plot_map
 
     yield Heading("Pictures of the set")
@@ -142,9 +142,6 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     if found.covariance is not None:
         bent += f" Each ellipse holds half of {found.people} people, whose maps were rotated and shifted onto this one."
     yield _drawn(plot_map(found), "the icons as points of a plane", bent)
-    if ranking.spread is not None and ranking.people > 1:
-        places = "Each person ranks the icons by how often they are named correctly; ties share their ranks."
-        yield _drawn(plot_places(ranking), "probability of each place for each icon", places)
 
 
 def _drawn(axes: Axes, said: str, caption: str) -> Picture:
