@@ -78,17 +78,15 @@ def _shortened(script: str) -> str:
 
 
 def cue_words() -> dict[str, Any]:
-    """Words to colour, so that the page never knows another language than the parser."""
+    """Words to colour and to offer, so that the page never knows another language than the parser."""
     from thermicon.icons.model.units import UNITS
-    from thermicon.icons.model.words import CLAUSES, CONTROLS, STARTS, VOCABULARY
-
-    from ..editing.completions import completions
+    from thermicon.icons.model.words import CLAUSES, CONTROLS, EXAMPLES, STARTS, VOCABULARY
 
     units = {unit for kind in UNITS.values() for unit in kind if unit}
     return {
         "keywords": sorted({*CLAUSES, *CONTROLS, *STARTS.values()}.union(*VOCABULARY.values())),
         "units": sorted(units, key=lambda unit: (-len(unit), unit)),
-        "next": completions(),
+        "examples": {word: text.split('"')[1] for word, text in EXAMPLES.items() if '"' in text},
     }
 
 

@@ -14,7 +14,7 @@ from ..report.choices import laboratory
 from ..report.gate_words import CAUTION, gate_words, short_scenario, steps_of
 from ..report.rank_details import caveat, edit_text, outside_lines, trouble_lines
 from ..report.rank_report import cards, icon_table
-from ..timeline.frames import SIMULATED, terms_of
+from ..timeline.frames import WORDS, terms_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Export
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 ALONE = "The set has only one icon, so there are no distances to show."
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
-ASKED = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "middle 95 % of people", SIMULATED)
+ASKED = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "middle 95 % of people", *WORDS["simulated"])
 """Words that are explained below a set."""
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.notebooks.timeline.frames import LIMITS, MOST_POINTS, TERMS, CanvasFrame, frame_of
+from thermicon.notebooks.timeline.frames import MOST_POINTS, WORDS, CanvasFrame, frame_of
 from thermicon.notebooks.timeline.scene import scene
 from thermicon.notebooks.workbench.panels import help_html
 
@@ -138,7 +138,7 @@ def test_nothing_to_draw_is_a_frame_as_well(rig: Rig) -> None:
 
 def test_words_mean_what_the_glossary_says() -> None:
     rows = GLOSSARY.read_text(encoding="utf-8").splitlines()
-    for word, meaning in TERMS.items():
+    for word, meaning in WORDS["terms"].items():
         assert f"| **{word}** | {meaning} |" in rows, word
 
 
@@ -146,7 +146,7 @@ def test_the_sheet_and_the_panel_of_sensation_explain_d_prime_and_clocks(rig: Ri
     html = help_html()
     assert "F8" in html
     assert "d′: distance in units of noise" in html
-    assert f"limits of this simulation: {LIMITS}" in html
+    assert f"limits of this simulation: {WORDS['simulated']['limits of this simulation']}" in html
     panel = frame_of(scene(DIP, rig)).meta["panels"][-1]
     assert {"d′", "clock"} <= {word for word, _ in panel["terms"]}
     assert panel["digits"] == 1
