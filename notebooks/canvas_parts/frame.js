@@ -13,7 +13,7 @@ function seriesOf(given) {
 }
 
 function panelOf(given) {
-  const panel = { height: 1, digits: 4, terms: [], bands: [], levels: [], spans: [], marks: [], ...given };
+  const panel = { height: 1, digits: 4, terms: [], levels: [], spans: [], marks: [], ...given };
   return { ...panel, series: (given.series ?? []).map(seriesOf), unit: unitOf(given.label ?? "") };
 }
 

@@ -1,4 +1,4 @@
-// One panel of the time line on its canvas, from the back to the front: spans, bands, grid, curves, marks, labels.
+// One panel of the time line on its canvas, from the back to the front: spans, grid, curves, marks, labels.
 
 const GUTTER = 46; // pixels for the numbers on the left, the same in all panels so that time lines up
 const MARGIN = 10;
@@ -89,7 +89,6 @@ function drawPanel(surface, frame, panel, view, range, palette) {
   for (const handle of frame.handles) if (handle.panel === panel.key) labels.keep(lay.x(handle.t), lay.y(handle.y), 8);
   inPlot(context, lay, () => {
     for (const span of panel.spans) drawSpan(context, span, lay, palette);
-    for (const band of panel.bands) drawBand(context, band, lay, palette);
   });
   drawGrid(context, lay, view, palette);
   inPlot(context, lay, () => {
@@ -156,21 +155,6 @@ function drawSpan(context, span, lay, palette) {
   context.globalAlpha = 1;
 }
 
-function drawBand(context, band, lay, palette) {
-  const colour = palette[band.role] ?? palette.grey;
-  const top = lay.y(band.high);
-  const height = lay.y(band.low) - top;
-  context.globalAlpha = 0.13;
-  context.fillStyle = colour;
-  context.fillRect(lay.left, top, lay.right - lay.left, height);
-  context.globalAlpha = 0.55;
-  context.lineWidth = 0.75;
-  context.setLineDash(band.role === "warm" ? [5, 3] : [1, 3]); // the edges tell them apart in grey
-  ruler(context, lay.left, top, lay.right, top, colour);
-  ruler(context, lay.left, top + height, lay.right, top + height, colour);
-  context.globalAlpha = 1;
-}
-
 function drawLevel(context, level, lay, palette) {
   context.lineWidth = 1.2;
   context.setLineDash([2, 2]);
@@ -206,7 +190,7 @@ function drawMarks(context, lay, palette) {
   }
 }
 
-/** Names of bands, levels and spans, each where there is room; one without room is left to the legend's tooltip. */
+/** Names of levels and spans, each where there is room; one without room is left to the legend's tooltip. */
 function drawLabels(context, panel, lay, space, palette) {
   const said = new Set(); // a name that several spans share is written once
   for (const span of panel.spans) {
@@ -217,12 +201,6 @@ function drawLabels(context, panel, lay, space, palette) {
   for (const level of panel.levels) {
     const down = lay.y(level.at);
     label(context, level.label, sidePlaces(context, level.label, lay, [down - 14, down + 2]), space, palette.limit, palette.paper);
-  }
-  for (const band of panel.bands) {
-    const middle = (lay.y(band.low) + lay.y(band.high)) / 2 - LABEL_ROW / 2;
-    const beside = [1, 2, 3, 4, 5, 6].flatMap((k) => [lay.y(band.low) + (k - 1) * LABEL_ROW, lay.y(band.high) - k * LABEL_ROW]);
-    const downs = [middle, ...beside];
-    label(context, band.label, sidePlaces(context, band.label, lay, downs), space, palette[band.role] ?? palette.grey, palette.paper);
   }
 }
 

@@ -38,7 +38,6 @@ function rangeOf(panel, arrays, handles) {
   for (const level of panel.levels) take(level.at);
   for (const mark of panel.marks) take(mark.y);
   for (const handle of handles) if (handle.panel === panel.key) take(handle.y);
-  for (const band of panel.bands) [band.low, band.high].forEach(take);
   if (low > high) return { low: 0, high: 1 };
   const middle = (low + high) / 2;
   const half = Math.max((high - low) / 2, Math.abs(middle) * 1e-3, 0.02);

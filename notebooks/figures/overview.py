@@ -133,7 +133,7 @@ def _evenly_timed(trace: Trace) -> Trace:
 
 
 def scene_figure(scene: Scene) -> Figure:
-    """Draw a scene: the overview of its icon, with threshold bands, unreached spans and events; safety and notes above.
+    """Draw a scene: the overview of its icon, with unreached spans and events; safety and notes above.
 
     A scene without a drawing gives a figure that says why.
     """
@@ -157,11 +157,8 @@ def scene_figure(scene: Scene) -> Figure:
 
 
 def _draw_events(drawing: Drawing, figure: Figure) -> None:
-    """Bands below thresholds, spans that miss the target, and peaks of the skin and of what is felt."""
+    """Spans that miss the target, and peaks of the skin and of what is felt."""
     temperatures, sensation = figure.axes[0], figure.axes[-1]
-    for band in drawing.bands:
-        label = f"{band.channel} threshold\n{band.change_K:.2g} K (fast change)"
-        temperatures.axhspan(band.low_C, band.high_C, color=CHANNELS[band.channel], alpha=0.3, lw=0, label=label)
     for ax in (temperatures, figure.axes[2]):
         for n, missed in enumerate(drawing.missed):
             label = missed.label.replace(": ", ":\n") if n == 0 else ""

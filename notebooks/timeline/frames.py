@@ -140,21 +140,12 @@ def _temperature(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
         curves.take("cold", "cold receptor", trace.cold_receptor_C, "cool", DASH_DOT),
         curves.take("warm", "warm receptor", trace.warm_receptor_C, "warm", DASHED),
     ]
-    bands = [
-        {
-            "low": _number(band.low_C),
-            "high": _number(band.high_C),
-            "label": f"{band.channel} threshold {band.change_K:.2g} K (fast change)",
-            "role": _ROLES[band.channel],
-        }
-        for band in drawing.bands
-    ]
     marks = [
         _mark(moment.time_s, moment.label, moment.channel, float(np.interp(moment.time_s, trace.time_s, trace.skin_C)))
         for moment in drawing.moments
         if moment.kind == "physical peak"
     ]
-    return _panel(drawing, "temperature", "temperature (°C)", 1.6, series, bands=bands, marks=marks)
+    return _panel(drawing, "temperature", "temperature (°C)", 1.6, series, marks=marks)
 
 
 def _heat(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
@@ -205,10 +196,10 @@ def _panel(
     missed: bool = True,
     **more: Any,
 ) -> dict[str, Any]:
-    """A panel of the canvas; `more` are its bands, levels, marks, digits and terms, where it has any."""
+    """A panel of the canvas; `more` are its levels, marks, digits and terms, where it has any."""
     spans = [{"from": span.from_s, "to": span.to_s, "label": span.label} for span in drawing.missed if missed]
     own = {"key": key, "label": label, "height": height, "series": series, "spans": spans}
-    return {**own, "bands": [], "levels": [], "marks": [], "digits": 2, "terms": [], **more}
+    return {**own, "levels": [], "marks": [], "digits": 2, "terms": [], **more}
 
 
 def _handles(drawing: Drawing) -> list[dict[str, Any]]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
     from thermicon.perception import Observer, Percept
 
-    from .marks import EventTime, Span, ThresholdBand
+    from .marks import EventTime, Span
 
 TAIL_S = 10.0
 """Seconds of sensation simulated after the last corner, as in ``thermicon simulate --figure``."""
@@ -49,7 +49,6 @@ class Drawing:
     verdict: SafetyVerdict
     missed: tuple[Span, ...]
     moments: tuple[EventTime, ...]
-    bands: tuple[ThresholdBand, ...]
     handles: tuple[Handle, ...]
     start: float
 
@@ -143,7 +142,7 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     from thermicon.circuit.solver.steady import steady_state
     from thermicon.perception import perceive
 
-    from .marks import event_times_of, missed_spans, threshold_bands
+    from .marks import event_times_of, missed_spans
 
     lasts = duration_s(icon, rig)
     rate = RATE_HZ if (lasts + TAIL_S) * RATE_HZ <= MOST_ROWS else float(MOST_ROWS // (lasts + TAIL_S + 1.0))
@@ -161,7 +160,6 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
         verdict=judge_safety(trace),
         missed=missed_spans(icon, trace, rig),
         moments=event_times_of(trace, percept),
-        bands=threshold_bands(trace, observer),
         handles=handles_of(icon, reading.family_of(icon.name), start),
         start=start,
     )

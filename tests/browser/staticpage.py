@@ -70,7 +70,7 @@ def design(**changes: Any) -> dict[str, Any]:
     handle = {"panel": "temperature", "moves_time": True, "moves_level": True, "why": None, "line": 4}
     fixed = {"moves_time": False, "moves_level": False, "why": "rest is at baseline"}
     panel = {"key": "temperature", "label": "temperature (°C)", "height": 1, "series": [skin]}
-    panel |= {"bands": [], "levels": [], "spans": [], "marks": []}
+    panel |= {"levels": [], "spans": [], "marks": []}
     return {
         "type": "frame",
         "view": "design",

@@ -28,7 +28,7 @@ def rig() -> Rig:
     return Rig.load("thenar")
 
 
-PANEL = {"key", "label", "height", "series", "bands", "levels", "spans", "marks", "digits", "terms"}
+PANEL = {"key", "label", "height", "series", "levels", "spans", "marks", "digits", "terms"}
 
 
 def keep_promises(frame: CanvasFrame) -> dict[str, dict[str, Any]]:
@@ -44,7 +44,7 @@ def keep_promises(frame: CanvasFrame) -> dict[str, dict[str, Any]]:
         assert buffer.shape == (meta["time"]["n"],)
     for panel in panels.values():
         assert set(panel) == PANEL
-        for part in (*panel["series"], *panel["bands"], *panel["levels"], *panel["marks"]):
+        for part in (*panel["series"], *panel["levels"], *panel["marks"]):
             assert part["role"] in ROLES
     return panels
 
@@ -68,7 +68,6 @@ def test_a_frame_has_all_that_the_canvas_draws(rig: Rig) -> None:
     assert meta["handles"][0] == {
         "t": 2.0, "y": 26.0, "panel": "temperature", "moves_time": True, "moves_level": True, "why": None, "line": 3,
     }  # fmt: skip
-    assert [band["role"] for band in panels["temperature"]["bands"]] == ["cool", "warm"]
     assert [level["at"] for level in panels["current"]["levels"]] == [1.5, -1.5]
     assert panels["current"]["series"][0]["step"]
     assert {mark["label"].split()[0] for mark in panels["sensation"]["marks"]} == {"onset", "felt", "physical"}

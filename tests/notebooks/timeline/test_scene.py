@@ -10,11 +10,9 @@ import pytest
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library, parse
 from thermicon.notebooks.editing.cue_check import MOST_NAMES, mended
-from thermicon.notebooks.timeline.marks import missed_spans, threshold_change_K
+from thermicon.notebooks.timeline.marks import missed_spans
 from thermicon.notebooks.timeline.scene import MOST_ROWS, TAIL_S, Scene, scene, with_notes
-from thermicon.perception import Observer, perceive
-from thermicon.perception.sensation.features import passing_s
-from thermicon.perception.sensation.sensation import receptor_drive, sensation
+from thermicon.perception import perceive
 
 DIP = "cue 1\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4 s\n  return at 3 °C/s\n}\n"
 BROKEN = DIP.replace("6 °C", "6")
@@ -57,35 +55,6 @@ def test_moments_are_on_the_clocks_that_they_name(dip: Scene) -> None:
     both = scene(str(load_library("six-icons")), dip.rig, "cold-to-warm").drawing
     assert both is not None
     assert [m.channel for m in both.moments if m.kind == "felt peak"] == ["cold", "warm"]
-
-
-@pytest.mark.parametrize("channel", ["cold", "warm"])
-def test_a_change_at_the_edge_of_the_band_has_a_sensation_of_one(channel: str) -> None:
-    person = Observer.load()
-    size = threshold_change_K(person, channel, 4e-4, "forearm", 33.0)  # type: ignore[arg-type]
-    ramp = 33.0 + (-1 if channel == "cold" else 1) * np.minimum(np.arange(0.0, size + 3.0, 0.01), size)
-    drive = receptor_drive(ramp, 0.01, channel, person)  # type: ignore[arg-type]
-    felt = sensation(drive, channel, person, area_m2=4e-4, site="forearm")  # type: ignore[arg-type]
-    assert felt.max() == pytest.approx(1.0, abs=2e-3)
-
-
-def test_bands_begin_at_the_adaptation_level_and_widen_with_the_threshold(dip: Scene, rig: Rig) -> None:
-    assert dip.drawing is not None
-    cold, warm = dip.drawing.bands
-    assert cold.high_C == dip.drawing.trace.cold_receptor_C[0]
-    assert warm.low_C == dip.drawing.trace.warm_receptor_C[0]
-    passed = passing_s(dip.drawing.trace, "cold", cold.change_K)
-    assert passed is not None
-    assert dip.drawing.percept.onset_s is not None
-    assert passed < dip.drawing.percept.onset_s
-    person = Observer.load()
-    dull = replace(person, cold=replace(person.cold, threshold_drive=1.5 * person.cold.threshold_drive))
-    old = scene(DIP, rig, observer=dull).drawing
-    assert old is not None
-    assert old.bands[0].change_K > 1.3 * cold.change_K
-    flow = scene(DIP, rig, observer=Observer.load(variable="heat flow")).drawing
-    assert flow is not None
-    assert flow.bands == ()
 
 
 def test_errors_keep_the_last_drawing_and_are_told_where_they_are(dip: Scene, rig: Rig) -> None:
