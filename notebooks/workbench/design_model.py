@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ..editing.cue_check import mended
@@ -24,14 +24,6 @@ Message = Mapping[str, Any]
 MOST_LETTERS = 1_000_000
 
 
-@dataclass(frozen=True, slots=True)
-class _Drag:
-    """A drag that is going on: which corner, and the text before it, from which every step of it starts."""
-
-    handle: int
-    text: str
-
-
 class DesignModel:
     """The document, icon and knobs of one workbench, and the scene that they make.
 
@@ -47,7 +39,7 @@ class DesignModel:
         self.model = model
         self.rig, self._told = rig, tuple[str, ...]()
         self.values: dict[str, float] = {}
-        self._drag: _Drag | None = None
+        self._drag: tuple[int, str] | None = None  # the corner, and the text before, from which every step starts
         self._moving = False
         self.scene: Scene = scene(self.text, rig, icon, self.observer)
         self.document.history = self.document.history.chosen(self.scene.icon)
@@ -172,10 +164,10 @@ class DesignModel:
 
     def _dragged(self, message: Message) -> str:
         handle, end = int(message["handle"]), bool(message.get("end"))
-        if self._drag is None or self._drag.handle != handle:
-            self._drag = _Drag(handle, self.text)
+        if self._drag is None or self._drag[0] != handle:
+            self._drag = handle, self.text
         # Every step starts from the text before the drag, so that rounding does not add up on the way.
-        drawing, base = self.scene.drawing, self._drag.text
+        drawing, base = self.scene.drawing, self._drag[1]
         start = None if drawing is None else drawing.start
         time_s, level = _float(message.get("t")), _float(message.get("y"))
         self._moving = not end

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from .design_model import DesignModel
 
 FORMAT = "csv"
-ExportRequest = tuple[str, "Rig", "str | None", str, str, str]
-"""Text, rig, name of the icon (None: all), device, format, pause as typed."""
+ExportRequest = tuple[str, "Rig", "str | None", str, str]
+"""Text, rig, name of the icon (None: all), device, format."""
 
 
 class ExportView(LiveView[ExportRequest]):
@@ -53,27 +53,20 @@ class ExportView(LiveView[ExportRequest]):
         which = [("the selected icon", "shown"), ("all icons of the set", "all")]
         self.which = widgets.Dropdown(options=which, value="shown", description="icons", layout=wide)
         self.folder = widgets.Text(value=str(folder), description="folder", continuous_update=False, layout=wide)
-        self.pause = widgets.Text(
-            value="",
-            placeholder="seconds; empty: recovery time",
-            description="pause",
-            continuous_update=False,
-            layout=wide,
-        )
         self.overwrite = widgets.Checkbox(value=False, description="overwrite existing files", indent=False)
         self.insist = widgets.Checkbox(value=False, description="also export lossy or unreached icons", indent=False)
         self.button = widgets.Button(description="Write", button_style="primary", disabled=True)
-        for control in (self.device, self.form, self.folder, self.which, self.pause):
+        for control in (self.device, self.form, self.folder, self.which):
             control.style.description_width = "52px"
         self.said = {name: widgets.HTML() for name in ("status", "written", "delivered", "figure", "gate")}
         self.device.observe(lambda _: self._safely(self._device_chosen), "value")
-        for control in (self.form, self.which, self.pause):
+        for control in (self.form, self.which):
             control.observe(lambda _: self._safely(self.renew), "value")
         self.folder.observe(lambda _: self._safely(self._forget_result), "value")
         self.insist.observe(lambda _: self._safely(self._allow), "value")
         self.button.on_click(lambda _: self._safely(self.write))
         said = self.said
-        controls = [self.device, self.form, self.which, self.pause, self.folder]
+        controls = [self.device, self.form, self.which, self.folder]
         controls += [self.overwrite, self.insist, self.button]
         left = widgets.VBox([*controls, said["status"], said["written"]], layout={"flex": "1 1 300px"})
         self.body = widgets.VBox(
@@ -128,13 +121,13 @@ class ExportView(LiveView[ExportRequest]):
 
     def _request(self) -> ExportRequest:
         name = self.design.scene.icon if self.which.value == "shown" else None
-        return self.design.text, self.design.rig, name, self.device.value, self.form.value, self.pause.value
+        return self.design.text, self.design.rig, name, self.device.value, self.form.value
 
     def _prepare(self, job: Job, request: ExportRequest) -> None:
         """The background job."""
         from thermicon.circuit import export
 
-        text, rig, name, device, form, typed = request
+        text, rig, name, device, form = request
         icons = read_text(text).icons
         assert icons is not None
         found = None if name is None else icons.find(name)
@@ -145,7 +138,7 @@ class ExportView(LiveView[ExportRequest]):
 
         remarks: list[str] = []
         felt = felt_beside(others(icons, chosen), remarks.append)
-        made = export(chosen, rig, device, form, pause_s=pause_of(typed), felt=felt, step=step)
+        made = export(chosen, rig, device, form, felt=felt, step=step)
         shown = self.design.scene.icon
         colours = [one.verdict.colour for one in made.prepared]
         names = [one.delivery.icon.name for one in made.prepared]
@@ -203,24 +196,6 @@ class ExportView(LiveView[ExportRequest]):
 
         driven_by, forms = Device.load(device).driven_by, map(load_format, format_names())
         return [(f"{form.name}: {form.title}", form.name) for form in forms if driven_by in form.takes]
-
-
-def pause_of(typed: str) -> float | None:
-    """Read a pause in s, None for empty text; raises PauseError for anything else.
-
-    >>> pause_of(" 12.5 "), pause_of("")
-    (12.5, None)
-    """
-    from thermicon.circuit.safety.repeated import PauseError, check_pause
-
-    if not typed.strip():
-        return None
-    try:
-        pause = float(typed)
-    except ValueError:
-        raise PauseError(f"pause {typed.strip()!r} is not a number; give 0 to 600 s, or leave it empty") from None
-    check_pause(pause)
-    return pause
 
 
 def export_svg(made: Export, place: int) -> str:

@@ -46,10 +46,10 @@ class Job:
         """Change the page, if this job is still the newest; raises Superseded otherwise."""
         self.go_on()
         if self._loop is None:
-            self._owner.safely(act)
+            safely(act, self._owner.fail)
         else:
             # Widgets belong to the kernel's thread: a handler there must never see half of a change.
-            self._loop.call_soon_threadsafe(lambda: self._owner.safely(act) if self.newest else None)
+            self._loop.call_soon_threadsafe(lambda: safely(act, self._owner.fail) if self.newest else None)
 
 
 Work = Callable[[Job], None]
@@ -63,7 +63,7 @@ class BackgroundWorker:
 
     def __init__(self, fail: Callable[[str], None] = lambda message: None) -> None:
         self.number = 0
-        self._fail = fail
+        self.fail = fail
         self._one = Lock()
         self._threads: list[Thread] = []
 
@@ -107,14 +107,7 @@ class BackgroundWorker:
                 return
             except Exception as wrong:
                 message = str(wrong) or type(wrong).__name__
-                job.on_page(lambda: self._fail(message))
-
-    def safely(self, act: Act) -> None:
-        """Change the page and show errors there, since nobody reads the kernel's log."""
-        try:
-            act()
-        except Exception as wrong:
-            self._fail(str(wrong) or type(wrong).__name__)
+                job.on_page(lambda: self.fail(message))
 
 
 class LiveView(ABC, Generic[Request]):
@@ -202,10 +195,15 @@ class LiveView(ABC, Generic[Request]):
         self.said["status"].value = fragment("marked", text, f"{kind} {self.status_style}".strip())
 
     def _safely(self, act: Act) -> None:
-        try:
-            act()
-        except Exception as wrong:  # a message is better than a page that goes silent
-            self._say(f"the action failed: {wrong or type(wrong).__name__}", "th-caution")
+        safely(act, lambda wrong: self._say(f"the action failed: {wrong}", "th-caution"))
+
+
+def safely(act: Act, say: Callable[[str], None]) -> None:
+    """Do a step of the page; a message is better than a page that goes silent, since nobody reads the kernel's log."""
+    try:
+        act()
+    except Exception as wrong:
+        say(str(wrong) or type(wrong).__name__)
 
 
 def button(name: str, hint: str, act: Act, **more: Any) -> widgets.Button:

@@ -18,16 +18,8 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
 
 DEFAULT_NAME = "cues"
-USAGE = "usage: %%cue [NAME]"
 # Blank lines and comments, then the word that begins a version line.
 _VERSION = re.compile(r"(?:[ \t\u00a0\u202f]*(?:#[^\n]*)?[;\n])*[ \t\u00a0\u202f]*cue(?![^\W_]|-)")
-
-
-class CueMagicError(ValueError):
-    """A line after ``%%cue`` that cannot be followed; IPython shows its words, without a traceback."""
-
-    def _render_traceback_(self) -> list[str]:
-        return str(self).split("\n")
 
 
 def cue(shell: InteractiveShell, line: str, cell: str) -> IconSet:
@@ -44,13 +36,13 @@ def cue(shell: InteractiveShell, line: str, cell: str) -> IconSet:
 
     JupyterLab colours the cell as if it were Python: it takes no other language from a magic.
     """
+    from IPython.core.error import UsageError
+
     from thermicon.icons import parse
 
     name = line.strip() or DEFAULT_NAME
     if not name.isidentifier() or keyword.iskeyword(name):
-        plain = re.sub(r"\W", "_", name)
-        help = f"; try {plain}" if plain.isidentifier() and not keyword.iskeyword(plain) else ""
-        raise CueMagicError(f"%%cue: {name!r} is not a valid variable name{help}\n{USAGE}")
+        raise UsageError(f"%%cue [NAME]: {name!r} is not a valid variable name")
     # The version takes the place of the magic's own line, so that lines count as in the notebook.
     first = "\n" if _VERSION.match(cell) else "cue 1\n"
     icons = parse(first + cell, "cell")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -118,6 +118,8 @@ def why_not(reading: Reading) -> str | None:
 
 def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) -> CanvasFrame:
     """The frame of both heat maps, near icons side by side."""
+    from thermicon.perception.plots.draw_heat import short
+
     order, labels = np.array(made.order), made.labels
     distances = made.ranking.d_prime[np.ix_(order, order)]
     confusions = made.ranking.confusion[np.ix_(order, order)]
@@ -126,7 +128,7 @@ def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) ->
         "type": "frame",
         "view": "heat",
         "seq": seq,
-        "labels": distinct(labels),
+        "labels": [short(name) for name in labels],
         "matrices": [
             {"key": "distance", "label": "distance (d′)", "buffer": 0, "unit": "", "low": 0, "high": highest,
              "text": "0.0", "terms": terms_of("d′")},
@@ -165,18 +167,3 @@ def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
     time = {"t0": 0.0, "dt": float(clock[1] - clock[0]), "n": len(clock)}
     meta = {"type": "frame", "view": "traces", "seq": 0, "time": time, "panels": panels, "notes": []}
     return CanvasFrame(meta, tuple(buffers))
-
-
-def distinct(names: Sequence[str]) -> list[str]:
-    """Names short enough to stand beside a picture; as much of each stays as distinguishes it.
-
-    >>> distinct(["ramp_extent=-2_rate=3_count=1", "ramp_extent=2_rate=3_count=1", "dip"])[2]
-    'dip'
-    """
-    from thermicon.perception.plots.draw_heat import short
-
-    for most in (20, 24, 28, 36):
-        made = [short(name, most) for name in names]
-        if len(set(made)) == len(names):
-            return made
-    return list(names)

@@ -11,7 +11,7 @@ from thermicon.icons import CueErrors, Icon, IconSet, parse
 from thermicon.icons.atomic import OutputError
 
 from .design_model import DesignModel
-from .panels import document_of
+from .document_bar import document_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -87,7 +87,6 @@ class Workbench:
         self._design = DesignModel(document, loaded, icon, _observer_of(observer))
         self._check_icon(icon)
         self._folder = Path(folder)
-        self._ranked: tuple[object, Ranking] | None = None
         self._page: Any = None
         self.design_view: DesignView | None = None
         self.set_view: SetView | None = None
@@ -155,7 +154,7 @@ class Workbench:
         return None if drawing is None else drawing.percept
 
     def ranking(self, people: int = 200) -> Ranking:
-        """Rank the set as it is written, for so many people; the last one is kept.
+        """Rank the set as it is written, for so many people.
 
         Raises CueErrors for a bad text, ValueError for more icons than are compared at once.
         """
@@ -166,10 +165,7 @@ class Workbench:
         if len(self.icons) > MOST_ICONS:
             many = f"{len(self.icons):,} icons are more than the {MOST_ICONS:,} that are compared at once"
             raise ValueError(f"{many}: narrow the family")
-        asked = (self.text, self.rig, people)
-        if self._ranked is None or self._ranked[0] != asked:
-            self._ranked = asked, rank(self.icons, self.rig, people=people, observer=self._design.model)
-        return self._ranked[1]
+        return rank(self.icons, self.rig, people=people, observer=self._design.model)
 
     def figure(self, view: View = "design") -> Figure:
         """Return what a view shows as a matplotlib Figure.

@@ -12,7 +12,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.notebooks.timeline.frames import MOST_POINTS, WORDS, CanvasFrame, frame_of
 from thermicon.notebooks.timeline.scene import scene
-from thermicon.notebooks.workbench.panels import help_html
+from thermicon.notebooks.workbench.document_bar import help_html
 
 GLOSSARY = Path(__file__).parents[3] / "docs" / "reference" / "glossary.md"
 ROLES = {"ink", "grey", "cool", "warm", "target", "limit"}

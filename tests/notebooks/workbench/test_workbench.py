@@ -15,7 +15,7 @@ from thermicon.icons import CueErrors, load_library, parse
 from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.workbench.design_model import DesignModel
-from thermicon.notebooks.workbench.panels import document_of
+from thermicon.notebooks.workbench.document_bar import document_of
 
 DIP = """cue 1
 
