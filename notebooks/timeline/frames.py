@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any
@@ -27,7 +26,7 @@ MOST_POINTS = 3_000
 """Intervals that a curve is drawn with, at most; a long run is thinned to every k-th row."""
 DRAGGED_POINTS = 750
 """The same while a corner is dragged, which is more than the plot has pixels; the last frame of a drag is whole."""
-DASHED, DASH_DOT = (7, 3), (8, 3, 2, 3)
+DASHED, DASH_DOT = [7, 3], [8, 3, 2, 3]
 WORDS: dict[str, dict[str, Any]] = tomllib.loads(
     (files("thermicon.notebooks") / "data" / "workbench.toml").read_text(encoding="utf-8")
 )
@@ -65,27 +64,10 @@ class _Curves:
     rows: slice
     buffers: list[Floats] = field(default_factory=list)
 
-    def take(
-        self,
-        key: str,
-        label: str,
-        values: NDArray[np.float64],
-        role: Role,
-        dash: Sequence[int] = (),
-        width: float = 1.5,
-        step: bool = False,
-    ) -> dict[str, Any]:
-        """Take the values of a curve, and return the series that stands for it."""
+    def take(self, key: str, label: str, values: NDArray[np.float64], role: Role, **look: Any) -> dict[str, Any]:
+        """Take the values of a curve, and return the series that stands for it; ``look``: dash, width, step."""
         self.buffers.append(np.ascontiguousarray(values[self.rows], dtype=np.float32))
-        return {
-            "key": key,
-            "label": label,
-            "buffer": len(self.buffers) - 1,
-            "role": role,
-            "dash": list(dash),
-            "width": width,
-            "step": step,
-        }
+        return {"key": key, "label": label, "buffer": len(self.buffers) - 1, "role": role, **look}
 
 
 def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
@@ -99,8 +81,18 @@ def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
     """
     from thermicon.perception.sensation.percept import uniform_clock
 
-    own = {"handles": [], "can_undo": False, "can_redo": False, "ms": 0.0}
-    meta = {"type": "frame", "view": "design", "seq": 0, "text": scene.text, **_said(scene), **own}
+    badge = scene.badge
+    meta: dict[str, Any] = {
+        "type": "frame",
+        "view": "design",
+        "icons": list(scene.names),
+        "icon": scene.icon,
+        "troubles": [asdict(each) for each in scene.troubles],
+        "stale": scene.stale,
+        "badge": {"colour": badge.colour, "text": badge.text, "more": list(badge.more)},
+        "notes": list(scene.notes),
+        "handles": [],
+    }
     if (drawing := scene.drawing) is None:
         return CanvasFrame({**meta, "time": {"t0": 0.0, "dt": 0.0, "n": 0}, "panels": []}, ())
     trace = drawing.trace
@@ -117,28 +109,16 @@ def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
     return CanvasFrame({**meta, "panels": panels}, tuple(curves.buffers))
 
 
-def _said(scene: Scene) -> dict[str, Any]:
-    badge = scene.badge
-    return {
-        "icons": list(scene.names),
-        "icon": scene.icon,
-        "troubles": [asdict(each) for each in scene.troubles],
-        "stale": scene.stale,
-        "badge": {"colour": badge.colour, "text": badge.text, "more": list(badge.more)},
-        "notes": list(scene.notes),
-    }
-
-
 def _temperature(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     trace = drawing.trace
     series = []
     if np.isfinite(trace.target_C).any():  # a broad band underneath, since the controlled line lies on it
         series.append(curves.take("target", "target", trace.target_C, "target", width=6.0))
     series += [
-        curves.take("display", "display", trace.display_C, "grey", DASHED, 1.25),
+        curves.take("display", "display", trace.display_C, "grey", dash=DASHED, width=1.25),
         curves.take("skin", "skin", trace.skin_C, "ink", width=1.75),
-        curves.take("cold", "cold receptor", trace.cold_receptor_C, "cool", DASH_DOT),
-        curves.take("warm", "warm receptor", trace.warm_receptor_C, "warm", DASHED),
+        curves.take("cold", "cold receptor", trace.cold_receptor_C, "cool", dash=DASH_DOT),
+        curves.take("warm", "warm receptor", trace.warm_receptor_C, "warm", dash=DASHED),
     ]
     marks = [
         _mark(moment.time_s, moment.label, moment.channel, float(np.interp(moment.time_s, trace.time_s, trace.skin_C)))
@@ -152,8 +132,8 @@ def _heat(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     trace = drawing.trace
     series = [
         curves.take("skin", "skin surface", trace.heat_flow_skin_W_per_m2 / 1e3, "ink", width=1.75),
-        curves.take("cold", "cold receptor", trace.heat_flow_cold_receptor_W_per_m2 / 1e3, "cool", DASH_DOT),
-        curves.take("warm", "warm receptor", trace.heat_flow_warm_receptor_W_per_m2 / 1e3, "warm", DASHED),
+        curves.take("cold", "cold receptor", trace.heat_flow_cold_receptor_W_per_m2 / 1e3, "cool", dash=DASH_DOT),
+        curves.take("warm", "warm receptor", trace.heat_flow_warm_receptor_W_per_m2 / 1e3, "warm", dash=DASHED),
     ]
     return _panel(drawing, "heat", "heat flow into skin (kW/m²)", 1.0, series, missed=False)
 
@@ -172,8 +152,8 @@ def _current(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
 def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     percept = drawing.percept
     series = [
-        curves.take("cold", "cold", percept.psi_cold, "cool", DASH_DOT, 1.75),
-        curves.take("warm", "warm", percept.psi_warm, "warm", DASHED, 1.75),
+        curves.take("cold", "cold", percept.psi_cold, "cool", dash=DASH_DOT, width=1.75),
+        curves.take("warm", "warm", percept.psi_warm, "warm", dash=DASHED, width=1.75),
     ]
     marks = [
         _mark(moment.time_s, f"{moment.label}, p {percept.detected_probability:.2f}", None, None)

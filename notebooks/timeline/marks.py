@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -82,7 +81,9 @@ def missed_spans(icon: Icon, trace: Trace, rig: Rig) -> tuple[Span, ...]:
     """
     if trace.reachable:
         return ()
-    return tuple(_spans(trace.time_s, _missed(icon, trace, rig), _held_back(trace)))
+    met = ["driver's limits"] if trace.outcome is None else [name for name, _ in trace.outcome.limits if name in LIMITS]
+    label = f"unreachable: {' and '.join(met)}" if met else "unreachable"
+    return tuple(_spans(trace.time_s, _missed(icon, trace, rig), label))
 
 
 def _missed(icon: Icon, trace: Trace, rig: Rig) -> NDArray[np.bool_]:
@@ -101,20 +102,11 @@ def _missed(icon: Icon, trace: Trace, rig: Rig) -> NDArray[np.bool_]:
     return np.asarray(missed)
 
 
-def _held_back(trace: Trace) -> str:
-    names = [name for name, _ in trace.outcome.limits] if trace.outcome is not None else ["driver's limits"]
-    known = [name for name in names if name in LIMITS or name == "driver's limits"]
-    return f"unreachable: {' and '.join(known)}" if known else "unreachable"
-
-
 def _spans(time_s: NDArray[np.float64], missed: NDArray[np.bool_], label: str) -> list[Span]:
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], missed, [False])).astype(np.int8)))
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], missed, [False])).astype(np.int8))).reshape(-1, 2)
     found: list[Span] = []
-    last = len(time_s) - 1
-    for begin, end in pairwise(edges.tolist()):
-        if not missed[begin]:
-            continue
-        from_s, to_s = float(time_s[max(begin - 1, 0)]), float(time_s[min(end, last)])
+    for begin, end in edges.tolist():
+        from_s, to_s = float(time_s[max(begin - 1, 0)]), float(time_s[min(end, len(time_s) - 1)])
         if found and from_s - found[-1].to_s < GAP_S:
             from_s = found.pop().from_s
         found.append(Span(from_s, to_s, label))

@@ -93,7 +93,7 @@ def test_a_cue_of_current_is_handled_in_the_panel_of_current(rig: Rig) -> None:
     panels = keep_promises(frame)
     assert {handle["panel"] for handle in frame.meta["handles"]} == {"current"}
     assert "target" not in [series["key"] for series in panels["temperature"]["series"]]
-    assert not panels["current"]["series"][0]["step"]
+    assert not panels["current"]["series"][0].get("step")
 
 
 def test_a_long_run_is_thinned_on_a_uniform_clock(rig: Rig) -> None:
