@@ -13,7 +13,7 @@ from ..inputs import InputError
 from ..rig.rig import Rig
 from ..rig.rigfile import rig_keys, unknown_key
 from ..rig.settings import flattened
-from ..rig.uncertainty import uncertainty_of
+from ..rig.uncertainty import Uncertainty
 
 
 class FitError(InputError):
@@ -38,7 +38,7 @@ class FitKey:
     direct: str
 
 
-_SHIPPED = uncertainty_of({})
+_SHIPPED = Uncertainty()
 CONTACT = "contact.resistance_m2K_per_W"
 USUAL_CONTACT = 2.0 / 3.0
 """People and touches differ by a lognormal SD of 30 %: 95 % are within two thirds."""

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..rig.parts import Uncertainty
+from ..rig.uncertainty import Uncertainty
 from .forward import MAD_TO_SD, Channel
 from .identify import Parameter
 from .keys import fittable, free_keys, value_of

@@ -14,11 +14,9 @@ from thermicon.icons.atomic import OutputError, complete_or_absent
 from ..arrays import Array
 from ..inputs import LONGEST_NAME
 from ..program import own_version
-from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
-from ..rig.rigfile import UncertaintyTable
 from ..rig.settings import toml_text
-from ..rig.uncertainty import uncertainty_of
+from ..rig.uncertainty import Uncertainty
 from .identify import Parameter
 from .keys import FitKey
 from .overlay import Beside
@@ -173,10 +171,10 @@ LEAST_SHARE = 0.5
 """Share of the shipped uncertainty that is written at least: what a fit holds fixed, the heat sink above all, may bias
 it by more than its interval says, and the safety gate relies on it."""
 
-_SHIPPED = uncertainty_of({})
+_SHIPPED = Uncertainty()
 LARGEST = {
-    name: float(schema["anyOf"][0]["maximum"])
-    for name, schema in UncertaintyTable.model_json_schema()["properties"].items()
+    name: float(schema["maximum"])
+    for name, schema in Uncertainty.model_json_schema()["properties"].items()
     if name != "reason"
 }
 """The largest uncertainty that a rig file may state."""

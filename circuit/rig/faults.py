@@ -1,12 +1,16 @@
-"""Keys of a rig file: the units that end them, and faults between them, one sentence for each."""
+"""Keys of a rig file: what their values may be, the units that end them, and faults between them, a sentence each."""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, Self
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from ..inputs import one_line, paragraph
 
 if TYPE_CHECKING:
     from .rigfile import HeatSinkTable, ModuleTable, RigTable
@@ -16,6 +20,49 @@ PARAMETERS = ("seebeck_V_per_K", "resistance_ohm", "thermal_resistance_K_per_W")
 
 CONTROLLED = ("capacity_J_per_K", "kp_W_per_K", "ki_W_per_Ks", "power_limit_W")
 """Keys of a heat sink with its own controller, all of which it needs."""
+
+
+Celsius = Annotated[float, Field(ge=-20, le=120)]
+Name = Annotated[str, Field(min_length=1), AfterValidator(one_line)]
+Text = Annotated[str, AfterValidator(one_line)]
+Paragraph = Annotated[str, AfterValidator(paragraph)]
+
+# Parts may be idealised (almost no resistance, almost infinite capacity); beyond this, sums lose all their digits.
+Ideal = Annotated[float, Field(ge=1e-15, le=1e15)]
+# A current source that heats or cools skin gives some amperes and volts, never thousands.
+Amperes = Annotated[float, Field(ge=1e-6, le=1000)]
+Volts = Annotated[float, Field(ge=1e-6, le=1000)]
+# Times of a loop or a sensor: an icon lasts an hour at most.
+Lag = Annotated[float, Field(ge=0, le=3600)]
+Gain = Annotated[float, Field(ge=0, le=1e6)]
+Millimetres = Annotated[float, Field(ge=1e-4, le=200)]
+# Air at the least, diamond (2,200 W/(m·K)) at the most.
+Conductivity = Annotated[float, Field(ge=1e-3, le=1e4)]
+# Air (1.2 kg/m³) to osmium (22,590 kg/m³); 1 to 20,000 J/(kg·K), where hydrogen has 14,300.
+Density = Annotated[float, Field(ge=0.1, le=3e4)]
+HeatCapacity = Annotated[float, Field(ge=1, le=2e4)]
+# The best perfused organ, the kidney, has some 0.07 /s.
+Perfusion = Annotated[float, Field(ge=0, le=1)]
+# Still air has some 5, boiling water some 1e5 W/(m²·K).
+Film = Annotated[float, Field(ge=1e-3, le=1e6)]
+
+Positive = Annotated[float, Field(gt=0)]
+
+
+class KeyTable(BaseModel):
+    """A table of a rig file, which checks each key, and then what they are together."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+
+    def faults(self) -> Iterable[str]:
+        """A sentence for each fault between keys that are possible by themselves."""
+        return ()
+
+    @model_validator(mode="after")
+    def _together(self) -> Self:
+        if sentences := list(self.faults()):
+            raise ValueError("\n".join(sentences))
+        return self
 
 
 UNITS = {
@@ -135,9 +182,7 @@ def module_faults(table: ModuleTable) -> Iterator[str]:
         yield sentence("faults.module_none", keys=", ".join(PARAMETERS))
     elif len(ways) > 1:
         yield sentence("faults.module_two", ways=" and ".join(ways))
-    elif missing or (stated and table.extraction is not None):
+    elif missing:
         yield from (sentence("faults.module_key", key=key, unit=unit_of(key)) for key in missing)
-        if table.extraction is not None:
-            yield sentence("faults.module_extraction")
     elif table.datasheet is not None and len(table.datasheet) not in (1, 2):
         yield sentence("faults.module_sheets", count=len(table.datasheet))

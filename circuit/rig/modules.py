@@ -30,8 +30,6 @@ COLUMNS = (
     "q_max_W",
     "dt_max_K",
 )
-MOST_RESIDUAL = 0.10
-"""Share of the printed Qmax by which three figures may miss it without a warning."""
 LEAST_APART_K = 1.0
 """Two sheets closer than this in mean module temperature cannot show its influence."""
 
@@ -75,7 +73,9 @@ def build_of(name: str) -> Build:
 
 def load_module(name: str) -> tuple[Datasheet, ...]:
     """Return the data sheets of a shipped module, coolest hot side first; raises RecordError with the nearest name."""
-    sheets = [_sheet(record) for record in _records(name)]
+    sheets = [
+        Datasheet.model_validate({key: record.get(key) for key in Datasheet.model_fields}) for record in _records(name)
+    ]
     return tuple(sorted(sheets, key=lambda sheet: sheet.t_hot_C))
 
 
@@ -83,13 +83,6 @@ def _records(name: str) -> list[Record]:
     if name not in module_names():
         raise RecordError(f"{name}: no such module; {did_you_mean(name, module_names())}")
     return [record for record in module_table() if record.get("module") == name]
-
-
-def _sheet(record: Record) -> Datasheet:
-    current, voltage, span, hot, heat = (
-        float(record.get(key)) for key in ("i_max_A", "v_max_V", "dt_max_K", "t_hot_C", "q_max_W")
-    )
-    return Datasheet(current, voltage, span, hot, heat)
 
 
 def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> tuple[Peltier, ModuleOrigin]:
@@ -115,19 +108,18 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
         if origin.get("origin") != "datasheet":
             warnings.append(f"module {table.name}: its figures are {origin.source}; expect them within 10 %")
     else:
-        sheets = tuple(
-            Datasheet(sheet.i_max_A, sheet.v_max_V, sheet.dt_max_K, sheet.t_hot_C, sheet.q_max_W)
-            for sheet in table.datasheet or ()
-        )
-    extractions = _extract(sheets, table.extraction)
-    warnings += _misses(extractions)
-    sentence = f"{what}: {_figures(extractions, sheets)}"
+        sheets = tuple(table.datasheet or ())
+    four = all(sheet.q_max_W is not None for sheet in sheets)
+    extractions = _extract(sheets, four)
+    hot = " and ".join(f"{sheet.t_hot_C:g}" for sheet in sheets)
+    figures, how = ("four", "Qmax reproduced") if four else ("three", "no Qmax to check them against")
+    said = f"{what}: {figures} figures with the hot side at {hot} °C, {how}"
     if len(extractions) == 2:
         low, high = sorted(sheet.mean_C for sheet in extractions)
-        sentence += f", taken at a mean module temperature of {min(max(mean_C, low), high):.1f} °C"
+        said += f", taken at a mean module temperature of {min(max(mean_C, low), high):.1f} °C"
         if not low <= mean_C <= high:
             warnings.append(_beyond_sheets(extractions, mean_C, (low, high), own=table.name is None))
-    return Peltier(*at_mean_C(extractions, mean_C), *plates), ModuleOrigin(sentence + ".", tuple(warnings))
+    return Peltier(*at_mean_C(extractions, mean_C), *plates), ModuleOrigin(said + ".", tuple(warnings))
 
 
 def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tuple[float, float], *, own: bool) -> str:
@@ -143,41 +135,14 @@ def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tup
     return sentence("warnings.beyond_sheets", side=side, cure=cure, **ends)
 
 
-def _extract(sheets: Sequence[Datasheet], method: str | None) -> tuple[Extraction, ...]:
-    """Four figures where every sheet prints Qmax, else three, unless the rig says which."""
-    if method is None:
-        method = "three" if any(sheet.q_max_W is None for sheet in sheets) else "four"
+def _extract(sheets: Sequence[Datasheet], four: bool) -> tuple[Extraction, ...]:
+    """Parameters from the four figures of every sheet, or from the three that all have."""
     extractions = []
     for place, sheet in enumerate(sheets):
         try:
-            extractions.append(sheet.four_figures() if method == "four" else sheet.three_figures())
+            extractions.append(sheet.four_figures() if four else sheet.three_figures())
         except ValueError as problem:
             raise ValueError(f"module.datasheet.{place}.{problem}") from None
     if len(extractions) == 2 and abs(extractions[1].mean_C - extractions[0].mean_C) < LEAST_APART_K:
         raise ValueError(sentence("parts.sheets_alike", mean=extractions[0].mean_C, least=LEAST_APART_K))
     return tuple(extractions)
-
-
-def _figures(extractions: Sequence[Extraction], sheets: Sequence[Datasheet]) -> str:
-    """Which figures, at which hot sides, and how far they miss the printed Qmax, in words."""
-    hot = " and ".join(f"{sheet.t_hot_C:g}" for sheet in sheets)
-    misses = [extraction for extraction in extractions if extraction.residual_relative is not None]
-    if extractions[0].method == "four":
-        missed = "Qmax reproduced"
-    elif misses:
-        missed = "Qmax missed by " + " and ".join(_miss(extraction) for extraction in misses)
-    else:
-        missed = "no Qmax to check them against"
-    return f"{extractions[0].method} figures with the hot side at {hot} °C, {missed}"
-
-
-def _miss(extraction: Extraction) -> str:
-    return f"{100 * (extraction.residual_relative or 0):+.1f} % ({extraction.residual_W or 0:+.3g} W)"
-
-
-def _misses(extractions: Sequence[Extraction]) -> list[str]:
-    return [
-        sentence("warnings.qmax", miss=_miss(extraction), most=100 * MOST_RESIDUAL)
-        for extraction in extractions
-        if extraction.residual_relative is not None and abs(extraction.residual_relative) > MOST_RESIDUAL
-    ]

@@ -72,24 +72,6 @@ class Contact:
     lands_s: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Uncertainty:
-    """How far a rig may deviate from its file, in either direction: shares, and K for ambient and heat sink.
-
-    `conductance_relative` is that of the module's legs, `plates_relative` of both plates' heat capacities. `reason`
-    states how it is known that an uncertainty is smaller than the shipped one.
-    """
-
-    contact_resistance_relative: float
-    ambient_K: float
-    gain_relative: float
-    heat_sink_K: float
-    seebeck_relative: float
-    conductance_relative: float
-    plates_relative: float
-    reason: str = ""
-
-
 PLACES = ("display", "interface", "skin", "insulated skin")
 """Where a probe may be; `thermicon.circuit.solver.probes` defines each place."""
 

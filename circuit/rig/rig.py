@@ -17,13 +17,13 @@ from ..inputs import read_text
 from .assemble import HeatPump, probes_of, pump_of, skin_of
 from .faults import sentence
 from .module import Peltier
-from .parts import Contact, Driver, HeatSink, Probe, Uncertainty
+from .parts import Contact, Driver, HeatSink, Probe
 from .rig_words import rig_summary, rig_warnings
 from .rigfile import Ambient, Controller, RigError, RigTable, Thermode, parse_toml, read_table
 from .rules import Limits
 from .settings import changed, flattened, put_all, read_settings, toml_text
-from .skin import Column, ReceptorDepths, Skin, column_of
-from .uncertainty import uncertainty_of
+from .skin import Column, Skin, column_of
+from .uncertainty import Uncertainty
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,11 +186,6 @@ class Rig:
         return self.skin.site
 
     @property
-    def blood_C(self) -> float:
-        """Temperature of deep tissue and blood in °C, from the heat balance of resting skin unless the rig fixes it."""
-        return self.deep_C
-
-    @property
     def resting_flux_W_per_m2(self) -> float:
         """Heat flow into bare skin at rest, W/m²; negative, since skin loses heat."""
         return (self.skin.rest_C - self.deep_C) / self.column.steady_drop_K(1.0)
@@ -204,14 +199,6 @@ class Rig:
     def module_source(self) -> str:
         """One sentence on where the module's parameters come from, and how far they are from the printed Qmax."""
         return self._pump_for("module").origin.sentence
-
-    def receptor_depths(self) -> ReceptorDepths:
-        """Depths of the receptors in mm, in both conventions.
-
-        >>> print(Rig.load("shani2021").receptor_depths())
-        cold 0.15 mm, warm 0.3 mm below the surface
-        """
-        return self.skin.receptor_depths()
 
     def about(self) -> str:
         """What to know about this rig before trusting it, as plain text: rest, depths, module, warnings, notes.
@@ -293,7 +280,7 @@ def _assemble(table: RigTable, document: str) -> Rig:
         column,
         float(deep),
         document,
-        uncertainty_of(table.uncertainty.given, table.uncertainty.reason),
+        table.uncertainty,
         Limits.of(table.safety.changes, table.safety.reason),
         probes_of(table.probe, body.thickness_m),
         table.controller,

@@ -21,9 +21,6 @@ if TYPE_CHECKING:
 
 WIDTH = 118
 PLATE_KEYS = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
-PLATE_SHARE = 0.2
-"""Plates on record are assumed from the footprint, within 20 % for ceramics of 0.5 to 0.8 mm."""
-
 SAME_FACE = 0.01
 """Share by which a contact in cm² may differ from the face of a module by rounding alone."""
 
@@ -69,7 +66,7 @@ def _rows(rig: Rig) -> list[tuple[str, str]]:
             f"skin {rig.skin.rest_C:.1f} °C, blood and deep tissue {rig.deep_C:.2f} °C ({how}), "
             f"{abs(flux):.0f} W/m² {'lost' if flux >= 0 else 'taken up'} by bare skin",
         ),
-        ("receptors", str(rig.receptor_depths())),
+        ("receptors", rig.skin.receptor_words()),
     ]
     return [
         ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
@@ -115,9 +112,6 @@ def _limits(rig: Rig) -> Iterator[str]:
         yield sentence("warnings.loosened", words="; ".join(limits.loosened), reason=limits.reason)
     if claims := tightened(rig.uncertainty):
         yield sentence("warnings.milder", words="; ".join(claims), reason=rig.uncertainty.reason)
-    for hard, soft in limits.hidden:
-        side, limit, soft_limit = "below" if hard.upper else "above", signed(hard.limit), signed(soft.limit)
-        yield sentence("warnings.hidden", hard=hard, soft=soft, side=side, limit=limit, soft_limit=soft_limit)
     if (rule := limits.passed_at_rest(rest_C)) is not None:
         side, colour = "above" if rule.upper else "below", "red" if rule.severity == "hard" else "amber"
         limit = signed(rule.limit)
@@ -140,7 +134,7 @@ def _driver(rig: Rig) -> Iterator[str]:
 
 
 def _module(rig: Rig) -> Iterator[str]:
-    """What does not suit a shipped module: the face, what a former one left behind, plates without a source."""
+    """What does not suit a shipped module: plates of a former one, the face, the driver's limit."""
     document, stated = json.loads(rig.document), changed(rig.changes)
     name = document.get("module", {}).get("name")
     if name not in module_names():
@@ -149,19 +143,10 @@ def _module(rig: Rig) -> Iterator[str]:
     hot, cold, replaced = rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K, stated.get("module.name") == name
     if replaced and build.plate_J_per_K is None and not set(PLATE_KEYS) <= set(stated):
         yield sentence("warnings.plates_unknown", name=name, hot=hot, cold=cold, keys=keys)
-    face, stays = build.face_cm2, replaced and "contact.area_cm2" not in stated
-    if face is not None and area_cm2 > (1.0 + SAME_FACE) * face:
-        yield sentence("warnings.face_small", name=name, area=area_cm2, face=face)
-    elif stays and (face is None or area_cm2 < (1.0 - SAME_FACE) * face):
-        words = "not on record" if face is None else f"{face:g} cm²"
-        yield sentence("warnings.face_stays", name=name, area=area_cm2, face=words)
+    if build.face_cm2 is not None and area_cm2 > (1.0 + SAME_FACE) * build.face_cm2:
+        yield sentence("warnings.face_small", name=name, area=area_cm2, face=build.face_cm2)
     if replaced and rig.driver.current_max_A > build.i_max_A:
         yield sentence("warnings.past_imax", name=name, limit=rig.driver.current_max_A, imax=build.i_max_A)
-    plate = build.plate_J_per_K
-    if {*document.get("source", {}), *stated} & set(PLATE_KEYS) or plate is None:
-        return
-    if any(abs(each - plate) > PLATE_SHARE * plate for each in (hot, cold)):
-        yield sentence("warnings.plates_other", name=name, hot=hot, cold=cold, plate=plate, keys=keys)
 
 
 def _site(rig: Rig) -> Iterator[str]:

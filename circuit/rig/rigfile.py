@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from typing import Annotated, Any, Literal, Self, get_args
+from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, Field, ValidationError
 
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
@@ -15,13 +15,34 @@ from ..inputs import (
     InputError,
     Place,
     key_faults,
-    one_line,
-    paragraph,
     read_toml,
 )
-from .faults import heat_sink_faults, module_faults, rig_faults, unit_of
+from .faults import (
+    Amperes,
+    Celsius,
+    Conductivity,
+    Density,
+    Film,
+    Gain,
+    HeatCapacity,
+    Ideal,
+    KeyTable,
+    Lag,
+    Millimetres,
+    Name,
+    Paragraph,
+    Perfusion,
+    Positive,
+    Text,
+    Volts,
+    heat_sink_faults,
+    module_faults,
+    rig_faults,
+    unit_of,
+)
+from .module import Datasheet
 from .rules import faults_of
-from .uncertainty import uncertainty_faults
+from .uncertainty import Uncertainty
 
 
 class RigError(InputError):
@@ -38,68 +59,18 @@ class RigError(InputError):
     """
 
 
-Celsius = Annotated[float, Field(ge=-20, le=120)]
-Name = Annotated[str, Field(min_length=1), AfterValidator(one_line)]
-Text = Annotated[str, AfterValidator(one_line)]
-Paragraph = Annotated[str, AfterValidator(paragraph)]
-
-# Parts may be idealised (almost no resistance, almost infinite capacity); beyond this, sums lose all their digits.
-Ideal = Annotated[float, Field(ge=1e-15, le=1e15)]
-# A current source that heats or cools skin gives some amperes and volts, never thousands.
-Amperes = Annotated[float, Field(ge=1e-6, le=1000)]
-Volts = Annotated[float, Field(ge=1e-6, le=1000)]
-# Times of a loop or a sensor: an icon lasts an hour at most.
-Lag = Annotated[float, Field(ge=0, le=3600)]
-Gain = Annotated[float, Field(ge=0, le=1e6)]
-Millimetres = Annotated[float, Field(ge=1e-4, le=200)]
-# Air at the least, diamond (2,200 W/(m·K)) at the most.
-Conductivity = Annotated[float, Field(ge=1e-3, le=1e4)]
-# Air (1.2 kg/m³) to osmium (22,590 kg/m³); 1 to 20,000 J/(kg·K), where hydrogen has 14,300.
-Density = Annotated[float, Field(ge=0.1, le=3e4)]
-HeatCapacity = Annotated[float, Field(ge=1, le=2e4)]
-# The best perfused organ, the kidney, has some 0.07 /s.
-Perfusion = Annotated[float, Field(ge=0, le=1)]
-# Still air has some 5, boiling water some 1e5 W/(m²·K).
-Film = Annotated[float, Field(ge=1e-3, le=1e6)]
-
-Positive = Annotated[float, Field(gt=0)]
 MOST_LAYERS, MOST_PROBES, MOST_NOTES = 50, 100, 100
 """Skin models have a handful of layers and rigs a few probes; each costs time in every step."""
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-
-    def faults(self) -> Iterable[str]:
-        """A sentence for each fault between keys that are possible by themselves."""
-        return ()
-
-    @model_validator(mode="after")
-    def _together(self) -> Self:
-        if sentences := list(self.faults()):
-            raise ValueError("\n".join(sentences))
-        return self
-
-
-class DatasheetTable(_Table):
-    """What a module's maker prints for one hot-side temperature."""
-
-    i_max_A: Amperes
-    v_max_V: Volts
-    dt_max_K: Annotated[float, Field(gt=0, le=150)]
-    t_hot_C: Celsius
-    q_max_W: Annotated[float, Field(ge=1e-6, le=1e6)] | None = None
-
-
-class ModuleTable(_Table):
+class ModuleTable(KeyTable):
     """The Peltier module, given by three parameters, data sheets or a shipped name, and its two plates."""
 
     seebeck_V_per_K: Ideal | None = None
     resistance_ohm: Ideal | None = None
     thermal_resistance_K_per_W: Ideal | None = None
-    datasheet: list[DatasheetTable] | None = None
+    datasheet: list[Datasheet] | None = None
     name: Name | None = None
-    extraction: Literal["three", "four"] | None = None
     hot_plate_J_per_K: Ideal
     cold_plate_J_per_K: Ideal
 
@@ -108,7 +79,7 @@ class ModuleTable(_Table):
         return module_faults(self)
 
 
-class HeatSinkTable(_Table):
+class HeatSinkTable(KeyTable):
     """The heat sink under the hot plate."""
 
     temperature_C: Celsius | None = None
@@ -125,7 +96,7 @@ class HeatSinkTable(_Table):
         return heat_sink_faults(self)
 
 
-class DriverTable(_Table):
+class DriverTable(KeyTable):
     """The current source and its limits."""
 
     transconductance_A_per_V: Annotated[float, Field(ge=1e-6, le=1000)] = 0.1
@@ -135,7 +106,7 @@ class DriverTable(_Table):
     update_Hz: Annotated[float, Field(ge=1, le=10_000)] = 100
 
 
-class ContactTable(_Table):
+class ContactTable(KeyTable):
     """Where display and skin meet."""
 
     area_cm2: Annotated[float, Field(ge=0.01, le=10_000)]
@@ -144,7 +115,7 @@ class ContactTable(_Table):
     lands_s: Annotated[float, Field(ge=-600, le=0)] | None = None
 
 
-class Controller(_Table):
+class Controller(KeyTable):
     """A PID loop on a display thermistor, sampled at the driver's update rate; positive current cools.
 
     Thermistor lag s, gains A/K, A/(K·s), A·s/K; the derivative acts on the measured temperature.
@@ -156,7 +127,7 @@ class Controller(_Table):
     kd_As_per_K: Gain = 0.0
 
 
-class Thermode(_Table):
+class Thermode(KeyTable):
     """A display that follows set-points by its own control: slew K/s, lag s (first order), step K, range °C, rate Hz.
 
     It stands in place of module, heat sink, driver and controller; a step of 0 K means continuous set-points.
@@ -175,14 +146,14 @@ class Thermode(_Table):
             yield f"thermode.lowest_C = {self.lowest_C:g} °C: must be below thermode.highest_C ({self.highest_C:g} °C)"
 
 
-class Ambient(_Table):
+class Ambient(KeyTable):
     """The air that bare skin rests in: temperature °C, film W/(m²·K)."""
 
     temperature_C: Celsius
     film_W_per_m2K: Film
 
 
-class LayerTable(_Table):
+class LayerTable(KeyTable):
     """One layer of tissue."""
 
     name: Name
@@ -193,7 +164,7 @@ class LayerTable(_Table):
     perfusion_per_s: Perfusion = 0.0
 
 
-class SkinTable(_Table):
+class SkinTable(KeyTable):
     """The skin under the display, surface first."""
 
     site: Text
@@ -206,14 +177,14 @@ class SkinTable(_Table):
     layer: Annotated[list[LayerTable], Field(min_length=1, max_length=MOST_LAYERS)]
 
 
-class BloodTable(_Table):
+class BloodTable(KeyTable):
     """Blood that perfuses the layers."""
 
     density_kg_per_m3: Density
     heat_capacity_J_per_kgK: HeatCapacity
 
 
-class ProbeTable(_Table):
+class ProbeTable(KeyTable):
     """A point whose temperature is recorded; missing values of an insulated probe come from records."""
 
     name: Text
@@ -225,30 +196,7 @@ class ProbeTable(_Table):
     insulation_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1e3)] | None = None
 
 
-class UncertaintyTable(_Table):
-    """What safety and robustness vary; missing values come from records, smaller ones need a reason."""
-
-    contact_resistance_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
-    ambient_K: Annotated[float, Field(ge=0, le=20)] | None = None
-    gain_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
-    heat_sink_K: Annotated[float, Field(ge=0, le=20)] | None = None
-    seebeck_relative: Annotated[float, Field(ge=0, le=0.5)] | None = None
-    conductance_relative: Annotated[float, Field(ge=0, le=0.5)] | None = None
-    plates_relative: Annotated[float, Field(ge=0, le=0.9)] | None = None
-    reason: Text = ""
-
-    @property
-    def given(self) -> dict[str, float]:
-        """The uncertainties that are given, by key."""
-        stated = self.model_dump(exclude={"reason"})
-        return {key: float(value) for key, value in stated.items() if value is not None}
-
-    def faults(self) -> Iterable[str]:
-        """See `uncertainty_faults`."""
-        return uncertainty_faults(self.given, self.reason)
-
-
-class SafetyTable(_Table):
+class SafetyTable(KeyTable):
     """Limits in place of the shipped ones; looser ones need a reason."""
 
     skin_lowest_C: Celsius | None = None
@@ -280,7 +228,7 @@ class SafetyTable(_Table):
         return faults_of(self.changes, self.reason)
 
 
-class RigTable(_Table):
+class RigTable(KeyTable):
     """A whole rig file."""
 
     format: Literal[1]
@@ -297,7 +245,7 @@ class RigTable(_Table):
     skin: SkinTable
     blood: BloodTable
     probe: Annotated[list[ProbeTable], Field(max_length=MOST_PROBES)] = Field(default_factory=list)
-    uncertainty: UncertaintyTable = Field(default_factory=UncertaintyTable)
+    uncertainty: Uncertainty = Field(default_factory=Uncertainty)
     safety: SafetyTable = Field(default_factory=SafetyTable)
     source: dict[Text, Paragraph] = Field(default_factory=dict)
 

@@ -115,19 +115,6 @@ class Limits:
             return ()
         return (f"{SESSION_KEY} {self.session_s / 60:g} min instead of {shipped / 60:g} min",)
 
-    @property
-    def hidden(self) -> tuple[tuple[Rule, Rule], ...]:
-        """Hard rules, each with the soft one that it makes void, since nothing is amber before it is red."""
-        plain = [rule for rule in self.rules if rule.key and not rule.relative]
-        return tuple(
-            (hard, soft)
-            for hard in plain
-            for soft in plain
-            if (hard.severity, soft.severity) == ("hard", "soft")
-            and (hard.quantity, hard.upper) == (soft.quantity, soft.upper)
-            and (hard.limit < soft.limit if hard.upper else hard.limit > soft.limit)
-        )
-
     def passed_at_rest(self, rest_C: float) -> Rule | None:
         """The rule that skin at its rest in °C is outside of already, a hard one first; otherwise None."""
         skin_rules = [rule for rule in self.rules if rule.quantity == "skin surface" and not rule.relative]

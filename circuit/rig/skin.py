@@ -34,38 +34,6 @@ def layer_spreads() -> Table:
 
 
 @dataclass(frozen=True, slots=True)
-class ReceptorDepths:
-    """Where the receptors lie in mm, counted in both ways that papers use.
-
-    `cold_mm`, `warm_mm` from the surface; `cold_below_corneum_mm`, `warm_below_corneum_mm` from the base of the stratum
-    corneum, negative inside it, None where the skin does not begin with that layer.
-    """
-
-    cold_mm: float
-    warm_mm: float
-    cold_below_corneum_mm: float | None
-    warm_below_corneum_mm: float | None
-
-    @staticmethod
-    def counted(cold_mm: float, warm_mm: float, corneum_mm: float | None) -> ReceptorDepths:
-        """Return both conventions from depths below the surface and the thickness of the stratum corneum, in mm."""
-        cold, warm = round(cold_mm, 9), round(warm_mm, 9)
-        if corneum_mm is None:
-            return ReceptorDepths(cold, warm, None, None)
-        return ReceptorDepths(cold, warm, round(cold - corneum_mm, 9), round(warm - corneum_mm, 9))
-
-    def __str__(self) -> str:
-        text = f"cold {self.cold_mm:.3g} mm, warm {self.warm_mm:.3g} mm below the surface"
-        if self.cold_below_corneum_mm is None or self.warm_below_corneum_mm is None:
-            return text
-        cold, warm = (
-            f"{name} {abs(depth):.3g} mm {'above' if depth < 0 else 'below'}"
-            for name, depth in (("cold", self.cold_below_corneum_mm), ("warm", self.warm_below_corneum_mm))
-        )
-        return f"{text}; {cold}, {warm} the base of the {STRATUM_CORNEUM}"
-
-
-@dataclass(frozen=True, slots=True)
 class Layer:
     """One layer of tissue; thickness m, conductivity W/(m·K), density kg/m³, capacity J/(kg·K), perfusion 1/s."""
 
@@ -111,11 +79,15 @@ class Skin:
         """Depth of the deep node in m."""
         return sum(layer.thickness_m for layer in self.layers)
 
-    def receptor_depths(self) -> ReceptorDepths:
-        """Depths of the receptors in mm, from the surface and from the base of the stratum corneum."""
-        first = self.layers[0]
-        corneum = first.thickness_m * 1e3 if first.name == STRATUM_CORNEUM else None
-        return ReceptorDepths.counted(self.cold_receptor_m * 1e3, self.warm_receptor_m * 1e3, corneum)
+    def receptor_words(self) -> str:
+        """Where the receptors lie, from the surface and from the base of the stratum corneum, as papers count them."""
+        depths = {"cold": self.cold_receptor_m * 1e3, "warm": self.warm_receptor_m * 1e3}
+        text = ", ".join(f"{name} {depth:.3g} mm" for name, depth in depths.items()) + " below the surface"
+        if self.layers[0].name != STRATUM_CORNEUM:
+            return text
+        base = {name: round(depth - self.layers[0].thickness_m * 1e3, 9) for name, depth in depths.items()}
+        below = [f"{name} {abs(depth):.3g} mm {'above' if depth < 0 else 'below'}" for name, depth in base.items()]
+        return f"{text}; {', '.join(below)} the base of the {STRATUM_CORNEUM}"
 
     def resistance_to_m2K_per_W(self, depth_m: float) -> float:
         """Thermal resistance from the face down to a depth, in m²·K/W."""

@@ -6,13 +6,15 @@ written reason, which is reported with every verdict.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator
 from functools import cache
 from importlib import resources
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, Field
 
 from ..records import Table, load_records
-from .faults import sentence
-from .parts import Uncertainty
+from .faults import KeyTable, Text, sentence
 from .rules import FEWEST_WORDS, SHORTEST_REASON, is_reason
 
 WORDS = {
@@ -33,22 +35,34 @@ def uncertainty_table() -> Table:
     return load_records(resources.files("thermicon.circuit") / "data" / "uncertainty.toml")
 
 
-def uncertainty_of(stated_values: Mapping[str, float], reason: str = "") -> Uncertainty:
-    """Return the uncertainty of a rig, with the shipped value of what is not given."""
-    return Uncertainty(**{**_shipped(), **stated_values}, reason=reason.strip())
+def _shipped_or(most: float, key: str) -> Any:
+    """A share or K of 0 to `most`, the shipped one unless a rig file gives it."""
+    return Field(default_factory=lambda: _shipped()[key], ge=0, le=most)
 
 
-def uncertainty_faults(stated_values: Mapping[str, float], reason: str = "") -> list[str]:
-    """Return one sentence for each uncertainty that is smaller than the shipped one without a reason."""
-    if is_reason(reason):
-        return []
-    faults = []
-    for key, shipped in _shipped().items():
-        value, unit = stated_values.get(key, shipped), " K" if key.endswith("_K") else ""
-        if value < shipped:
-            least = {"letters": SHORTEST_REASON, "words": FEWEST_WORDS}
-            faults.append(sentence("faults.surer", key=key, value=value, unit=unit, shipped=shipped, **least))
-    return faults
+class Uncertainty(KeyTable):
+    """How far a rig may deviate from its file, in either direction: shares, and K for ambient and heat sink.
+
+    `conductance_relative` is that of the module's legs, `plates_relative` of both plates' heat capacities. `reason`
+    states how it is known that an uncertainty is smaller than the shipped one.
+    """
+
+    contact_resistance_relative: float = _shipped_or(0.9, "contact_resistance_relative")
+    ambient_K: float = _shipped_or(20, "ambient_K")
+    gain_relative: float = _shipped_or(0.9, "gain_relative")
+    heat_sink_K: float = _shipped_or(20, "heat_sink_K")
+    seebeck_relative: float = _shipped_or(0.5, "seebeck_relative")
+    conductance_relative: float = _shipped_or(0.5, "conductance_relative")
+    plates_relative: float = _shipped_or(0.9, "plates_relative")
+    reason: Annotated[Text, AfterValidator(str.strip)] = ""
+
+    def faults(self) -> Iterator[str]:
+        """One sentence for each uncertainty that is smaller than the shipped one without a reason."""
+        for key, shipped in _shipped().items():
+            value, unit = getattr(self, key), " K" if key.endswith("_K") else ""
+            if value < shipped and not is_reason(self.reason):
+                least = {"letters": SHORTEST_REASON, "words": FEWEST_WORDS}
+                yield sentence("faults.surer", key=key, value=value, unit=unit, shipped=shipped, **least)
 
 
 def tightened(uncertainty: Uncertainty) -> tuple[str, ...]:

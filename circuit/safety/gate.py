@@ -5,15 +5,14 @@ and over how often it is played.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..cores import quiet_blas
-from ..rig.parts import Uncertainty
 from ..rig.rig import Rig
 from ..rig.rules import Limits
-from ..rig.uncertainty import tightened
+from ..rig.uncertainty import Uncertainty, tightened
 from ..solver.drive import Drive, DriveError
 from .checks import Check, Demands, Judged, colour_of, findings_of, hard_of, worst_of
 from .current import CurrentPlant, CurrentPlay
@@ -111,7 +110,7 @@ class Gate(Judged):
             "what_it_is_not": WHAT_IT_IS_NOT,
             "reason": self.reason,
             "limits": self.limits.to_dict(),
-            "uncertainty": {**asdict(self.uncertainty), "smaller_than_shipped": list(tightened(self.uncertainty))},
+            "uncertainty": {**self.uncertainty.model_dump(), "smaller_than_shipped": list(tightened(self.uncertainty))},
             "scenarios": self.scenarios,
             "ending_s": ENDING_S,
             "skin_after_ending_C": dict(self.after_C),

@@ -15,8 +15,8 @@ import numpy as np
 from thermicon.icons import IconSet
 
 from ..inputs import InputError, read_text
-from ..rig.parts import Uncertainty
 from ..rig.rules import Limits
+from ..rig.uncertainty import Uncertainty
 from ..solver.trace import Trace
 from .checks import Check, Judged
 
@@ -321,7 +321,7 @@ class Session(Judged):
             },
             "time_beyond": [asdict(each) for each in self.time_beyond],
             "checks": [check.to_dict() for check in self.checks],
-            "uncertainty": asdict(self.uncertainty),
+            "uncertainty": self.uncertainty.model_dump(),
             "limits": self.limits.to_dict(),
             "plays": [asdict(play) for play in self.plays],
         }

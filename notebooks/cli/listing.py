@@ -94,7 +94,7 @@ def show_rigs() -> None:
     rows = [
         (
             *(rig.name, rig.title, rig.site, number(rig.skin.rest_C)),
-            *(number(rig.blood_C, 2), number(rig.resting_flux_W_per_m2, 0)),
+            *(number(rig.deep_C, 2), number(rig.resting_flux_W_per_m2, 0)),
         )
         for rig in rigs
     ]

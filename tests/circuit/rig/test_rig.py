@@ -53,7 +53,7 @@ def test_with_changes_one_key_and_keeps_the_rest() -> None:
     assert small.with_(**{"contact.area_cm2": 9.0}) == THENAR
     assert THENAR.with_(**{"skin.layer.dermis.thickness_mm": 2}).skin.layers[2].thickness_m == pytest.approx(2e-3)
     assert THENAR.with_(**{"driver.current_min_A": 0}).driver.current_min_A == 0
-    assert THENAR.with_(**{"skin.deep_C": 37}).blood_C == 37
+    assert THENAR.with_(**{"skin.deep_C": 37}).deep_C == 37
 
 
 def test_settings_from_the_command_line_are_toml_values() -> None:

@@ -42,7 +42,7 @@ def _deep_C(layers: tuple[Layer, ...], surface_C: float, loss_W_per_m2: float) -
 @pytest.mark.parametrize("name", SITES)
 def test_rest_at_every_site_is_the_layered_closed_form(name: str) -> None:
     rig = Rig.load(name)
-    assert rig.blood_C == pytest.approx(_deep_C(rig.skin.layers, 32.0, 80.0), abs=2e-3)
+    assert rig.deep_C == pytest.approx(_deep_C(rig.skin.layers, 32.0, 80.0), abs=2e-3)
     assert rig.resting_flux_W_per_m2 == pytest.approx(-80.0, abs=1e-9)
     assert (rig.site, rig.warnings) == (name, ())
     assert {"hand-dorsum": "back of the hand"}.get(name, name) in rig.title
@@ -75,15 +75,12 @@ def test_receptors_are_nodes_of_the_mesh(name: str) -> None:
 
 
 def test_receptor_depths_in_both_conventions() -> None:
-    depths = THENAR.receptor_depths()
-    assert depths == type(depths)(0.27, 0.38, 0.10, 0.21)
+    below, base = "cold 0.27 mm, warm 0.38 mm below the surface", "the base of the stratum corneum"
+    assert THENAR.skin.receptor_words() == f"{below}; cold 0.1 mm below, warm 0.21 mm below {base}"
+    surface = THENAR.with_(**{"skin.depth_from": "surface"}).skin.receptor_words()
+    assert surface == f"cold 0.1 mm, warm 0.21 mm below the surface; cold 0.07 mm above, warm 0.04 mm below {base}"
     assert THENAR.skin.cold_receptor_m == pytest.approx(0.27e-3)
-    surface = THENAR.with_(**{"skin.depth_from": "surface"}).receptor_depths()
-    assert (surface.cold_mm, surface.warm_mm) == (0.10, 0.21)
-    assert (surface.cold_below_corneum_mm, surface.warm_below_corneum_mm) == (-0.07, 0.04)
-    thick = THENAR.with_(**{"skin.layer.stratum corneum.thickness_mm": 0.30})
-    assert thick.receptor_depths() == Rig.load("fingertip").receptor_depths()
-    assert SHANI.receptor_depths().cold_below_corneum_mm is None
+    assert SHANI.skin.receptor_words() == "cold 0.15 mm, warm 0.3 mm below the surface"
 
 
 def test_rest_warmer_than_blood_is_possible_and_warned_of() -> None:
@@ -125,7 +122,7 @@ def test_a_rig_tells_about_itself_in_plain_text(name: str) -> None:
     assert lines[0] == f"{name}: {rig.title}"
     assert all(len(line) <= 118 for line in lines)
     told = " ".join(rig.about().split())
-    words = [f"site {rig.site}", f"{rig.blood_C:.2f} °C", str(rig.receptor_depths())]
+    words = [f"site {rig.site}", f"{rig.deep_C:.2f} °C", rig.skin.receptor_words()]
     words.append(rig.module_source if rig.thermode is None else "0.1 … 60 °C at up to 300 K/s")
     for text in (*words, *(f"warning {text}" for text in rig.warnings), *(f"note {text}" for text in rig.notes)):
         assert text in told

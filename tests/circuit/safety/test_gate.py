@@ -4,7 +4,7 @@ import json
 import math
 import subprocess
 import sys
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cache
 from typing import get_args
 
@@ -13,7 +13,7 @@ import pytest
 
 from tests.builders import messages
 from thermicon.circuit import Drive, Gate, Limits, Rig, design, gate, simulate, simulate_current
-from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.rig.uncertainty import Uncertainty
 from thermicon.circuit.safety.checks import CURE_OF, Before, Check, Cure, Scenario, cures_of, findings_of
 from thermicon.circuit.safety.current import ENDINGS, CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.ensemble import Ensemble
@@ -26,7 +26,7 @@ from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
 SURE: dict[str, object] = {
-    **{f"uncertainty.{field.name}": 0 for field in fields(Uncertainty) if field.name != "reason"},
+    **{f"uncertainty.{key}": 0 for key in Uncertainty.model_fields if key != "reason"},
     "uncertainty.reason": "a test that needs the rig as given",
 }
 STRONG = {"driver.current_limit_A": 8.0, "driver.voltage_limit_V": 60.0, "heat_sink.resistance_K_per_W": 0.02,

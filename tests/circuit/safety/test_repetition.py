@@ -1,6 +1,5 @@
 """Played again and again: cycles, bounds, recovery and pauses against brute force, play after play."""
 
-from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -8,7 +7,7 @@ import pytest
 from tests.circuit.delivery.one_drive import worst_case
 from thermicon.circuit import Device, Drive, Limits, Rig, gate
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.rig.parts import Uncertainty
+from thermicon.circuit.rig.uncertainty import Uncertainty
 from thermicon.circuit.safety import playmap
 from thermicon.circuit.safety.checks import Before
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
@@ -23,7 +22,7 @@ from thermicon.icons import parse
 
 THENAR = Rig.load("thenar")
 SURE: dict[str, object] = {
-    **{f"uncertainty.{field.name}": 0 for field in fields(Uncertainty) if field.name != "reason"},
+    **{f"uncertainty.{key}": 0 for key in Uncertainty.model_fields if key != "reason"},
     "uncertainty.reason": "a test that needs the rig as given",
 }
 CONTROLLED = THENAR.with_(

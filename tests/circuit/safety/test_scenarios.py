@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from tests.circuit.safety.futures import play_out
 from thermicon.circuit import Drive, Rig, design, gate, simulate_current
-from thermicon.circuit.rig.parts import Uncertainty
 from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.rig.uncertainty import Uncertainty
 from thermicon.circuit.safety.corners import corners_of, passes_most_cooling
 from thermicon.circuit.safety.current import ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
@@ -56,7 +54,7 @@ def test_rows_are_in_step_with_the_updates(update_s: float, row_s: float) -> Non
 
 WHY = {"uncertainty.reason": "a test that needs the rig as given"}
 SURE: dict[str, object] = {
-    **{f"uncertainty.{field.name}": 0 for field in fields(Uncertainty) if field.name != "reason"}, **WHY,
+    **{f"uncertainty.{key}": 0 for key in Uncertainty.model_fields if key != "reason"}, **WHY,
 }  # fmt: skip
 OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
 CUE = Drive([0, 1, 1.5, 4, 5], [0.1, 0.5, 1.2, -0.4, 0.2], held=True)
@@ -73,7 +71,7 @@ def test_corners_are_those_of_the_box() -> None:
     last = corners[-1].rig
     assert last.contact.resistance_m2K_per_W == pytest.approx(1.3 * 5.4e-4)
     assert (last.ambient.temperature_C, last.heat_sink.temperature_C, last.skin.rest_C) == (21.0, 41.0, 32.0)
-    assert last.blood_C == pytest.approx(THENAR.blood_C + 0.97, abs=0.01), "a cooler room takes warmer blood to rest"
+    assert last.deep_C == pytest.approx(THENAR.deep_C + 0.97, abs=0.01), "a cooler room takes warmer blood to rest"
     assert last.module.seebeck_V_per_K == pytest.approx(1.05 * 0.0521)
     assert last.module.thermal_resistance_K_per_W == pytest.approx(6.56 / 1.1)
     assert last.module.cold_plate_J_per_K == pytest.approx(1.2 * 2.6)

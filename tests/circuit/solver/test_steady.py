@@ -29,7 +29,7 @@ def test_rest_is_the_layered_pennes_closed_form() -> None:
         chain = np.array(step) @ chain
     deep = 32.0 + chain[0, 1] * 80 / chain[0, 0]
     assert deep == pytest.approx(34.58, abs=5e-3)
-    assert THENAR.blood_C == pytest.approx(deep, abs=2e-3)
+    assert THENAR.deep_C == pytest.approx(deep, abs=2e-3)
     assert THENAR.resting_flux_W_per_m2 == pytest.approx(-80.0, abs=1e-9)
 
 

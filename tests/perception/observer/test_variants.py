@@ -56,8 +56,8 @@ def test_both_ways_to_count_depth_reach_the_percept(variable: Variable) -> None:
     person, icon = Observer.load(variable=variable), load_library("six-icons")["warming-step"]
     base = Rig.load("thenar")
     surface = base.with_(**{"skin.depth_from": "surface"})
-    assert surface.receptor_depths().warm_mm == pytest.approx(0.21)
-    assert base.receptor_depths().warm_mm == pytest.approx(0.38)
+    assert surface.skin.warm_receptor_m == pytest.approx(0.21e-3)
+    assert base.skin.warm_receptor_m == pytest.approx(0.38e-3)
     traces = [simulate(icon, rig, tail_s=3.0) for rig in (surface, base)]
     same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.27, "skin.warm_receptor_mm": 0.38}), tail_s=3.0)
     felt = [perceive(trace, person) for trace in (*traces, same)]
