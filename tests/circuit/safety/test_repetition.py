@@ -1,6 +1,5 @@
 """Played again and again: cycles, bounds, recovery and pauses against brute force, play after play."""
 
-
 import numpy as np
 import pytest
 
