@@ -18,7 +18,6 @@ from ..rig.rig import Rig
 from ..solver.displayed import judge_display, part_of, trace_of_display
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, target_at
-from ..solver.landing import refuse_landing
 from ..solver.modes import modes_of
 from ..solver.simulate import duration_s, rows_until, simulate_current
 from ..solver.steady import steady_of
@@ -39,7 +38,6 @@ BRIDGE_ROUNDS = 3
 
 def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0) -> DeliveredDrive:
     """Return what a device delivers of a cue on a rig."""
-    refuse_landing(rig, "what a device delivers is judged for a hand that rests on the display")
     if device.driven_by == "set-points":
         return deliver_setpoints(icon, rig, device, tail_s)
     if device.driven_by == "temperatures":

@@ -11,14 +11,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..arrays import Array
 from ..inputs import InputError
 from ..program import own_version
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
-from ..rig.rigfile import RigError
 from ..solver.drive import Drive
-from ..solver.landing import lead_of
 from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
 
@@ -40,7 +37,6 @@ def netlist(
     drive: Drive,
     *,
     rest_A: float | None = None,
-    lead_A: Array | None = None,
     title: str = "drive",
     rows_Hz: float = 100.0,
     out_file: str | None = None,
@@ -55,9 +51,6 @@ def netlist(
     rest_A
         Current in A whose steady state the run starts from (`Design.rest_A`); the drive's first current follows 1 µs
         later. None: the drive's first current.
-    lead_A
-        Where a hand lands (`contact.lands_s`), the currents in A before it does and for each update until the drive
-        begins (`Design.lead_A`). The netlist's clock begins at the landing. None: `rest_A`, or the first current.
     title
         First line of the netlist.
     rows_Hz
@@ -75,10 +68,7 @@ def netlist(
     Raises
     ------
     RigError
-        For a thermode, where there is no steady state to start from, and for a hand that lands on a rig whose passive
-        heat sink starts at a temperature of its own.
-    ValueError
-        For a number of `lead_A` that the rig's lead does not have.
+        For a thermode, and where there is no steady state to start from.
 
     Examples
     --------
@@ -86,16 +76,12 @@ def netlist(
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
     """
-    check_landing(rig)
     net = network_of(rig)
     names, skin = _skin(rig, net)
-    end, step = lead_s(rig) + float(drive.time_s[-1]), 1.0 / rows_Hz
-    corners = points(drive, rest_A)
-    if rig.contact.lands_s is not None:
-        corners = led_points(rig, drive, lead_currents(rig, drive, rest_A, lead_A))
+    end, step = float(drive.time_s[-1]), 1.0 / rows_Hz
     lines = [
         *_header(rig, names, title),
-        *_electrical(rig, corners),
+        *_electrical(rig, points(drive, rest_A)),
         *_module(rig),
         *_sink(rig, net, float(drive.current_A[0]) if rest_A is None else rest_A),
         *skin,
@@ -150,13 +136,7 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
     if rig.probes:
         left_out = ", ".join(probe.name for probe in rig.probes)
         yield from _comment(f"Not in this file: the rig's own probes with their lags ({left_out}).")
-    if rig.contact.lands_s is None:
-        yield from _comment("The operating point is the steady state of the current that is commanded at 0 s.")
-    else:
-        yield from _comment(
-            "The operating point is a display in air under the current at 0 s, and bare skin at rest. A hand lands at "
-            f"0 s; the cue begins at {lead_s(rig)!r} s."
-        )
+    yield from _comment("The operating point is the steady state of the current that is commanded at 0 s.")
     yield from _comment("LTspice stores fewer points than it computes; .options plotwinsize=0 makes it keep them all.")
 
 
@@ -222,10 +202,7 @@ def _skin(rig: Rig, net: Network) -> tuple[list[str], list[str]]:
     contact = rig.contact.resistance_m2K_per_W / rig.contact.area_m2
     lines, in_face = list(_section("contact")), resistance[0] - contact < 1e-9 * resistance[0]
     names[2] = "skin" if in_face else names[2]  # the first lump may lie in the face
-    if rig.contact.lands_s is None:
-        lines.append(f"Rcontact cold skin {contact!r}")
-    else:
-        lines += contact_lines(rig, contact, names[2])
+    lines.append(f"Rcontact cold skin {contact!r}")
     if not in_face:
         lines.append(f"Rface skin {names[2]} {resistance[0] - contact!r}")
     lines += _section("skin")
@@ -268,61 +245,6 @@ def _comment(text: str) -> list[str]:
 
 EDGE_S = 1e-6
 """Width of the flank that replaces a jump of a held current; less where rows are closer than four of these."""
-
-
-def lead_s(rig: Rig) -> float:
-    """Time in s from the landing to the beginning of a cue, in whole updates of the driver; 0 for a hand that rests."""
-    return lead_of(rig) / rig.driver.update_Hz
-
-
-def check_landing(rig: Rig) -> None:
-    """Raise RigError where a hand lands on a rig whose heat sink begins a cue at a temperature of its own.
-
-    In a run, such a sink is set to its starting temperature when the cue begins; nothing in a circuit can do that.
-    """
-    passive = rig.heat_sink.passive
-    if rig.contact.lands_s is not None and passive is not None and not passive.steady:
-        raise RigError(
-            f"rig {rig.name}: contact.lands_s = {rig.contact.lands_s:g} s: in a netlist, a passive heat sink cannot be "
-            "set to heat_sink.temperature_C when the cue begins; remove heat_sink.temperature_C (a sink in balance) or "
-            "contact.lands_s"
-        )
-
-
-def lead_currents(rig: Rig, drive: Drive, rest_A: float | None, lead_A: Array | None) -> Array:
-    """Currents in A until the hand lands and for each update since: those of a design, or one that is held.
-
-    Raises ValueError for another number of them.
-    """
-    count = lead_of(rig) + 1
-    if lead_A is None:
-        return np.full(count, float(drive.current_A[0]) if rest_A is None else rest_A)
-    if len(lead_A) != count:
-        raise ValueError(f"a lead of {lead_s(rig):g} s has {count} currents, one before it, not {len(lead_A)}")
-    return np.asarray(lead_A, dtype=float)
-
-
-def led_points(rig: Rig, drive: Drive, lead_A: Array) -> list[tuple[float, float]]:
-    """Corners of the current from the landing on: the lead, then the drive, a flank of 1 µs for each jump."""
-    count, after = len(lead_A) - 1, lead_s(rig)
-    if not count:
-        return points(drive, float(lead_A[0]))
-    held = Drive(np.arange(count + 1) / rig.driver.update_Hz, np.append(lead_A[1:], lead_A[-1]), held=True)
-    # The last corner of the lead is the first of the drive.
-    cue = points(drive, float(lead_A[-1]))
-    return [*points(held, float(lead_A[0]))[:-1], *((after + time, current) for time, current in cue)]
-
-
-def contact_lines(rig: Rig, resistance_K_per_W: float, first: str) -> Iterator[str]:
-    """The contact that closes when the hand lands, and what display and skin have before; `first` is a skin lump."""
-    film_W_per_K = rig.ambient.film_W_per_m2K * rig.contact.area_m2
-    rest_W = rig.resting_flux_W_per_m2 * rig.contact.area_m2
-    yield "* V(landed) is 0 in the operating point and 1 from the landing on"
-    yield f"Vlanded landed 0 PWL(0 0 {EDGE_S!r} 1)"
-    yield f"Bcontact cold skin I=V(landed)*(V(cold)-V(skin))/{resistance_K_per_W!r}"
-    yield "* until then: the display in air, and the heat that bare skin at rest takes up at its face"
-    yield f"Bair cold 0 I=(1-V(landed))*{film_W_per_K!r}*(V(cold)-{rig.ambient.temperature_C!r})"
-    yield f"Brest 0 {first} I=(1-V(landed))*{rest_W!r}"
 
 
 def points(drive: Drive, rest_A: float | None) -> list[tuple[float, float]]:

@@ -16,8 +16,9 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..solver.drive import Drive
-from ..solver.landing import start_under
+from ..solver.network import network_of
 from ..solver.simulate import simulate_current
+from ..solver.steady import state_under_current
 from ..solver.trace import Trace
 from .log import DRIVES, Log, LogError
 
@@ -64,7 +65,7 @@ def predict(rig: Rig, run: Run) -> Prediction:
     level, state = steady_level(drive.current_A), None
     if level != drive.current_A[0]:
         try:
-            state = start_under(sensed, level)
+            state = state_under_current(network_of(sensed), level)
         except ArithmeticError as problem:
             raise RigError(f"rig {rig.name}: {problem}; begin the log with a smaller current") from None
     trace = simulate_current(drive, sensed, rate_Hz=RATE_HZ, start_C=state)

@@ -129,8 +129,8 @@ def sentence(which: str, /, **values: object) -> str:
 
 
 def rig_faults(table: RigTable) -> list[str]:
-    """Faults between tables of a rig file: of what warms and cools the display, else of a landing."""
-    return list(_display(table)) or list(_landing(table))
+    """Faults between tables of a rig file: of what warms and cools the display."""
+    return list(_display(table))
 
 
 def _display(table: RigTable) -> Iterator[str]:
@@ -145,18 +145,6 @@ def _display(table: RigTable) -> Iterator[str]:
         yield sentence("faults.neither")
     elif table.thermode is None:
         yield from (sentence("faults.part", key=key) for key in missing)
-
-
-def _landing(table: RigTable) -> Iterator[str]:
-    """Parts of a rig that start at rest, where a hand lands."""
-    apart = {
-        "thermode": table.thermode is not None,
-        "controller": table.heat_sink is not None and table.heat_sink.power_limit_W is not None,
-        "insulated": any(probe.place == "insulated skin" for probe in table.probe),
-    }
-    if table.contact.lands_s is not None:
-        for key in (key for key, there in apart.items() if there):
-            yield sentence("faults.lands", part=sentence(f"apart.{key}"))
 
 
 def heat_sink_faults(table: HeatSinkTable) -> Iterator[str]:

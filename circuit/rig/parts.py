@@ -62,14 +62,10 @@ class Driver:
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """Where display and skin meet: area m², resistance m²·K/W.
-
-    `lands_s`: when the hand lands, on the clock of the cue (−2: 2 s before it begins); None: long before.
-    """
+    """Where display and skin meet: area m², resistance m²·K/W."""
 
     area_m2: float
     resistance_m2K_per_W: float
-    lands_s: float | None = None
 
 
 PLACES = ("display", "interface", "skin", "insulated skin")

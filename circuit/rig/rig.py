@@ -274,7 +274,7 @@ def _assemble(table: RigTable, document: str) -> Rig:
         table.title,
         tuple(table.notes),
         pump_of(table),
-        Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W, contact.lands_s),
+        Contact(contact.area_cm2 * 1e-4, contact.resistance_m2K_per_W),
         table.ambient,
         body,
         column,

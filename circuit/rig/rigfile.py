@@ -111,8 +111,6 @@ class ContactTable(KeyTable):
 
     area_cm2: Annotated[float, Field(ge=0.01, le=10_000)]
     resistance_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1)]
-    # A hand that lands later than the cue begins would need a second cue; a skin is at rest after some minutes.
-    lands_s: Annotated[float, Field(ge=-600, le=0)] | None = None
 
 
 class Controller(KeyTable):

@@ -27,7 +27,6 @@ from ..rig.rules import Limits
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, gains_of, target_at
-from ..solver.landing import refuse_landing
 from ..solver.simulate import duration_s, simulate, simulate_current
 from ..solver.trace import Trace
 from .checks import Check, Judged, worst_of
@@ -75,7 +74,6 @@ def drive_of(plan: SessionPlan, icons: Mapping[str, Icon], rig: Rig, tracking: s
     """
     if tracking not in TRACKINGS:
         raise SessionError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
-    refuse_landing(rig, "a session is played to a hand that rests on the display")
     lasting = {name: duration_s(icons[name], rig) for name in plan.names}
     total = check_length([lasting[name] for name in plan.order], plan.gap_s)
     update = rig.driver.update_Hz

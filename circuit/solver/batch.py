@@ -15,7 +15,6 @@ from ..rig.rigfile import RigError
 from .batch_inputs import Bank, Intervals, cut, run_follow, run_forward, run_regulate
 from .displayed import displays_on
 from .inverse import baseline_C, design, design_many, gains_of, periods, target_at
-from .landing import ahead, common_lead, led, start_after, start_holding, start_under
 from .network import network_of
 from .simulate import rows_until, simulate
 from .steady import state_under_current, steady_state
@@ -121,7 +120,6 @@ def simulate_many(
         raise RigError("rigs of one batch must all have a controller, or none")
     if len({rig.driver.update_Hz for rig in (*rigs, nominal)}) > 1:
         raise RigError("rigs of one batch must share driver.update_Hz")
-    common_lead((*rigs, nominal))
     rows = rows_until(end_s, rate_Hz)
     values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
     stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes), Bank.of([network_of(rig) for rig in rigs]))
@@ -159,7 +157,7 @@ class _Stage:
     def play_corners(self, icon: Icon) -> Array:
         """A current-controlled cue, designed on the nominal rig, on every rig: (probes, rigs, rows)."""
         plan = design(icon, self.nominal, self.end_s)
-        states = [start_under(rig, plan.rest_A) for rig in self.rigs]
+        states = [state_under_current(network_of(rig), plan.rest_A) for rig in self.rigs]
         every = np.arange(len(self.rigs), dtype=np.int64)
         intervals = cut(self.rows, plan.drive.time_s, plan.drive.current_A[np.newaxis], plan.drive.held)
         return run_forward(self.bank, every, np.zeros_like(every), intervals, self.bank.states(states), self.probes)
@@ -168,9 +166,6 @@ class _Stage:
         """The currents designed on the nominal rig, on every rig: (probes, rigs, icons, rows)."""
         plans = design_many(icons, self.nominal, self.end_s)
         currents = np.array([plan.drive.current_A[:-1] for plan in plans])
-        if self.nominal.contact.lands_s is not None:
-            leads = [plan.lead_A for plan in plans if plan.lead_A is not None]
-            return self._play(currents, icons, [start_after(rig, lead_A) for rig in self.rigs for lead_A in leads])
         states = {
             (r, amperes): state_under_current(network_of(rig), amperes)
             for r, rig in enumerate(self.rigs)
@@ -191,11 +186,9 @@ class _Stage:
             targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
         steady = {(r, base): steady_state(rig, control, base) for r, rig in enumerate(self.rigs) for base in set(bases)}
         lanes = [steady[r, base] for r in range(len(self.rigs)) for base in bases]
-        lead, owners = common_lead(self.rigs), [rig for rig in self.rigs for _ in bases]
-        states = [start_holding(rig, state) for rig, (_, state) in zip(owners, lanes, strict=True)]
+        states = [state for _, state in lanes]
         if control == "display" and (values := self._superposed(targets, bases, states)) is not None:
             return values
-        targets = ahead(targets, np.array(bases), lead)
         rig_of, cue_of = self._lanes(len(icons))
         bank, period, begun = self.bank, 1.0 / self.nominal.driver.update_Hz, self.bank.states(states)
         if self.nominal.controller is None:
@@ -209,10 +202,7 @@ class _Stage:
             setpoint = np.concatenate([np.array(bases)[:, np.newaxis], targets[:, :-1]], axis=1)
             gains, bias_A = np.array([gains_of(rig) for rig in self.rigs]), np.array([current for current, _ in lanes])
             currents = run_regulate(bank, rig_of, cue_of, period, setpoint, gains, bias_A, begun)[0]
-        if self.nominal.contact.lands_s is not None:
-            every = np.arange(len(rig_of), dtype=np.int64)
-            states = list(led(bank, rig_of, every, currents[:, :lead], self.nominal, begun))
-        return self._play(currents[:, lead:], icons, states)
+        return self._play(currents, icons, states)
 
     def _superposed(self, targets: Array, bases: Sequence[float], states: Sequence[Array]) -> Array | None:
         """As `track`, where the skin alone decides; lanes near a limit are solved in full. None: solve all in full."""

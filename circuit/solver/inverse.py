@@ -14,9 +14,8 @@ from ..arrays import Array, Index
 from ..rig.rig import Rig
 from .batch_inputs import bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive
-from .landing import ahead, current_before, lead_of, led, start_holding, start_under
-from .network import COLD
-from .steady import steady_state
+from .network import network_of
+from .steady import state_under_current, steady_state
 from .trace import Outcome, judge
 
 LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "current of greatest cooling")
@@ -25,17 +24,12 @@ LIMITS = ("", "current limit", "lower current limit", "compliance voltage", "cur
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """The current designed for a cue on a rig; before it, `rest_A` holds the steady state `start_C` (°C).
-
-    Where a hand lands (`contact.lands_s`), `start_C` is not steady yet, and `rest_A` is what would hold it later;
-    `lead_A` has the current until the hand lands, then one for each update until the cue begins.
-    """
+    """The current designed for a cue on a rig; before it, `rest_A` holds the steady state `start_C` (°C)."""
 
     drive: Drive
     rest_A: float
     start_C: Array
     outcome: Outcome | None
-    lead_A: Array | None = None
 
     def __repr__(self) -> str:
         reached = "" if self.outcome is None else f", {'reached' if self.outcome.reached else 'NOT reached'}"
@@ -118,8 +112,7 @@ def design_ideal(icon: Icon, rig: Rig, end_s: float) -> Design:
     if end_s > times[-1] + 1e-9:
         times.append(end_s)
         values.append(values[-1])
-    lead_A = None if rig.contact.lands_s is None else np.full(lead_of(rig) + 1, current)
-    return Design(Drive(times, values), current, start_under(rig, current), None, lead_A)
+    return Design(Drive(times, values), current, state_under_current(network_of(rig), current), None)
 
 
 def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, ...]:
@@ -137,21 +130,18 @@ def design_many(icons: Sequence[Icon], rig: Rig, end_s: float) -> tuple[Design, 
 
 def _designs(icons: Sequence[Icon], rig: Rig, control: str, end_s: float) -> list[Design]:
     """Designs of cues with one kind of control, side by side, by the inverse of the module."""
-    bank, ends, period, lead = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz, lead_of(rig)
+    bank, ends, period = bank_of(rig), periods(rig, end_s), 1.0 / rig.driver.update_Hz
     bases = [baseline_C(icon, rig) for icon in icons]
     rest = {base: steady_state(rig, control, base) for base in dict.fromkeys(bases)}
     targets = np.array([target_at(icon, base, ends) for icon, base in zip(icons, bases, strict=True)])
     lanes = np.arange(len(icons), dtype=np.int64)
-    begun = bank.states([start_holding(rig, rest[base][1]) for base in bases])
-    before = ahead(targets, np.array(bases), lead)
-    every = run_follow(bank, np.zeros_like(lanes), lanes, period, before, control == "skin", begun)
-    starts = led(bank, np.zeros_like(lanes), lanes, every[0][:, :lead], rig, begun)
-    results = (starts, every[0][:, :lead], *(values[:, lead:] for values in every))
+    begun = bank.states([rest[base][1] for base in bases])
+    results = run_follow(bank, np.zeros_like(lanes), lanes, period, targets, control == "skin", begun)
     designs = []
-    for icon, base, target, start, led_A, currents, reached, why in zip(icons, bases, targets, *results, strict=True):
+    for icon, base, target, start, currents, reached, why in zip(icons, bases, targets, begun, *results, strict=True):
         outcome = judge(target, reached, period, _limits(why, period), steps_at(icon, base))
         drive = Drive([0.0, *ends], [*currents, currents[-1]], held=True)
-        designs.append(Design(drive, rest[base][0], start, outcome, _lead(rig, rest[base][1], led_A)))
+        designs.append(Design(drive, rest[base][0], start, outcome))
     return designs
 
 
@@ -171,25 +161,14 @@ def close_loop(rig: Rig, plan: Design, icon: Icon, target: Array) -> Design:
     bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
     period, control, base = 1.0 / rig.driver.update_Hz, icon.context.control, baseline_C(icon, rig)
     setpoint = _along(rig, plan, "display_C")[:-1] if control == "skin" else np.concatenate([[base], target[:-1]])
-    gains, lead, begun = np.array([gains_of(rig)]), lead_of(rig), bank.states([plan.start_C])
-    level, steady_C = base, plan.start_C
-    if rig.contact.lands_s is not None:
-        steady_C = steady_state(rig, control, base)[1]
-        level, begun = float(steady_C[COLD]), bank.states([start_holding(rig, steady_C)])
-    setpoints = ahead(setpoint[np.newaxis], np.array([level]), lead)
-    every = run_regulate(bank, lane, lane, period, setpoints, gains, np.array([plan.rest_A]), begun)
-    currents, reached, why = (values[:, lead:] for values in every)
+    gains, begun = np.array([gains_of(rig)]), bank.states([plan.start_C])
+    results = run_regulate(bank, lane, lane, period, setpoint[np.newaxis], gains, np.array([plan.rest_A]), begun)
+    currents, reached, why = results
     drive = Drive(plan.drive.time_s, [*currents[0], currents[0, -1]], held=True)
-    start = led(bank, lane, lane, every[0][:, :lead], rig, begun)[0]
-    loop = Design(drive, plan.rest_A, start, None, _lead(rig, steady_C, every[0][0, :lead]))
+    loop = Design(drive, plan.rest_A, plan.start_C, None)
     controlled = _along(rig, loop, "skin_C")[1:] if control == "skin" else reached[0]
     outcome = judge(target, controlled, period, _limits(why[0], period), steps_at(icon, base))
     return replace(loop, outcome=outcome)
-
-
-def _lead(rig: Rig, steady_C: Array, since_A: Array) -> Array | None:
-    """Currents before a cue, for `Design.lead_A`; None where the hand rests."""
-    return None if rig.contact.lands_s is None else np.append(current_before(rig, steady_C), since_A)
 
 
 def _along(rig: Rig, plan: Design, probe: str) -> Array:

@@ -17,10 +17,9 @@ from .batch_inputs import FEWEST, bank_of, cut, run_forward
 from .displayed import play_display, refuse_current
 from .drive import Drive
 from .inverse import baseline_C, design, design_many, target_at
-from .landing import start_under
-from .network import RECORDED
+from .network import RECORDED, network_of
 from .probes import between, divided, readings_of, sensed
-from .steady import check_sink, steady_state
+from .steady import check_sink, state_under_current, steady_state
 from .trace import Outcome, Trace
 
 MOST_ROWS = 10_000_000
@@ -159,7 +158,7 @@ def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C:
     """
     first = float(drive.current_A[0])
     try:
-        state = start_under(rig, first) if start_C is None else start_C
+        state = state_under_current(network_of(rig), first) if start_C is None else start_C
     except ArithmeticError as problem:
         raise RigError(f"rig {rig.name}: {problem}; begin the drive with a smaller current") from None
     check_sink(rig, state)

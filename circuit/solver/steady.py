@@ -89,21 +89,6 @@ def _balance(
     return cold, zero + per_cold * cold
 
 
-def bare_plates(
-    network: Network, film_W_per_K: float, air_C: float, current_A: float | None, display_C: float | None
-) -> tuple[float, float, float]:
-    """Current in A, cold and hot plate in °C of a display in air, under a current or held; ArithmeticError for none."""
-    plates = _plates(network)
-    if current_A is None:
-        assert display_C is not None
-        alpha, ohm, leak, sink, out = plates
-        base, total = out * sink + leak * display_C, out + leak
-        greatest = greatest_cooling_A(display_C, base, total, alpha, ohm, leak)
-        heat = film_W_per_K * (air_C - display_C)
-        current_A = current_for_heat_A(heat, display_C, base, total, alpha, ohm, leak, greatest, 0.0, 1e-13)
-    return (current_A, *_balance(plates, current_A, film_W_per_K, air_C, 0.0))
-
-
 def sink_under(network: Network, hot: float, in_the_end: bool = False) -> float:
     """A passive heat sink in °C, in steady state under the hot plate."""
     *_, sink, out = _plates(network, in_the_end)

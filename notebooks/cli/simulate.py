@@ -227,7 +227,6 @@ def write_traces(traces: Sequence[Trace], output: Path) -> None:
 def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path) -> None:
     """Write the circuit of a rig that plays an icon; what ends with .sp makes ngspice write all probes."""
     from thermicon.circuit import netlist, simulate
-    from thermicon.circuit.delivery.netlist import lead_s
     from thermicon.circuit.solver.inverse import design
 
     check_output(output, NETLIST_SUFFIXES, "a netlist")
@@ -238,10 +237,8 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     trace = simulate(played, rig, tail_s=tail_s)
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"
-    text = netlist(rig, plan.drive, rest_A=plan.rest_A, lead_A=plan.lead_A, title=title, out_file=record)
+    text = netlist(rig, plan.drive, rest_A=plan.rest_A, title=title, out_file=record)
     note(headline(trace))
-    if rig.contact.lands_s is not None:
-        note(f"the netlist's clock begins when the hand lands; the cue begins at {lead_s(rig):g} s")
     how = f"open it in LTspice, or run ngspice -b -r {output.stem}.raw {output.name}"
     if record is not None:
         how = f"ngspice -b {output.name} writes the probes into {record}"

@@ -113,7 +113,6 @@ def test_many_designs_are_the_single_ones_with_their_verdicts() -> None:
         ({"end_s": -2.0}, "a batch cannot end at -2 s"),
         ({"tracking": "replays"}, "tracking 'replays' is not known; it is one of replay, display, ideal"),
         ({"nominal": THENAR.with_(**{"driver.update_Hz": 50})}, r"rigs of one batch must share driver\.update_Hz"),
-        ({"rigs": [THENAR.with_(**{"contact.lands_s": -1.0})]}, r"share contact\.lands_s"),
         (
             {"rigs": [THENAR.with_(heat_sink=PASSIVE), THENAR]},
             r"rigs of one batch must all have a passive heat sink \(heat_sink\.air_resistance_K_per_W\) or none",
@@ -200,11 +199,10 @@ def test_a_limit_that_is_only_near_counts_as_met(monkeypatch: pytest.MonkeyPatch
 @pytest.mark.parametrize(
     "changes",
     [
-        {"contact.lands_s": -0.2},
         {"driver.update_Hz": 50},
         {"controller": {"kp_A_per_K": 1.0}},
     ],
-    ids=["landing", "slow driver", "own loop"],
+    ids=["slow driver", "own loop"],
 )
 def test_what_is_not_linear_is_solved_in_full(changes: dict[str, object]) -> None:
     rows = np.arange(0.0, 1.0, 0.02)

@@ -9,12 +9,9 @@ import numpy as np
 import pytest
 
 from tests.peltier import heat_rejected_W
-from thermicon.circuit import Device, Drive, Rig, design, gate, play_session, simulate, simulate_current, simulate_many
-from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit import Drive, Rig, design, gate, simulate, simulate_current, simulate_many
 from thermicon.circuit.safety.corners import corners_of
 from thermicon.circuit.safety.ensemble import Ensemble
-from thermicon.circuit.safety.session import SessionPlan
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.circuit.solver.steady import state_under_current, steady_state
@@ -28,7 +25,6 @@ KEYS: dict[str, dict[str, object]] = {
         "heat_sink.capacity_J_per_K": 40.0,
         "heat_sink.air_resistance_K_per_W": 1.5,
     },
-    "landing": {"contact.lands_s": -2.0},
 }
 PID = {"kp_A_per_K": 0.5, "ki_A_per_Ks": 0.2, "lag_s": 0.1}
 PROBES = ("hot_plate_C", "skin_C")
@@ -130,22 +126,6 @@ def test_a_verdict_takes_a_passive_sink() -> None:
     verdict = gate(ended, rig, rest_A=plan.rest_A)
     network_end = state_under_current(Ensemble.of(rig).networks[0], 0.0, in_the_end=True)
     assert verdict.drift_C == pytest.approx(Ensemble.of(rig).networks[0].read(network_end, "skin_C"))
-
-
-def refusals(rig: Rig) -> dict[str, Callable[[], object]]:
-    icon, drive = cue("display"), Drive([0, 1], [0.1, 0.1])
-    return {
-        "gate of safety": lambda: gate(drive, rig),
-        "a session": lambda: play_session([icon], SessionPlan((icon.name,), gap_s=1.0), rig),
-        "what a device delivers": lambda: deliver(icon, rig, Device.load("dac-16")),
-    }
-
-
-@pytest.mark.parametrize("what", list(refusals(THENAR)))
-def test_what_is_about_a_hand_that_rests_refuses_one_that_lands(what: str) -> None:
-    rig = THENAR.with_(**KEYS["landing"])
-    with pytest.raises(RigError, match=rf"contact\.lands_s = -2 s: .*{what}.*; remove contact\.lands_s"):
-        refusals(rig)[what]()
 
 
 def test_steady_states_take_the_key() -> None:

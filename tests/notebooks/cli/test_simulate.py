@@ -104,15 +104,6 @@ class TestNetlist:
         assert not list(tmp_path.glob(".*"))
         assert cli("simulate", "cooling-step-skin", "-o", out).exit_code == 0, "the one icon of a set needs no name"
 
-    def test_the_clock_of_a_hand_that_lands_is_named(self, cli: Cli, two: Path, tmp_path: Path) -> None:
-        out = tmp_path / "cool.cir"
-        said = cli.good("simulate", two, "--icon", "cool-step", "--set", "contact.lands_s=-2", "-o", out)
-        assert "clock begins when the hand lands; the cue begins at 2 s\n" in said.stderr
-        text = out.read_text(encoding="ascii")
-        assert "Bcontact cold skin I=V(landed)*" in text
-        assert "Rcontact" not in text
-        assert ".tran 0.01 10.0 0 " in text  # 2 s and the icon's 8 s
-
     @pytest.mark.slow
     def test_ngspice_plays_what_simulate_writes(
         self, cli: Cli, two: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tool: Callable[[str], str]
