@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
 
-from ..records import Table, load_records
 from .faults import CONTROLLED, sentence
 from .module import Peltier
 from .modules import ModuleOrigin, module_of
@@ -89,15 +86,9 @@ def skin_of(table: SkinTable) -> Skin:
     )
 
 
-@cache
-def insulation_records() -> Table:
-    """Sourced and assumed numbers of an insulated probe: the pad over it and the skin around it."""
-    return load_records(resources.files("thermicon.circuit") / "data" / "insulated-probe.toml")
-
-
 def probes_of(tables: Sequence[ProbeTable], thickness_m: float) -> tuple[Probe, ...]:
     """Return the probes of a rig file on skin of a thickness in m; raises ValueError for one that cannot be."""
-    probes = tuple(_probe(table) for table in tables)
+    probes = tuple(Probe(table.name, table.place, table.depth_mm * 1e-3, table.lag_s) for table in tables)
     for place, probe in enumerate(probes):
         if any(probe.name == other.name for other in probes[:place]):
             raise ValueError(sentence("parts.probe_twice", name=probe.name))
@@ -106,23 +97,3 @@ def probes_of(tables: Sequence[ProbeTable], thickness_m: float) -> tuple[Probe, 
                 sentence("parts.probe_deep", name=probe.name, depth=probe.depth_m * 1e3, skin=thickness_m * 1e3)
             )
     return probes
-
-
-def _probe(table: ProbeTable) -> Probe:
-    lateral_keys = (table.lateral_mm, table.width_mm, table.insulation_m2K_per_W)
-    lateral, width, insulation = lateral_keys
-    if table.place != "insulated skin":
-        if any(value is not None for value in lateral_keys):
-            raise ValueError(sentence("parts.probe_bare", probe=table))
-        return Probe(table.name, table.place, table.depth_mm * 1e-3, table.lag_s, 0.0, 0.0, 0.0)
-    records = insulation_records()
-    if insulation is None:
-        insulation = records.one("aerogel thickness").central * 1e-3 / records.one("aerogel conductivity").central
-    if lateral is None:
-        lateral = records.one("lateral distance").central if width is None else width / 2
-    width = 2 * lateral if width is None else width
-    if lateral > width / 2 * (1 + 1e-9):
-        raise ValueError(sentence("parts.probe_lateral", name=table.name, lateral=lateral, width=width, most=width / 2))
-    return Probe(
-        table.name, table.place, table.depth_mm * 1e-3, table.lag_s, lateral * 1e-3, width * 1e-3, float(insulation)
-    )

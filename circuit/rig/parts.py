@@ -68,27 +68,17 @@ class Contact:
     resistance_m2K_per_W: float
 
 
-PLACES = ("display", "interface", "skin", "insulated skin")
-"""Where a probe may be; `thermicon.circuit.solver.probes` defines each place."""
-
-
 @dataclass(frozen=True, slots=True)
 class Probe:
-    """A thermistor or a point of interest: depth in the skin m, lag s (first order).
-
-    The last three are for insulated skin under a round pad: distance to skin in contact m, its diameter m, m²·K/W.
-    """
+    """A thermistor or a point of interest, at a place of `solver.probes`: depth in the skin m, lag s (first order)."""
 
     name: str
     place: str
     depth_m: float
     lag_s: float
-    lateral_m: float
-    width_m: float
-    insulation_m2K_per_W: float
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"[A-Za-z0-9_-]+", self.name):
             raise ValueError(sentence("parts.probe_name", name=self.name))
-        if self.depth_m and "skin" not in self.place:
+        if self.depth_m and self.place != "skin":
             raise ValueError(sentence("parts.probe_depth", probe=self, depth=self.depth_m * 1e3))

@@ -183,15 +183,12 @@ class BloodTable(KeyTable):
 
 
 class ProbeTable(KeyTable):
-    """A point whose temperature is recorded; missing values of an insulated probe come from records."""
+    """A point whose temperature is recorded."""
 
     name: Text
-    place: Literal["display", "interface", "skin", "insulated skin"]
+    place: Literal["display", "interface", "skin"]
     depth_mm: Annotated[float, Field(ge=0, le=200)] = 0.0
     lag_s: Lag = 0.0
-    lateral_mm: Millimetres | None = None
-    width_mm: Millimetres | None = None
-    insulation_m2K_per_W: Annotated[float, Field(ge=1e-6, le=1e3)] | None = None
 
 
 class SafetyTable(KeyTable):

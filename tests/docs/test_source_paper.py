@@ -11,6 +11,7 @@ from nbclient import NotebookClient
 
 from source_paper.depths import resembles
 from source_paper.dermis_course import dermis_course
+from source_paper.insulated import Pad
 from source_paper.paper import (
     coldest_display_C,
     controlled_cue,
@@ -135,18 +136,14 @@ THENAR = Rig.load("thenar")
 
 def test_closely_joined_skin_resembles_its_own_depth() -> None:
     for depth_mm in (0.4, 1.1, 3.0):
-        pad = {"name": "pad", "place": "insulated skin", "lateral_mm": 0.02, "depth_mm": depth_mm}
-        like = resembles(STEP, THENAR.with_(probe=[pad]), "pad", tail_s=10)
+        like = resembles(STEP, THENAR, Pad.of(0.02e-3, depth_mm * 1e-3), tail_s=10)
         assert like.depth_m == pytest.approx(depth_mm * 1e-3, rel=0.02)
         assert like.residual_K < 0.02
 
 
 def test_likeness_is_said_with_its_residual() -> None:
-    rig = THENAR.with_(probe=[{"name": "pad", "place": "insulated skin"}, {"name": "plate", "place": "display"}])
-    assert repr(resembles(STEP, rig, "pad")) == (
-        "Likeness(probe 'pad' is most like 2.49 mm, residual 0.059 K rms of 0.11 K)"
-    )
-    assert resembles(STEP, rig, "plate").depth_m == 0.0
+    said = repr(resembles(STEP, THENAR, Pad.of()))
+    assert said == "Likeness(most like 2.49 mm, residual 0.059 K rms of 0.11 K)"
 
 
 NOTEBOOK = Path(__file__).resolve().parents[2] / "docs/explain/06_the_papers_figures.ipynb"

@@ -15,6 +15,8 @@ from thermicon.circuit.solver.simulate import simulate, simulate_current
 from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon
 
+from .insulated import Pad
+
 
 @dataclass(frozen=True, slots=True)
 class Depths:
@@ -30,7 +32,7 @@ def probe_depths(
 ) -> Depths:
     """Simulate a cue or a drive and record the temperature at depths in m; linear in resistance between lumps."""
     depths = np.array(depths_m, dtype=np.float64)
-    own = tuple(Probe(f"depth-{k}", "skin", float(depth), 0.0, 0.0, 0.0, 0.0) for k, depth in enumerate(depths))
+    own = tuple(Probe(f"depth-{k}", "skin", float(depth), 0.0) for k, depth in enumerate(depths))
     count, probed = len(rig.probes), replace(rig, probes=(*rig.probes, *own))
     if isinstance(cue, Icon):
         trace = simulate(cue, probed, rate_Hz=rate_Hz, tail_s=tail_s)
@@ -42,32 +44,31 @@ def probe_depths(
 
 @dataclass(frozen=True, slots=True)
 class Likeness:
-    """The depth in m of skin in contact whose change a probe resembles most, and the rms residual in K."""
+    """The depth in m of skin in contact whose change a thermistor resembles most, and the rms residual in K."""
 
-    probe: str
     depth_m: float
     residual_K: float
     largest_change_K: float
 
     def __repr__(self) -> str:
         return (
-            f"Likeness(probe {self.probe!r} is most like {self.depth_m * 1e3:.2f} mm, "
+            f"Likeness(most like {self.depth_m * 1e3:.2f} mm, "
             f"residual {self.residual_K:.3f} K rms of {abs(self.largest_change_K):.2f} K)"
         )
 
 
-def resembles(cue: Icon | Drive, rig: Rig, name: str, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Likeness:
-    """Return the depth in the skin under the display whose course a probe on insulated skin resembles most.
+def resembles(cue: Icon | Drive, rig: Rig, pad: Pad, *, tail_s: float = 0.0) -> Likeness:
+    """Return the depth in the skin under the display whose course a thermistor on insulated skin resembles most.
 
     The depth with the least rms difference of the changes from the first row; changes, since the start of a trace does
-    not depend on depth. A lag of the probe is part of its reading. The insulated skin is that under a round pad, with
-    heat flowing sideways; the skin under the display has depth alone.
+    not depend on depth. The insulated skin is that under a round pad, with heat flowing sideways; the skin under the
+    display has depth alone.
     """
     depth = np.concatenate([[0.0], rig.column.depth_m, [rig.skin.thickness_m]])
-    run = probe_depths(cue, rig, depth, rate_Hz=rate_Hz, tail_s=tail_s)
-    read = run.trace.probe(name)
+    run = probe_depths(cue, rig, depth, tail_s=tail_s)
+    read = pad.reads(run.trace, rig)
     best = _nearest(rig, depth, run.temperature_C - run.temperature_C[:, :1], read - read[0])
-    return Likeness(name, best[0], best[1], float((read - read[0])[np.argmax(np.abs(read - read[0]))]))
+    return Likeness(best[0], best[1], float((read - read[0])[np.argmax(np.abs(read - read[0]))]))
 
 
 def _nearest(rig: Rig, depth_m: Array, change_K: Array, wanted_K: Array) -> tuple[float, float]:

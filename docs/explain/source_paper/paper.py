@@ -7,7 +7,7 @@ is given, and returns data with a `plot`. The paper's own curves are not reprodu
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -24,6 +24,7 @@ from thermicon.circuit.solver.trace import Trace
 from thermicon.icons import Icon, load_library
 
 from .depths import Likeness, probe_depths, resembles
+from .insulated import Pad
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,7 +33,8 @@ TAIL_S = 4.0
 """Time that a run goes on after the cue, for the skin to come back."""
 EMULATOR_A, EMULATOR_V = 2.5, 20.0
 """Limits that do not affect the paper's cue: its first instants need 2.4 A and 15.9 V."""
-THERMISTORS = (("1", "display"), ("2", "interface"), ("3", "insulated skin"))
+THERMISTORS = (("1", "display"), ("2", "interface"))
+"""The third is under a pad."""
 
 
 @cache
@@ -143,7 +145,7 @@ class Thermistors:
     lateral_m: float
 
     def __repr__(self) -> str:
-        changes = (f"#{name} {_change(self.trace.probe(name)):.2f} K" for name, _ in THERMISTORS)
+        changes = (f"#{name} {_change(self.trace.probe(name)):.2f} K" for name, _ in self.trace.probes)
         return f"Thermistors({self.trace.rig_name}; {', '.join(changes)}; {self.likeness!r})"
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -166,12 +168,11 @@ def thermistors(rig: Rig | None = None, *, lateral_m: float | None = None, contr
     values. The paper gives neither, nor the thermistors' lag: here they have none.
     """
     probes: list[dict[str, object]] = [{"name": name, "place": place} for name, place in THERMISTORS]
-    if lateral_m is not None:
-        probes[2] |= {"lateral_mm": lateral_m * 1e3}
-    rig, cue = _rig(rig).with_(probe=probes), cooling_step(control)
-    likeness = resembles(cue, rig, "3", tail_s=TAIL_S)
+    rig, cue, pad = _rig(rig).with_(probe=probes), cooling_step(control), Pad.of(lateral_m)
+    likeness = resembles(cue, rig, pad, tail_s=TAIL_S)
     depths = probe_depths(cue, rig, [likeness.depth_m], tail_s=TAIL_S)
-    return Thermistors(depths.trace, likeness, depths.temperature_C[0], rig.probes[2].lateral_m)
+    trace = replace(depths.trace, probes=(*depths.trace.probes, ("3", pad.reads(depths.trace, rig))))
+    return Thermistors(trace, likeness, depths.temperature_C[0], pad.lateral_m)
 
 
 @dataclass(frozen=True, slots=True)

@@ -144,7 +144,7 @@ def test_a_saved_rig_reads_back_as_an_equal_rig(name: str, tmp_path: Path) -> No
 
 def test_changes_probes_sheets_and_odd_texts_survive(tmp_path: Path) -> None:
     sheets = [{"i_max_A": 6.4, "v_max_V": 14.4, "dt_max_K": 66.0, "t_hot_C": 25.0}]
-    probe = [{"name": "pad", "place": "insulated skin", "lag_s": 0.1}]
+    probe = [{"name": "pad", "place": "skin", "lag_s": 0.1}]
     rig = THENAR.with_(
         title='"quotes", \\ and µ',
         notes=["two\nlines"],

@@ -36,18 +36,17 @@ def trace() -> Trace:
         probe("at-cold", depth_mm=0.27),
         probe("at_warm", depth_mm=0.38),
         probe("deep", depth_mm=19.47),
-        probe("pad", "insulated skin"),
     ]
     return simulate(STEP, THENAR.with_(probe=probes))
 
 
 def test_a_rig_file_names_its_probes(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text(FILE + '\n[[probe]]\nname = "pad"\nplace = "insulated skin"\nlateral_mm = 3\n', "utf-8")
+    path.write_text(FILE + '\n[[probe]]\nname = "pad"\nplace = "skin"\ndepth_mm = 3\n', "utf-8")
     (pad,) = Rig.load(path).probes
-    assert (pad.name, pad.place, pad.depth_m, pad.lag_s) == ("pad", "insulated skin", 0.0, 0.0)
-    assert (pad.lateral_m, pad.width_m, pad.insulation_m2K_per_W) == pytest.approx((3e-3, 6e-3, 2e-3 / 0.015))
-    assert Rig.load(path).with_(**{"probe.pad.lag_s": 2, "probe.0.width_mm": 8}).probes[0].width_m == 8e-3
+    assert (pad.name, pad.place, pad.depth_m, pad.lag_s) == ("pad", "skin", 3e-3, 0.0)
+    (changed,) = Rig.load(path).with_(**{"probe.pad.lag_s": 2, "probe.0.depth_mm": 8}).probes
+    assert (changed.lag_s, changed.depth_m) == (2.0, 8e-3)
     assert THENAR.probes == ()
 
 
@@ -57,23 +56,23 @@ def test_setting_a_probe_that_is_not_there() -> None:
 
 
 def test_columns_follow_those_of_the_contract(trace: Trace, tmp_path: Path) -> None:
-    names = ["plate", "slow", "between", "face", "at-cold", "at_warm", "deep", "pad"]
+    names = ["plate", "slow", "between", "face", "at-cold", "at_warm", "deep"]
     assert list(trace.to_frame().columns) == [*COLUMNS, *(f"probe_{name}_C" for name in names)]
     for suffix, read in ((".csv", pd.read_csv), (".parquet", pd.read_parquet)):
         write_trace(trace, tmp_path / f"trace{suffix}")
         back = read(tmp_path / f"trace{suffix}")
         assert list(back.columns) == list(trace.to_frame().columns)
-        assert back["probe_pad_C"].to_numpy() == pytest.approx(trace.probe("pad"), abs=1e-6)
+        assert back["probe_slow_C"].to_numpy() == pytest.approx(trace.probe("slow"), abs=1e-6)
     with pytest.raises(KeyError, match="no probe 'pat' in this trace; there is plate, slow, between"):
         trace.probe("pat")
     with pytest.raises(ValueError, match="read-only"):
-        trace.probe("pad")[0] = 0.0
+        trace.probe("slow")[0] = 0.0
 
 
 def test_a_picture_has_the_probes_on_demand(trace: Trace) -> None:
     shown = [[line.get_label() for line in trace.plot(probes=asked).get_lines()] for asked in (False, True)]
     assert shown[1] == [*shown[0], *(f"probe {name}" for name, _ in trace.probes)]
-    assert len(shown[1]) == len(shown[0]) + 8
+    assert len(shown[1]) == len(shown[0]) + 7
 
 
 def test_probes_change_nothing_else(trace: Trace) -> None:
@@ -119,17 +118,16 @@ def test_a_lagging_probe_starts_settled_and_trails(trace: Trace) -> None:
 
 @pytest.mark.parametrize("rate", [7.0, 40.0, 50.0])
 def test_the_rate_of_rows_does_not_matter_to_a_memory(rate: float) -> None:
-    rig = THENAR.with_(probe=[probe("slow", "display", lag_s=0.05), probe("pad", "insulated skin", lateral_mm=1.0)])
+    rig = THENAR.with_(probe=[probe("slow", "display", lag_s=0.05)])
     coarse, fine = simulate(STEP, rig, rate_Hz=rate), simulate(STEP, rig, rate_Hz=1000)
     assert len(coarse.time_s) == 8 * rate + 1
-    for name in ("slow", "pad"):
-        expected = np.interp(coarse.time_s, fine.time_s, fine.probe(name))
-        assert coarse.probe(name) == pytest.approx(expected, abs=2e-3), name
+    expected = np.interp(coarse.time_s, fine.time_s, fine.probe("slow"))
+    assert coarse.probe("slow") == pytest.approx(expected, abs=2e-3)
 
 
 def test_a_run_too_long_for_its_probes_is_refused() -> None:
-    rig = THENAR.with_(probe=[probe("pad", "insulated skin")])
-    with pytest.raises(RigError, match=r"its probes need 4\.9e\+08 values over 100000 s; the limit is 2e\+08: shorten"):
+    rig = THENAR.with_(probe=[probe(f"p{k}", "display", lag_s=1.0) for k in range(21)])
+    with pytest.raises(RigError, match=r"its probes need 2\.1e\+08 values over 100000 s; the limit is 2e\+08: shorten"):
         simulate_current(Drive([0, 1e5], [0.1, 0.1]), rig)
 
 

@@ -7,8 +7,9 @@ import pytest
 from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import splu
 
-from thermicon.circuit import Drive, Rig, simulate, simulate_current
-from thermicon.circuit.rig.rigfile import RigError
+from source_paper.insulated import Pad
+from thermicon.circuit import Drive, Rig, Trace, simulate, simulate_current
+from thermicon.circuit.arrays import Array
 from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
@@ -16,10 +17,11 @@ STEP = load_library("six-icons")["cooling-step"]
 PAD = 2e-3 / 0.015
 
 
-def under(radius_mm: float, lateral_mm: float | None = None, rig: Rig = THENAR, **keys: float) -> Rig:
+def under(
+    trace: Trace, radius_mm: float, lateral_mm: float | None = None, depth_m: float = 0.0, pad: float = PAD
+) -> Array:
     lateral = radius_mm if lateral_mm is None else lateral_mm
-    pad = {"name": "pad", "place": "insulated skin", "lateral_mm": lateral, "width_mm": 2 * radius_mm, **keys}
-    return rig.with_(probe=[pad])
+    return Pad(lateral * 1e-3, 2e-3 * radius_mm, depth_m, pad).reads(trace, THENAR)
 
 
 def along(rig: Rig, faces_m: np.ndarray) -> np.ndarray:
@@ -77,47 +79,30 @@ def field(rig: Rig, radius_m: float, reading_m: float, display_C: np.ndarray, st
 
 @pytest.mark.parametrize(("radius_mm", "lateral_mm"), [(2.5, 2.5), (2.5, 1.0), (5.0, 5.0)])
 def test_the_probe_is_the_field_of_a_round_patch(radius_mm: float, lateral_mm: float) -> None:
-    trace = simulate(STEP, under(radius_mm, lateral_mm), rate_Hz=12.5, tail_s=4.0)
-    exact = field(THENAR, radius_mm * 1e-3, (radius_mm - lateral_mm) * 1e-3, trace.display_C, 0.08)
+    trace = simulate(STEP, THENAR, tail_s=4.0)
+    exact = field(THENAR, radius_mm * 1e-3, (radius_mm - lateral_mm) * 1e-3, trace.display_C[::8], 0.08)
+    read = under(trace, radius_mm, lateral_mm)[::8]
     swing = float(np.ptp(exact))
     assert swing > 0.08
-    assert np.abs(trace.probe("pad") - exact).max() < 0.04 * max(swing, 0.5)
-    assert np.ptp(trace.probe("pad")) == pytest.approx(swing, rel=0.04)
+    assert np.abs(read - exact).max() < 0.04 * max(swing, 0.5)
+    assert np.ptp(read) == pytest.approx(swing, rel=0.04)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("radius_mm", [1.0, 2.0, 4.0])
 def test_other_patches_and_a_slow_drive(radius_mm: float) -> None:
     drive = Drive([0, 5, 30, 60], [0.08, 0.5, 0.5, 0.08])
-    trace = simulate_current(drive, under(radius_mm), rate_Hz=25)
-    exact = field(THENAR, radius_mm * 1e-3, 0.0, trace.display_C, 0.04)
-    assert np.abs(trace.probe("pad") - exact).max() < 0.02 * np.ptp(exact)
+    trace = simulate_current(drive, THENAR)
+    exact = field(THENAR, radius_mm * 1e-3, 0.0, trace.display_C[::4], 0.04)
+    assert np.abs(under(trace, radius_mm)[::4] - exact).max() < 0.02 * np.ptp(exact)
 
 
 def test_a_tiny_patch_is_skin_in_contact_and_a_thin_pad_too() -> None:
-    plain = simulate(STEP, THENAR)
-    tiny = simulate(STEP, under(0.02, insulation_m2K_per_W=0.1, depth_mm=0.5))
-    deep = simulate(STEP, THENAR.with_(probe=[{"name": "at", "place": "skin", "depth_mm": 0.5}])).probe("at")
-    assert np.abs(tiny.probe("pad") - deep).max() < 0.03
-    thin = simulate(STEP, under(3.0, insulation_m2K_per_W=THENAR.contact.resistance_m2K_per_W))
-    assert np.abs(thin.probe("pad") - plain.skin_C).max() < 0.06
+    trace = simulate(STEP, THENAR.with_(probe=[{"name": "at", "place": "skin", "depth_mm": 0.5}]))
+    assert np.abs(under(trace, 0.02, depth_m=0.5e-3, pad=0.1) - trace.probe("at")).max() < 0.03
+    assert np.abs(under(trace, 3.0, pad=THENAR.contact.resistance_m2K_per_W) - trace.skin_C).max() < 0.06
 
 
 def test_it_starts_in_a_steady_state_and_ends_in_one() -> None:
-    trace = simulate_current(Drive([0, 300], [0.08, 0.08]), under(3.0), rate_Hz=1)
-    assert np.ptp(trace.probe("pad")) < 1e-6
-
-
-def test_one_length_gives_the_other_and_both_must_fit() -> None:
-    def lengths(**keys: float) -> tuple[float, float]:
-        (probe,) = THENAR.with_(probe=[{"name": "a", "place": "insulated skin", **keys}]).probes
-        return probe.lateral_m, probe.width_m
-
-    assert lengths() == pytest.approx((5e-3, 10e-3))
-    assert lengths(lateral_mm=2.0) == pytest.approx((2e-3, 4e-3))
-    assert lengths(width_mm=3.0) == pytest.approx((1.5e-3, 3e-3))
-    assert lengths(lateral_mm=0.5, width_mm=3.0) == pytest.approx((0.5e-3, 3e-3))
-    with pytest.raises(
-        RigError, match=r"probe a: lateral_mm = 2 mm: .*width_mm = 3 mm is farther than 1\.5 mm .*; use at"
-    ):
-        lengths(lateral_mm=2.0, width_mm=3.0)
+    trace = simulate_current(Drive([0, 300], [0.08, 0.08]), THENAR)
+    assert np.ptp(under(trace, 3.0)) < 1e-6
