@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import signed
-from thermicon.perception.evidence.conditioning import Conditioning, suspected
-from thermicon.perception.evidence.results import PredictedRow
+from thermicon.perception.evidence.results import PredictedRow, load_missed, load_predictions, median_half_width
 from thermicon.perception.evidence.targets import plain
 from thermicon.perception.evidence.verdicts import value_text
 from thermicon.perception.observer.channels import VARIABLES
@@ -24,11 +23,10 @@ MARK = {"holds": "✓", "misses": "✗", "shown": " "}
 
 def validate_report(report: ValidationReport) -> list[Block]:
     """Report every number, published and predicted, and how many agree."""
-    known = report.conditioning
     made: list[Block] = [
         Heading(TITLE, 1),
-        Text(f"{summary_text(known)}\nLeft out, these rows are missed:"),
-        Bullets(tuple(map(missed_text, known.missed))),
+        Text(f"{summary_text()}\nLeft out, these rows are missed:"),
+        Bullets(tuple(map(missed_text, load_missed()))),
     ]
     for section in report.sections:
         made.append(Heading(f"{section.target.number} {section.target.title}"))
@@ -70,11 +68,12 @@ def unit_text(unit: str) -> str:
     return "" if unit in ("", "1", "proportion") else f" {unit}"
 
 
-def summary_text(known: Conditioning) -> str:
+def summary_text() -> str:
     """State how many left-out rows are covered, and how wide the intervals are."""
-    inside, rows = len(known.rows) - len(known.missed), len(known.rows)
-    logs = sum(each.log for each in known.rows)
-    factor, share = (known.median_half_width(log=log) for log in (True, False))
+    known = load_predictions()
+    inside, rows = len(known) - len(load_missed()), len(known)
+    logs = sum(each.log for each in known)
+    factor, share = (median_half_width(log=log) for log in (True, False))
     return (
         f"Left out with its experiment, {inside} of {rows} published numbers lie inside the 95 % interval of their "
         f"prediction ({0.95 * rows:.0f} expected). Median interval: a factor {plain(factor)} either way for {logs} "
@@ -89,5 +88,5 @@ def missed_text(row: PredictedRow) -> str:
     ends = f"{plain(row.left_out_low)} to {plain(row.left_out_high)}"
     return (
         f"{row.label.removesuffix(', both')} ({row.experiment}): published {plain(row.published)}, predicted "
-        f"{plain(row.left_out)} [{ends}], {signed(row.score, '+.1f')} SD. Suspected: {suspected(row)}."
+        f"{plain(row.left_out)} [{ends}], {signed(row.score, '+.1f')} SD. Suspected: {row.suspected}."
     )

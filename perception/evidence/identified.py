@@ -1,10 +1,8 @@
 """Icons named from memory, for every variant of the observer: confusions, and their dependence on parameters.
 
-Six icons; waves that differ in shape alone; and sequences of short pulses: published are the shares of the best 22 and
-16 of 52 that are named correctly, but their levels, lengths, site and display are unknown, so that the sequences are
-this project's own, and the result is shown and not judged.
-The waves are square, sine and triangle, on both sides of baseline and on one, with two periods and one size, shipped as
-`wave-confusions`; sizes and periods of published waves were not available in numbers.
+Six icons, and waves that differ in shape alone: square, sine and triangle, on both sides of baseline and on one, with
+two periods and one size, shipped as `wave-confusions`; sizes and periods of published waves were not available in
+numbers.
 
 The same chain as `rank`, on the same people; beyond it, receptors that go by heat flow, and
 the laboratories of a new one's interval, whose observers stand behind the other experiments too.
@@ -25,17 +23,15 @@ from thermicon.circuit import Rig
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
-from ..identification.laboratory_draws import EVERY, PEOPLE, people_for_intervals
+from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, USUAL_NORM, VARIABLES, Variable, receptor_column
-from ..observer.observer import DATA, Observer
+from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
-from ..selection.appraise import population_dprime
-from ..selection.max_min_subset import max_min_subset
 from .baseline import named_by_skin
 from .predicted import Predicted, interval_of, plausible_laboratories
 
@@ -172,26 +168,6 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
     made[0] = replace(made[0], people=(low, high))
     made[3] = replace(made[3], conditions=f"{found.said}; plug-in estimate of {trials} trials a person")
     return tuple(made)
-
-
-CUES, RIG, CHOSEN = DATA / "short-pulses.cue", "tcs2", (22, 16)
-
-
-def show_pulses(people: int, seed: int) -> tuple[Shown, ...]:
-    """Play the sequences of each choice to virtual people on a thermode; the nominal observer chooses, by median d′."""
-    from thermicon.icons import read_cue
-
-    icons, rig = list(read_cue(CUES)), Rig.load(RIG)
-    middle = np.median(population_dprime(icons, rig, draw_people(PEOPLE, seed))[0], axis=0)
-    best = [max_min_subset(middle, count) for count in CHOSEN]
-    return tuple(show([icons[place] for place in one.chosen], rig, people, seed) for one in best if one is not None)
-
-
-def named_pulses(found: Identified) -> Predicted:
-    """Proportion correct of a choice."""
-    said = f"named from memory, {found.probability.shape[0]} people, {RIG}, best by the worst pair of 52"
-    asked = f"proportion correct of the best {len(found.labels)}"
-    return found.predicted("short pulses", asked, "proportion", correct, conditions=said, top=1.0)
 
 
 WAVES = "wave-confusions"

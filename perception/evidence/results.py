@@ -14,18 +14,16 @@ from dataclasses import asdict, dataclass, fields
 from functools import lru_cache
 from io import StringIO
 from pathlib import Path
-from statistics import NormalDist
+from statistics import median
 from typing import Any
 
-from ..observer.channels import Variable, check_variable
+from ..observer.channels import Variable
 from ..observer.observer import DATA
-from ..observer.priors import WITHIN_95, load_priors, priors_of
-from .rows import load_rows
+from ..observer.priors import WITHIN_95, load_priors
+from .rows import load_evidence, load_rows
 
 UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
-EDGE = 0.1
-"""A constant in the outer tenth of its prior, at either end, sits at an edge: the evidence pulls against the prior."""
 CONSTANTS, PREDICTIONS, ABLATION = "constants.csv", "predictions.csv", "ablation.csv"
 
 
@@ -47,22 +45,6 @@ class Constant:
     narrowed: float
     mechanism: str
     source: str
-
-    @property
-    def quantile(self) -> float:
-        """Place of its value in the prior, 0 to 1."""
-        prior = next(prior for prior in priors_of(check_variable(self.variable)).each if prior.name == self.name)
-        return NormalDist(prior.middle, prior.sd).cdf(prior.to_place(self.value))
-
-    @property
-    def moved(self) -> bool:
-        """Whether the evidence narrowed it to less than `UNMOVED_SD` of the prior's."""
-        return self.narrowed <= UNMOVED_SD
-
-    @property
-    def at_edge(self) -> bool:
-        """Whether its value lies in an outer tenth of the prior."""
-        return not EDGE <= self.quantile <= 1.0 - EDGE
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +87,12 @@ class PredictedRow:
         low, high = self.left_out_low, self.left_out_high
         return math.sqrt(high / low) if self.log else 0.5 * (high - low) / abs(self.published)
 
+    @property
+    def suspected(self) -> str:
+        """The mechanism behind a miss; nothing where the row is covered."""
+        known = load_evidence().suspected
+        return "" if self.covered else known.get((self.experiment, self.statistic, self.channel), "none named yet")
+
 
 @dataclass(frozen=True, slots=True)
 class AblatedRow:
@@ -135,6 +123,16 @@ def load_constants(variable: Variable = "temperature") -> tuple[Constant, ...]:
 def load_predictions() -> tuple[PredictedRow, ...]:
     """Predictions of every row, in the fit and out of it."""
     return tuple(read_rows(PREDICTIONS, PredictedRow))
+
+
+def load_missed() -> tuple[PredictedRow, ...]:
+    """Rows outside of their interval when left out, the worst first."""
+    return tuple(sorted((row for row in load_predictions() if not row.covered), key=lambda row: -abs(row.score)))
+
+
+def median_half_width(*, log: bool) -> float:
+    """Median of the half widths of the rows on one scale."""
+    return median(row.half_width for row in load_predictions() if row.log == log)
 
 
 @lru_cache(maxsize=1)

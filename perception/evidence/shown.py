@@ -17,9 +17,7 @@ from .identified import (
     Identified,
     Likeness,
     likeness,
-    named_pulses,
     show,
-    show_pulses,
     six_icons,
     skin_waves,
     wave_shapes,
@@ -55,14 +53,10 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
     rig, six, waves = Rig.load("thenar"), load_library(SIX), load_library(WAVES)
     both = IconSet(waves.name, waves.title, waves.context, waves.metadata, (*waves.entries, *six.entries))
     alike = likeness(skin_waves(rig))
-    shown, shown_waves, sequences = (
-        show(six, rig, people, seed),
-        show(both, rig, people, seed),
-        show_pulses(people, seed),
-    )
+    shown, shown_waves = show(six, rig, people, seed), show(both, rig, people, seed)
     predicted: list[Predicted] = []
     six_named, waves_named = [], []
-    step = step_counter(progress, len(VARIABLES) * (len(_experiments("temperature", people, draws, seed)) + 3))
+    step = step_counter(progress, len(VARIABLES) * (len(_experiments("temperature", people, draws, seed)) + 2))
     for variable in VARIABLES:
         for run in _experiments(variable, people, draws, seed):
             predicted += run()
@@ -72,8 +66,6 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
         step()
         waves_named.append(shown_waves.identify(variable, draws))
         predicted += wave_shapes(waves_named[-1], alike)
-        step()
-        predicted += [named_pulses(each.identify(variable, draws)) for each in sequences]
         step()
     return Evidence(tuple(predicted), tuple(six_named), tuple(waves_named), alike)
 

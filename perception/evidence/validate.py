@@ -16,7 +16,6 @@ from ..identification.laboratory import DRAWS
 from ..observer.channels import VARIABLES, Variable
 from ..observer.observer import load_thresholds
 from .baseline import nearer_of
-from .conditioning import Conditioning, load_conditioning
 from .predicted import Predicted, interval_of
 from .targets import PAIRED, Published, Row, Target, combined, load_targets, published_for
 from .verdicts import Verdict, judge_row
@@ -92,8 +91,6 @@ class ValidationReport:
         Targets with their verdicts.
     evidence
         Curves and answers behind the figures.
-    conditioning
-        What the constants were inferred from, with left-out predictions.
 
     See Also
     --------
@@ -107,7 +104,6 @@ class ValidationReport:
     trials: int
     sections: tuple[Section, ...]
     evidence: Evidence
-    conditioning: Conditioning
 
     def counts(self, variant: int) -> tuple[int, int]:
         """How many judged rows hold for a variant, of how many."""
@@ -185,8 +181,7 @@ def assemble(evidence: Evidence, table: Table, people: int, draws: int, seed: in
             was = published_for(row, table)
             lines.append(Line(row, was, tuple(judged(row, was, table, evidence, variant) for variant in VARIABLES)))
         sections.append(Section(target, tuple(lines)))
-    made_from = load_conditioning()
-    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence, made_from)
+    return ValidationReport(own_version(), people, draws, seed, trials, tuple(sections), evidence)
 
 
 def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable: Variable) -> Judged:

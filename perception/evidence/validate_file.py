@@ -7,9 +7,9 @@ from dataclasses import asdict
 from typing import Any
 
 from ..observer.channels import VARIABLES
-from .conditioning import Conditioning, OnsetStages, experiment_title, suspected
 from .predicted import Predicted
-from .results import EDGE, UNMOVED_SD, AblatedRow, Constant, PredictedRow
+from .results import PredictedRow, load_missed, load_predictions, median_half_width
+from .rows import load_evidence
 from .validate import Judged, Line, ValidationReport
 from .verdicts import criterion_of_row
 
@@ -39,7 +39,7 @@ def report_file(report: ValidationReport) -> dict[str, Any]:
         ],
         "wave_likeness": [asdict(one) for one in evidence.alike],
         "predictions": [_predicted(one) for one in evidence.predicted],
-        "conditioning": conditioning_file(report.conditioning),
+        "conditioning": conditioning_file(),
     }
 
 
@@ -81,24 +81,19 @@ def _finite(value: float | None) -> float | None:
     return None if value is None or not math.isfinite(value) else float(value)
 
 
-def conditioning_file(known: Conditioning) -> dict[str, Any]:
-    """The keys under `conditioning`, in their order; every number has its unit beside it or in its name."""
+def conditioning_file() -> dict[str, Any]:
+    """Rows that the constants were inferred from, each predicted without its experiment; numbers with their units."""
+    rows = load_predictions()
     return {
-        "rows": [_row(each) for each in known.rows],
+        "rows": [_row(each) for each in rows],
         "summary": {
-            "rows": len(known.rows),
-            "covered": len(known.rows) - len(known.missed),
-            "expected": 0.95 * len(known.rows),
-            "median_factor": known.median_half_width(log=True),
-            "rows_on_log_scale": sum(each.log for each in known.rows),
-            "median_share_of_published": known.median_half_width(log=False),
+            "rows": len(rows),
+            "covered": len(rows) - len(load_missed()),
+            "expected": 0.95 * len(rows),
+            "median_factor": median_half_width(log=True),
+            "rows_on_log_scale": sum(each.log for each in rows),
+            "median_share_of_published": median_half_width(log=False),
         },
-        "constants": [_constant(each) for each in known.constants],
-        "laboratory_offsets": [_constant(each) for each in known.offsets],
-        "not_moved_above": UNMOVED_SD,
-        "edge_below": EDGE,
-        "ablation": [_ablated(each) for each in known.ablation],
-        "onset_stages": [_stages(each) for each in known.stages],
     }
 
 
@@ -110,37 +105,12 @@ def _data(each: object, *same: str, **named: str) -> dict[str, Any]:
 def _row(row: PredictedRow) -> dict[str, Any]:
     return {
         **_data(row, "experiment", "statistic", "channel", "unit", row="label", log_scale="log"),
-        "title": experiment_title(row.experiment),
+        "title": load_evidence().experiments[row.experiment].title,
         "published": {"value": row.published, "interval": [row.published_low, row.published_high]},
         "fitted": {"temperature": row.fitted, "heat flow": row.heat_flow},
         "left_out": {
             **_data(row, "log_score", "covered", value="left_out", miss_sd="score"),
             "interval": [row.left_out_low, row.left_out_high],
         },
-        "mechanism_suspected": suspected(row) or None,
+        "mechanism_suspected": row.suspected or None,
     }
-
-
-def _constant(constant: Constant) -> dict[str, Any]:
-    named = {"prior_source": "source", "sd_over_prior": "narrowed", "prior_quantile": "quantile"}
-    return {
-        **_data(constant, "name", "mechanism", "unit", "value", "moved", "at_edge", **named),
-        "interval": [constant.low, constant.high],
-        "prior_interval": [constant.prior_low, constant.prior_high],
-    }
-
-
-def _ablated(run: AblatedRow) -> dict[str, Any]:
-    named = {"sum_of_squares": "squares", "worst_row": "worst"}
-    return {
-        **_data(run, "variable", "log_evidence", "difference", "worst_sd", **named),
-        "without": run.without or None,
-        "replaced_by": run.replaced_by or None,
-        "sources": run.sources.split(" | ") if run.sources else [],
-    }
-
-
-def _stages(each: OnsetStages) -> dict[str, Any]:
-    stages = asdict(each)
-    leg_s = stages.pop("leg_s")
-    return {**stages, "onset_s": each.onset_s, "onset_with_conduction_of_leg_s": leg_s}

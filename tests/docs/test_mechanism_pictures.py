@@ -15,10 +15,12 @@ from mechanisms.draw_evidence import (
     plot_published_predicted,
 )
 from mechanisms.effects import EFFECTS, Curve, Effect
+from mechanisms.onset_stages import onset_stages
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
-from thermicon.perception.evidence.conditioning import onset_stages
+from thermicon.perception import Observer
 from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.observer.parts import conduction_s
 
 effect_of = pytest.fixture(scope="module")(lambda: {name: effect() for name, effect in EFFECTS.items()})
 
@@ -105,6 +107,11 @@ def test_stages_add_up_to_the_onset_and_are_drawn_in_order() -> None:
     ends = np.array([bar.get_x() + bar.get_width() for bar in axes.patches]).reshape(len(STAGES), -1)
     np.testing.assert_allclose(ends[-1], [each.onset_s for each in stages])
     assert all(each.leg_s > each.onset_s for each in stages)
+    person = Observer.load()
+    for each in stages:
+        speed = person.receptor(each.channel).velocity_m_per_s
+        assert each.nerve_s + each.cord_s == pytest.approx(conduction_s(each.channel, speed, person.path_m("thenar")))
+        assert each.decision_s == person.decision_s
     assert inside(axes)
 
 

@@ -12,9 +12,8 @@ from thermicon.circuit.solver.draw import COOL, WARM, new_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from thermicon.perception.evidence.conditioning import OnsetStages
-
     from .effects import Effect
+    from .onset_stages import OnsetStages
 
 LOOKS: dict[str, dict[str, Any]] = {
     "cold": {"color": COOL, "lw": 2.0},

@@ -33,10 +33,10 @@ def draw_mechanisms(folder: Path) -> None:
         plot_published_predicted,
     )
     from mechanisms.effects import EFFECTS
+    from mechanisms.onset_stages import onset_stages
     from thermicon.circuit import Rig, simulate
     from thermicon.icons import load_library
     from thermicon.perception import Observer, perceive
-    from thermicon.perception.evidence.conditioning import onset_stages
     from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
     from thermicon.perception.identification.episodes import remembered
 

@@ -15,7 +15,6 @@ from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
 from thermicon.perception import Observer, dprime_from_memory, perceive
 from thermicon.perception.arrays import Array
-from thermicon.perception.evidence.identified import CUES, RIG
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.confusion import embed
 from thermicon.perception.identification.delivered import judge_delivered
@@ -25,6 +24,7 @@ from thermicon.perception.observer.people import draw_people
 from thermicon.perception.selection.appraise import population_dprime
 from thermicon.perception.selection.pool import Pool
 
+CUES, RIG = Path(__file__).with_name("short-pulses.cue"), "tcs2"
 HEAD = "cue 1\nset pulses { site thenar; control skin; baseline 32 °C }\n"
 
 
