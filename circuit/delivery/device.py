@@ -13,7 +13,7 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
 from ..records import Record
-from .devicefile import DeviceError, DrivenBy, read_device_table, records_of
+from .devicefile import DeviceError, DrivenBy, read_device_table
 
 FINEST_SETPOINT_K = 0.001
 """Step of set-points where a controller states none: a tenth of the resolution of the best display thermistors."""
@@ -166,7 +166,5 @@ def _shipped(name: str) -> Device:
 
 def _build(text: str, where: str) -> Device:
     table = read_device_table(text, where)
-    return Device(
-        table.name, table.title, table.driven_by, table.codes, table.levels, table.duty_rule, table.streams,
-        table.dc_coupled, table.played, table.note, records_of(table),
-    )  # fmt: skip
+    records = tuple(Record(**record.model_dump()) for record in table.record)
+    return Device(**table.model_dump(exclude={"format", "record"}), records=records)

@@ -1,23 +1,19 @@
-"""The schema of a device file: its keys, the records of each kind of device, and their units."""
+"""The schema of a device file: its keys, and what its records may state."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+import tomllib
+from collections.abc import Iterator
+from functools import cache
+from importlib import resources
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import signed
 
-from ..inputs import (
-    LONGEST_NAME,
-    InputError,
-    Place,
-    key_faults,
-    one_line,
-    paragraph,
-    read_toml,
-)
+from ..inputs import LONGEST_NAME, InputError, Place, key_faults, one_line, paragraph, read_toml
 from ..records import Record, RecordError
 
 
@@ -27,67 +23,15 @@ class DeviceError(InputError):
 
 DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]
 
-UNITS = {
-    "resolution": "bit",
-    "update rate": "Hz",
-    "buffer length": "samples",
-    "carrier frequency": "Hz",
-    "set-point range": "°C",
-    "set-point step": "K",
-    "set-point gain": "V/K",
-    "set-point offset": "V",
-    "tick": "s",
-    "segments": "segments",
-    "segment length": "ticks",
-    "baseline range": "°C",
-    "ramp rate": "K/s",
-    "lag": "s",
-}
-"""Quantities a device may state, each with its unit; those whose unit depends on `driven_by` are below."""
-
-UNITS_BY_DRIVE: dict[str, dict[str, str]] = {
-    "output range": {"volts": "V", "amperes": "A", "duty": "A"},
-    "slew rate": {"volts": "V/s", "amperes": "A/s"},
-}
-"""Quantities that only some devices have, each with its unit by `driven_by`."""
-
-NEEDED: dict[str, tuple[str, ...]] = {
-    "volts": ("output range", "resolution", "update rate"),
-    "amperes": ("output range", "resolution", "update rate"),
-    "duty": ("output range", "resolution", "carrier frequency"),
-    "set-points": (
-        "set-point range", "set-point step", "tick", "segments", "segment length", "baseline range", "ramp rate",
-    ),
-    "temperatures": ("set-point range", "update rate"),
-}  # fmt: skip
-
-INTERVALS = ("output range", "set-point range", "baseline range", "segment length")
-"""Quantities that need a low and a high end."""
+@cache
+def quantities() -> tuple[dict[str, dict[str, Any]], dict[str, list[str]]]:
+    """Quantities that a device may state, with units and limits; and those that it must, by what drives it."""
+    text = (resources.files("thermicon.circuit") / "data" / "device-quantities.toml").read_text("utf-8")
+    table = tomllib.loads(text)
+    return table["quantities"], table["needed"]
 
 
 Text = Annotated[str, AfterValidator(one_line)]
-
-LIMITS: dict[str, tuple[float, float]] = {
-    "output range": (-1000.0, 1000.0),  # V or A: far beyond what moves heat through a module on skin
-    "resolution": (2, 32),  # symmetric codes need two bits; converters end at 32 (delta-sigma)
-    "update rate": (1e-3, 1e12),  # the fastest arbitrary waveform generators make some 2.6e11 samples a second
-    "buffer length": (1, 1e12),
-    "carrier frequency": (1e-2, 1e7),  # switching converters end at some MHz
-    "slew rate": (1e-6, 1e15),  # the fastest amplifiers slew some 1e10 V/s
-    "set-point range": (-100.0, 200.0),
-    "set-point step": (1e-4, 10.0),
-    "set-point gain": (1e-6, 1e3),
-    "set-point offset": (-1000.0, 1000.0),
-    "tick": (1e-3, 10.0),
-    "segments": (1, 1e6),
-    "segment length": (1, 1e6),
-    "baseline range": (-100.0, 200.0),
-    "ramp rate": (1e-3, 1e5),
-    "lag": (0.0, 60.0),
-}
-"""Limits of each quantity, in its unit: wider than any hardware, so that slips are found and no file exhausts the
-memory."""
-
 
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
@@ -130,94 +74,76 @@ def read_device_table(text: str, where: str) -> DeviceTable:
         table = DeviceTable.model_validate(document)
     except ValidationError as problem:
         raise DeviceError("\n".join(f"{where}: {fault}" for fault in key_faults(problem, _nearest))) from None
-    faults = _faults(table)
-    if faults:
+    if faults := _faults(table):
         raise DeviceError("\n".join(f"{where}: {fault}" for fault in faults))
     return table
 
 
-def records_of(table: DeviceTable) -> tuple[Record, ...]:
-    """Return the numbers of a checked table as records."""
-    return tuple(Record(**record.model_dump()) for record in table.record)
-
-
 def _faults(table: DeviceTable) -> list[str]:
+    (known, needed), driven_by = quantities(), table.driven_by
     faults, stated = [], {record.quantity: record for record in reversed(table.record)}
     for place, record in enumerate(table.record):
-        where = f"record.{place} ({record.quantity})"
-        if record.quantity not in UNITS and record.quantity not in UNITS_BY_DRIVE:
-            faults.append(f"{where}: no such quantity; {did_you_mean(record.quantity, [*UNITS, *UNITS_BY_DRIVE])}")
-            continue
-        if fault := _unit_fault(record, table.driven_by):
-            faults.append(f"{where}: {fault}")
-        if stated[record.quantity] is not record:
-            faults.append(f"{where}: appears twice; keep one")
-        if record.quantity in INTERVALS and (fault := _interval_fault(record)):
-            faults.append(f"{where}: {fault}")
-            continue
-        try:
-            records_of(table.model_copy(update={"record": [record]}))
-        except RecordError as problem:
-            faults.append(f"{where}: {problem}")
-            continue
-        faults += [f"{where}: {fault}" for fault in _limit_faults(record)]
-    missing = [quantity for quantity in NEEDED[table.driven_by] if quantity not in stated]
-    faults += [
-        f"a device driven by {table.driven_by} needs a record of its {quantity}, in "
-        f"{_unit_of(quantity, table.driven_by)}"
-        for quantity in missing
+        if record.quantity in known:
+            wrong = [*_unit_faults(record, driven_by), *_number_faults(record)]
+            wrong += [] if stated[record.quantity] is record else ["appears twice; keep one"]
+        else:
+            wrong = [f"no such quantity; {did_you_mean(record.quantity, known)}"]
+        faults += [f"record.{place} ({record.quantity}): {fault}" for fault in wrong]
+    return faults + [
+        f"a device driven by {driven_by} needs a record of its {quantity}, in {units_of(quantity).get(driven_by)}"
+        for quantity in needed[driven_by]
+        if quantity not in stated
     ]
-    return faults
 
 
-def _unit_of(quantity: str, driven_by: str) -> str | None:
-    """Unit of a quantity of such a device; None where it has none of that kind."""
-    return UNITS.get(quantity) or UNITS_BY_DRIVE[quantity].get(driven_by)
+def units_of(quantity: str) -> dict[str, str]:
+    """Unit of a quantity by what drives the devices that have it."""
+    known, needed = quantities()
+    about = known[quantity]
+    return dict(about.get("units") or dict.fromkeys(needed, about["unit"]))
 
 
-def _unit_fault(record: RecordTable, driven_by: str) -> str | None:
+def _unit_faults(record: RecordTable, driven_by: str) -> Iterator[str]:
     """What is wrong with the unit of a record, in a sentence with the cure."""
-    required, stated = _unit_of(record.quantity, driven_by), record.unit
+    units, stated = units_of(record.quantity), record.unit
+    required = units.get(driven_by)
+    others = [f'"{drive}"' for drive, unit in units.items() if unit == stated]
     if required is None:
-        takers = " or ".join(UNITS_BY_DRIVE[record.quantity])
-        return f"does not apply to a device driven by {driven_by}, only to one driven by {takers}; remove it"
-    if stated == required:
-        return None
-    others = [drive for drive, unit in UNITS_BY_DRIVE.get(record.quantity, {}).items() if unit == stated]
-    if not others:
-        return f"unit = {stated!r}: must be {required}; state it in {required}"
-    either = " or ".join(f'"{drive}"' for drive in others)
-    return (
-        f'unit = {stated!r}: must be {required} for a device with driven_by = "{driven_by}"; state it in {required}, '
-        f"or set driven_by to {either} if {stated} is what it puts out"
-    )
-
-
-def _limit_faults(record: RecordTable) -> list[str]:
-    """What numbers of a record no device has, a sentence each with the limit."""
-    least, most = LIMITS[record.quantity]
-    numbers = {"value": record.value, "low": record.low, "high": record.high}
-    faults = [
-        f"{name} = {signed(number)} {record.unit}: must be {signed(least)} to {signed(most)} {record.unit}"
-        for name, number in numbers.items()
-        if number is not None and not least <= number <= most
-    ]
-    if record.quantity == "resolution" and not faults and any(n is not None and n != int(n) for n in numbers.values()):
-        faults.append("must be a whole number of bits")
-    return faults
-
-
-def _interval_fault(record: RecordTable) -> str | None:
-    """What is wrong with the two ends of a record, in a sentence with the cure."""
-    low, high = record.low, record.high
-    if low is None or high is None:
-        return f"needs both low and high; {'low' if low is None else 'high'} is missing, add it in {record.unit}"
-    if low >= high:
-        return (
-            f"low = {signed(low)} {record.unit} is not below high = {signed(high)} {record.unit}; "
-            f"{'swap them' if low > high else 'leave some room between them'}"
+        takers = " or ".join(units)
+        yield f"does not apply to a device driven by {driven_by}, only to one driven by {takers}; remove it"
+    elif stated != required and not others:
+        yield f"unit = {stated!r}: must be {required}; state it in {required}"
+    elif stated != required:
+        yield (
+            f'unit = {stated!r}: must be {required} for a device with driven_by = "{driven_by}"; state it in '
+            f"{required}, or set driven_by to {' or '.join(others)} if {stated} is what it puts out"
         )
-    return None
+
+
+def _number_faults(record: RecordTable) -> Iterator[str]:
+    """What numbers of a record no device has, in sentences with the limit or the cure."""
+    about, unit = quantities()[0][record.quantity], record.unit
+    low, high = record.low, record.high
+    if about.get("interval"):
+        if low is None or high is None:
+            yield f"needs both low and high; {'low' if low is None else 'high'} is missing, add it in {unit}"
+            return
+        if low >= high:
+            cure = "swap them" if low > high else "leave some room between them"
+            yield f"low = {signed(low)} {unit} is not below high = {signed(high)} {unit}; {cure}"
+            return
+    try:
+        Record(**record.model_dump())
+    except RecordError as problem:
+        yield str(problem)
+        return
+    least, most = about["limits"]
+    stated = {name: number for name in ("value", "low", "high") if (number := getattr(record, name)) is not None}
+    wrong = {name: number for name, number in stated.items() if not least <= number <= most}
+    for name, number in wrong.items():
+        yield f"{name} = {signed(number)} {unit}: must be {signed(least)} to {signed(most)} {unit}"
+    if record.quantity == "resolution" and not wrong and any(number != int(number) for number in stated.values()):
+        yield "must be a whole number of bits"
 
 
 def _nearest(place: Place) -> str:

@@ -13,8 +13,6 @@ from ..rig.rig import Rig
 from ..safety.gate import Gate
 from ..safety.repeated import check_pause
 from ..safety.words import more_and_cure
-from ..solver.inverse import design
-from ..solver.simulate import duration_s
 from ..solver.trace import Outcome
 from .deliver import deliver
 from .delivered_drive import DeliveredDrive, DeliveryDeviation, loss_limit
@@ -82,14 +80,6 @@ def prepare_set(
 
 _HEADS = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
 
-STRONGEST = 20.0
-"""How many times a driver's limits are raised, at most, to find the current that a cue needs."""
-FINELY_A = 0.05
-"""The needed current is reported in steps of this size, rounded up: a limit that a person would type."""
-FREE_V = 1000.0
-"""A compliance voltage that holds nothing back, in V: only the current is sought."""
-
-
 @dataclass(frozen=True, slots=True)
 class Refusal:
     """Why a cue is not exported."""
@@ -133,36 +123,6 @@ def refusals_of(delivery: DeliveredDrive, verdict: Gate, deviation: DeliveryDevi
     return tuple(refusals)
 
 
-def needed_A(icon: Icon, rig: Rig) -> float | None:
-    """Return the smallest current limit in A with which a rig reaches a cue's target, rounded up to 0.05 A.
-
-    Both directions grow together. None where no current does, where the cue prescribes none, or where the rig has a
-    loop of its own, whose gains matter more. The compliance voltage is left out.
-    """
-    if icon.context.control == "current" or rig.controller is not None:
-        return None
-    most, least, end = rig.driver.current_max_A, rig.driver.current_min_A, duration_s(icon, rig)
-
-    def reaches(limit_A: float) -> bool:
-        wide = rig.with_(
-            **{
-                "driver.current_limit_A": limit_A,
-                "driver.current_min_A": least * limit_A / most,
-                "driver.voltage_limit_V": FREE_V,
-            }
-        )
-        outcome = design(icon, wide, end).outcome
-        return outcome is not None and outcome.reached
-
-    low, high = most, most * STRONGEST
-    if not reaches(high):
-        return None
-    while high - low > 0.1 * FINELY_A:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if reaches(middle) else (middle, high)
-    return round(FINELY_A * -(-high // FINELY_A), 2)
-
-
 def lost_text(deviation: DeliveryDeviation) -> str:
     """What both receptors lose beyond the stated limit, the worse first, in words; empty where neither does."""
     limit = loss_limit("receptor difference")
@@ -174,7 +134,7 @@ def lost_text(deviation: DeliveryDeviation) -> str:
 
 
 def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome, safe: bool) -> str:
-    """The rig's own shortfall, with what it would take; a cue that is unsafe should not get more current."""
+    """The rig's own shortfall and its cure; a cue that is unsafe should not get more current."""
     text = outcome.reason or "the target is missed"
     if delivery.drives is None:  # a thermode, which has neither driver nor module
         return f"{text}; use a slower or smaller change, or use a thermode that can"
@@ -184,15 +144,12 @@ def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome, safe: bool) -> str
         return f"{text}; use a slower or smaller change"
     if limits_met == ["compliance voltage"]:
         return f"{text}; raise driver.voltage_limit_V ({driver.voltage_limit_V:g} V), or use a slower change"
-    needed = needed_A(delivery.icon, rig)
-    if needed is None:
-        return f"{text}; no current of this module reaches it: use a slower or smaller change"
     narrow = ""
     if delivery.narrowed:
         narrow = f" and {delivery.device.name} plays at most {delivery.narrowed.most_A:g} A"
     return (
-        f"{text}; it takes ±{needed:g} A, and driver.current_limit_A is {driver.current_max_A:g} A{narrow}: use a "
-        f"slower or smaller change, or raise the limit if driver and module can"
+        f"{text}; driver.current_limit_A is {driver.current_max_A:g} A{narrow}: use a slower or smaller change, or "
+        f"raise the limit if driver and module can"
     )
 
 

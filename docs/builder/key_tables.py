@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from thermicon.circuit.delivery.devicefile import LIMITS, UNITS, UNITS_BY_DRIVE, DeviceTable
+from thermicon.circuit.delivery.devicefile import DeviceTable, quantities, units_of
 from thermicon.circuit.rig.modules import build_of, module_table
 from thermicon.circuit.rig.rigfile import RigTable
 from thermicon.notebooks.study.study_file import TABLES as STUDY_TABLES
@@ -43,8 +43,8 @@ def device_keys_table() -> str:
 def device_quantities_table() -> str:
     """Return the quantities that a device may state, with the limits of their values, as a table of Markdown."""
     rows = []
-    for quantity, (low, high) in LIMITS.items():
-        units = [UNITS[quantity]] if quantity in UNITS else sorted(set(UNITS_BY_DRIVE[quantity].values()))
+    for quantity, about in quantities()[0].items():
+        units, (low, high) = sorted(set(units_of(quantity).values())), about["limits"]
         rows.append(f"| `{quantity}` | {' or '.join(units)} | {low:g} to {high:g} |")
     return "\n".join(["| quantity | unit | from, to |", "|---|---|---|", *rows])
 
