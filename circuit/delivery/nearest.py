@@ -93,29 +93,21 @@ def changed(icon: Icon, base_C: float, *, slower: float = 1.0, smaller: float = 
         # A total is what the cue was meant to last: slower, it would only be in the way.
         return tuple(one(part) for part in body if not isinstance(part, Total | Broken))
 
+    factors = {"by_K": smaller, "rate_K_per_s": smaller / slower, "rate_per_s": smaller / slower}
+    slowed = {"duration_s": slower, "period_s": slower}
+
     def one(statement: Statement) -> Statement:
         if isinstance(statement, Repeat):
             return replace(statement, body=all_of(statement.body))
         if isinstance(statement, Play):
             return Repeat(1, all_of(statement.icon.statements))
-        if isinstance(statement, Wave):
-            period, time = statement.period_s * slower, statement.duration_s * slower
-            return replace(statement, by_K=smaller * (statement.by_K or 0.0), period_s=period, duration_s=time)
-        if isinstance(statement, Step | Pulse):
-            if isinstance(statement, Step) and statement.to_C is not None:
-                return replace(statement, to_C=base_C + smaller * (statement.to_C - base_C))
-            return replace(statement, by_K=smaller * (statement.by_K or 0.0))
-        if isinstance(statement, Ramp):
-            to = None if statement.to_C is None else base_C + smaller * (statement.to_C - base_C)
-            by = None if statement.by_K is None else smaller * statement.by_K
-            rate = None if statement.rate_K_per_s is None else statement.rate_K_per_s * smaller / slower
-            span = None if statement.duration_s is None else statement.duration_s * slower
-            return replace(statement, by_K=by, to_C=to, rate_K_per_s=rate, duration_s=span)
-        if isinstance(statement, Return):
-            rate = None if statement.rate_per_s is None else statement.rate_per_s * smaller / slower
-            span = None if statement.duration_s is None else statement.duration_s * slower
-            return replace(statement, rate_per_s=rate, duration_s=span)
-        return statement
+        if not isinstance(statement, Ramp | Return | Wave | Step | Pulse):
+            return statement
+        by = factors if isinstance(statement, Step | Pulse) else factors | slowed
+        new = {name: by[name] * old for name in by if (old := getattr(statement, name, None)) is not None}
+        if (level := getattr(statement, "to_C", None)) is not None:
+            new["to_C"] = base_C + smaller * (level - base_C)
+        return replace(statement, **new)
 
     return replace(icon, statements=all_of(icon.statements))
 

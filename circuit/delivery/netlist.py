@@ -6,8 +6,10 @@ After Fig. 2b of Shani & Lineykin 2021: electrical side in V and A; thermal side
 from __future__ import annotations
 
 import re
+import string
 import textwrap
 from collections.abc import Iterator
+from importlib import resources
 
 import numpy as np
 
@@ -110,34 +112,21 @@ def _header(rig: Rig, names: list[str], title: str) -> Iterator[str]:
     yield from _comment(f"{title} on rig {rig.name}, written by thermicon {own_version()}")
     if rig.title:
         yield from _comment(rig.title)
-    nodes = {
-        "command": f"command to the driver, in V; it gives {driver.transconductance_A_per_V!r} A for each V",
-        "plus": "+ terminal of the module (- is ground): V(plus) is the voltage that the driver must supply. Its "
-        f"compliance is {driver.voltage_limit_V!r} V; nothing here limits it",
-        "ohmic": "behind the ammeter Vsense: I(Vsense) is the drive current in A, positive where it cools the skin",
-        "seebeck": "behind the module's resistance: the Seebeck voltage alpha*(Th - Tc)",
-        "hot, cold": "the module's plates; the cold plate is the display",
-        "sink": "heat sink",
-        "skin": "face of the skin, behind the contact resistance",
-        f"{names[2] if names[2] != 'skin' else names[3]} ... {names[-2]}": "into the skin, depths given below",
-        "deep, blood": "deep tissue at the last layer's end, and the blood that perfuses",
-    }
-    probes = {
-        ", ".join(probe for probe in RECORDED if probe.endswith("_C")): "temperatures, 1 V is 1 degC",
-        ", ".join(probe for probe in RECORDED if not probe.endswith("_C")): "heat flow into the skin, 1 V is 1 W/m2",
-    }
-    yield "*"
-    yield "* Electrical nodes in V and A; thermal nodes: 1 V is 1 degC above a ground of 0 degC, 1 A is 1 W."
-    for node, meaning in nodes.items():
-        yield from _comment(f"  {node}: {meaning}")
-    yield "* Probes, named as the columns of a trace:"
-    for node, meaning in probes.items():
-        yield from _comment(f"  {node}: {meaning}")
+    rest = "The operating point is the steady state of the current that is commanded at 0 s."
     if rig.probes:
         left_out = ", ".join(probe.name for probe in rig.probes)
-        yield from _comment(f"Not in this file: the rig's own probes with their lags ({left_out}).")
-    yield from _comment("The operating point is the steady state of the current that is commanded at 0 s.")
-    yield from _comment("LTspice stores fewer points than it computes; .options plotwinsize=0 makes it keep them all.")
+        rest = f"Not in this file: the rig's own probes with their lags ({left_out}).\n{rest}"
+    template = (resources.files("thermicon.circuit") / "data" / "netlist-header.txt").read_text("utf-8")
+    text = string.Template(template).substitute(
+        gain=repr(driver.transconductance_A_per_V),
+        compliance=repr(driver.voltage_limit_V),
+        inside=f"{names[2] if names[2] != 'skin' else names[3]} ... {names[-2]}",
+        temperatures=", ".join(probe for probe in RECORDED if probe.endswith("_C")),
+        flows=", ".join(probe for probe in RECORDED if not probe.endswith("_C")),
+        rest=rest,
+    )
+    for line in text.splitlines():
+        yield from [line] if line.startswith("*") else _comment(line)
 
 
 def _electrical(rig: Rig, corners: list[tuple[float, float]]) -> Iterator[str]:
