@@ -23,6 +23,7 @@ class DeviceError(InputError):
 
 DrivenBy = Literal["volts", "amperes", "duty", "set-points", "temperatures"]
 
+
 @cache
 def quantities() -> tuple[dict[str, dict[str, Any]], dict[str, list[str]]]:
     """Quantities that a device may state, with units and limits; and those that it must, by what drives it."""
@@ -32,6 +33,7 @@ def quantities() -> tuple[dict[str, dict[str, Any]], dict[str, list[str]]]:
 
 
 Text = Annotated[str, AfterValidator(one_line)]
+
 
 class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)

@@ -56,7 +56,11 @@ def pack(
     drives = [(form.file_name(cue.delivery), _written(cue, form)) for cue in ready]
     shared: dict[str, bytes] = {}
     if form.player is not None and ready:
-        played = [_played(cue, drive, form) for cue, (drive, _) in zip(ready, drives, strict=True)]
+        played = []
+        for cue, name, (drive, _) in zip(ready, names, drives, strict=True):
+            judged, repeated = cue.verdict.colour, cue.verdict.repeated
+            times = repeated.recovery_s, repeated.shortest_pause_s
+            played.append(Played(cue.delivery, drive, sidecar_name(name, form), judged, *times))
         shared = form.player(played, must_prevent([cue.verdict.demanded for cue in ready]))
     files: dict[str, bytes] = {}
     for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
@@ -78,16 +82,6 @@ def _written(cue: Prepared, form: Format) -> bytes:
         return form.write(cue.delivery)
     except FormatError as problem:
         raise FormatError(f"{name}: {problem}") from None
-
-
-def _played(cue: Prepared, file: str, form: Format) -> Played:
-    """A drive with its verdict, for the player of a set."""
-    known, sidecar_file = cue.verdict.to_dict(), sidecar_name(cue.delivery.icon.name, form)
-    recovery, shortest = (
-        float(value) if isinstance(value := known.get(key), (int, float)) else None
-        for key in ("recovery_s", "shortest_pause_s")
-    )
-    return Played(cue.delivery, file, sidecar_file, cue.verdict.colour, recovery, shortest)
 
 
 def sidecar_name(name: str, form: Format) -> str:

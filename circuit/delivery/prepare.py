@@ -80,6 +80,7 @@ def prepare_set(
 
 _HEADS = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses too much"}
 
+
 @dataclass(frozen=True, slots=True)
 class Refusal:
     """Why a cue is not exported."""

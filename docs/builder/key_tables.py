@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel
@@ -51,15 +53,15 @@ def device_quantities_table() -> str:
 
 def study_keys_table() -> str:
     """Every key of a study file with its values, its default and its meaning."""
-    rows = []
+    rows, meanings = [], tomllib.loads(Path(__file__).with_name("study-keys.toml").read_text(encoding="utf-8"))
     tables = {"": (Study, [name for name in Study.model_fields if name not in STUDY_TABLES])}
     tables |= {f"{name}.": (table, list(table.model_fields)) for name, table in STUDY_TABLES.items()}
     for prefix, (table, names) in tables.items():
         properties = table.model_json_schema()["properties"]
         for name in names:
-            field = table.model_fields[name]
+            field, meaning = table.model_fields[name], (meanings[prefix[:-1]] if prefix else meanings)[name]
             default = "needed" if field.is_required() else default_of(field.default)
-            rows.append(f"| `{prefix}{name}` | {values_of(properties[name])} | {default} | {field.description} |")
+            rows.append(f"| `{prefix}{name}` | {values_of(properties[name])} | {default} | {meaning} |")
     return "\n".join(["| key | values | default | meaning |", "|---|---|---|---|", *rows])
 
 

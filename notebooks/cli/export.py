@@ -6,6 +6,7 @@ import re
 import stat
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +16,7 @@ from thermicon.circuit.delivery.export_folder import before_of, check_export_fol
 from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import number
 
-from ..files.exporting import felt_beside, others
+from ..files.exporting import felt_in, others
 from ..messages import BAD_INPUT, REFUSED, Missing, note, progress_bar, usage
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, steps_of
@@ -87,7 +88,7 @@ def export_command(
     check_names([one.name for one in chosen], form)
     warned: list[str] = []
     with progress_bar("simulating") as progress:
-        felt = felt_beside(others(whole, chosen), warned.append, tail)
+        felt = partial(felt_in, rest=others(whole, chosen), warn=warned.append, tail_s=tail)
         ready = export(
             chosen, where, device, form, tail_s=tail, pause_s=pause, force=force, felt=felt, step=progress
         )  # fmt: skip

@@ -22,20 +22,17 @@ def others(whole: Iterable[Icon], chosen: Sequence[Icon]) -> list[Icon]:
     return left if len(left) + len(chosen) <= MOST_COMPARED else []
 
 
-def felt_beside(
-    rest: Sequence[Icon] = (), warn: Callable[[str], None] = lambda text: None, tail_s: float = 0.0
-) -> Callable[[Sequence[Prepared]], tuple[PerceivedChange, ...]]:
-    """Return what `circuit.export` takes as ``felt``: detection by people, and d′ of a nominal person within a set.
+def felt_in(
+    ready: Sequence[Prepared],
+    rest: Sequence[Icon] = (),
+    warn: Callable[[str], None] = lambda text: None,
+    tail_s: float = 0.0,
+) -> tuple[PerceivedChange, ...]:
+    """What `circuit.export` takes as ``felt``: detection by people, and d′ of a nominal person within a set.
 
     ``rest`` are the icons of the set that are not exported, ``warn`` takes what cannot be compared, ``tail_s`` is
     simulated after the last corner.
     """
-    return lambda ready: _compared(ready, rest, warn, tail_s)
-
-
-def _compared(
-    ready: Sequence[Prepared], rest: Sequence[Icon], warn: Callable[[str], None], tail_s: float
-) -> tuple[PerceivedChange, ...]:
     from thermicon.circuit.delivery.deliver import deliver, traces_until
     from thermicon.circuit.inputs import InputError
     from thermicon.circuit.solver.simulate import duration_s

@@ -23,8 +23,7 @@ if TYPE_CHECKING:
     Array = NDArray[numpy.float64]
 
 MOST_MB = 200.0
-MOST_UNPACKED_MB, MOST_ROWS = 1000.0, 10_000_000
-"""What a Parquet file, which is packed, may hold."""
+MOST_ROWS = 10_000_000
 LARGEST = 1e9
 """Largest size of a number, far more than any sensor gives: sums of squares stay finite."""
 CURE = "correct it, or leave the cell empty"
@@ -80,9 +79,9 @@ def read_curves(path: str, icon: str | None = None) -> Curves:
     from thermicon.icons.files.table import read_table
 
     where = Path(path)
-    packed = where.suffix.lower() == ".parquet"
-    text = _parquet_text(where) if packed else read_text(where, "trace or log", MOST_MB)
-    table = read_table(text, table_fault(path, LogError), "time_s,display_C,skin_C", MOST_ROWS)
+    table = read_table(
+        read_text(where, "trace or log", MOST_MB), table_fault(path, LogError), "time_s,display_C,skin_C", MOST_ROWS
+    )
 
     def column(name: str) -> Array:
         return table.numbers(name, CURE, gaps=Counter(), most=LARGEST)
@@ -106,28 +105,6 @@ def read_curves(path: str, icon: str | None = None) -> Curves:
     whole = all(name in table.header for name in COLUMNS[1:])
     ignored = tuple(name for name in table.header if name not in (*COLUMNS, *known))
     return Curves(where.name, time, {name: column(name)[rows] for name in known}, whole, ignored)
-
-
-def _parquet_text(path: Path) -> str:
-    """The table in a Parquet file, whose size when unpacked is looked at first, as text like that of other files."""
-    from thermicon.circuit.inputs import read_bytes, require_pyarrow
-
-    require_pyarrow(path, LogError)
-    data = read_bytes(path, "trace or log", MOST_MB)
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    try:
-        file = pq.ParquetFile(pa.BufferReader(data))
-        groups = [file.metadata.row_group(k).total_byte_size for k in range(file.metadata.num_row_groups)]
-        if sum(groups) > MOST_UNPACKED_MB * 1e6 or file.metadata.num_rows > MOST_ROWS:
-            raise LogError(
-                f"{path}: {file.metadata.num_rows:,} rows, {sum(groups) / 1e6:,.0f} MB unpacked; the limit is "
-                f"{MOST_ROWS:,} rows and {MOST_UNPACKED_MB:g} MB: keep every tenth row"
-            )
-        return str(file.read().to_pandas().to_csv(index=False))
-    except (ValueError, OSError, NotImplementedError, KeyError) as problem:
-        raise LogError(f"{path}: not a Parquet file that can be read ({problem})") from None
 
 
 def _rows_of(icons: list[str], path: str, icon: str | None) -> NDArray[numpy.intp]:

@@ -15,10 +15,8 @@ from typing import TYPE_CHECKING, Any
 from .build import FELT, UNFELT, Plan, levels_K, plays_of
 from .schedule import (
     Pace,
-    dataset_description,
     events_description,
     json_bytes,
-    participants_table,
     planned_events,
     planned_plays,
     table,
@@ -65,8 +63,13 @@ def files_of(plan: Plan) -> dict[str, bytes]:
         "rig.toml": toml_text(json.loads(materials.rig.document)).encode("utf-8"),
         **ready.files,
         **{name: _shipped(f"{name}.txt") for name in SCRIPTS if study.threshold or name != SCRIPTS[-1]},
-        "participants.tsv": participants_table(labels_of(study)),
-        "dataset_description.json": dataset_description(title, version("thermicon")),
+        "participants.tsv": table(
+            ["participant_id"], [{"participant_id": f"sub-{label}"} for label in labels_of(study)], "\t"
+        ),
+        "dataset_description.json": json_bytes(
+            {"Name": title, "BIDSVersion": "1.10.0", "DatasetType": "raw"}
+            | {"GeneratedBy": [{"Name": "thermicon", "Version": version("thermicon")}]}
+        ),
         f"task-{study.name}_events.json": events_description(title, markers, _texts(plan)),
         "README.txt": _readme(plan).encode("utf-8"),
         **_timeline(plan),

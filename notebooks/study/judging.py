@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from ..files.exporting import felt_beside
+from ..files.exporting import felt_in
 from .schedule import Course
 from .study_file import StudyError
 from .timing import Gap
@@ -73,7 +73,7 @@ def judge_drives(
     stimuli, timing = study.stimuli, study.timing
 
     def prepared(pause_s: float) -> Export:
-        return export(icons, rig, device, stimuli.format, pause_s=pause_s, felt=felt_beside(), step=step)
+        return export(icons, rig, device, stimuli.format, pause_s=pause_s, felt=felt_in, step=step)
 
     ready = prepared(gap.gap_s)
     if timing.gap_s is None:
@@ -81,33 +81,27 @@ def judge_drives(
         if longer != gap:
             ready, gap = prepared(longer.gap_s), longer
     if ready.refused:
-        raise Refused([f"{name}: {_about_study(str(refusal))}" for name, refusal in ready.refused])
+        # The gate names the option of the command; here a key of the study takes its place.
+        reasons = [f"{name}: {refusal}".replace("(--pause ", "(timing.gap_s = ") for name, refusal in ready.refused]
+        raise Refused(reasons)
     return ready, gap
 
 
 def _longer_gap(ready: Export, gap: Gap, wait_for_skin: bool) -> Gap:
     """The gap that the gate asks for, where it is longer; carry-over is only less then."""
-    known = [one.verdict.to_dict() for one in ready.prepared]
-    wanted = [(_seconds(each.get("shortest_pause_s")), "the shortest pause that is safe") for each in known]
-    if wait_for_skin:
-        back = [each.get("recovery_s") for each in known]
-        if None in back:
+    wanted = [
+        (one.verdict.repeated.shortest_pause_s or 0.0, "the shortest pause that is safe") for one in ready.prepared
+    ]
+    for one in ready.prepared if wait_for_skin else ():
+        if one.verdict.repeated.recovery_s is None:
             raise StudyError(
                 "timing.wait_for_skin: after an icon the skin needs more than 10 min to return; leave it out, or take "
                 "smaller or shorter icons"
             )
-        wanted += [(_seconds(each), "skin and display are back within 0.1 K in every corner") for each in back]
+        back = "skin and display are back within 0.1 K in every corner"
+        wanted.append((one.verdict.repeated.recovery_s, back))
     longest, why = max(wanted)
     return replace(gap, gap_s=longest, reason=why) if longest > gap.gap_s else gap
-
-
-def _seconds(value: object) -> float:
-    return float(value) if isinstance(value, (int, float)) else 0.0
-
-
-def _about_study(reason: str) -> str:
-    """A reason of the gate with the key of a study in place of the option of the command."""
-    return reason.replace("(--pause ", "(timing.gap_s = ")
 
 
 def judge_sessions(

@@ -6,7 +6,7 @@ Python's own generator is used, whose sequences are the same in every version; t
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from random import Random
 
@@ -44,15 +44,14 @@ def orders_of(
 ) -> tuple[tuple[Block, ...], ...]:
     """Return the blocks of every participant, each of two icons or more `repetitions` times in a block.
 
-    With every rule but `shuffled` no icon follows itself, across blocks neither. Equal seeds give equal orders.
+    No icon follows itself, across blocks neither. Equal seeds give equal orders.
     """
     rng = Random(seed)
     if rule == "williams":
         return _williams(rng, icons, repetitions, blocks, participants)
-    make: dict[str, Callable[[Random, int, int, int], list[int]]]
-    make = {"balanced": _balanced, "random": _drawn, "shuffled": _shuffled}
+    make = _balanced if rule == "balanced" else _drawn
     return tuple(
-        tuple(_blocks(make[rule](rng, icons, repetitions, blocks), icons * repetitions)) for _ in range(participants)
+        tuple(_blocks(make(rng, icons, repetitions, blocks), icons * repetitions)) for _ in range(participants)
     )
 
 
@@ -130,12 +129,3 @@ def _next(rng: Random, order: list[int], left: Counter[int], followed: Counter[t
     best = [place for place in free if followed[last, place] == least]
     most = max(left[place] for place in best)
     return rng.choice([place for place in best if left[place] == most])
-
-
-def _shuffled(rng: Random, icons: int, repetitions: int, blocks: int) -> list[int]:
-    order: list[int] = []
-    for _ in range(blocks):
-        block = [place for place in range(icons) for _ in range(repetitions)]
-        rng.shuffle(block)
-        order += block
-    return order

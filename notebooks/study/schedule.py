@@ -193,14 +193,3 @@ def events_description(title: str, markers: Mapping[str, int], choices: Mapping[
     columns["trial_type"]["Levels"] = {name: choices.get(name, name) for name in markers}
     columns["marker"]["Levels"] = {str(code): name for name, code in markers.items()} | columns["marker"]["Levels"]
     return json_bytes({"TaskName": title, **columns})
-
-
-def dataset_description(title: str, version: str) -> bytes:
-    """What BIDS wants to know of a data set."""
-    made_by = [{"Name": "thermicon", "Version": version}]
-    return json_bytes({"Name": title, "BIDSVersion": "1.10.0", "DatasetType": "raw", "GeneratedBy": made_by})
-
-
-def participants_table(labels: Sequence[str]) -> bytes:
-    """The participants, one a row."""
-    return table(["participant_id"], [{"participant_id": f"sub-{label}"} for label in labels], "\t")

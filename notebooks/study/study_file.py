@@ -1,4 +1,4 @@
-"""A study file: its keys, each with its bounds and one sentence on what it means, read and checked as a whole.
+"""A study file: its keys, each with its bounds, read and checked as a whole; what they mean is in the reference.
 
 A study is identified by the hash of everything that decides it.
 """
@@ -28,7 +28,7 @@ Key = Annotated[Line, Field(pattern=r"^[a-z0-9]+$", max_length=20)]
 MOST_PARTICIPANTS, MOST_BLOCKS, MOST_REPETITIONS = 500, 100, 500
 MOST_ASKED = 30
 """Icons that a person can be asked to name."""
-Order = Literal["balanced", "williams", "random", "shuffled"]
+Order = Literal["balanced", "williams", "random"]
 
 
 class Table(BaseModel):
@@ -40,132 +40,73 @@ class Table(BaseModel):
 class Stimuli(Table):
     """What is played, and on what."""
 
-    set: Annotated[Name | None, Field(description="cue file, or the name of a shipped set")] = None
-    icons: Annotated[
-        list[Name],
-        Field(max_length=MOST_ASKED, description="names of the icons to play; all of the set without this key"),
-    ] = []
-    rig: Annotated[Name, Field(description="rig file, or the name of a shipped rig")] = "thenar"
-    rig_changes: Annotated[
-        list[Line], Field(max_length=100, description="changes to the rig, each as `KEY=VALUE`")
-    ] = []
-    device: Annotated[Name, Field(description="device file, or the name of a shipped device")] = "ni-analogue-output"
-    format: Annotated[
-        Literal["psychopy"], Field(description="format of the drives; the script plays those of PsychoPy")
-    ] = "psychopy"
+    set: Name | None = None
+    icons: Annotated[list[Name], Field(max_length=MOST_ASKED)] = []
+    rig: Name = "thenar"
+    rig_changes: Annotated[list[Line], Field(max_length=100)] = []
+    device: Name = "ni-analogue-output"
+    format: Literal["psychopy"] = "psychopy"
 
 
 class Participants(Table):
     """Who takes part: a count, or labels."""
 
-    count: Annotated[
-        int | None, Field(ge=1, le=MOST_PARTICIPANTS, description="number of participants, labelled 01, 02, …")
-    ] = None
-    labels: Annotated[
-        list[Label] | None,
-        Field(
-            min_length=1, max_length=MOST_PARTICIPANTS, description="labels of letters and digits, in place of a count"
-        ),
-    ] = None
+    count: Annotated[int | None, Field(ge=1, le=MOST_PARTICIPANTS)] = None
+    labels: Annotated[list[Label] | None, Field(min_length=1, max_length=MOST_PARTICIPANTS)] = None
 
 
 class Trials(Table):
     """How often each icon is played, and in which order."""
 
-    repetitions: Annotated[int, Field(ge=1, le=MOST_REPETITIONS, description="plays of each icon in one block")]
-    blocks: Annotated[
-        int, Field(ge=1, le=MOST_BLOCKS, description="blocks, with a break before each but the first")
-    ] = 1
-    practice: Annotated[
-        int, Field(ge=0, le=20, description="plays of each icon before the first block, which do not count")
-    ] = 1
-    order: Annotated[
-        Order,
-        Field(
-            description="`balanced`: icons follow each other equally often, as far as the numbers allow, and never "
-            "themselves; `williams`: rows of a Williams design; `random`: shuffled without immediate repeats; "
-            "`shuffled`: shuffled"
-        ),
-    ] = "balanced"
+    repetitions: Annotated[int, Field(ge=1, le=MOST_REPETITIONS)]
+    blocks: Annotated[int, Field(ge=1, le=MOST_BLOCKS)] = 1
+    practice: Annotated[int, Field(ge=0, le=20)] = 1
+    order: Order = "balanced"
 
 
 class Timing(Table):
     """Pauses, and what they are derived from."""
 
-    gap_s: Annotated[
-        float | None,
-        Field(ge=0, le=600, description="least time from the end of an icon to the next; derived without this key"),
-    ] = None
-    carry_over_d_prime: Annotated[
-        float,
-        Field(
-            gt=0,
-            le=5,
-            description="the derived gap is so long that no icon feels different by more than this after any other",
-        ),
-    ] = 1.0
-    wait_for_skin: Annotated[
-        bool,
-        Field(description="whether the derived gap lasts until skin and display are back within 0.1 K in every corner"),
-    ] = False
-    landing_s: Annotated[
-        float | None,
-        Field(ge=0, le=1800, description="wait with the hand on the display before a block; derived without this key"),
-    ] = None
-    landing_from_K: Annotated[
-        float, Field(gt=0, le=10, description="how far from its rest the skin arrives at most; assumed")
-    ] = 2.5
-    landing_within_K: Annotated[
-        float, Field(ge=0.01, le=2, description="the derived landing lasts until skin and receptors are this close")
-    ] = 0.1
-    break_s: Annotated[float, Field(ge=0, le=3600, description="shortest break between blocks, the hand off")] = 60.0
-    answer_s: Annotated[
-        float, Field(ge=0, le=600, description="longest wait for an answer after the icon; 0: no end")
-    ] = 0.0
+    gap_s: Annotated[float | None, Field(ge=0, le=600)] = None
+    carry_over_d_prime: Annotated[float, Field(gt=0, le=5)] = 1.0
+    wait_for_skin: bool = False
+    landing_s: Annotated[float | None, Field(ge=0, le=1800)] = None
+    landing_from_K: Annotated[float, Field(gt=0, le=10)] = 2.5
+    landing_within_K: Annotated[float, Field(ge=0.01, le=2)] = 0.1
+    break_s: Annotated[float, Field(ge=0, le=3600)] = 60.0
+    answer_s: Annotated[float, Field(ge=0, le=600)] = 0.0
 
 
 class Run(Table):
     """What the script shows, and the keys and the line it uses."""
 
-    question: Annotated[
-        Line | None,
-        Field(min_length=1, description="question on the screen; that of the kind of study without this key"),
-    ] = None
-    start_key: Annotated[Key, Field(description="key that starts a block")] = "space"
-    stop_key: Annotated[Key, Field(description="key that ends the run after the trial")] = "q"
-    abort_key: Annotated[Key, Field(description="key that switches the display off at once")] = "escape"
-    marker: Annotated[
-        Line,
-        Field(
-            pattern=r"^(none|serial:.+|parallel:.+|ni:.+)$",
-            description="line for markers: `none`, `serial:COM5`, `parallel:0x0378` or `ni:Dev1/port0`",
-        ),
-    ] = "none"
+    question: Annotated[Line | None, Field(min_length=1)] = None
+    start_key: Key = "space"
+    stop_key: Key = "q"
+    abort_key: Key = "escape"
+    marker: Annotated[Line, Field(pattern=r"^(none|serial:.+|parallel:.+|ni:.+)$")] = "none"
 
 
 class Threshold(Table):
     """A threshold measured by QUEST+ in place of trials in a given order."""
 
-    direction: Annotated[Literal["cool", "warm"], Field(description="whether the skin is cooled or warmed")]
-    least_K: Annotated[float, Field(ge=0.02, le=10, description="smallest change of the display")] = 0.1
-    most_K: Annotated[float, Field(ge=0.05, le=15, description="greatest change of the display")] = 4.0
-    levels: Annotated[int, Field(ge=3, le=30, description="number of changes, equally spaced in logarithm")] = 12
-    rate_K_per_s: Annotated[float, Field(gt=0, le=20, description="rate of the change, there and back")] = 2.0
-    hold_s: Annotated[float, Field(ge=0, le=30, description="time at the level")] = 3.0
-    trials: Annotated[int, Field(ge=5, le=500, description="trials of a participant, catch trials included")] = 40
-    catch_share: Annotated[float, Field(ge=0, le=0.5, description="share of trials in which nothing is played")] = 0.2
-    target: Annotated[
-        float,
-        Field(ge=0.4, le=0.8, description="the threshold is felt with this probability, false alarms and lapses aside"),
-    ] = 0.5
+    direction: Literal["cool", "warm"]
+    least_K: Annotated[float, Field(ge=0.02, le=10)] = 0.1
+    most_K: Annotated[float, Field(ge=0.05, le=15)] = 4.0
+    levels: Annotated[int, Field(ge=3, le=30)] = 12
+    rate_K_per_s: Annotated[float, Field(gt=0, le=20)] = 2.0
+    hold_s: Annotated[float, Field(ge=0, le=30)] = 3.0
+    trials: Annotated[int, Field(ge=5, le=500)] = 40
+    catch_share: Annotated[float, Field(ge=0, le=0.5)] = 0.2
+    target: Annotated[float, Field(ge=0.4, le=0.8)] = 0.5
 
 
 class Study(Table):
     """A whole study file."""
 
-    format: Annotated[Literal[1], Field(description="1")]
-    name: Annotated[Label, Field(description="name of letters and digits, which the files carry")]
-    title: Annotated[Line, Field(max_length=LONGEST_NAME, description="one line about the study")] = ""
+    format: Literal[1]
+    name: Label
+    title: Annotated[Line, Field(max_length=LONGEST_NAME)] = ""
     stimuli: Stimuli
     participants: Participants
     trials: Trials | None = None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ import ipywidgets as widgets
 from thermicon.icons.atomic import OutputError
 
 from ..editing.cue_check import read_text
-from ..files.exporting import felt_beside, others
+from ..files.exporting import felt_in, others
 from ..report.blocks import fragment
 from .live_view import Job, LiveView
 from .set_model import MOST_RANKED
@@ -137,7 +138,7 @@ class ExportView(LiveView[ExportRequest]):
             job.on_page(lambda: self._say(f"working … {done} of {total}"))
 
         remarks: list[str] = []
-        felt = felt_beside(others(icons, chosen), remarks.append)
+        felt = partial(felt_in, rest=others(icons, chosen), warn=remarks.append)
         made = export(chosen, rig, device, form, felt=felt, step=step)
         shown = self.design.scene.icon
         colours = [one.verdict.colour for one in made.prepared]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 MADE_UP: dict[str, Any] = {
@@ -22,6 +23,7 @@ class GreenVerdict:
         self.delivery = delivery
 
     notes: tuple[str, ...] = ()
+    repeated = SimpleNamespace(recovery_s=None, shortest_pause_s=None)
     demanded = MADE_UP
 
     def to_dict(self) -> dict[str, object]:
