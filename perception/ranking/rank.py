@@ -22,7 +22,7 @@ from ..sensation.percept import perceive
 from .batches import Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
-from .scores import assemble, disagreements, objection, playable_pairs, worst_of
+from .scores import assemble, disagreements, objection, worst_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -131,7 +131,7 @@ def rank(
         felt=felt,
         icons=scored,
         pairs=pairs,
-        worst_pair=worst_of(playable_pairs(scored, pairs)),
+        worst_pair=worst_of(scored, pairs),
         rules=rig_rules(rig),
         rules_disagree=disagreements(scored, pairs),
         carry_over=left,

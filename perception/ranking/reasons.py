@@ -221,17 +221,14 @@ def _onsets(a: Trace, b: Trace, felt_a: Percept, felt_b: Percept) -> str:
 
 def _alike(a: Trace, b: Trace) -> bool:
     """Whether both receptors go through the same temperatures at the same times, the shorter trace held at its end."""
-    return all(
-        _span_K(receptor_C(a, channel), receptor_C(b, channel)) < STILL_K and a.time_s[1] == b.time_s[1]
-        for channel in CHANNELS
-    )
+    rows = max(a.time_s.size, b.time_s.size)
 
+    def held(trace: Trace, channel: Channel) -> Array:
+        values = receptor_C(trace, channel)
+        return np.pad(values, (0, rows - values.size), mode="edge")
 
-def _span_K(one: Array, two: Array) -> float:
-    if one.size != two.size:
-        n = max(one.size, two.size)
-        one, two = (np.pad(values, (0, n - values.size), mode="edge") for values in (one, two))
-    return float(np.abs(one - two).max())
+    apart_K = max(float(np.abs(held(a, channel) - held(b, channel)).max()) for channel in CHANNELS)
+    return apart_K < STILL_K and bool(a.time_s[1] == b.time_s[1])
 
 
 def _name(trace: Trace) -> str:

@@ -7,9 +7,9 @@ provides (when something is felt) is marked `from_model`, and no score by rules 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any
 
 from thermicon.circuit.records import Record, Table, load_records
@@ -120,7 +120,8 @@ def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
     felt_a, felt_b = _felt(table, a), _felt(table, b)
     differ = felt_a != felt_b
     verdict = "differ" if differ else "are the same" if moved_a == moved_b else "differ below the threshold alone"
-    text = f"direction: {_label(a)} {direction_words(a)}, {_label(b)} {direction_words(b)}: directions {verdict}"
+    words = ", ".join(f"{each.icon or 'the cue'} {direction_words(each)}" for each in (a, b))
+    text = f"direction: {words}: directions {verdict}"
     ours = [_result(record, None, differ, float(differ), float(differ) - 1.0, 1.0, text)]
     theirs = []
     for channel in shared:
@@ -143,7 +144,9 @@ def rig_rules(rig: Rig) -> tuple[RuleResult, ...]:
         layer = rig.skin.layers[0]
         dead_m = layer.thickness_m if layer.name == STRATUM_CORNEUM else 0.0
         result = _inside(record, channel, round((depth_m - dead_m) * 1e3, 9))
-        where = f"{result.text}; on this rig that is inside the {_layer(rig, depth_m)}"
+        bottoms = zip(accumulate(layer.thickness_m for layer in rig.skin.layers), rig.skin.layers, strict=True)
+        inside = next((layer for bottom_m, layer in bottoms if depth_m <= bottom_m), rig.skin.layers[-1])
+        where = f"{result.text}; on this rig that is inside the {inside.name}"
         found.append(replace(result, text=where))
     return tuple(found)
 
@@ -160,11 +163,6 @@ def _felt(table: Table, trace: Trace) -> tuple[Channel, ...]:
     """Directions in which an icon passes the threshold of the receptor."""
     least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
     return tuple(channel for channel in directions(trace) if abs(excursion_K(trace, channel)) >= least[channel])
-
-
-def passes(results: Iterable[RuleResult], *rules: str) -> bool:
-    """Whether every result passes (of the rules named, or of all)."""
-    return all(r.passed for r in results if not rules or r.quantity in rules)
 
 
 def _latency(record: Record, channel: Channel, onset_s: float | None) -> RuleResult:
@@ -237,18 +235,5 @@ def _result(
     return RuleResult(name, passed, value, margin, threshold, record.unit, record.source, text, threshold_low, model)
 
 
-def _layer(rig: Rig, depth_m: float) -> str:
-    reached = 0.0
-    for layer in rig.skin.layers:
-        reached += layer.thickness_m
-        if depth_m <= reached:
-            return layer.name
-    return rig.skin.layers[-1].name
-
-
 def _unit(record: Record) -> str:
     return "" if record.unit == "1" else f" {record.unit}"
-
-
-def _label(trace: Trace) -> str:
-    return trace.icon or "the cue"

@@ -24,11 +24,14 @@ from ..sensation.features import attack_K_per_s, delay_s, peak_change_K
 from ..sensation.percept import Percept
 from .batches import PooledResult
 from .reasons import DistanceComponent, components_of, pair_reasons
-from .rules import DISTINGUISHABLE, OURS, RuleResult, icon_rules, pair_rules, passes
+from .rules import DISTINGUISHABLE, OURS, RuleResult, icon_rules, pair_rules
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
     from thermicon.icons import Icon
+
+AT_RECEPTOR = ("change at the receptor", "rate at the receptor")
+"""Rules that an icon passes which is felt."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +144,7 @@ def disagreements(icons: Sequence[IconScore], pairs: Sequence[PairScore]) -> tup
     """Icons and pairs that rules and model judge differently, with both verdicts."""
     found: list[dict[str, Any]] = []
     for icon in icons:
-        rules = passes(icon.rules, "change at the receptor", "rate at the receptor")
+        rules = all(r.passed for r in icon.rules if r.quantity in AT_RECEPTOR)
         model = icon.detected_probability >= FELT_FROM
         if rules != model:
             shown, limit = significant(icon.detected_probability, FELT_FROM, least=2)
@@ -260,15 +263,9 @@ def energy_J(trace: Trace, until_s: float) -> float:
     return float((trace.voltage_V[:-1] * trace.current_A[:-1] * steps).sum())
 
 
-def playable_pairs(icons: Sequence[IconScore], pairs: tuple[PairScore, ...]) -> tuple[PairScore, ...]:
-    """The pairs of icons that can be played; all pairs where there is none of them."""
+def worst_of(icons: Sequence[IconScore], pairs: tuple[PairScore, ...]) -> tuple[str, str] | None:
+    """The pair most often confused of the icons that can be played, or of all where none can; equal ones by name."""
     fine = {icon.name for icon in icons if icon.playable}
-    return tuple(pair for pair in pairs if pair.a in fine and pair.b in fine) or pairs
-
-
-def worst_of(pairs: Sequence[PairScore]) -> tuple[str, str] | None:
-    """The pair most often confused; equal ones by name."""
-    if not pairs:
-        return None
-    first = min(pairs, key=lambda p: (-p.confused_probability, p.a, p.b))
-    return first.a, first.b
+    counting = [pair for pair in pairs if pair.a in fine and pair.b in fine] or pairs
+    first = min(counting, key=lambda p: (-p.confused_probability, p.a, p.b), default=None)
+    return None if first is None else (first.a, first.b)

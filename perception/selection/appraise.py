@@ -112,25 +112,11 @@ def nearest_two(distances: Array) -> tuple[int, int]:
     return int(first[k]), int(second[k])
 
 
-def population_dprime(
-    icons: Sequence[Icon],
-    rig: Rig,
-    crowd: People,
-    tracking: str | None = None,
-    norm: Norm = USUAL_NORM,
-    *,
-    rigs: Sequence[Rig] | None = None,
-    end_s: float | None = None,
-    task: Task = USUAL,
-    observer: Observer | None = None,
-) -> tuple[Array, Array]:
-    """Pairwise d′ (people, icons, icons) from memory and durations (s) of the icons.
-
-    `rigs` are those of the people (None: the rig with each person's contact and skin).
-    """
-    nominal = Observer.load() if observer is None else observer
-    felt, durations = population_response(icons, rig, crowd, tracking, rigs=rigs, end_s=end_s, observer=nominal)
-    return memory_dprime(felt, norm, crowd.memory, nominal, task), durations
+def population_dprime(icons: Sequence[Icon], rig: Rig, crowd: People) -> tuple[Array, Array]:
+    """Pairwise d′ (people, icons, icons) from memory, by the shipped observer, and durations (s) of the icons."""
+    nominal = Observer.load()
+    felt, durations = population_response(icons, rig, crowd, observer=nominal)
+    return memory_dprime(felt, USUAL_NORM, crowd.memory, nominal, USUAL), durations
 
 
 def population_response(
@@ -144,7 +130,10 @@ def population_response(
     end_s: float | None = None,
     observer: Observer,
 ) -> tuple[PopulationResponse, Array]:
-    """What every person feels of every icon, and durations (s) of the icons; arguments as for `population_dprime`."""
+    """What every person feels of every icon, and durations (s) of the icons.
+
+    `rigs` are those of the people (None: the rig with each person's contact and skin).
+    """
     from thermicon.circuit.solver.simulate import duration_s
 
     durations = np.array([duration_s(icon, rig) for icon in icons])

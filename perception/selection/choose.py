@@ -19,16 +19,12 @@ from ..identification.population import RATE_HZ
 from ..kernels.parallel import Progress, step_counter
 from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
-from .max_min_subset import SubsetChoice, max_min_subset, nearest_pair
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection
 from .subset_identification import SubsetIdentification, pick
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
-
-ONE_BY_ONE = 50
-"""Number of people for each of whom the best choice is found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,9 +45,6 @@ class Choice:
     pool, people, seen, excluded
         Numbers of icons that could be chosen, of people behind `value` and of choices looked at; icons that could not
         be chosen, and why.
-    best_share, loss
-        Share of the first 50 people for whom no other choice has a better worst pair, and their median loss, d′; None
-        but for `worst`.
     at_own_range
         The chosen icons alone, as a set of their own.
     new_laboratory
@@ -70,8 +63,6 @@ class Choice:
     people: int
     seen: int
     excluded: tuple[tuple[str, str], ...]
-    best_share: float | None
-    loss: float | None
     at_own_range: Appraisal
     new_laboratory: NewLaboratory | None = None
 
@@ -99,8 +90,6 @@ class Choice:
             "people": self.people,
             "looked_at": self.seen,
             "excluded": [{"icon": name, "reason": reason} for name, reason in self.excluded],
-            "best_for_people": self.best_share,
-            "median_loss": self.loss,
             "at_own_range": {
                 **own.to_dict(),
                 "proportion_correct_interval_new_laboratory": elsewhere and elsewhere.proportion_correct,
@@ -154,7 +143,7 @@ def choose(
     """
     draws = ranking.model.draw_count(parameters, DRAWS)
     chooser = Chooser(ranking, asked)
-    found = chooser.best(asked.count, draws, step_counter(progress, 1 + draws), asked.objective == "worst")
+    found = chooser.best(asked.count, draws, step_counter(progress, 1 + draws))
     if found is None:
         raise ChoiceError(chooser.pool.nothing_fits(asked))
     return found
@@ -182,10 +171,10 @@ class Chooser:
                 self.d, self.crowd.lapse, self.pool.durations_s, job.seed, favour=favour
             )
 
-    def best(self, count: int, draws: int, step: Callable[[], None], one_by_one: bool = False) -> Choice | None:
+    def best(self, count: int, draws: int, step: Callable[[], None]) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
 
-        `step` is called once, and after each draw. Single people are asked `one_by_one` whether they would do better.
+        `step` is called once, and after each draw.
         """
         ranking, asked, pool, namings = self.ranking, self.asked, self.pool, self.namings
         job, felt, model = ranking.job, ranking.felt, ranking.model
@@ -195,7 +184,6 @@ class Chooser:
         chosen = [self.places[k] for k in picked.chosen]
         names, middle = [job.icons[k].name for k in chosen], felt.middle[np.ix_(chosen, chosen)]
         a, b = nearest_two(middle)
-        share, loss = self._for_people(picked) if one_by_one else (None, None)
         task = task_among(job.task, ranking.carry_over, chosen)
         own = appraise(
             [job.icons[k] for k in chosen],
@@ -227,18 +215,6 @@ class Chooser:
             people=len(self.d) if namings is None else len(namings.lapse),
             seen=picked.seen,
             excluded=self.excluded,
-            best_share=share,
-            loss=loss,
             at_own_range=own,
             new_laboratory=found,
         )
-
-    def _for_people(self, picked: SubsetChoice) -> tuple[float, float]:
-        """Share of people for whom no other choice has a better worst pair, and the median loss (d′)."""
-        own = list(picked.chosen)
-        losses = []
-        for one in self.d[:ONE_BY_ONE]:
-            mine = nearest_pair(one, own)
-            best = max_min_subset(one, len(own), self.must, self.limits, ties=False)
-            losses.append(max(0.0, (mine if best is None else best.value) - mine))
-        return float(np.mean(np.array(losses) <= 1e-9)), float(np.median(losses))

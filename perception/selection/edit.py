@@ -19,10 +19,10 @@ from thermicon.icons.near_words import did_you_mean
 from ..arrays import Array
 from ..criteria import DISTINGUISHABLE_DPRIME
 from ..identification.carry_over import prepare_task
-from ..identification.population import run_end_s
+from ..identification.population import memory_dprime, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.people import People
-from .appraise import population_dprime, population_response
+from .appraise import population_response
 from .candidate_edits import CandidateEdit, Screening, Vain, offers, worse
 from .pool import POOL_HZ, Pool
 
@@ -189,10 +189,8 @@ def _with_people(
     job, before, nominal = ranking.job, ranking.d_prime, ranking.model.nominal
 
     def medians(icons: Sequence[Icon], task: Task) -> Array:
-        found = population_dprime(
-            icons, job.rig, crowd, job.tracking, job.norm, rigs=rigs, end_s=end_s, task=task, observer=nominal
-        )[0]
-        return np.asarray(np.median(found, axis=0))
+        felt, _ = population_response(icons, job.rig, crowd, job.tracking, rigs=rigs, end_s=end_s, observer=nominal)
+        return np.asarray(np.median(memory_dprime(felt, job.norm, crowd.memory, nominal, task), axis=0))
 
     i, j = screening.pair
     if job.task.plain:

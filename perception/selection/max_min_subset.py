@@ -59,23 +59,19 @@ class SubsetChoice:
 
 
 def max_min_subset(
-    distances: ArrayLike,
-    count: int,
-    must: Sequence[int] = (),
-    limits: Limits | None = None,
-    ties: bool = True,
+    distances: ArrayLike, count: int, must: Sequence[int] = (), limits: Limits | None = None
 ) -> SubsetChoice | None:
     """Choose the `count` of n things, `must` among them, whose nearest pair is farthest apart; None: none fits limits.
 
-    The diagonal of `distances` (n, n) does not count. With `ties`, equal choices are decided by their next nearest
-    pair, and so on. Raises `UndecidedError` where it remains open whether any choice keeps the limits.
+    The diagonal of `distances` (n, n) does not count. Equal choices are decided by their next nearest pair, and so on.
+    Raises `UndecidedError` where it remains open whether any choice keeps the limits.
 
     >>> best = max_min_subset([[0, 1, 4], [1, 0, 3], [4, 3, 0]], 2)
     >>> best.chosen, best.value, best.optimal
     ((0, 2), 4.0, True)
     """
     d = np.array(distances, dtype=np.float64)
-    return _Bisection(d, count, tuple(must), limits or Limits.none(len(d))).best(ties)
+    return _Bisection(d, count, tuple(must), limits or Limits.none(len(d))).best()
 
 
 def nearest_pair(distances: Array, chosen: Sequence[int]) -> float:
@@ -89,14 +85,14 @@ class _Bisection:
         self.d, self.count, self.must, self.limits = d, count, must, limits
         self.thresholds = 0
 
-    def best(self, ties: bool) -> SubsetChoice | None:
+    def best(self) -> SubsetChoice | None:
         values = self._values()
         start = self._greedy()
         if start is None and (start := self._subset_at(float(values[0]))) is None:
             return None
         chosen, bound = self._widened(start, values)
         value = nearest_pair(self.d, chosen)
-        if bound <= value and ties:
+        if bound <= value:
             chosen = self._ties_broken(chosen)
         return SubsetChoice(tuple(sorted(chosen)), value, bound, self.thresholds)
 

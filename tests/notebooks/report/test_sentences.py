@@ -66,8 +66,6 @@ def chosen(objective: str, looked_at: int, people: int) -> dict[str, Any]:
         "at_own_range": own,
         "total_J": None,
         "total_s": 9.0,
-        "best_for_people": 1.0 if objective == "worst" else None,
-        "median_loss": 0.0,
         "excluded": [],
     }
 

@@ -68,17 +68,6 @@ def test_the_worst_pair_is_that_of_the_best_choice(pool: Pool) -> None:
     assert middle[a, b] == found.value
 
 
-def test_the_best_for_each_person_is_counted(pool: Pool) -> None:
-    found = pool.choose(3)
-    own = [[i.name for i in pool.icons].index(name) for name in found.icons]
-    losses = []
-    for d in pool.d:
-        values = {c: min(d[a, b] for a, b in combinations(c, 2)) for c in combinations(range(5), 3)}
-        losses.append(max(values.values()) - values[tuple(own)])
-    assert found.best_share == pytest.approx(np.mean(np.array(losses) <= 1e-9))
-    assert found.loss == pytest.approx(np.median(losses))
-
-
 def test_it_is_judged_again_at_its_own_range(pool: Pool, rig: Rig, crowd: People) -> None:
     found = pool.choose(3, "bits")
     chosen = [icon for icon in pool.icons if icon.name in found.icons]
