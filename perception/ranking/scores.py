@@ -240,8 +240,11 @@ def _verdict(trace: Trace) -> tuple[bool, str | None, tuple[str, ...]]:
     return bool(safety.safe), "; ".join(objection) or None, amber
 
 
-def objection(trace: Trace) -> str | None:
-    """Why an icon cannot be played: it is not safe, or the rig does not reach it; None where it can be played."""
+def objection(trace: Trace, soft: bool = False) -> str | None:
+    """Why an icon cannot be played: it is not safe, or the rig does not reach it; None where it can be played.
+
+    With `soft` limits, one that passes any of them is objected to as well.
+    """
     from thermicon.circuit.safety.verdict import judge_safety
 
     verdict = judge_safety(trace)
@@ -249,7 +252,8 @@ def objection(trace: Trace) -> str | None:
         return f"is not safe: {verdict.reason}"
     if not trace.reachable:
         return f"is not reached: {trace.reason}"
-    return None
+    passed = (f"is amber: {each}" for each in verdict.findings if each.severity != "hard")
+    return next(passed, None) if soft else None
 
 
 def energy_J(trace: Trace, until_s: float) -> float:

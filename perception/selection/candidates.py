@@ -48,11 +48,12 @@ class Candidate:
 
 
 def candidate_at(family: Family, shares: Sequence[float]) -> Candidate | None:
-    """The candidate at these shares; None where the member cannot be run."""
+    """The candidate at these shares, spans taken as continuous between their ends; None where it cannot be run."""
     from thermicon.icons import CueErrors
 
+    values = {each.name: value_at(each, share) for each, share in zip(family.parameters, shares, strict=True)}
     try:
-        return Candidate(member(family, shares), family, tuple(shares))
+        return Candidate(family.variant(values), family, tuple(shares))
     except (CueErrors, ValueError):
         return None
 
@@ -69,12 +70,6 @@ def sample_candidates(families: Sequence[Family], count: int, rng: np.random.Gen
                 candidate_at(family, [share_of(p, int(k)) for p, k in zip(family.parameters, places, strict=True)])
             )
     return [candidate for candidate in found if candidate is not None]
-
-
-def member(family: Family, shares: Sequence[float]) -> Icon:
-    """The icon of a family at shares of its parameters, spans taken as continuous between their ends."""
-    pairs = zip(family.parameters, shares, strict=False)
-    return family.variant({parameter.name: value_at(parameter, share) for parameter, share in pairs})
 
 
 def value_at(parameter: Parameter, share: float) -> float:
@@ -106,9 +101,11 @@ def names_of(found: Sequence[Candidate]) -> list[str]:
     for each in found:
         name = each.icon.name
         if each.family is not None:
-            pairs = zip(each.family.parameters, each.shares, strict=True)
-            values = [(value_at(parameter, share), parameter.unit) for parameter, share in pairs]
-            name = "-".join([each.family.name, *(_worded(value, unit) for value, unit in values)])
+            values = [
+                f"{number(abs(value_at(parameter, share)), 2)}{UNITS.get(parameter.unit, '')}".replace(".", "p")
+                for parameter, share in zip(each.family.parameters, each.shares, strict=True)
+            ]
+            name = "-".join([each.family.name, *values])
             again = 2
             while name in taken:
                 name, again = f"{name.removesuffix(f'-{again - 1}')}-{again}", again + 1
@@ -151,10 +148,6 @@ def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:
             if each.family is not None and low != high and value in (low, high):
                 ends.append(f"{each.family.name} {parameter.name} {number(value, 2)} {parameter.unit}")
     return tuple(dict.fromkeys(ends))
-
-
-def _worded(value: float, unit: str) -> str:
-    return f"{number(abs(value), 2)}{UNITS.get(unit, '')}".replace(".", "p").replace("−", "m")
 
 
 def _unrepeated(statements: Sequence[Any]) -> tuple[Any, ...]:

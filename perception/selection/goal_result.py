@@ -50,11 +50,6 @@ class SetOutcome:
     persons: dict[str, Array]
     unreached: tuple[str, ...] = ()
 
-    @property
-    def unplayable(self) -> tuple[str, ...]:
-        """Names of the icons that are not safe or not reached."""
-        return tuple(name for name in self.names if name in self.red or name in self.unreached)
-
     @classmethod
     def of(cls, ranking: Ranking) -> SetOutcome:
         """What a goal for the whole set is judged by."""
@@ -186,7 +181,7 @@ def _value(part: GoalPart, outcome: SetOutcome) -> float:
         "onset": lambda: float(outcome.onset_s.max()),
         "time": lambda: math.fsum(outcome.durations_s),
         "energy": lambda: math.fsum(outcome.energies_J),
-        "count": lambda: float(len(outcome.names) - len(outcome.unplayable)),
+        "count": lambda: float(len(outcome.names) - len({*outcome.red, *outcome.unreached})),
         SAFETY: lambda: 2.0 if outcome.red else 1.0 if outcome.amber else 0.0,
     }[part.quantity]()
 
@@ -197,7 +192,8 @@ def _binding(part: GoalPart, outcome: SetOutcome) -> str:
         names = (*outcome.red, *outcome.amber)
         return f"{_listed(names)} {'is' if len(names) == 1 else 'are'} not green"
     if part.quantity == "count":
-        return f"{_listed(outcome.unplayable)} cannot be played" if outcome.unplayable else "the set has fewer icons"
+        lost = [name for name in outcome.names if name in outcome.red or name in outcome.unreached]
+        return f"{_listed(lost)} cannot be played" if lost else "the set has fewer icons"
     if part.quantity in ("correct", "bits", "d_prime"):
         apart = part.quantity == "d_prime"
         if (pair := outcome.nearest_pair if apart else outcome.worst_pair) is None:

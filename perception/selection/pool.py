@@ -100,28 +100,24 @@ class Pool:
 
     def limits(self, most_s: float | None, most_J: float | None) -> Limits:
         """The totals that a choice must keep, as costs of every icon."""
-        costs = (self.durations_s, most_s), (self.energies_J if most_J is not None else self.durations_s, most_J)
-        rows = [(each, most) for each, most in costs if most is not None]
-        return Limits(np.array([each for each, _ in rows]).reshape(-1, len(self)), tuple(most for _, most in rows))
+        rows = [(self.durations_s, most_s)] * (most_s is not None) + [(self.energies_J, most_J)] * (most_J is not None)
+        costs = np.array([each for each, _ in rows]).reshape(-1, len(self))
+        return Limits(costs, tuple(most for _, most in rows if most is not None))
 
     def totals_text(self, count: int, most_s: float | None, most_J: float | None) -> str:
         """The totals that a choice must keep, each with the least that so many icons take."""
-        totals = []
-        for costs, most, unit, what in (
-            (self.durations_s, most_s, "s", "shortest last"),
-            (self.energies_J, most_J, "J", "most frugal take"),
-        ):
-            if most is not None:
-                least = math.fsum(np.sort(costs)[:count])
-                totals.append(f"{most:g} {unit} (the {count} {what} {least:.3g} {unit})")
+        words = [("s", "shortest last")] * (most_s is not None) + [("J", "most frugal take")] * (most_J is not None)
+        limits = self.limits(most_s, most_J)
+        totals = [
+            f"{most:g} {unit} (the {count} {what} {math.fsum(np.sort(costs)[:count]):.3g} {unit})"
+            for costs, most, (unit, what) in zip(limits.costs, limits.most, words, strict=True)
+        ]
         return f"a total of {' and '.join(totals)}"
 
     def objections(self, goal: Goal | None, observer: Observer) -> tuple[str | None, ...]:
         """What speaks against each icon: it cannot be played, or it misses what a goal asks of single icons."""
-        found: list[str | None] = [objection(trace) for trace in self.traces]
-        if goal is not None and goal.of(SAFETY) == 0.0:
-            soft = map(soft_finding, self.traces)
-            found = [why or (one and f"is amber: {one}") for why, one in zip(found, soft, strict=True)]
+        green = goal is not None and goal.of(SAFETY) == 0.0
+        found = [objection(trace, soft=green) for trace in self.traces]
         detected, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
         if detected is None and onset is None:
             return tuple(found)
@@ -173,13 +169,6 @@ class Pool:
         forced = f" with {', '.join(asked.must)} among them" if asked.must else ""
         totals = self.totals_text(asked.count, asked.most_s, asked.most_J)
         return f"no {asked.count} of the {len(self)} icons{forced} stay within {totals}"
-
-
-def soft_finding(trace: Trace) -> str | None:
-    """The first soft limit of safety that an icon passes, in words; None for none."""
-    from thermicon.circuit.safety.verdict import judge_safety
-
-    return next((str(each) for each in judge_safety(trace).findings if each.severity != "hard"), None)
 
 
 def _held(psi: Array, n: int) -> Array:
