@@ -2,6 +2,7 @@ from typing import Any
 
 import pytest
 
+from tests.builders import messages
 from thermicon.circuit import Rig, simulate
 from thermicon.icons import parse
 from thermicon.perception import Observer, perceive
@@ -14,6 +15,8 @@ from thermicon.perception.ranking.rules import (
     rig_rules,
 )
 from thermicon.perception.ranking.scores import counted, icon_score, pair_margin
+
+MESSAGES = messages(__file__)
 
 
 def by_name(results: tuple[RuleResult, ...]) -> dict[str, RuleResult]:
@@ -68,41 +71,16 @@ def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, change: 
     assert text == f"change at the receptor (cold): {-change:g} K against at least 0.11 K: {said}"
 
 
-def test_directions_tell_apart(cue: Any) -> None:
-    found = pair(cue, {"change": -4.0}, {"change": 4.0})
-    assert found["direction"].text == "direction: a cools, b warms: directions differ"
-    assert found[DISTINGUISHABLE].passed
-    assert not any(name.startswith("amplitude") for name in found)
-
-
-def test_equal_cues_are_not_told_apart(cue: Any) -> None:
-    found = pair(cue, {"change": -4.0}, {"change": -4.05})
-    assert found["direction"].text == "direction: a cools, b cools: directions are the same"
-    assert found["peak (cold)"].text == "peak (cold): 0.05 K against at least 0.07 K: fails"
-    assert found["rate ratio (cold)"].value == pytest.approx(1.0)
-    assert found["rate ratio (cold)"].text == "rate ratio (cold): 1 against at least 1.43: fails"
-    assert found["onset (cold)"].text.endswith("s against at least 0.2 s: fails")
-    assert found[DISTINGUISHABLE].text == "distinguishable: no rule separates the two"
-    assert not found[DISTINGUISHABLE].passed
-
-
-def test_each_of_ours_alone_tells_apart(cue: Any) -> None:
-    peak = pair(cue, {"change": 4.0}, {"change": 4.1})
-    assert peak[DISTINGUISHABLE].text == "distinguishable: by peak (warm)"
-    assert peak["amplitude difference (warm)"].margin == pytest.approx(0.01)
-    rate = pair(cue, {"change": -4.0, "rate": 3.0}, {"change": -4.0, "rate": 4.5})
-    assert rate[DISTINGUISHABLE].text == "distinguishable: by rate ratio (cold)"
-    late = pair(cue, {"change": -4.0}, {"change": -4.0, "lag_s": 0.3})
-    assert late[DISTINGUISHABLE].text == "distinguishable: by onset (cold)"
-
-
-def test_icons_below_every_threshold_have_no_onset(cue: Any) -> None:
-    one = pair(cue, {"change": -4.0}, {"change": -0.05})
-    assert one["onset (cold)"].text == "onset: only one of the two passes the threshold of a receptor"
-    none = pair(cue, {"change": -0.05}, {"change": -0.04})
-    assert none["onset (cold)"].text == "onset: neither passes the threshold of a receptor"
-    assert none["onset (cold)"].value is None
-    assert not none["onset (cold)"].passed
+@pytest.mark.parametrize("case", MESSAGES["rules"])
+def test_what_rules_say_of_a_pair(cue: Any, case: str) -> None:
+    one, two, said = MESSAGES["rules"][case]
+    found = pair(cue, one, two)
+    for text in said:
+        assert any(rule.text.startswith(text) for rule in found.values()), text
+    last = found[DISTINGUISHABLE]
+    assert last.passed == (last.text != "distinguishable: no rule separates the two")
+    assert any(name.startswith("amplitude") for name in found) == ("direction: a cools, b warms" not in said[0])
+    assert all(rule.passed == rule.text.endswith("passes") for rule in found.values() if " against " in rule.text)
 
 
 def test_rules_are_records_that_say_whose_they_are() -> None:
@@ -112,38 +90,21 @@ def test_rules_are_records_that_say_whose_they_are() -> None:
         assert str(record.get("statement"))
     ours = [r for r in load_rules() if r.source.startswith("this project")]
     assert {r.quantity for r in ours} == {"depth", "direction", "peak", "rate ratio", "onset", DISTINGUISHABLE}
-    said = {(r.quantity, r.channel): (r.low, r.value, r.high) for r in load_rules()}
-    expected = {
-        "change at the receptor": [("cold", 0.11), ("warm", 0.2)],
-        "rate at the receptor": [("both", 0.1)],
-        "latency": [("cold", (0.3, None, 0.5)), ("warm", (0.5, None, 0.9))],
-        "amplitude difference": [("cold", (0.02, 0.07, 0.07)), ("warm", (0.03, 0.09, 0.09))],
-        "neutral zone": [("both", (30.0, None, 36.0))],
-        "depth": [("cold", 0.10), ("warm", 0.21)],
-        "felt peak": [("cold", 0.0), ("warm", 0.0)],
-        "peak": [("cold", 0.07), ("warm", 0.09)],
-        "rate ratio": [("both", 1.43)],
-        "onset": [("cold", 0.2), ("warm", 0.4)],
-    }
-    for quantity, limits in expected.items():
-        for channel, limit in limits:
-            found = said[quantity, channel]
-            assert (found if isinstance(limit, tuple) else found[1]) == limit
+    for name, limit in MESSAGES["limits"].items():
+        quantity, _, channel = name.partition(", ")
+        (found,) = (r for r in load_rules() if (r.quantity, r.channel) == (quantity, channel))
+        values = [value for value in (found.low, found.value, found.high) if value is not None]
+        assert (values if isinstance(limit, list) else found.value) == limit, name
 
 
 def test_felt_peaks_are_held_against_the_published_signs(cue: Any, observer: Observer) -> None:
     warm = scored(cue, observer, change=4.0, rate=1.0, hold=0.0)["felt peak (warm)"]
-    assert warm.passed
-    assert warm.value is not None
-    assert warm.value > 0
-    assert (
-        warm.text
-        == f"felt peak (warm): predicted {warm.value:.2f} s after that of the skin, published after it: passes"
-    )
+    assert warm.passed and warm.value is not None and warm.value > 0
+    said = f"felt peak (warm): predicted {warm.value:.2f} s after that of the skin, published after it: passes"
+    assert warm.text == said
     cold = scored(cue, observer, change=-4.0, rate=1.0, hold=0.0)["felt peak (cold)"]
     assert cold.value is not None
-    assert cold.passed == (cold.value < 0)
-    assert cold.margin == -cold.value
+    assert (cold.passed, cold.margin) == (cold.value < 0, -cold.value)
 
 
 def test_only_latency_and_felt_peak_come_from_the_model(cue: Any, observer: Observer) -> None:
