@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 TOO_DEEP = "nested too deeply; two or three levels are all that is needed"
-DEEPEST, MOST_KEYS_A_LINE, MOST_DIGITS = 10, 50, 19
-"""Levels of tables, parts of a dotted key, and digits of a whole number: far more than any file of ours has."""
+DEEPEST, MOST_DIGITS = 10, 19
+"""Levels of tables and digits of a whole number: far more than any file of ours has."""
 
 LONGEST_NAME, LONGEST_LINE = 200, 2000
 """Characters of a name, and of any other text of one line: room for a sentence, not for a file within a file."""
@@ -146,10 +146,6 @@ def read_toml(text: str, where: str, error: type[Exception] = InputError) -> dic
     """
     import tomllib
 
-    if len(text) > MOST_KEYS_A_LINE and (line := _endless_key(text)):
-        raise error(
-            f"{where}:{line}: a key of more than {MOST_KEYS_A_LINE} parts; a key has two or three, as in skin.site"
-        )
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
@@ -161,15 +157,6 @@ def read_toml(text: str, where: str, error: type[Exception] = InputError) -> dic
     if fault := _unreadable(document):
         raise error(f"{where}: {fault}")
     return document
-
-
-def _endless_key(text: str) -> int | None:
-    """Number of the line with a key of absurdly many parts, for which tomllib's time grows as the square."""
-    for number, line in enumerate(text.splitlines(), 1):
-        key, equals, _ = line.partition("=")
-        if (equals or key.lstrip().startswith("[")) and key.count(".") > MOST_KEYS_A_LINE:
-            return number
-    return None
 
 
 def _unreadable(document: dict[str, Any]) -> str | None:

@@ -91,12 +91,6 @@ class Record:
             raise RecordError(f"{self.quantity}: no column {key!r}; {did_you_mean(key, known)}")
         return known[key]
 
-    def __repr__(self) -> str:
-        span = "" if self.low is None and self.high is None else f" [{_short(self.low)}, {_short(self.high)}]"
-        where = ", ".join(w for w in (self.channel, self.site, self.method) if w)
-        label = f"{self.quantity} ({where})" if where else self.quantity
-        return f"Record({label}: {_short(self.value)}{span} {self.unit}; {self.source})"
-
 
 @dataclass(frozen=True, slots=True)
 class Table:
@@ -115,9 +109,6 @@ class Table:
 
     def __len__(self) -> int:
         return len(self.records)
-
-    def __repr__(self) -> str:
-        return f"Table({self.name}: {len(self.records)} records)"
 
     def select(
         self,
@@ -215,7 +206,3 @@ def _toml(value: Plain) -> str:
         escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
         return f'"{escaped}"'
     return repr(value)
-
-
-def _short(number: float | None) -> str:
-    return "–" if number is None else f"{number:.4g}"

@@ -12,7 +12,7 @@ from ..cores import quiet_blas
 from ..rig.faults import PARAMETERS
 from ..rig.rig import Rig
 from .forward import runs_of
-from .identify import identified, in_series
+from .identify import identified
 from .keys import FitError, FitKey, free_keys
 from .log import Log, LogError, read_log
 from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow, unsteady
@@ -156,5 +156,5 @@ def _result(
     return RigFit(
         fitted, parameters, correlation, channel_fits(problem, solution.theta), sources,
         (*notes, *disagreed, *remarked, *closing), solution.converged, misfit,
-        tuple(layer.name for layer in start.skin.layers) if layers else (), in_series(problem, solution),
+        tuple(layer.name for layer in start.skin.layers) if layers else (),
     )  # fmt: skip

@@ -1,10 +1,8 @@
-"""Pictures of a fit: both courses with their residuals, and measured points on the curves of a trace."""
+"""Picture of a fit: measured and fitted courses, and their residuals below."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-
-from thermicon.icons.number_text import number
 
 from ..arrays import Array
 from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM
@@ -13,10 +11,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from .overlay import Overlay
     from .rig_fit import ChannelFit, RigFit
 
-MEASURED_COLORS = {"display_C": "#1b7837", "skin_C": "#762a83", "hot_plate_C": "#b35806"}
+COLORS = {"display_C": "#1b7837", "skin_C": "#762a83", "hot_plate_C": "#b35806"}
 """Measured points on the grey and black curves of a trace."""
 
 COLORS = {"display_C": DISPLAY, "skin_C": SKIN, "hot_plate_C": WARM, "voltage_V": COOL}
@@ -84,14 +81,3 @@ def _few(*columns: Array) -> list[Array]:
 def _words(column: str) -> str:
     """A column as people say it: its name without the unit."""
     return column.rpartition("_")[0].replace("_", " ")
-
-
-def draw_measured(beside: Overlay, ax: Axes) -> None:
-    """Draw the measured temperatures of an overlay as points, each with its rms and largest miss in the legend."""
-    for each in beside.columns:
-        if not each.column.endswith("_C"):
-            continue
-        label = f"{_words(each.column)}, measured\nrms {each.rms:.2g} K, largest {each.largest:+.2g} K"
-        color = MEASURED_COLORS.get(each.column, PROBE)
-        ax.plot(*_few(each.time_s, each.measured), ".", ms=3.0, color=color, label=label.replace("-", "−"))
-    ax.set_title(f"{beside.name}, shifted by {number(beside.shift_s, 3)} s", fontsize="medium")

@@ -12,8 +12,8 @@ from ..arrays import Array
 from ..rig.faults import unit_of
 from ..rig.rig import Rig
 from .forward import Channel, Run
-from .keys import CONTACT, value_of
-from .problem import CONDUCTIVITY, THICKNESS, Problem
+from .keys import value_of
+from .problem import Problem
 from .solve import Solution, covariance_of
 
 T95 = 1.96
@@ -30,8 +30,6 @@ CLOSE = 0.9
 """Correlation from which on two parameters are named as a pair that the log does not separate."""
 
 LATE_FIRST = "first give the late column a file of its own, and fit again"
-
-SHORT = {"display_C": "display", "voltage_V": "voltage", "hot_plate_C": "hot plate", "skin_C": "skin"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,27 +113,6 @@ def _at_bound(problem: Problem, theta: Array, place: int) -> bool:
     near = BOUND * (item.high - item.low)
     low = theta[place] - item.low < near and not problem.keys[place].key.endswith("lag_s")
     return bool(low or item.high - theta[place] < near)
-
-
-def in_series(problem: Problem, solution: Solution) -> Parameter | None:
-    """Contact and outermost layer in series; None where one of them is not fitted."""
-    names: list[object] = [key.key for key in problem.keys]
-    names += [(item.kind, item.place) for item in problem.along]
-    wanted = (CONTACT, (THICKNESS, 0), (CONDUCTIVITY, 0))
-    if any(each not in names for each in wanted):
-        return None
-    places = [names.index(each) for each in wanted]
-    layer, rig = problem.rig.skin.layers[0], problem.rig
-    contact, thicker, better = np.exp(solution.theta[places])
-    before = layer.thickness_m / layer.conductivity_W_per_mK
-    above = before * thicker / better
-    total, slope = contact + above, np.array([contact, above, -above])
-    half = math.exp(T95 * math.sqrt(slope @ solution.covariance[np.ix_(places, places)] @ slope) / total)
-    start = rig.contact.resistance_m2K_per_W + before
-    return Parameter(
-        f"contact + {layer.name}", f"contact and {layer.name} in series", unit_of(CONTACT), start, float(total),
-        float(total / half), float(total * half), True, True,
-    )  # fmt: skip
 
 
 def with_channels(problem: Problem, theta: Array, columns: Sequence[str], only: bool = False) -> Problem:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from importlib import resources
 
 from thermicon.icons.near_words import did_you_mean
 
@@ -38,44 +41,21 @@ class FitKey:
     direct: str
 
 
-_SHIPPED = Uncertainty()
 CONTACT = "contact.resistance_m2K_per_W"
-USUAL_CONTACT = 2.0 / 3.0
-"""People and touches differ by a lognormal SD of 30 %: 95 % are within two thirds."""
+
+
+@cache
+def _table() -> dict[str, FitKey]:
+    """The keys of ``data/fit-keys.toml``, in their order; `usual` is the shipped uncertainty unless given there."""
+    text = resources.files("thermicon.circuit").joinpath("data/fit-keys.toml").read_text(encoding="utf-8")
+    keys = {}
+    for key, row in tomllib.loads(text).items():
+        usual = row["usual"] if "usual" in row else getattr(Uncertainty(), row["uncertainty"])
+        keys[key] = FitKey(**{"uncertainty": "", **row, "key": key, "usual": usual})
+    return keys
+
 
 _LAG = "a step of temperature on the sensor alone, such as dipping it into warm water"
-
-# Where no shipped uncertainty is named, `room` and `usual` are assumed, wide enough for any bench.
-_KEYS = {
-    item.key: item
-    for item in (
-        FitKey(CONTACT, "contact resistance", True, 30.0, USUAL_CONTACT, "contact_resistance_relative",
-               "a thin thermistor on the skin under the display, logged as skin_C"),
-        FitKey("contact.area_cm2", "contact area", True, 5.0, 0.1, "", "the face of the display with a ruler"),
-        FitKey("module.seebeck_V_per_K", "Seebeck coefficient", True, 3.0, _SHIPPED.seebeck_relative,
-               "seebeck_relative", "the module's voltage, logged as voltage_V"),
-        FitKey("module.resistance_ohm", "module resistance", True, 3.0, 0.05, "",
-               "the module's voltage, logged as voltage_V, or an AC ohmmeter at 1 kHz"),
-        FitKey("module.thermal_resistance_K_per_W", "module thermal resistance", True, 5.0,
-               _SHIPPED.conductance_relative, "conductance_relative", "the hot plate, logged as hot_plate_C"),
-        FitKey("module.hot_plate_J_per_K", "hot plate", True, 10.0, _SHIPPED.plates_relative, "plates_relative",
-               "the hot plate, logged as hot_plate_C"),
-        FitKey("module.cold_plate_J_per_K", "cold plate", True, 10.0, _SHIPPED.plates_relative, "plates_relative",
-               "a fast thermistor on the display, logged at 20 Hz or more"),
-        FitKey("heat_sink.temperature_C", "heat sink temperature", False, 40.0, _SHIPPED.heat_sink_K, "heat_sink_K",
-               "a thermistor in the heat sink"),
-        FitKey("heat_sink.resistance_K_per_W", "heat sink resistance", True, 30.0, 0.3, "",
-               "the hot plate, logged as hot_plate_C"),
-        FitKey("heat_sink.capacity_J_per_K", "heat sink capacity", True, 30.0, 0.3, "",
-               "the mass of the heat sink times its specific heat"),
-        FitKey("driver.transconductance_A_per_V", "driver gain", True, 5.0, _SHIPPED.gain_relative, "gain_relative",
-               "the current through a shunt, logged as current_A"),
-        FitKey("ambient.temperature_C", "ambient temperature", False, 20.0, _SHIPPED.ambient_K, "ambient_K",
-               "a thermometer in the room"),
-        FitKey("skin.rest_C", "skin at rest", False, 8.0, 1.0, "", "an infrared thermometer on the bare skin"),
-        FitKey("controller.lag_s", "lag of the controller's thermistor", False, 30.0, 0.1, "", _LAG),
-    )
-}  # fmt: skip
 _PROBE = re.compile(r"probe\.(?P<name>[\w-]+)\.lag_s")
 
 COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
@@ -85,7 +65,9 @@ COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
 def fittable(rig: Rig) -> tuple[str, ...]:
     """Return the keys that can be fitted on a rig, in the order of the circuit."""
     known = [
-        key for key in _KEYS if value_of(rig, key) is not None and (rig.controller or not key.startswith("controller."))
+        key
+        for key in _table()
+        if value_of(rig, key) is not None and (rig.controller or not key.startswith("controller."))
     ]
     return (*known, *(f"probe.{probe.name}.lag_s" for probe in rig.probes))
 
@@ -104,13 +86,13 @@ def free_keys(keys: Sequence[str], rig: Rig) -> tuple[FitKey, ...]:
         raise FitError("\n".join(faults))
     lag = "lag of the thermistor {}"
     return tuple(
-        _KEYS.get(name) or FitKey(name, lag.format(name.split(".")[1]), False, 30.0, 0.1, "", _LAG) for name in names
+        _table().get(name) or FitKey(name, lag.format(name.split(".")[1]), False, 30.0, 0.1, "", _LAG) for name in names
     )
 
 
 def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
     """Why a key cannot be fitted, with the nearest one that can."""
-    if name in _KEYS:
+    if name in _table():
         table = name.partition(".")[0]
         return f"{name}: rig {rig.name} has no {table.replace('_', ' ')} with this key; it has {', '.join(known)}"
     if _PROBE.fullmatch(name):

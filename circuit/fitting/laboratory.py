@@ -14,13 +14,13 @@ from thermicon.icons import Icon, load_library
 from ..rig.rig import Rig
 from ..solver.simulate import simulate
 from .forward import runs_of
-from .identify import NOISE_K, NOISE_V, SHORT, expected_sd, half_width, is_identified, with_channels
+from .identify import NOISE_K, NOISE_V, expected_sd, half_width, is_identified, with_channels
 from .keys import FitKey, free_keys
 from .log import Log
 from .problem import OFFSET_SD_K, Problem
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 COLUMNS = ("display_C", "voltage_V")
 CHOICES = (
@@ -87,11 +87,6 @@ class Expected:
     half_widths: tuple[float, ...]
     identified: tuple[bool, ...]
 
-    @property
-    def sensors(self) -> str:
-        """The sensors as people say them."""
-        return " + ".join(SHORT[column] for column in self.columns)
-
 
 def plan(
     rig: Rig, free: Sequence[str], *, offset_K: float = OFFSET_SD_K, fixed_skin: bool = False
@@ -112,14 +107,3 @@ def _expected(problem: Problem, columns: tuple[str, ...]) -> Expected:
     each = [(key, float(sd)) for key, sd in zip(problem.keys, deviations, strict=True)]
     widths = tuple(half_width(key.log, sd) for key, sd in each)
     return Expected(columns, problem.keys, widths, tuple(is_identified(key.log, sd, key.usual) for key, sd in each))
-
-
-def plan_frame(expected: Sequence[Expected]) -> pd.DataFrame:
-    """Return a plan as a table: a row per choice of sensors, a column per key with half widths."""
-    import pandas as pd
-
-    rows = [
-        {"sensors": each.sensors, **{key.key: w for key, w in zip(each.keys, each.half_widths, strict=True)}}
-        for each in expected
-    ]
-    return pd.DataFrame(rows)

@@ -18,11 +18,10 @@ from thermicon.icons.near_words import nearest_words
 from ..arrays import Array
 from ..inputs import LIKE_MILLISECONDS, quoted, read_bytes, table_fault, text_of
 from ..rig.module import ZERO_C_IN_K
-from ..solver.trace import Trace
 from .keys import FitError
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    pass
 
 DRIVES = ("current_A", "command_V")
 """What can drive a run, in the order of preference; a column behind the first that is there counts as measured."""
@@ -93,7 +92,6 @@ class Log:
         if "time_s" not in values:
             raise LogError(f"{name}: the column time_s (time in s) is missing; found {', '.join(values) or 'nothing'}")
         _check_lengths(name, values)
-        _check_size(name, {key: column for key, column in values.items() if key == "time_s" or is_known(key)}, rows)
         time = values.pop("time_s")
         _check_times(name, time, rows)
         for key in (*DRIVES, *TEMPERATURES):
@@ -132,13 +130,6 @@ class Log:
             raise KeyError(f"no column {name} in {self.name}; there is {', '.join(there)}")
         return there[name]
 
-    def draw_beside(self, trace: Trace, ax: Axes) -> None:
-        """Draw the measured temperatures into the Axes of a trace's plot."""
-        from .fit_figure import draw_measured
-        from .overlay import overlay
-
-        draw_measured(overlay(trace, self), ax)
-
 
 def is_measured(name: str) -> bool:
     """Whether a column can be compared with a simulation."""
@@ -162,18 +153,6 @@ def _check_lengths(name: str, values: Mapping[str, Array]) -> None:
             raise LogError(
                 f"{name}: unequal lengths: time_s has {time[0]} rows, {key} has {shape[0] if shape else 0}; cut the "
                 f"longer column"
-            )
-
-
-def _check_size(name: str, values: Mapping[str, Array], rows: Sequence[str] | None) -> None:
-    """A number that no instrument gives would be infinite in the sum of squares."""
-    for key, column in values.items():
-        wild = np.flatnonzero(np.abs(column) > MOST_SIZE)
-        if wild.size:
-            row = int(wild[0])
-            raise LogError(
-                f"{_place(name, row, rows)}: {key} is {column[row]:g}, beyond the {MOST_SIZE:g} that any instrument "
-                f"gives; {'remove the row' if key == 'time_s' else 'leave the cell empty'}"
             )
 
 
@@ -201,12 +180,13 @@ def _unit_fault(column: str, values: Array) -> str | None:
     there = values[np.isfinite(values)]
     if not there.size:
         return None
+    if (most := float(np.abs(there).max())) > MOST_SIZE:
+        return f"{column} reaches {most:g}, beyond the {MOST_SIZE:g} that any instrument gives; leave that row out"
     if column == "time_s":
         return _time_fault(there)
     if column.endswith("_C"):
         return _temperature_fault(column, there)
     limit, unit, small = (MOST_A, "A", "milliamperes") if column.endswith("_A") else (MOST_V, "V", "millivolts")
-    most = float(np.abs(there).max())
     if most > limit:
         return (
             f"{column} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}; divide it by 1000, so "

@@ -64,8 +64,6 @@ class RigFit:
         uncertainty of `rig` is then never narrower than before.
     fitted_layers
         Names of the layers of the skin that were fitted along.
-    series
-        Contact and outermost layer in series, which a log of the display knows about; None where either is not fitted.
     """
 
     rig: Rig
@@ -77,7 +75,6 @@ class RigFit:
     converged: bool
     misfit: bool = False
     fitted_layers: tuple[str, ...] = ()
-    series: Parameter | None = None
 
     def __repr__(self) -> str:
         parts = [f"{item.key} = {item.value:.4g} {item.unit} {item.interval}" for item in self.parameters]

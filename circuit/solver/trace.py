@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from ..fitting.log import Log
 
 COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *RECORDED)
 """Columns of a trace file, in order."""
@@ -232,18 +231,11 @@ class Trace:
         columns.update({f"probe_{name}_C": values for name, values in self.probes})
         return pd.DataFrame(columns)
 
-    def plot(self, ax: Axes | None = None, probes: bool = False, measured: Log | None = None) -> Axes:
-        """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes.
+    def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
+        """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes."""
+        from .draw import plot_temperatures
 
-        `measured` is a log, drawn as points on the trace's clock, with rms and largest miss.
-        """
-        from .draw import plot_temperatures, tidy
-
-        ax = plot_temperatures(self, ax, probes)
-        if measured is not None:
-            measured.draw_beside(self, ax)
-            tidy(ax, self.time_s, "temperature (°C)")
-        return ax
+        return plot_temperatures(self, ax, probes)
 
 
 def write_trace(traces: Trace | list[Trace], path: str | Path, power: bool = False) -> None:

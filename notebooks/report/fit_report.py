@@ -69,12 +69,7 @@ def residual_table(fitted: RigFit) -> Grid:
 
 
 def doubts(fitted: RigFit) -> list[str]:
-    """Contact and layer in series, what was not identified with the cure, and pairs that the logs hardly separate."""
-    both = fitted.series
-    series = [] if both is None else [
-        f"{both.words}: {_short(both.value, None)} {both.unit} {both.interval} together, which is what a log of the "
-        f"display alone tells; how much of it is contact rests on the spread of the layer between people"
-    ]  # fmt: skip
+    """What was not identified with the cure, and pairs that the logs hardly separate."""
     lines = [f"not identified: {item.key}; {item.cure}" for item in fitted.unidentified]
     keys = [item.key for item in fitted.parameters]
     pairs = [
@@ -83,7 +78,7 @@ def doubts(fitted: RigFit) -> list[str]:
         for b in range(a + 1, len(keys))
         if abs(fitted.correlation[a, b]) > CLOSE
     ]
-    return [*series, *lines, *([f"strongly correlated: {', '.join(pairs)}"] if pairs else [])]
+    return [*lines, *([f"strongly correlated: {', '.join(pairs)}"] if pairs else [])]
 
 
 def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:

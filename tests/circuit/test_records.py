@@ -45,11 +45,6 @@ def test_records_are_read_with_their_intervals(tmp_path: Path) -> None:
     assert table.one("velocity", channel="cold") is cold
 
 
-def test_repr_is_one_line_with_unit_and_source() -> None:
-    shown = repr(Record("velocity", "m/s", "Fowler et al. 1988", value=0.5, low=0.3, high=0.7, channel="warm"))
-    assert shown == "Record(velocity (warm): 0.5 [0.3, 0.7] m/s; Fowler et al. 1988)"
-
-
 def test_dumped_records_read_back_equal(tmp_path: Path) -> None:
     table = table_of(tmp_path, GOOD, "tissue")
     again = table_of(tmp_path, dump_records(table, comment="two\nlines"), "tissue")

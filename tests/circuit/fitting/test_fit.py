@@ -225,15 +225,6 @@ def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:
         overlay(trace, commands)
 
 
-def test_the_plot_of_a_trace_shows_what_was_measured(log: Log, trace: Trace) -> None:
-    plain, both = trace.plot(), trace.plot(measured=log)
-    assert len(both.lines) == len(plain.lines) + 1
-    legend = both.get_legend()
-    texts = [text.get_text() for text in legend.get_texts()]
-    assert any(text.startswith("display, measured\nrms 0.") and "largest" in text for text in texts)
-    assert both.get_title().startswith("synthetic.csv, shifted by ")
-
-
 def test_noise_and_likeness_of_rows_are_those_of_known_series() -> None:
     random, time = np.random.default_rng(0), np.arange(600) / 10
     assert (alike(random.normal(size=500)), round(alike(np.sin(np.arange(500) / 30)), -1)) == (1.0, 60.0)

@@ -30,11 +30,8 @@ def foreign(true_rig: Rig, thenar: Rig) -> RigFit:
 
 
 def test_thicker_skin_does_not_pass_for_contact(foreign: RigFit, true_rig: Rig, thenar: Rig) -> None:
-    contact, both = foreign[CONTACT], foreign.series
+    contact = foreign[CONTACT]
     assert contact.low < TRUTH[CONTACT] < contact.high and contact.half_width > 0.1
-    layer = true_rig.with_(**THICK).skin.layers[0]
-    assert both is not None and both.key == "contact + stratum corneum"
-    assert both.low < TRUTH[CONTACT] + layer.thickness_m / layer.conductivity_W_per_mK < both.high
     held = foreign.rig.uncertainty.contact_resistance_relative
     assert contact.half_width <= held < thenar.uncertainty.contact_resistance_relative
     assert not foreign.misfit
@@ -51,7 +48,7 @@ def test_the_fitted_rig_has_the_skin_that_was_logged(foreign: RigFit, true_rig: 
 def test_fixed_skin_is_what_the_rig_has(true_rig: Rig, thenar: Rig) -> None:
     log = synthetic_log(true_rig.with_(**THICK), seed=3, rate_Hz=20.0)
     found = fit(log, thenar, free=list(TRUTH), fixed_skin=True)
-    assert found.series is None and found.rig.skin == thenar.skin
+    assert found.rig.skin == thenar.skin
     assert found[CONTACT].low > TRUTH[CONTACT]  # the layer passes for contact
 
 
@@ -103,12 +100,12 @@ def test_a_late_column_that_other_keys_make_up_for_is_named_and_narrows_nothing(
     assert found.rig.uncertainty.plates_relative >= thenar.uncertainty.plates_relative
 
 
-def test_a_number_that_no_instrument_gives_is_refused_with_its_row(log: Log) -> None:
+def test_a_number_that_no_instrument_gives_is_refused(log: Log) -> None:
     columns = {"time_s": np.array(log.time_s), **{name: np.array(values) for name, values in log.columns}}
     for name in ("display_C", "time_s"):
         wild = {**columns, name: columns[name].copy()}
         wild[name][-1] = 1e308
-        with pytest.raises(LogError, match=rf"rig.csv, row 1201: {name} is 1e\+308, beyond the 1e\+12 that any"):
+        with pytest.raises(LogError, match=rf"rig.csv: {name} reaches 1e\+308, beyond the 1e\+12 that any"):
             Log.of("rig.csv", wild)
 
 
