@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from thermicon.perception import Ranking, Task
 
 TRIALS, MOST_WORKERS = 48, 1024
-TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s"), "context": (0.0, 1.0, ""), "bias": (0.0, 5.0, "")}
+TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s")}
 """Keys of --task with their limits, those of `thermicon.perception.Task`, repeated here to avoid its imports."""
 
 
@@ -50,8 +50,7 @@ class TaskOptions(Options):
         opt(
             "KEY=VALUE",
             "The predicted experiment; may be given several times: trials=48, gap=S between icons (else until "
-            "carry-over has faded), context=SHARE of the memory noise that grows with the range of the set, 0 to 1, "
-            "bias=SD of people's response bias in log likelihood, 0 to 5.",
+            "carry-over has faded).",
         ),
     ] = None
 
@@ -67,8 +66,7 @@ class TaskOptions(Options):
         """The task, as the model takes it."""
         from thermicon.perception import Task
 
-        given = self.read()
-        return Task(given.get("context", 0.0), given.get("gap"), given.get("bias", 0.0))
+        return Task(self.read().get("gap"))
 
     def read(self) -> dict[str, float]:
         """The values by their keys; a usage error for what no experiment has."""

@@ -65,18 +65,6 @@ def outside_lines(icons: Sequence[dict[str, Any]]) -> list[str]:
     ]
 
 
-def task_note(task: dict[str, Any]) -> str:
-    """Return how the identification task differs from the default one.
-
-    >>> task_note({"context": 0.0, "gap_s": 10.0, "bias": 0.0})
-    ', 10 s between icons'
-    """
-    parts = [f", {100 * task['context']:g} % of memory noise from the set's range"] if task["context"] else []
-    parts += [] if task["gap_s"] is None else [f", {task['gap_s']:g} s between icons"]
-    parts += [f", response bias with a standard deviation of {task['bias']:g}"] if task["bias"] else []
-    return "".join(parts)
-
-
 def crowd_text(result: Mapping[str, Any]) -> str:
     """For how many people and on which rig, with its changes."""
     changes = result["rig_changes"]
@@ -88,9 +76,10 @@ def crowd_text(result: Mapping[str, Any]) -> str:
 def caveat(result: Mapping[str, Any]) -> str:
     """Return the sentences that state what the numbers rest on and what they are not."""
     norm = "" if result["norm"] == "episodes" else f", {result['norm']} norm"
+    gap_s = result["task"]["gap_s"]
+    gap = "" if gap_s is None else f", {gap_s:g} s between icons"
     return (
-        f"Predicted for {crowd_text(result)} "
-        f"(seed {result['seed']}, {result['tracking']} tracking{norm}{task_note(result['task'])}). "
+        f"Predicted for {crowd_text(result)} (seed {result['seed']}, {result['tracking']} tracking{norm}{gap}). "
         f"These are predictions of a model, not measurements. {DETECTED}"
     )
 

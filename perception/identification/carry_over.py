@@ -8,7 +8,7 @@ adds to what the next one brings; adaptation, which is not, is then run over bot
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from ..observer.people import draw_people
 from ..sensation.features import receptor_C
 from ..sensation.percept import perceive_many, uniform_clock
 from .episodes import Episodes, episode_distances
-from .task import Task
+from .task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -116,18 +116,16 @@ def prepare_task(
     observer: Observer | None = None,
 ) -> tuple[Task, CarryOver | None]:
     """A task filled in for some icons, of which `counted` (none: all) will be played; and what is left behind."""
-    asked = task.asked()
-    if asked.plain:
-        return asked, None
+    if task.plain:
+        return USUAL, None
     played = tuple(counted or range(len(icons)))
-    left = None if asked.gap_s is None else carry_over(icons, rig, end_s, asked.gap_s, observer, tracking=tracking)
-    return replace(asked, counted=played, carried=() if left is None else _rows(left.over(played))), left
+    left = carry_over(icons, rig, end_s, task.gap_s or 0.0, observer, tracking=tracking)
+    return Task(task.gap_s, _rows(left.over(played)), played), left
 
 
 def task_among(task: Task, left: CarryOver | None, places: Sequence[int]) -> Task:
     """The task for some icons of a set that are then asked for on their own."""
-    own = () if left is None else _rows(left.over(places)[:, list(places)])
-    return replace(task.asked(), carried=own, places=() if task.asked().plain else tuple(places))
+    return Task(task.gap_s, () if left is None else _rows(left.over(places)[:, list(places)]))
 
 
 def _rows(values: Array) -> tuple[tuple[float, ...], ...]:

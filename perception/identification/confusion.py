@@ -2,7 +2,7 @@
 
 Icons are points whose distances are the pairwise d′ (classical scaling, negative axes dropped).
 A presented icon is felt as its point plus unit noise on every axis, and named after the nearest
-point, moved by a bias where there is one; in a share of trials (lapse) any name is given. For m
+point; in a share of trials (lapse) any name is given. For m
 equally distant icons this is PC = ∫φ(x − d)Φ(x)^(m−1)dx with pairwise d′ = d√2.
 
 Directly named, every trial is a sequence of felt episodes with noise, and gets the name that it costs least to give.
@@ -69,7 +69,6 @@ def confuse(
     d_prime: ArrayLike,
     *,
     lapse: ArrayLike = 0.02,
-    bias: ArrayLike = 0.0,
     seed: int = 0,
     samples: int = SAMPLES,
     first: int = 0,
@@ -86,9 +85,6 @@ def confuse(
         Pairwise d′, of shape (people, icons, icons) or (icons, icons).
     lapse
         Share of trials with a random name, 0–1; one number or one for each person.
-    bias
-        Favour of names (icons,) or (people, icons): the answer is the likeliest icon with its log likelihood (ln)
-        higher by this much; only differences count. Lapses have no bias.
     seed
         Seed of the noise.
     samples
@@ -123,16 +119,13 @@ def confuse(
     if samples < 1:
         raise ValueError(f"at least one sample is needed, not {samples}")
     lapses = np.broadcast_to(np.asarray(lapse, dtype=np.float64), (people,))[:, None, None]
-    favour = np.ascontiguousarray(np.broadcast_to(np.asarray(bias, dtype=np.float64), (people, icons)))
-    if not np.isfinite(favour).all():
-        raise ValueError("bias must be finite: give the log of how much likelier a name is")
 
     if icons == 1:
         named = np.ones((people, 1, 1))
     elif icons == 2:
-        named = _two(distances[:, 0, 1], favour[:, 0] - favour[:, 1])
+        named = _two(distances[:, 0, 1])
     else:
-        named = _sampled(embed(distances), distances, favour, seed, samples, first)
+        named = _sampled(embed(distances), distances, seed, samples, first)
     probability = normalised((1.0 - lapses) * named + lapses / icons)
     mean = probability.mean(axis=0)
     one = sampling_error(probability, samples) if icons > 2 else 0.0
@@ -162,25 +155,18 @@ def normalised(rows: Array) -> Array:
     return np.asarray(rows / rows.sum(axis=-1, keepdims=True))
 
 
-def _cumulative(x: Array) -> Array:
-    return np.array([0.5 * math.erfc(-v / math.sqrt(2.0)) for v in x.tolist()], dtype=np.float64)
+def _two(d_prime: Array) -> Array:
+    """Exact for two: each is named where noise stays below d′/2."""
+    right = np.array([0.5 * math.erfc(-0.5 * v / math.sqrt(2.0)) for v in d_prime.tolist()])
+    return np.stack([np.stack([right, 1.0 - right], -1), np.stack([1.0 - right, right], -1)], -2)
 
 
-def _two(d_prime: Array, favour: Array) -> Array:
-    """Exact for two: the first is named where noise stays below d′/2 + favour/d′."""
-    apart = d_prime > 0.0
-    push = np.where(apart, favour / np.where(apart, d_prime, 1.0), np.sign(favour) * 40.0)
-    first, second = _cumulative(0.5 * d_prime + push), _cumulative(0.5 * d_prime - push)
-    return np.stack([np.stack([first, 1.0 - first], -1), np.stack([1.0 - second, second], -1)], -2)
-
-
-def shared_among_identical(named: Array, distances: Array, favour: Array, identical: float = IDENTICAL) -> Array:
+def shared_among_identical(named: Array, distances: Array, identical: float = IDENTICAL) -> Array:
     """Answers shared equally among icons that are identical for a person, such as several that one does not feel.
 
     The order of the file, or rounding, would decide among them otherwise.
     """
-    fair = favour[:, :, None] == favour[:, None]
-    same = (distances <= identical) & fair
+    same = distances <= identical
     who = np.flatnonzero((same.sum(axis=2) > 1).any(axis=1))
     if not who.size:
         return named
@@ -190,7 +176,7 @@ def shared_among_identical(named: Array, distances: Array, favour: Array, identi
     return shared
 
 
-def _sampled(points: Array, distances: Array, favour: Array, seed: int, samples: int, first: int) -> Array:
+def _sampled(points: Array, distances: Array, seed: int, samples: int, first: int) -> Array:
     """Shares of answers; draws are spread evenly along the two longest axes, which can only lower the error."""
     from ..kernels import kernels
 
@@ -205,7 +191,7 @@ def _sampled(points: Array, distances: Array, favour: Array, seed: int, samples:
     # Of x_j·(x_i + z) − |x_j|²/2 only what depends on the answer j counts: x_j·z − |x_i − x_j|²/2.
     gram, size = points @ np.swapaxes(points, 1, 2), (points**2).sum(axis=2)
     squares = np.maximum(size[:, :, None] + size[:, None, :] - 2.0 * gram, 0.0)
-    near = (favour[:, :, None] - 0.5 * squares).astype(np.float32)
+    near = (-0.5 * squares).astype(np.float32)
     single = points.astype(np.float32)
 
     def work(part: slice) -> None:
@@ -216,7 +202,7 @@ def _sampled(points: Array, distances: Array, favour: Array, seed: int, samples:
             kernels.nearest(near[person], single[person, :, :used] @ noise, counts[person])
 
     over_rows(work, people, people * samples * icons * 8)
-    return shared_among_identical(counts / samples, np.minimum(np.sqrt(squares), distances), favour, NEGLIGIBLE)
+    return shared_among_identical(counts / samples, np.minimum(np.sqrt(squares), distances), NEGLIGIBLE)
 
 
 def _noise(seed: int, person: int, axes: int, samples: int) -> Single:
@@ -256,7 +242,6 @@ def name_directly(
     memory: ArrayLike = 1.0,
     louder: ArrayLike = 1.0,
     lapse: ArrayLike = 0.02,
-    bias: ArrayLike = 0.0,
     seed: int = 0,
     samples: int = NAMED_SAMPLES,
     first: int = 0,
@@ -264,16 +249,14 @@ def name_directly(
     """Confusions (people, icons, icons) of icons that are named episode by episode from the memory of an observer.
 
     `memory` and `lapse` are multiples of memory noise and shares of guessed trials, one for each person or for all;
-    `louder` (people, icons) multiplies the noise of an icon, for what the icon before leaves behind; `bias` are log
-    likelihoods, (icons,) or (people, icons), that favour names. Noise is drawn from the seed and the person's number,
-    which counts from `first`; `samples` are trials of an icon.
+    `louder` (people, icons) multiplies the noise of an icon, for what the icon before leaves behind. Noise is drawn
+    from the seed and the person's number, which counts from `first`; `samples` are trials of an icon.
     """
     from ..kernels import alignment
 
     people, icons = felt.counts.shape
     own = np.broadcast_to(np.asarray(memory, dtype=np.float64), (people,))
     scale = np.ascontiguousarray(np.broadcast_to(np.asarray(louder, dtype=np.float64), (people, icons)))
-    favour = np.ascontiguousarray(np.broadcast_to(np.asarray(bias, dtype=np.float64), (people, icons)))
     lapses = np.broadcast_to(np.asarray(lapse, dtype=np.float64), (people,))[:, None, None]
     rated = felt.scaled("naming", observer)
     intensity, timing = intensity_noise("naming", observer, own), observer.memory.timing * own
@@ -286,12 +269,12 @@ def name_directly(
             noise = rng.standard_normal((int(rated.counts[person].max(initial=0)), icons, samples, NOISES))
             alignment.name(
                 rated.features[person], rated.counts[person], intensity[person], timing[person], scale[person],
-                observer.memory.missing, favour[person], noise, counts[person],
+                observer.memory.missing, noise, counts[person],
             )  # fmt: skip
 
     over_rows(work, people, people * icons * icons * samples)
     apart = episode_distances(felt, felt, observer, "naming", own)
-    named = shared_among_identical(counts / samples, apart, favour)
+    named = shared_among_identical(counts / samples, apart)
     probability = normalised((1.0 - lapses) * named + lapses / icons)
     mean = probability.mean(axis=0)
     return Confusion(probability, sampling_error(mean, samples * people), sampling_error(probability, samples))

@@ -72,24 +72,15 @@ class ReceptorTemperatures:
 
 @dataclass(frozen=True, slots=True)
 class PopulationResponse:
-    """Episodes of every person and icon, and detection probabilities (people, icons).
-
-    `peaks` (people, icons) are the largest sensations, cold and warm. `detection` is None where it was not asked for.
-    """
+    """Episodes of every person and icon, and detection probabilities (people, icons); None where not asked for."""
 
     episodes: Episodes
     detection: Detection | None
-    peaks: tuple[Array, Array]
 
     def of(self, icons: Sequence[int]) -> PopulationResponse:
         """Some of the icons, without their detection."""
         places = list(icons)
-        cold, warm = self.peaks
-        return PopulationResponse(
-            Episodes(self.episodes.features[:, places], self.episodes.counts[:, places]),
-            None,
-            (cold[:, places], warm[:, places]),
-        )
+        return PopulationResponse(Episodes(self.episodes.features[:, places], self.episodes.counts[:, places]), None)
 
     @property
     def probability(self) -> Array:
@@ -118,9 +109,7 @@ def respond(
     """
     cold, warm, dt = _sensations(played, crowd, observer)
     found = _detection(cold, warm, dt, played.site, crowd, observer, times) if detection else None
-    peaks = (cold.max(axis=-1), warm.max(axis=-1))
-    episodes = Episodes.of(cold, warm, dt, observer, played.names)
-    return PopulationResponse(episodes, found, peaks)
+    return PopulationResponse(Episodes.of(cold, warm, dt, observer, played.names), found)
 
 
 def population_detection(played: ReceptorTemperatures, crowd: People, observer: Observer) -> Detection:
@@ -162,10 +151,9 @@ def _detection(
 
 def memory_dprime(felt: PopulationResponse, norm: Norm, memory: Array, observer: Observer, task: Task) -> Array:
     """Pairwise d′ from memory (people, icons, icons) by one norm; `memory` (people,) multiplies the memory noise."""
-    own = task.memory(memory, felt.peaks, observer)
-    apart: Array = episode_distances(felt.episodes, felt.episodes, observer, norm, own)
+    apart: Array = episode_distances(felt.episodes, felt.episodes, observer, norm, memory)
     if task.carried:
-        noise = own[:, None, None]
+        noise = memory[:, None, None]
         apart = apart * noise / task.between(noise, norm)
     return apart
 
@@ -182,15 +170,13 @@ def identify(
 ) -> tuple[Array, Confusion]:
     """Pairwise d′ from memory (people, icons, icons) by one norm, and the confusions that follow.
 
-    `first` is the number of the first person, on which the noise and the bias depend.
+    `first` is the number of the first person, on which the noise depends.
     """
     d_prime = memory_dprime(felt, norm, crowd.memory, observer, task)
-    bias = task.favour(first, len(crowd), d_prime.shape[-1], seed)
     if norm == "naming":
-        memory = task.memory(crowd.memory, felt.peaks, observer)
         named = name_directly(
-            felt.episodes, observer, memory=memory, louder=task.louder(memory, norm), lapse=crowd.lapse, bias=bias,
+            felt.episodes, observer, memory=crowd.memory, louder=task.louder(crowd.memory, norm), lapse=crowd.lapse,
             seed=seed, samples=min(samples, NAMED_SAMPLES), first=first,
         )  # fmt: skip
         return d_prime, named
-    return d_prime, confuse(d_prime, lapse=crowd.lapse, bias=bias, seed=seed, samples=samples, first=first)
+    return d_prime, confuse(d_prime, lapse=crowd.lapse, seed=seed, samples=samples, first=first)

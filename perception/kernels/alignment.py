@@ -145,13 +145,13 @@ def _distances(
 
 
 def _name(
-    felt: Any, counts: Any, intensity: Any, timing: float, louder: Any, c: float, favour: Any, noise: Any, answers: Any
+    felt: Any, counts: Any, intensity: Any, timing: float, louder: Any, c: float, noise: Any, answers: Any
 ) -> None:
     """Count the names that one person gives: noise on what is felt, the template that costs least.
 
     `felt` (icons, room, FEATURES), `louder` (icons,) multiplies the noise of an icon, `noise` (most, icons, samples, 4)
-    are standard normal, `favour` (icons,) log likelihoods; `answers` (icons, icons) is added to. What is felt without a
-    partner costs `c` more than the square of its size, since noise is part of it.
+    are standard normal; `answers` (icons, icons) is added to. What is felt without a partner costs `c` more than the
+    square of its size, since noise is part of it.
     """
     icons = felt.shape[0]
     now, alone, missing = np.empty(felt.shape[1:]), np.empty(felt.shape[1]), np.empty(felt.shape[:2])
@@ -174,8 +174,8 @@ def _name(
             best, name = math.inf, 0
             for j in range(icons):
                 square = least_cost(now, counts[i], alone, c, felt[j], counts[j], missing[j], intensity, timing, cost)
-                if square - 2.0 * favour[j] < best:
-                    best, name = square - 2.0 * favour[j], j
+                if square < best:
+                    best, name = square, j
             answers[i, name] += 1.0
 
 

@@ -7,17 +7,15 @@ says what it was calibrated on, or that it is assumed, and carries its interval.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from thermicon.circuit.records import Table, load_records
-from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
 from .channels import (
@@ -33,7 +31,7 @@ from .channels import (
     source_of,
 )
 from .observer_file import check_complete, read_records
-from .parts import LEG_M_PER_S, EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
+from .parts import EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
@@ -58,19 +56,6 @@ OF_CHANNEL: Mapping[str, str] = {
 }
 OF_BOTH: Mapping[str, str] = {"adaptation_s": "slow adaptation time", "softness_K": "softness of the limits"}
 """Fields of a receptor: constants of which each channel has its own, and those that both share."""
-TURNED_OFF: Mapping[str, Mapping[str, float]] = {
-    "delays": {},
-    "cold limit": {},
-    "warm limit": {},
-    "ends of summation": {},
-    "transducer": {"p": 2.0},
-    "gain noise": {"gain_noise": 0.0},
-    "decision between trials": {"decision_noise": 0.0},
-    "choice time": {"choice_s": 0.0},
-}
-"""Mechanisms that can be turned off, and what fields are then: conduction is the leg's and has no way from the cord to
-the brain; any change in a channel's direction is felt, however warm or cold; a power of area without ends; the square
-law, ψ ∝ u² near threshold; additive noise alone; one decision time a person; a choice as long as a simple reaction."""
 FOREARM_SITES = ("forearm", "wrist", "arm")
 
 
@@ -78,8 +63,8 @@ FOREARM_SITES = ("forearm", "wrist", "arm")
 class Observer:
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 
-    An observer is loaded with `Observer.load`, which takes a variant and mechanisms to leave out; its fields are the
-    constants of the chain from receptor to answer, each with its source in the parameter file.
+    An observer is loaded with `Observer.load`, which takes a variant; its fields are the constants of the chain from
+    receptor to answer, each with its source in the parameter file.
 
     Attributes
     ----------
@@ -103,8 +88,8 @@ class Observer:
         Exponent of sensation near threshold, and the SD (ln) of the gain from presentation to presentation.
     choice_s, decision_noise
         What a choice adds to `decision_s`, s, and the SD (ln) of decision times from trial to trial.
-    variable, without
-        What the receptors go by, `temperature` or `heat flow`, and mechanisms that are turned off.
+    variable
+        What the receptors go by, `temperature` or `heat flow`.
 
     Raises
     ------
@@ -118,8 +103,6 @@ class Observer:
     True
     >>> Observer.load(variable="heat flow").drive_unit
     'W/m²'
-    >>> Observer.load(without=["cold limit"]).cold.limit_C is None
-    True
     """
 
     cold: Receptor
@@ -141,7 +124,6 @@ class Observer:
     choice_s: float = 0.0
     decision_noise: float = 0.0
     variable: Variable = "temperature"
-    without: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         for name in ("a", "p"):
@@ -158,37 +140,12 @@ class Observer:
             raise ValueError("an observer of heat flow needs the neutral heat flow of both channels")
 
     @classmethod
-    def load(
-        cls,
-        path: Path | str | None = None,
-        *,
-        variable: Variable = "temperature",
-        without: Iterable[str] = (),
-    ) -> Observer:
+    def load(cls, path: Path | str | None = None, *, variable: Variable = "temperature") -> Observer:
         """The shipped observer, or one from another parameter file, in one of its variants.
 
-        `without` names mechanisms that are turned off, out of `TURNED_OFF`; other constants stay what they are. Raises
-        `RecordError` for a file without what is needed, `ValueError` for a variant or mechanism that does not exist.
+        Raises `RecordError` for a file without what is needed, `ValueError` for a variant that does not exist.
         """
-        whole = _shipped(variable) if path is None else cls.from_table(read_records(Path(path)), variable=variable)
-        return whole._without(without) if without else whole
-
-    def _without(self, names: Iterable[str]) -> Observer:
-        if isinstance(names, str):
-            raise ValueError(f"mechanisms are given as a list of names, such as without=[{names!r}]")
-        off, changes = frozenset(names), dict[str, Any]()
-        for name in off:
-            if name not in TURNED_OFF:
-                raise ValueError(f"there is no mechanism {name!r}: {did_you_mean(name, set(TURNED_OFF))}")
-            changes |= TURNED_OFF[name]
-        for channel in CHANNELS:
-            receptor = self.receptor(channel)
-            if f"{channel} limit" in off:
-                receptor = replace(receptor, limit_C=None)
-            if "delays" in off:
-                receptor = replace(receptor, velocity_m_per_s=LEG_M_PER_S[channel])
-            changes[channel] = receptor
-        return replace(self, without=off, **changes)
+        return _shipped(variable) if path is None else cls.from_table(read_records(Path(path)), variable=variable)
 
     @classmethod
     def from_table(cls, table: Table, *, variable: Variable = "temperature") -> Observer:
@@ -246,10 +203,7 @@ class Observer:
 
     def delay_s(self, channel: Channel, path_m: ArrayLike) -> Array:
         """Conduction over paths to the cord, and from there to the brain, s, of the same shape."""
-        velocity = self.receptor(channel).velocity_m_per_s
-        if "delays" in self.without:
-            return np.asarray(path_m, dtype=np.float64) / velocity
-        return conduction_s(channel, velocity, path_m)
+        return conduction_s(channel, self.receptor(channel).velocity_m_per_s, path_m)
 
     @property
     def drive_unit(self) -> str:

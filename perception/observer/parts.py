@@ -66,9 +66,6 @@ SPINE_M = 0.225
 SPINAL_M_PER_S: dict[Channel, float] = {"cold": 12.0, "warm": 2.0}
 """Leone et al. 2020, evoked potentials of healthy people; 1.4 and 2.5 m/s for warmth in a study of 2011."""
 
-LEG_M_PER_S: dict[Channel, float] = {"cold": 2.1, "warm": 0.5}
-"""Conduction at the leg (Fowler et al. 1988): what is used where the mechanism of delays is turned off."""
-
 
 def conduction_s(channel: Channel, velocity_m_per_s: float, path_m: ArrayLike) -> Array:
     """Time (s) from the receptor over a nerve path to the cord (m), and from there to the brain.

@@ -68,7 +68,7 @@ def rank(
         Draws from the posterior of the constants, for the intervals that a new laboratory will find (None: 128, or as
         many as the observer has; 0: none).
     task
-        The identification task: memory noise that follows the range of the set, a short gap, favoured names.
+        The identification task: a gap so short that the icon before is still felt.
     observer
         Another posterior or observer in place of the shipped one: `ObserverModel`, or its file. One without draws
         gives no intervals for a new laboratory.

@@ -49,7 +49,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "by": "model",
             "norm": ranking.norm,
             "content_hash": ranking.content_hash,
-            "task": ranking.task.to_dict(),
+            "task": {"gap_s": ranking.task.gap_s},
             "icons": [
                 {**_icon(icon), **intervals, "carry_over": _carried(ranking, place)}
                 for place, (icon, intervals) in enumerate(zip(ranking.icons, elsewhere, strict=True))

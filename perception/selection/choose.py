@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -166,10 +166,7 @@ class Chooser:
         self.limits = self.pool.limits(asked.most_s, asked.most_J)
         self.namings = None
         if asked.objective != "worst":
-            favour = replace(job.task, places=tuple(self.places)).favour(0, len(self.d), len(self.places), job.seed)
-            self.namings = SubsetIdentification.of(
-                self.d, self.crowd.lapse, self.pool.durations_s, job.seed, favour=favour
-            )
+            self.namings = SubsetIdentification.of(self.d, self.crowd.lapse, self.pool.durations_s, job.seed)
 
     def best(self, count: int, draws: int, step: Callable[[], None]) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.

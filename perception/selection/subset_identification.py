@@ -113,27 +113,16 @@ class SubsetIdentification:
 
     @classmethod
     def of(
-        cls,
-        d_prime: Array,
-        lapse: Array,
-        durations_s: Array,
-        seed: int,
-        most: int = PEOPLE,
-        *,
-        favour: Array | float = 0.0,
+        cls, d_prime: Array, lapse: Array, durations_s: Array, seed: int, most: int = PEOPLE
     ) -> SubsetIdentification:
-        """The first `most` people of d′ (people, n, n); a person's noise does not depend on how many they are.
-
-        `favour` (people, n) is the log likelihood that people favour names by.
-        """
+        """The first `most` people of d′ (people, n, n); a person's noise does not depend on how many they are."""
         points = embed(d_prime[:most])
         people, _, axes = points.shape
         noise = np.random.default_rng(np.random.SeedSequence([seed, 5])).standard_normal((people, HALF, axes))
         push = np.einsum("psa,pna->pns", noise, points)
         own = (points**2).sum(axis=-1)
         half = 0.5 * (own[:, :, None] + own[:, None, :]) - np.einsum("pia,pja->pij", points, points)
-        favoured = np.broadcast_to(np.asarray(favour, dtype=np.float64), d_prime.shape[:2])[:most, :, None]
-        return cls(half, np.concatenate([push, -push], axis=2) + favoured, np.asarray(lapse[:most]), durations_s)
+        return cls(half, np.concatenate([push, -push], axis=2), np.asarray(lapse[:most]), durations_s)
 
     def __len__(self) -> int:
         return int(self.half.shape[1])

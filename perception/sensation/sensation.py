@@ -113,9 +113,8 @@ def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, sit
         return 1.0 / factor
     if not area_m2 > 0.0:
         raise ValueError(f"the area of contact must be above 0 m², not {area_m2:g} m²")
-    ends = (0.0, math.inf) if "ends of summation" in observer.without else (FIELD_CM2, END_CM2)
     exponent = observer.receptor(channel).area_exponent
-    return area_factor(area_m2 / CM2, observer.reference_area_m2 / CM2, exponent, *ends) / factor
+    return area_factor(area_m2 / CM2, observer.reference_area_m2 / CM2, exponent) / factor
 
 
 def summed_area_cm2(area_cm2: float, field_cm2: float = FIELD_CM2, end_cm2: float = END_CM2) -> float:

@@ -7,7 +7,7 @@ observer's. Nothing here is conditioned on or predicted for an experiment: it sh
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -60,7 +60,8 @@ class Effect:
 
 def limits_effect() -> Effect:
     """A slow fall from 38 to 31 °C: cold with its limit and without, and warmth, which is what fades first."""
-    time, whole, free = _clock(12.0), Observer.load(), Observer.load(without=["cold limit"])
+    time, whole = _clock(12.0), Observer.load()
+    free = replace(whole, cold=replace(whole.cold, limit_C=None))
     corners: list[Corner] = [(1.0, 0.0), (8.0, -7.0)]
     curves = [
         Curve("warm", "warm", time, _felt(corners, "warm", whole, time, baseline_C=38.0)),
@@ -108,14 +109,14 @@ def depth_effect() -> Effect:
 def summation_effect() -> Effect:
     """Sensitivity against the area of contact, with the two ends of summation and without."""
     area = np.geomspace(0.02, 5000.0, 120)
-    curves = []
-    for without in ((), ("ends of summation",)):
-        observer = Observer.load(without=without)
-        for channel in CHANNELS:
-            ratio = np.array([sensitivity(channel, observer, a * 1e-4) for a in area.tolist()])
-            label = f"{channel}, no ends" if without else channel
-            look: Look = channel if not without else "off" if channel == "cold" else "other"
-            curves.append(Curve(label, look, area, ratio))
+    observer, curves = Observer.load(), []
+    for channel in CHANNELS:
+        ratio = np.array([sensitivity(channel, observer, a * 1e-4) for a in area.tolist()])
+        curves.append(Curve(channel, channel, area, ratio))
+    ends_off: tuple[tuple[Channel, Look], ...] = (("cold", "off"), ("warm", "other"))
+    for channel, look in ends_off:
+        power = (area / (observer.reference_area_m2 * 1e4)) ** observer.receptor(channel).area_exponent
+        curves.append(Curve(f"{channel}, no ends", look, area, power))
     title = "Sensitivity by area of contact (1 at 9 cm²)"
     return Effect("summation", title, "area of contact (cm²)", "sensitivity", tuple(curves), log_x=True, log_y=True)
 
@@ -137,9 +138,10 @@ def transducer_effect() -> Effect:
 def gain_noise_effect() -> Effect:
     """The psychometric function of a fall of temperature, with noise of the gain and without."""
     sizes = np.linspace(0.02, 1.4, 60)
+    whole = Observer.load()
     curves = [
-        Curve("gain noise", "cold", sizes, 100.0 * _noticed(sizes, Observer.load())),
-        Curve("additive noise alone", "off", sizes, 100.0 * _noticed(sizes, Observer.load(without=["gain noise"]))),
+        Curve("gain noise", "cold", sizes, 100.0 * _noticed(sizes, whole)),
+        Curve("additive noise alone", "off", sizes, 100.0 * _noticed(sizes, replace(whole, gain_noise=0.0))),
     ]
     title = "One person, a fall at 2.5 K/s and 1.5 s of hold (forearm)"
     return Effect("gain noise", title, "size of the fall (K)", "noticed (%)", tuple(curves))

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from thermicon.circuit import Rig, simulate
-from thermicon.perception.observer.channels import Channel
+from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.parts import SPINAL_M_PER_S, SPINE_M
 from thermicon.perception.sensation.percept import perceive
 
 if TYPE_CHECKING:
     from thermicon.icons import Icon
+
+
+LEG_M_PER_S: dict[Channel, float] = {"cold": 2.1, "warm": 0.5}
+"""Conduction at the leg (Fowler et al. 1988)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,15 +40,25 @@ class OnsetStages:
 
 def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
     """Stages of every icon that a nominal person feels, in the order of the icons."""
-    whole, leg = Observer.load(), Observer.load(without=["delays"])
+    whole = Observer.load()
     stages = []
     for icon in icons:
         trace = simulate(icon, rig)
-        felt, late = perceive(trace, whole), perceive(trace, leg)
+        path_m = whole.path_m(trace.site)
+        felt, late = perceive(trace, whole), perceive(trace, _as_at_the_leg(whole, path_m))
         if felt.onset_s is None or felt.channel is None or late.onset_s is None:
             continue
-        nerve = whole.path_m(trace.site) / whole.receptor(felt.channel).velocity_m_per_s
+        nerve = path_m / whole.receptor(felt.channel).velocity_m_per_s
         cord = SPINE_M / SPINAL_M_PER_S[felt.channel]
         before = felt.onset_s - nerve - cord - whole.decision_s
         stages.append(OnsetStages(icon.name, felt.channel, before, nerve, cord, whole.decision_s, late.onset_s))
     return tuple(stages)
+
+
+def _as_at_the_leg(whole: Observer, path_m: float) -> Observer:
+    """The observer whose nerves conduct so fast that the whole delay is that of a leg's nerve of the path alone."""
+    slow = {}
+    for channel in CHANNELS:
+        delay_s = path_m / LEG_M_PER_S[channel] - SPINE_M / SPINAL_M_PER_S[channel]
+        slow[channel] = replace(whole.receptor(channel), velocity_m_per_s=path_m / delay_s)
+    return replace(whole, cold=slow["cold"], warm=slow["warm"])

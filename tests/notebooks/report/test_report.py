@@ -185,9 +185,9 @@ def test_the_command_can_be_given_again() -> None:
     assert command_text(["six-icons"], RigOptions(), CrowdOptions()) == "thermicon rank six-icons"
     changed = RigOptions("/home/x/watch.toml", ["driver.current_limit_A=1.2"])
     asked = CrowdOptions(seed=3, norm="naming", tracking="ideal", observer=Path("/home/x/lab.csv"))
-    groups = (changed, asked, TaskOptions(["gap=8", "bias=0.5"]))
+    groups = (changed, asked, TaskOptions(["gap=8", "trials=24"]))
     assert command_text(["/home/x/my icons.cue", "b.cue"], *groups) == (
         "thermicon rank 'my icons.cue' b.cue --rig watch.toml --set driver.current_limit_A=1.2 --seed 3 "
-        "--tracking ideal --norm naming --observer lab.csv --task gap=8 --task bias=0.5"
+        "--tracking ideal --norm naming --observer lab.csv --task gap=8 --task trials=24"
     )
     assert "--observer /home/x/lab.csv" in command_text(["six-icons"], asked, paths=True)

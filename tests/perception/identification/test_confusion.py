@@ -51,8 +51,6 @@ def test_rows_sum_to_one_and_lapses_spread_evenly() -> None:
     found = confuse(equal(40.0), lapse=0.06)
     assert found.probability.sum(axis=-1) == pytest.approx(1.0, abs=1e-12)
     assert found.pooled[0] == pytest.approx([0.95, 0.01, 0.01, 0.01, 0.01, 0.01], abs=1e-12)
-    biased = confuse(equal(40.0), lapse=0.06, bias=[3.0, 0, 0, 0, 0, 0])  # lapses have no bias
-    assert biased.pooled[0] == pytest.approx(found.pooled[0], abs=1e-12)
 
 
 def test_the_noise_is_common_and_prefix_stable() -> None:
@@ -100,24 +98,10 @@ def test_the_stated_error_is_no_less_than_the_scatter_between_seeds() -> None:
     assert sampling_error(0.5, SAMPLES) < 0.005
 
 
-def test_a_bias_towards_a_name_follows_signal_detection() -> None:
-    cdf = NormalDist().cdf
-    found = confuse([[0.0, 2.0], [2.0, 0.0]], lapse=0.0, bias=[0.6, 0.0]).pooled
-    assert found[0, 0] == pytest.approx(cdf(1.0 + 0.3), abs=1e-12)
-    assert found[1, 1] == pytest.approx(cdf(1.0 - 0.3), abs=1e-12)
-    same = confuse(np.zeros((2, 2)), lapse=0.0, bias=[0.0, 1.0]).pooled
-    assert same[:, 1] == pytest.approx([1.0, 1.0])
-    line = np.abs(np.subtract.outer([0.0, 2.0, 40.0], [0.0, 2.0, 40.0]))
-    three = confuse(line, lapse=0.0, bias=[0.6, 0.0, 0.0])
-    assert three.pooled[0, 0] == pytest.approx(cdf(1.3), abs=4 * three.standard_error)
-    assert three.pooled[1, 1] == pytest.approx(cdf(0.7), abs=4 * three.standard_error)
-
-
 @pytest.mark.parametrize(
     ("d_prime", "told", "said"),
     [
         (equal(1.0), {"samples": 0}, r"at least one sample is needed, not 0"),
-        (equal(1.0), {"bias": np.full(6, np.inf)}, r"bias must be finite"),
         (np.zeros((2, 3)), {}, r"d_prime must have shape \(people, icons, icons\), not \(2, 3\)"),
         ([[0.0, np.nan], [np.nan, 0.0]], {}, r"d_prime must be finite"),
     ],

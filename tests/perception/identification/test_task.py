@@ -1,4 +1,4 @@
-"""How icons are asked for: memory that follows the range, what the icon before leaves behind, favoured names."""
+"""How icons are asked for: what the icon before leaves behind."""
 
 from dataclasses import replace
 
@@ -9,7 +9,6 @@ from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse, read_cue
 from thermicon.perception import Observer, Ranking, Task, cheapest_edit, choose, rank
 from thermicon.perception.identification.carry_over import CarryOver, carry_over
-from thermicon.perception.identification.task import range_of, reference_range
 from thermicon.perception.observer.observer import NORMS
 from thermicon.perception.observer.people import People
 from thermicon.perception.selection.edit import Edit
@@ -36,43 +35,8 @@ def left_behind() -> CarryOver:
 
 def test_the_usual_task_adds_nothing(usual: Ranking) -> None:
     assert Task().plain
-    assert ranked(task=Task(context=0.0)).to_json() == usual.to_json()
-    assert usual.to_dict()["task"] == {"context": 0.0, "gap_s": None, "bias": 0.0}
+    assert usual.to_dict()["task"] == {"gap_s": None}
     assert all(icon["carry_over"] is None for icon in usual.to_dict()["icons"])
-
-
-def test_range_is_that_of_the_channel_with_the_larger_one() -> None:
-    observer = Observer.load()
-    cold = np.array([[10.0, 30.0, 0.2], [10.0, 10.0, 10.0]])
-    warm = np.array([[0.0, 5.0, 0.0], [0.0, 0.0, 0.9]])
-    assert range_of(cold, warm, observer) == pytest.approx([20.0 / (observer.a * observer.p), 0.0])
-
-
-def test_context_multiplies_memory_noise_by_the_range_in_the_calibrating_task() -> None:
-    own, reference, observer = np.array([1.0, 2.0]), reference_range(), Observer.load()
-    assert 0.2 < reference < 2.0
-    low = 5.0
-    wide = np.array([[low, low + 2.0 * reference * observer.a * observer.p]] * 2), np.zeros((2, 2))
-    narrow = np.full((2, 2), low), np.zeros((2, 2))
-    assert Task(context=1.0).memory(own, wide, observer) == pytest.approx([2.0, 4.0])
-    assert Task(context=0.5).memory(own, wide, observer) == pytest.approx([2.0**0.5, 2.0 * 2.0**0.5])
-    assert Task(context=1.0).memory(own, narrow, observer) == pytest.approx([0.25, 0.5])
-    assert Task(context=1.0, counted=(0,)).memory(own, wide, observer) == pytest.approx([0.25, 0.5])
-
-
-def test_a_narrower_set_is_remembered_better_in_context() -> None:
-    text = "cue 1\nset s {{ control display; baseline 32 °C }}\n{}"
-    lines = [f"icon c{k} {{ cool by {size} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}"
-             for k, size in enumerate((1.0, 1.6, 2.5, 4.0, 6.0))]  # fmt: skip
-    narrow, wide = parse(text.format("\n".join(lines[1:3]))), parse(text.format("\n".join(lines)))
-    task = Task(context=1.0)
-
-    def pair(icons: IconSet, asked: Task) -> float:
-        found = ranked(icons, task=asked)
-        return next(p.d_prime for p in found.pairs if {p.a, p.b} == {"c1", "c2"})
-
-    assert pair(narrow, Task()) == pytest.approx(pair(wide, Task()), rel=0.02)
-    assert pair(narrow, task) > 1.3 * pair(wide, task)
 
 
 @pytest.mark.slow
@@ -111,22 +75,9 @@ def test_what_is_left_behind_is_what_a_run_of_both_gives(monkeypatch: pytest.Mon
         assert apart[0, 0, 1] == pytest.approx(told, rel=0.02)
 
 
-def test_bias_favours_names_but_not_in_the_mean(usual: Ranking) -> None:
-    biased = ranked(task=Task(bias=1.0))
-    assert biased.proportion_correct < usual.proportion_correct
-    assert [p.d_prime for p in biased.pairs] == [p.d_prime for p in usual.pairs]
-    drawn = Task(bias=2.0).favour(0, 500, 6, seed=3)
-    assert isinstance(drawn, np.ndarray)
-    assert drawn.std() == pytest.approx(2.0, rel=0.05) and abs(drawn.mean()) < 0.1
-    again = Task(bias=2.0).favour(100, 5, 6, seed=3)
-    assert np.array_equal(drawn[100:105], again)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("task", "wanted"), [(Task(context=0.3), 2.56), (Task(gap_s=60.0), 2.0)], ids=["context", "gap"]
-)
-def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -> None:
+def test_an_edit_parts_a_pair_in_the_task_asked_for() -> None:
+    task, wanted = Task(gap_s=60.0), 2.0
     found = cheapest_edit(
         rank(list(SIX), RIG, people=20, parameters=0, task=task), "warming-step", "linear-warming", wanted=wanted
     )
@@ -143,16 +94,14 @@ def test_an_edit_parts_a_pair_in_the_task_asked_for(task: Task, wanted: float) -
 
 @pytest.mark.slow
 def test_a_choice_is_judged_as_the_set_that_it_is() -> None:
-    """Neither what the icons left out would leave behind, nor the range that they would make, counts any more."""
+    """What the icons left out would leave behind does not count any more."""
     hot = "icon hot { warm by 17 °C over 3 s; hold for 2 s; return over 3 s }\n"  # as long as the six
-    pool = parse(str(SIX) + "\n" + hot)
-    for task in (Task(gap_s=3.0), Task(context=1.0), Task(bias=1.5)):
-        chosen = choose(rank(pool, RIG, people=20, parameters=0, task=task), Selection(3), parameters=0)
-        assert "hot" not in chosen.icons
-        alone = rank(replace(SIX, entries=tuple(SIX[n] for n in chosen.icons)), RIG, people=20, parameters=0, task=task)
-        if not task.bias:  # favoured names hang on places in the pool
-            assert chosen.at_own_range.proportion_correct == pytest.approx(alone.proportion_correct, abs=2e-3)
-        assert chosen.at_own_range.d_prime == pytest.approx(min(p.d_prime for p in alone.pairs), rel=1e-2)
+    pool, task = parse(str(SIX) + "\n" + hot), Task(gap_s=3.0)
+    chosen = choose(rank(pool, RIG, people=20, parameters=0, task=task), Selection(3), parameters=0)
+    assert "hot" not in chosen.icons
+    alone = rank(replace(SIX, entries=tuple(SIX[n] for n in chosen.icons)), RIG, people=20, parameters=0, task=task)
+    assert chosen.at_own_range.proportion_correct == pytest.approx(alone.proportion_correct, abs=2e-3)
+    assert chosen.at_own_range.d_prime == pytest.approx(min(p.d_prime for p in alone.pairs), rel=1e-2)
 
 
 def test_what_is_not_safe_leaves_nothing_behind() -> None:
@@ -167,24 +116,7 @@ def test_what_is_not_safe_leaves_nothing_behind() -> None:
     assert found[0] == pytest.approx(found[1], rel=1e-6)
 
 
-def test_bias_counts_in_a_choice_by_per_cent_correct() -> None:
-    plain, biased = (
-        choose(rank(SIX, RIG, people=20, parameters=0, task=Task(bias=bias)), Selection(5, "correct"), parameters=0)
-        for bias in (0.0, 3.0)
-    )
-    assert biased.value < plain.value - 0.001
-    assert biased.value == pytest.approx(biased.at_own_range.proportion_correct, abs=0.02)
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "said"),
-    [
-        ("context", 1.5, "context = 1.5 must lie in 0 to 1"),
-        ("gap_s", -1.0, "gap of -1 s between icons must lie in 0 to 600 s"),
-        ("gap_s", 601.0, "gap of 601 s between icons must lie in 0 to 600 s"),
-        ("bias", 9.0, "bias = 9 must lie in 0 to 5"),
-    ],
-)
-def test_numbers_of_a_task_out_of_their_range(key: str, value: float, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        Task(**{key: value})
+@pytest.mark.parametrize("gap_s", [-1.0, 601.0])
+def test_numbers_of_a_task_out_of_their_range(gap_s: float) -> None:
+    with pytest.raises(ValueError, match=f"gap of {gap_s:g} s between icons must lie in 0 to 600 s"):
+        Task(gap_s=gap_s)

@@ -8,9 +8,8 @@ from thermicon.circuit import Rig, simulate
 from thermicon.icons import load_library
 from thermicon.perception import Observer, perceive
 from thermicon.perception.observer.channels import VARIABLES, Variable, check_variable
-from thermicon.perception.observer.observer import TURNED_OFF, Receptor
+from thermicon.perception.observer.observer import Receptor
 from thermicon.perception.sensation.bench import Bench, ramp
-from thermicon.perception.sensation.sensation import sensitivity
 
 
 @pytest.mark.parametrize("variable", VARIABLES)
@@ -25,29 +24,6 @@ def test_every_variant_loads_and_is_near_the_thresholds_it_was_inferred_from(var
     for channel, published in (("cold", 0.11), ("warm", 0.20)):
         half, twice = (bench.play([ramp(channel, share * published, 1.0)], 4.0) for share in (0.5, 2.0))
         assert max(psi.max() for psi in half.felt(person)) < 1.0 < max(psi.max() for psi in twice.felt(person))
-
-
-@pytest.mark.parametrize("name", TURNED_OFF)
-def test_turning_a_mechanism_off_changes_what_is_computed(name: str) -> None:
-    """A constant differs, or what is computed from the constants: not only the list of names."""
-    whole, off = Observer.load(), Observer.load(without=[name])
-    assert off.without == {name}
-    large = [sensitivity("cold", person, 400e-4) for person in (whole, off)]
-    assert replace(off, without=frozenset()) != whole or large[0] != large[1]
-
-
-def test_mechanisms_can_be_turned_off_together_and_unknown_ones_are_named() -> None:
-    whole = Observer.load()
-    both = Observer.load(without=["cold limit", "gain noise"])
-    assert both.cold.limit_C is None
-    assert both.gain_noise == 0.0
-    assert Observer.load(without=["delays", "transducer"]).p == 2.0
-    assert Observer.load(without=["delays"]).warm.velocity_m_per_s == 0.5
-    assert both.warm == whole.warm
-    with pytest.raises(ValueError, match=r"no mechanism 'gain nose'.*gain noise"):
-        Observer.load(without=["gain nose"])
-    with pytest.raises(ValueError, match=r"given as a list of names, such as without=\['gain noise'\]"):
-        Observer.load(without="gain noise")
 
 
 @pytest.mark.parametrize("variable", ["temperature", "heat flow"])
