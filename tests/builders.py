@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from thermicon.perception import Observer, Percept
+from thermicon.perception.identification.episodes import episode_distances, remembered
 
 
 def messages(beside: str, name: str = "messages.toml") -> dict[str, Any]:
@@ -20,6 +24,13 @@ def messages(beside: str, name: str = "messages.toml") -> dict[str, Any]:
 def missing(words: str | list[str], told: str) -> list[str]:
     """Key words that are not in what was said."""
     return [word for word in ([words] if isinstance(words, str) else words) if word not in told]
+
+
+def dprime_from_memory(felt: Sequence[Percept], observer: Observer | None = None) -> float:
+    """d′ of two percepts when one of them comes from memory."""
+    person = Observer.load() if observer is None else observer
+    found = remembered(felt, person)
+    return float(episode_distances(found, found, person, "episodes")[0, 0, 1])
 
 
 def few_draws(path: Path, count: int, resampled: str = "", rig: str = "") -> Path:

@@ -44,9 +44,9 @@ def pilot_command(
         list[Path] | None,
         out(
             "TRIALS.csv",
-            "Sharpen the prediction by answers: columns participant, trial, presented, responded and, if recorded, "
-            "time_s. Or by measurements: participant, kind (threshold, reaction_time, rating), method, channel, "
-            "size_K, value, unit, standard_error, trials.",
+            "Sharpen the prediction by answers: columns participant, trial, presented, responded. Or by measurements: "
+            "participant, kind (threshold, reaction_time, rating), method, channel, size_K, value, unit, "
+            "standard_error, trials.",
             "--answers",
             "--measurements",
         ),
@@ -170,8 +170,6 @@ def condition(
         data = read_measurements(answers, where)
     else:
         data = read_trials(answers, [icon.name for icon in icons])
-        for warning in data.warnings:
-            note(f"warning: {warning}")
     with progress_bar("simulating laboratories") as progress:
         found = observed(
             data, icons, where, others=others, draws=draws, observer=model, progress=progress, **crowd.asked

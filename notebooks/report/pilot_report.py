@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.number_text import percent, percent_span, seconds, signed
+from thermicon.icons.number_text import percent, percent_span, signed
 
 from .blocks import Block, Bullets, Grid, Heading, Text, grid, printed_unit
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.conditioning import Answered, Measured
     from thermicon.perception.pilot.observed import Observed
-    from thermicon.perception.pilot.prediction import Fit, MeasurementFit, Three
+    from thermicon.perception.pilot.prediction import Fit, MeasurementFit
     from thermicon.perception.pilot.trials import AnswerScore
 
 MOST_PEOPLE, MOST_PAIRS = 20, 8
@@ -64,7 +64,9 @@ def sets_table(found: Observed[Any, Any], files: Sequence[str]) -> Grid:
 
 def draws_sentences(found: Observed[Any, Any]) -> list[str]:
     """How many draws carry the result, and which constants moved."""
-    own, people, answered = found.conditioned, found.predictions[0].after.people, bool(found.own)
+    from thermicon.perception.pilot.conditioning import Answered
+
+    own, people, answered = found.conditioned, found.predictions[0].after.people, isinstance(found.data, Answered)
     carried = f"effective sample size {own.effective:.0f} of {len(own.before)} draws"
     if own.rounds:
         rounds = "1 round" if own.rounds == 1 else f"{own.rounds} rounds"
@@ -88,11 +90,11 @@ def draws_sentences(found: Observed[Any, Any]) -> list[str]:
 def constants(found: Observed[Any, Any]) -> list[Block]:
     """The constants that moved, with units; offsets of the laboratories of the evidence are left out."""
     header = found.prior.draws.header
-    moved = [each for each in found.constants if not header.is_offset(each.name)]
+    moved = [each for each in found.constants if not header.is_offset(each.constant)]
     if not moved:
         return [Text("No constant moved by more than chance.")]
     points = [
-        f"{each.name}: {_three(each.before)} → {_three(each.after)} {printed_unit(each.unit)}".rstrip()
+        f"{each.constant}: {_three(each.before)} → {_three(each.after)} {printed_unit(each.unit)}".rstrip()
         for each in moved[:MOST_CONSTANTS]
     ]
     return [Text("What moved or narrowed most (median and 95 %, before → after):"), Bullets(tuple(points))]
@@ -150,28 +152,20 @@ def _three(ends: tuple[float, float, float]) -> str:
 def answered_blocks(found: Observed[Answered, Fit]) -> list[Block]:
     """One row per participant and one for all, what the answers do not say, and how they fit the prediction."""
     said = "\n".join(observed_sentences(found.data))
-    return [people_table(found.data, found.own), Text(said), Text("\n".join(fit_sentences(found))), *pairs(found.fit)]
+    return [people_table(found.data), Text(said), Text("\n".join(fit_sentences(found))), *pairs(found.fit)]
 
 
-def people_table(data: Answered, own: Sequence[Three]) -> Grid:
-    """One row per participant and one for all: trials, per cent correct, bits, median time."""
-    timed = not math.isnan(data.pooled.time_s)
-    columns = ["", "trials", "correct", "95 %", "bits", "95 %", "further trials"] + ["time"] * timed
-    rows = [
-        _row(score, timed, f"{percent(further[0])} ({percent_span(*further[1:])})")
-        for score, further in list(zip(data.each, own, strict=True))[:MOST_PEOPLE]
-    ]
+def people_table(data: Answered) -> Grid:
+    """One row per participant and one for all: trials, per cent correct, bits."""
+    rows = [_row(score) for score in data.each[:MOST_PEOPLE]]
     if (more := len(data.each) - MOST_PEOPLE) > 0:
-        rows.append([f"and {more} more", *[""] * (len(columns) - 1)])
-    return grid(columns, [*rows, _row(data.pooled, timed, "")], ("trials", "correct", "bits", "time"))
+        rows.append([f"and {more} more", "", "", "", ""])
+    return grid(["", "trials", "correct", "95 %", "bits"], [*rows, _row(data.pooled)], ("trials", "correct", "bits"))
 
 
-def _row(score: AnswerScore, timed: bool, own: str) -> list[str]:
-    low, high = score.bits_interval
-    time = seconds(None if math.isnan(score.time_s) else score.time_s)
-    cells = [score.who, str(score.trials), percent(score.proportion_correct), percent_span(*score.proportion_interval)]
-    cells += [f"{score.bits:.2f}", f"{low:.2f}–{high:.2f}", own]
-    return cells + [time] * timed
+def _row(score: AnswerScore) -> list[str]:
+    correct = [percent(score.proportion_correct), percent_span(*score.proportion_correct_interval)]
+    return [score.who, str(score.trials), *correct, f"{score.information_bits:.2f}"]
 
 
 def observed_sentences(data: Answered) -> list[str]:
@@ -179,8 +173,8 @@ def observed_sentences(data: Answered) -> list[str]:
     pooled, trials = data.pooled, data.trials
     lines = [
         f"Bits are corrected for bias (Miller–Madow): the plug-in estimate of the pooled answers is "
-        f"{pooled.bits_plugin:.2f} bits, {pooled.bits_bias:.2f} too many by that formula; "
-        "with few trials some bias is left. Further trials: predicted for the same participant."
+        f"{pooled.information_bits_plugin:.2f} bits, {pooled.information_bits_bias:.2f} too many by that formula; "
+        "with few trials some bias is left."
     ]
     if len(data.each) == 2:
         lines.append(
@@ -199,19 +193,18 @@ def observed_sentences(data: Answered) -> list[str]:
             f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "
             "per cent correct is that of the others."
         )
-    if trials.single_trial:
-        lines.append(f"One trial only: {', '.join(trials.single_trial)}; it counts, but shows no spread.")
     return lines
 
 
 def fit_sentences(found: Observed[Answered, Fit]) -> list[str]:
     """The test of fit before and after, and the pairs that were missed."""
     fit, pooled = found.fit, found.data.pooled
+    seen_bits = pooled.information_bits_plugin
     middle, low, high = fit.proportion_correct
-    bits, least, most = fit.bits_plugin
+    bits, least, most = fit.information_bits_plugin
     lines = [
         f"Predicted for this experiment: {percent(middle)} correct ({percent_span(low, high)}), {bits:.2f} plug-in "
-        f"bits ({least:.2f}–{most:.2f}). Observed: {percent(pooled.proportion_correct)}, {pooled.bits_plugin:.2f} "
+        f"bits ({least:.2f}–{most:.2f}). Observed: {percent(pooled.proportion_correct)}, {seen_bits:.2f} "
         "bits. This prediction is the median of experiments with as many participants and trials; that of the set, "
         "below, is the mean over people and laboratories, so the two may differ.",
         f"Test of fit (posterior predictive): p = {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..kernels.parallel import over_rows
-from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, check_norm
+from ..observer.channels import CHANNELS, Channel, Norm
 from ..observer.observer import Observer
 from ..sensation.percept import Percept, on_one_clock
 
@@ -209,43 +209,3 @@ def dprimes_from_memory(
         for (cold, warm), called in zip((one, other), names, strict=True)
     )
     return np.asarray(episode_distances(first, second, observer, norm)[0])
-
-
-def dprime_from_memory(a: Percept, b: Percept, observer: Observer | None = None, norm: str = USUAL_NORM) -> float:
-    """d′ of two percepts when one of them comes from memory.
-
-    Parameters
-    ----------
-    a, b
-        Percepts on the same clock; the shorter one is held at its end.
-    observer
-        The person (None: the nominal one).
-    norm
-        How episodes are remembered: `episodes` or `naming`.
-
-    Returns
-    -------
-    float
-        Distance over noise; two icons are distinguished correctly in Φ(d′/2) of trials.
-
-    Raises
-    ------
-    ValueError
-        For different clocks and for an unknown norm.
-
-    Examples
-    --------
-    >>> from thermicon.circuit import Rig, simulate
-    >>> from thermicon.icons import load_library
-    >>> from thermicon.perception import perceive
-    >>> icons, rig = load_library("six-icons"), Rig.load("thenar")
-    >>> step, ramp = (perceive(simulate(icons[name], rig, tail_s=10)) for name in ("cooling-step", "linear-cooling"))
-    >>> dprime_from_memory(step, step), dprime_from_memory(step, ramp) > 1.5
-    (0.0, True)
-
-    """
-    person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
-    cold, warm, dt = on_one_clock([a, b])
-    one, other = ((cold[[k]], warm[[k]]) for k in (0, 1))
-    names = a.icon or "", b.icon or ""
-    return float(dprimes_from_memory(one, other, dt, person, chosen, names)[0, 0])

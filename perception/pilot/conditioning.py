@@ -12,9 +12,9 @@ what is simulated of them and in how likely they are there, and in nothing else.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,15 +28,14 @@ from .likelihood import (
     effective,
     log_likelihoods,
     normalised_weights,
-    person_log_likelihoods,
     walk,
 )
 from .measurement_likelihood import Emulated, Predicted, log_likelihood, predicted
 from .measurements_file import Measurements
 from .playing import Confusions, Stage
-from .prediction import Fit, MeasurementFit, Three, compare, compare_measurements, three
+from .prediction import Fit, MeasurementFit, compare, compare_measurements
 from .states import SEEDS, Laboratories, LaboratoryPrior
-from .trials import AnswerScore, Trials, score_person, score_pooled
+from .trials import AnswerScore, Trials, score
 
 LEAST_EFFECTIVE, LEAST_SHARE = 60.0, 0.25
 """Effective sample size from which weights are used as they are, or share of the draws where there are fewer.
@@ -47,29 +46,7 @@ NEAR_ANSWERS, NEAR_VALUES = 2.0, 25.0
 """Ln L by which a laboratory is less likely than those near the data if it counts half in a fit: those far from the
 data keep the polynomial from bending there, and count for little else."""
 Step = Callable[[], None]
-
-
-class Data(Protocol):
-    """What a laboratory found out of its people, and how likely that is in others.
-
-    What is simulated of it has `of` and `joined`. `by_people` says that it depends on who the people of a laboratory
-    are: people who are kept must then be others, and the likelihood of fresh laboratories is too much a matter of
-    chance to weigh them. `rounds` of fresh laboratories are simulated at most; `stream` keeps their chance apart from
-    that of other data.
-    """
-
-    stream: ClassVar[int]
-    rounds: ClassVar[int]
-    by_people: ClassVar[bool]
-
-    def simulate(self, some: Laboratories, step: Step | None = None) -> Any:
-        """Simulate the data in laboratories; `step` is called after each."""
-
-    def log_likelihood(self, simulated: Any) -> Array:
-        """Ln likelihood (laboratories,) of the data, up to a constant."""
-
-    def polynomial(self, place: Array, simulated: Any, short: Array) -> Callable[[Array], Array]:
-        """Ln likelihood of coordinates, fitted to laboratories whose own is so much lower than near the data."""
+Data: TypeAlias = "Answered | Measured"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +75,7 @@ def condition(
     """Condition laboratories on data; `kept` is how many are sampled (None: half)."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, data.stream]))
     kept = max(2, len(before) // 2) if kept is None else kept
-    simulated = data.simulate(before, step)
+    simulated: Any = data.simulate(before, step)
     logs = data.log_likelihood(simulated)
     weights = normalised_weights(logs)
     size = effective(weights)
@@ -110,7 +87,13 @@ def condition(
 
 
 def _refreshed(
-    data: Data, place: Array, simulated: Any, logs: Array, kept: int, rng: np.random.Generator, step: Step | None
+    data: Data,
+    place: Array,
+    simulated: Any,
+    logs: Array,
+    kept: int,
+    rng: np.random.Generator,
+    step: Step | None,
 ) -> tuple[Laboratories, Any, float, int]:
     """Fresh laboratories, what is simulated there, how many are effective, and the rounds that it took."""
     start, short = place, np.zeros(len(place)) if data.by_people else logs.max() - logs
@@ -119,7 +102,7 @@ def _refreshed(
         moved = walk(start[rng.integers(len(start), size=kept)], target, rng)
         people = rng.integers(SEEDS, size=kept) if data.by_people else np.zeros(kept, np.int64)
         fresh = Laboratories(moved, people)
-        found = data.simulate(fresh, step)
+        found: Any = data.simulate(fresh, step)
         if not data.by_people:
             own = data.log_likelihood(found)
             missed = own - target(moved)
@@ -142,7 +125,13 @@ def _refreshed(
 
 
 def _resampled(
-    data: Data, place: Array, simulated: Any, weights: Array, kept: int, rng: np.random.Generator, step: Step | None
+    data: Data,
+    place: Array,
+    simulated: Any,
+    weights: Array,
+    kept: int,
+    rng: np.random.Generator,
+    step: Step | None,
 ) -> tuple[Laboratories, Any]:
     """A sample of equal weights, with people who did not take part, and what is simulated there."""
     chosen = systematic(weights, kept, rng)
@@ -168,7 +157,12 @@ def systematic(weights: Array, n: int, rng: np.random.Generator) -> NDArray[np.i
 
 @dataclass(frozen=True)
 class Answered:
-    """Answers to a set, which the people of every laboratory are asked to name as well."""
+    """Answers to a set, which the people of every laboratory are asked to name as well.
+
+    `by_people` says that data depend on who the people of a laboratory are: people who are kept must then be others,
+    and the likelihood of fresh laboratories is too much a matter of chance to weigh them. `rounds` of fresh
+    laboratories are simulated at most; `stream` keeps their chance apart from that of other data.
+    """
 
     trials: Trials
     stage: Stage = field(repr=False)
@@ -179,12 +173,13 @@ class Answered:
     @cached_property
     def pooled(self) -> AnswerScore:
         """Score of all participants together."""
-        return score_pooled(self.trials)
+        return score("all", self.trials.counts)
 
     @cached_property
     def each(self) -> tuple[AnswerScore, ...]:
         """Score of each participant."""
-        return tuple(score_person(self.trials, person) for person in range(len(self.trials.participants)))
+        rows = zip(self.trials.participants, self.trials.counts, strict=True)
+        return tuple(score(name, counts[None]) for name, counts in rows)
 
     def simulate(self, some: Laboratories, step: Step | None = None) -> Confusions:
         """Confusions of the people of each laboratory."""
@@ -203,17 +198,6 @@ class Answered:
         """The answers beside those of the same experiment in these laboratories."""
         return compare(self.trials, simulated, seed=seed)
 
-    def further(self, simulated: Confusions) -> tuple[Three, ...]:
-        """Proportion correct of each participant in further trials: people of every laboratory, by their likelihood."""
-        each = person_log_likelihoods(simulated.probability, self.trials.counts)
-        correct, rows = simulated.each_correct, []
-        rng = np.random.default_rng(np.random.SeedSequence([0, 14]))
-        for person in range(len(self.trials.participants)):
-            weight = np.exp(each[:, :, person] - each[:, :, person].max())
-            flat = (weight / weight.sum()).ravel()
-            rows.append(three(correct.ravel()[rng.choice(flat.size, size=2000, p=flat)]))
-        return tuple(rows)
-
     def details(self, simulated: Confusions) -> Array:
         """Proportion correct (laboratories, icons) of each icon."""
         return np.diagonal(simulated.pooled, axis1=1, axis2=2)
@@ -227,8 +211,8 @@ class Answered:
             f"icons: {len(self.trials.icons)}, {where}",
         )
 
-    def to_dict(self, own: tuple[Three, ...]) -> dict[str, Any]:
-        """Every number of the answers as plain data, with what participants are predicted to reach."""
+    def to_dict(self) -> dict[str, Any]:
+        """Every number of the answers as plain data."""
         trials = self.trials
         return {
             "trials_file": trials.source,
@@ -237,11 +221,9 @@ class Answered:
             "trials": trials.total,
             "icons": list(trials.icons),
             "never_presented": list(trials.never_presented),
-            "single_trial": list(trials.single_trial),
-            "warnings": list(trials.warnings),
             "counts": trials.pooled.astype(int).tolist(),
-            "observed": self.pooled.to_dict(),
-            "each": [{**score.to_dict(), "predicted": list(each)} for score, each in zip(self.each, own, strict=True)],
+            "observed": asdict(self.pooled),
+            "each": [asdict(each) for each in self.each],
         }
 
 
@@ -272,10 +254,6 @@ class Measured:
         """Group means beside those of the same measurements in these laboratories."""
         return compare_measurements(self.measurements, simulated, seed=seed)
 
-    def further(self, simulated: Predicted) -> tuple[Three, ...]:
-        """Nothing: participants who were measured have not been asked to name icons."""
-        return ()
-
     def details(self, simulated: Predicted) -> Array:
         """Log means (laboratories, conditions)."""
         return simulated.mean
@@ -290,7 +268,7 @@ class Measured:
             f"conditions: {'; '.join(each.label for each in values.conditions)}, {where}",
         )
 
-    def to_dict(self, own: tuple[Three, ...]) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """What was measured as plain data; the values themselves are those of the fit."""
         values = self.measurements
         return {

@@ -39,22 +39,16 @@ def log_likelihoods(probability: Small, counts: Array) -> Array:
 
     `probability` (laboratories, people, icons, icons), `counts` (participants, icons, icons).
     """
-    each = person_log_likelihoods(probability, counts)
-    largest = each.max(axis=1)
-    found: Array = largest + np.log(np.exp(each - largest[:, None]).mean(axis=1))
-    return found
-
-
-def person_log_likelihoods(probability: Small, counts: Array) -> Array:
-    """Ln of Π C^N for every laboratory, person and participant (laboratories, people, participants)."""
     laboratories, people = probability.shape[:2]
     used = np.flatnonzero(counts.sum(axis=0).ravel())
     answers = counts.reshape(len(counts), -1)[:, used].T
-    found = np.empty((laboratories, people, len(counts)))
+    each = np.empty((laboratories, people, len(counts)))
     rows = max(1, AT_ONCE // max(people * used.size, 1))
     for start in range(0, laboratories, rows):
         part = probability[start : start + rows].reshape(-1, probability.shape[-1] ** 2)[:, used]
-        found[start : start + rows] = (np.log(part, dtype=np.float64) @ answers).reshape(-1, people, len(counts))
+        each[start : start + rows] = (np.log(part, dtype=np.float64) @ answers).reshape(-1, people, len(counts))
+    largest = each.max(axis=1)
+    found: Array = largest + np.log(np.exp(each - largest[:, None]).mean(axis=1))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -21,7 +21,7 @@ from .conditioning import Answered, Conditioned, Measured, condition
 from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements_file import Measurements
 from .playing import Confusions, Stage, laboratories_for, stage
-from .prediction import ChangedConstant, ChangedPrediction, Fit, MeasurementFit, SetPrediction, Three, changed
+from .prediction import ChangedConstant, ChangedPrediction, Fit, MeasurementFit, SetPrediction, changed
 from .states import LaboratoryPrior
 from .trials import Trials
 
@@ -43,8 +43,6 @@ class Observed(Generic[D, F]):
     data
         The answers (`data.trials`) with scores of all together (`data.pooled`) and of each (`data.each`), or the
         values (`data.measurements`).
-    own
-        Proportion correct of each participant in further trials of the set: mean and 95 % (measurements: none).
     fit, fit_after
         The data beside what was predicted before, and beside what is predicted after they were seen.
     predictions
@@ -56,7 +54,6 @@ class Observed(Generic[D, F]):
     """
 
     data: D
-    own: tuple[Three, ...]
     fit: F
     fit_after: F
     predictions: tuple[ChangedPrediction, ...]
@@ -105,14 +102,16 @@ class Observed(Generic[D, F]):
             "rig_changes": list(self.rig_changes),
             "norm": self.norm,
             "seed": self.seed,
-            **self.data.to_dict(self.own),
-            "fit_before": self.fit.to_dict(),
-            "fit_after": self.fit_after.to_dict(),
+            **self.data.to_dict(),
+            "fit_before": _plain(self.fit),
+            "fit_after": _plain(self.fit_after),
             "draws": len(found.before),
             "effective_sample_size": found.effective,
             "rounds": found.rounds,
-            "predictions": [each.to_dict() for each in self.predictions],
-            "constants": [each.to_dict() for each in self.constants],
+            "predictions": [
+                {"title": each.before.title, **asdict(each), "narrower": each.narrower} for each in self.predictions
+            ],
+            "constants": [asdict(each) for each in self.constants],
         }
 
     def to_json(self) -> str:
@@ -124,6 +123,14 @@ class Observed(Generic[D, F]):
         ends = (own.before.proportion_correct, own.after.proportion_correct)
         spans = " → ".join(f"{100 * low:.1f}–{100 * high:.1f} %" for _, low, high in ends)
         return f"Observed({self.data!r}: {spans})"
+
+
+def _plain(fit: Fit | MeasurementFit) -> dict[str, Any]:
+    """A fit as plain data, with what a condition is beside what was measured under it."""
+    own = asdict(fit)
+    for each in own.get("conditions", ()):
+        each |= each.pop("condition")
+    return own
 
 
 def observed(
@@ -178,9 +185,8 @@ def observed(
     --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
-    >>> from thermicon.perception.pilot.playing import synthetic_trials
     >>> icons, rig = read_cue("six-icons"), Rig.load("thenar")
-    >>> answers = synthetic_trials(icons, rig, participants=2, trials=12, seed=3)
+    >>> answers = Trials(tuple(icon.name for icon in icons), ("P1", "P2"), np.tile(2.0 * np.eye(6), (2, 1, 1)))
     >>> found = observed(answers, icons, rig, draws=20)
     >>> len(found.data.each), found.data.pooled.trials
     (2, 24)
@@ -205,7 +211,6 @@ def observed(
     pairs += [both(stage(other, rig, prior, seed=seed, tracking=tracking)) for other in others]
     return Observed(
         data=data,
-        own=data.further(found.simulated_after),
         fit=data.compare(found.simulated, seed),
         fit_after=data.compare(found.simulated_after, seed),
         predictions=tuple(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -107,7 +107,7 @@ class Plan:
             "norm": self.norm,
             "seed": self.seed,
             "draws": self.draws,
-            "sets": [{"title": each.title, **each.to_dict()} for each in self.predictions],
+            "sets": [asdict(each) for each in self.predictions],
             "difference": None if self.difference is None else list(self.difference),
             "wanted": {"power" if self.difference is not None else "interval_width": self.wanted},
             "designs": [each.to_dict() for each in self.designs],

@@ -12,9 +12,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
@@ -37,41 +36,17 @@ CHANCE = 6.0
 
 @dataclass(frozen=True, slots=True)
 class SetPrediction:
-    """Scores of a set as means over people who did not take part, each with 95 % of the laboratories.
-
-    `icons` has the proportion correct of each icon, `pairs` the confusions of each pair (mean of both directions).
-    """
+    """Scores of a set as means over people who did not take part, each with 95 % of the laboratories."""
 
     title: str
     people: int
     proportion_correct: Three
     information_bits: Three
-    icons: Mapping[str, Three]
-    pairs: Mapping[tuple[str, str], Three]
 
     @classmethod
     def of(cls, title: str, played: Confusions) -> SetPrediction:
         """Summarise the laboratories of a sample."""
-        pooled, names = played.pooled, played.icons
-        mixed = 0.5 * (pooled + np.swapaxes(pooled, 1, 2))
-        return cls(
-            title,
-            int(played.probability.shape[1]),
-            three(played.correct),
-            three(played.bits),
-            {name: three(pooled[:, k, k]) for k, name in enumerate(names)},
-            {(names[a], names[b]): three(mixed[:, a, b]) for a, b in combinations(range(len(names)), 2)},
-        )
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
-        return {
-            "people": self.people,
-            "proportion_correct": list(self.proportion_correct),
-            "information_bits": list(self.information_bits),
-            "icons": {name: list(each) for name, each in self.icons.items()},
-            "pairs": [{"a": a, "b": b, "confused": list(each)} for (a, b), each in self.pairs.items()],
-        }
+        return cls(title, int(played.probability.shape[1]), three(played.correct), three(played.bits))
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,15 +63,6 @@ class ChangedPrediction:
         before, after = (high - low for _, low, high in ends)
         return before / after if after > 0.0 else math.inf
 
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data for JSON."""
-        return {
-            "title": self.before.title,
-            "before": self.before.to_dict(),
-            "after": self.after.to_dict(),
-            "narrower": self.narrower,
-        }
-
 
 def three(values: Array) -> Three:
     """Mean and 95 % of some values."""
@@ -112,31 +78,19 @@ def median_three(values: Array) -> Three:
 
 @dataclass(frozen=True, slots=True)
 class ChangedConstant:
-    """One constant before and after: median and 95 %. `shift` is in SDs of before, `narrowed` the SD left over it.
+    """One constant before and after: median and 95 %. `shift_sd` is in SDs of before, `sd_left` the SD left over it.
 
     `bits` is the information gained, the divergence of two normals with these means and SDs (on a log scale for
     positive constants).
     """
 
-    name: str
+    constant: str
     unit: str
     before: Three
     after: Three
-    shift: float
-    narrowed: float
+    shift_sd: float
+    sd_left: float
     bits: float
-
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON."""
-        return {
-            "constant": self.name,
-            "unit": self.unit,
-            "before": list(self.before),
-            "after": list(self.after),
-            "shift_sd": self.shift,
-            "sd_left": self.narrowed,
-            "bits": self.bits,
-        }
 
 
 def changed(
@@ -164,7 +118,10 @@ def _change(name: str, unit: str, before: Array, after: Array) -> ChangedConstan
 
 @dataclass(frozen=True, slots=True)
 class PairFit:
-    """How often two icons were taken for each other, as a share of their `trials`: observed, and 95 % as predicted."""
+    """How often two icons were taken for each other, as a share of their `trials`: observed, and 95 % as predicted.
+
+    `missed` says that the observed share lies outside the interval.
+    """
 
     a: str
     b: str
@@ -172,30 +129,22 @@ class PairFit:
     observed: float
     predicted: float
     predicted_interval: tuple[float, float]
-
-    @property
-    def missed(self) -> bool:
-        """Whether the observed share lies outside the interval."""
-        return not self.predicted_interval[0] <= self.observed <= self.predicted_interval[1]
-
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON."""
-        return {**asdict(self), "missed": self.missed}
+    missed: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Fit:
     """What the same experiment would have given: `p` of the test of fit, scores as reported, and every pair.
 
-    `proportion_correct` and `bits_plugin` are median and 95 % of the simulated experiments, as is the share of right
-    answers to each of `icons` that was presented; `p_people` is the share of experiments whose participants differ as
-    much as the observed ones (None for fewer than three participants).
+    `proportion_correct` and `information_bits_plugin` are median and 95 % of the simulated experiments, as is the share
+    of right answers to each of `icons` that was presented; `p_people` is the share of experiments whose participants
+    differ as much as the observed ones (None for fewer than three participants).
     """
 
     p: float
     p_people: float | None
     proportion_correct: Three
-    bits_plugin: Three
+    information_bits_plugin: Three
     pairs: tuple[PairFit, ...]
     icons: Mapping[str, Three]
 
@@ -205,37 +154,20 @@ class Fit:
         found = [pair for pair in self.pairs if pair.missed]
         return tuple(sorted(found, key=lambda pair: -abs(pair.observed - pair.predicted)))
 
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON."""
-        scores = {"proportion_correct": self.proportion_correct, "information_bits_plugin": self.bits_plugin}
-        pairs = [pair.to_dict() for pair in self.pairs]
-        return {"p": self.p, "p_people": self.p_people, **scores, "pairs": pairs, "icons": dict(self.icons)}
-
 
 @dataclass(frozen=True, slots=True)
 class ConditionFit:
-    """One condition: geometric mean of so many participants, and the predicted one, median and 95 %."""
+    """One condition: geometric mean of so many participants, and the predicted one, median and 95 %.
+
+    `missed` says that the measured mean lies outside the interval.
+    """
 
     condition: Condition
+    unit: str
     participants: int
     observed: float
     predicted: Three
-
-    @property
-    def missed(self) -> bool:
-        """Whether the measured mean lies outside the interval."""
-        return not self.predicted[1] <= self.observed <= self.predicted[2]
-
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON."""
-        return {
-            **asdict(self.condition),
-            "unit": self.condition.unit,
-            "participants": self.participants,
-            "observed": self.observed,
-            "predicted": list(self.predicted),
-            "missed": self.missed,
-        }
+    missed: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,10 +176,6 @@ class MeasurementFit:
 
     p: float
     conditions: tuple[ConditionFit, ...]
-
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON."""
-        return {"p": self.p, "conditions": [each.to_dict() for each in self.conditions]}
 
 
 def simulated_counts(played: Confusions, presented: Array, rng: np.random.Generator) -> Array:
@@ -273,17 +201,12 @@ def compare(trials: Trials, played: Confusions, *, seed: int = 0) -> Fit:
     expected = seen.sum(axis=1)[:, None] * played.pooled.mean(axis=0)
     shown = expected > 0.0
     off = [float(((one - expected)[shown] ** 2 / expected[shown]).sum()) for one in (seen, *pooled)]
-    people = None
-    if len(trials.participants) >= LEAST_PEOPLE:
-        spread = [_correct(one).std() for one in (trials.counts, *each)]
-        people = _share(spread)
-    correct = np.trace(pooled, axis1=1, axis2=2) / trials.total
-    bits = np.array([plugin_information(one)[0] for one in pooled])
+    spread = [(np.trace(one, axis1=1, axis2=2) / one.sum(axis=(1, 2))).std() for one in (trials.counts, *each)]
     return Fit(
         p=_share(off),
-        p_people=people,
-        proportion_correct=median_three(correct),
-        bits_plugin=median_three(bits),
+        p_people=_share(spread) if len(trials.participants) >= LEAST_PEOPLE else None,
+        proportion_correct=median_three(np.trace(pooled, axis1=1, axis2=2) / trials.total),
+        information_bits_plugin=median_three(np.array([plugin_information(one)[0] for one in pooled])),
         pairs=tuple(_pairs(trials, seen, pooled)),
         icons={
             name: median_three(pooled[:, k, k] / times)
@@ -303,7 +226,8 @@ def _pairs(trials: Trials, seen: Array, pooled: Array) -> list[PairFit]:
         low, high = np.percentile(shares, COVER).tolist()
         observed = float(seen[a, b] + seen[b, a]) / shown
         names = trials.icons[a], trials.icons[b]
-        found.append(PairFit(*names, int(shown), observed, float(shares.mean()), (low, high)))
+        missed = not low <= observed <= high
+        found.append(PairFit(*names, int(shown), observed, float(shares.mean()), (low, high), missed))
     return found
 
 
@@ -322,14 +246,14 @@ def compare_measurements(measured: Measurements, each: Predicted, *, seed: int =
     seen = np.log(measured.means)
     spread = means.std(axis=0)
     off = np.square((np.vstack([seen, means]) - means.mean(axis=0)) / spread).sum(axis=1)
-    counts, predicted = there.sum(axis=0).tolist(), np.exp([median_three(column) for column in means.T]).tolist()
-    columns = zip(measured.conditions, counts, measured.means.tolist(), map(tuple, predicted), strict=True)
-    return MeasurementFit(_share(off.tolist()), tuple(ConditionFit(*each) for each in columns))
-
-
-def _correct(counts: Array) -> Array:
-    found: Array = np.trace(counts, axis1=1, axis2=2) / counts.sum(axis=(1, 2))
-    return found
+    found = []
+    for k, condition in enumerate(measured.conditions):
+        middle, low, high = np.exp(median_three(means[:, k])).tolist()
+        seen_mean = float(measured.means[k])
+        missed = not low <= seen_mean <= high
+        count = int(there[:, k].sum())
+        found.append(ConditionFit(condition, condition.unit, count, seen_mean, (middle, low, high), missed))
+    return MeasurementFit(_share(off.tolist()), tuple(found))
 
 
 def _share(values: list[float]) -> float:

@@ -1,12 +1,11 @@
-"""Answers of an experiment in which icons were named, and their scores: per cent correct and bits, with intervals.
+"""Answers of an experiment in which icons were named, and their scores: per cent correct and bits.
 
 Bits are the plug-in estimate, which is biased upwards by about (cells − rows − columns + 1)/(2·trials·ln 2) with
 counts of what was used (Miller 1955); less that, they are called Miller–Madow here. Answers that are possible but did
-not occur are not counted, so that with a few trials an icon some bias is left. The interval is normal about the
-corrected bits, with the jackknife's standard error over participants, or over trials where there is one participant.
+not occur are not counted, so that with a few trials an icon some bias is left.
 
 A few participants may happen to be alike, or right throughout: the interval of all answers is therefore never narrower
-than the one that their number alone leaves, Wilson's for per cent correct and the jackknife over trials for bits.
+than Wilson's, which their number alone leaves.
 """
 
 from __future__ import annotations
@@ -24,9 +23,7 @@ class Trials:
     """Answers of some participants to the icons of a set.
 
     `icons` are the names of all that could be answered, in the order of the set; `counts` (participants, icons
-    presented, icons answered). `time_s` is the median time of each participant's correct answers, s (NaN: none was
-    recorded); `source` and `digest` are the name of the file and the first 16 digits of its SHA-256, `warnings` what is
-    doubtful about it, with place and cure.
+    presented, icons answered). `source` and `digest` are the name of the file and the first 16 digits of its SHA-256.
 
     Examples
     --------
@@ -38,10 +35,8 @@ class Trials:
     icons: tuple[str, ...]
     participants: tuple[str, ...]
     counts: Array
-    time_s: tuple[float, ...] = ()
     source: str = ""
     digest: str = ""
-    warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         own_arrays(self, "counts")
@@ -77,12 +72,6 @@ class Trials:
         shown = self.presented.sum(axis=0)
         return tuple(name for name, times in zip(self.icons, shown.tolist(), strict=True) if not times)
 
-    @property
-    def single_trial(self) -> tuple[str, ...]:
-        """Participants with one trial, of whom no spread is known."""
-        each = self.counts.sum(axis=(1, 2)).tolist()
-        return tuple(name for name, trials in zip(self.participants, each, strict=True) if trials == 1)
-
     def __repr__(self) -> str:
         people = "1 participant" if len(self.participants) == 1 else f"{len(self.participants)} participants"
         return f"Trials({people}, {self.total} trial{'s' * (self.total != 1)}, {len(self.icons)} icons)"
@@ -95,41 +84,19 @@ FEWEST = 2
 
 @dataclass(frozen=True, slots=True)
 class AnswerScore:
-    """Per cent correct and bits of some answers.
+    """Per cent correct, with a 95 % interval, and bits of some answers.
 
-    `proportion_correct` with a 95 % interval; `bits_plugin` as published information is computed, `bits` without its
-    bias `bits_bias`, with a 95 % interval, of at most `bits_most`; `time_s` is the median time of correct answers (NaN:
-    not recorded).
+    `information_bits_plugin` are bits as published information is computed, `information_bits` those without their bias
+    `information_bits_bias`, within what a set of this size can carry.
     """
 
     who: str
     trials: int
     proportion_correct: float
-    proportion_interval: tuple[float, float]
-    bits_plugin: float
-    bits_bias: float
-    bits_interval: tuple[float, float]
-    time_s: float
-    bits_most: float
-
-    @property
-    def bits(self) -> float:
-        """Plug-in bits less their bias, within what a set of this size can carry."""
-        return min(max(self.bits_plugin - self.bits_bias, 0.0), self.bits_most)
-
-    def to_dict(self) -> dict[str, object]:
-        """Plain data for JSON."""
-        return {
-            "who": self.who,
-            "trials": self.trials,
-            "proportion_correct": self.proportion_correct,
-            "proportion_correct_interval": list(self.proportion_interval),
-            "information_bits_plugin": self.bits_plugin,
-            "information_bits_bias": self.bits_bias,
-            "information_bits": self.bits,
-            "information_bits_interval": list(self.bits_interval),
-            "median_time_s": None if math.isnan(self.time_s) else self.time_s,
-        }
+    proportion_correct_interval: tuple[float, float]
+    information_bits_plugin: float
+    information_bits_bias: float
+    information_bits: float
 
 
 def plugin_information(counts: Array) -> tuple[float, float]:
@@ -151,31 +118,25 @@ def plugin_information(counts: Array) -> tuple[float, float]:
     return bits, max(float(bias), 0.0)
 
 
-def score_person(trials: Trials, person: int) -> AnswerScore:
-    """Scores of one participant; the interval of the proportion is Wilson's."""
-    counts = trials.counts[person]
-    total, correct = float(counts.sum()), float(np.trace(counts))
-    time = trials.time_s[person] if trials.time_s else math.nan
-    return _score(trials.participants[person], counts, wilson(correct, total), _over_trials(counts), time)
+def score(who: str, counts: Array) -> AnswerScore:
+    """Scores of the answers (participants, icons, icons) of one participant or of several together.
 
+    The interval is Wilson's, or over participants Student's by the jackknife where that is wider.
+    """
+    pooled = counts.sum(axis=0)
+    total, correct = float(pooled.sum()), float(np.trace(pooled))
+    low, high = wilson(correct, total)
+    if len(counts) >= FEWEST:
+        from scipy.stats import t
 
-def score_pooled(trials: Trials) -> AnswerScore:
-    """Scores of all participants together; intervals follow their spread and the number of trials."""
-    counts = trials.pooled
-    known = [time for time in trials.time_s if not math.isnan(time)]
-    time = float(np.median(known)) if known else math.nan
-    if len(trials.participants) < FEWEST:
-        ends = wilson(float(np.trace(counts)), float(counts.sum()))
-        return _score("all", counts, ends, _over_trials(counts), time)
-    without = counts[None] - trials.counts
-    correct = np.trace(without, axis1=1, axis2=2) / without.sum(axis=(1, 2))
-    share = float(np.trace(counts) / counts.sum())
-    half = _student(len(without) - 1) * _jackknife(correct)
-    low, high = wilson(float(np.trace(counts)), float(counts.sum()))
-    ends = max(min(share - half, low), 0.0), min(max(share + half, high), 1.0)
-    bits = np.array([_corrected(each) for each in without])
-    spread = max(_student(len(without) - 1) * _jackknife(bits), _over_trials(counts))
-    return _score("all", counts, ends, spread, time)
+        without = pooled - counts
+        each = np.trace(without, axis1=1, axis2=2) / without.sum(axis=(1, 2))
+        spread = math.sqrt((len(each) - 1) / len(each) * float(np.square(each - each.mean()).sum()))
+        half = float(t.ppf(0.975, len(each) - 1)) * spread
+        low, high = max(min(correct / total - half, low), 0.0), min(max(correct / total + half, high), 1.0)
+    bits, bias = plugin_information(pooled)
+    corrected = min(max(bits - bias, 0.0), math.log2(len(pooled)))
+    return AnswerScore(who, int(total), correct / total, (low, high), bits, bias, corrected)
 
 
 def wilson(successes: float, trials: float) -> tuple[float, float]:
@@ -184,53 +145,3 @@ def wilson(successes: float, trials: float) -> tuple[float, float]:
     middle = (share + 0.5 * square) / (1.0 + square)
     half = Z_95 * math.sqrt(share * (1.0 - share) / trials + 0.25 * square / trials) / (1.0 + square)
     return max(middle - half, 0.0), min(middle + half, 1.0)
-
-
-def _score(who: str, counts: Array, ends: tuple[float, float], half: float, time_s: float) -> AnswerScore:
-    bits, bias = plugin_information(counts)
-    most = math.log2(len(counts))
-    middle = min(max(bits - bias, 0.0), most)
-    span = (max(middle - half, 0.0), min(middle + half, most))
-    total = int(counts.sum())
-    return AnswerScore(who, total, float(np.trace(counts) / total), ends, bits, bias, span, time_s, most)
-
-
-def _corrected(counts: Array) -> float:
-    bits, bias = plugin_information(counts)
-    return bits - bias
-
-
-def _jackknife(each: Array) -> float:
-    return math.sqrt((len(each) - 1) / len(each) * float(np.square(each - each.mean()).sum()))
-
-
-def _over_trials(counts: Array) -> float:
-    """Half the 95 % interval of bits, by the jackknife over trials; of one trial all is possible.
-
-    Answers that are all right show no spread: they are taken to be no surer than with one of them wrong.
-    """
-    total = int(counts.sum())
-    if total < FEWEST:
-        return math.log2(len(counts))
-    if np.trace(counts) == total:
-        icon = int(counts.sum(axis=1).argmax())
-        slip = counts.copy()
-        slip[icon, icon] -= 1.0
-        slip[icon, icon - 1] += 1.0
-        return _corrected(counts) - _corrected(slip) + _over_trials(slip)
-    cells = np.argwhere(counts > 0.0)
-    without, times = [], []
-    for a, b in cells.tolist():
-        left = counts.copy()
-        left[a, b] -= 1.0
-        without.append(_corrected(left))
-        times.append(counts[a, b])
-    values, weights = np.array(without), np.array(times)
-    mean = float(values @ weights) / total
-    return Z_95 * math.sqrt((total - 1) / total * float(np.square(values - mean) @ weights))
-
-
-def _student(freedom: int) -> float:
-    from scipy.stats import t
-
-    return float(t.ppf(0.975, freedom))

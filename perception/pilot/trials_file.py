@@ -3,32 +3,22 @@
 from __future__ import annotations
 
 import hashlib
-import math
-import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import LIKE_MILLISECONDS, InputError, line_fault, quoted, read_bytes, table_fault, text_of
-from thermicon.icons.files.table import Kind, Table, as_number, read_table
+from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault, text_of
+from thermicon.icons.files.table import Kind, Table, read_table
 from thermicon.icons.near_words import did_you_mean
 
 from .trials import Trials
 
 COLUMNS = ("participant", "trial", "presented", "responded")
-TIME = "time_s"
-EXAMPLE = f"{','.join(COLUMNS)},{TIME}"
+EXAMPLE = ",".join(COLUMNS)
 WHAT = "table of trials"
 MOST_MB, MOST_ROWS, MOST_PARTICIPANTS = 20, 200_000, 1000
-LONGEST_LABEL, LONGEST_TIME_S = 100, 3600.0
-LEAST_TIMES, SLOW_S, SLOWEST_S = 3, 60.0, 600.0
-"""Times by which a unit is judged; medians above which whole numbers from 100 on, or any, can only be milliseconds."""
-LIKE_TIMES = re.compile(
-    r"(.*\.)?(rt|latency|((reaction|response|answer)[ _]?)?time)[ _(\[]*(s|sec(ond)?s?|ms|msecs?|milliseconds)?[)\]]?",
-    re.IGNORECASE,
-)
-"""Names under which other programs record times of answers, such as time_ms, RT, key_resp.rt and response_time (s)."""
+LONGEST_LABEL = 100
 
 
 class TrialsError(InputError):
@@ -38,7 +28,7 @@ class TrialsError(InputError):
 def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
-    A CSV file has the columns participant, trial, presented, responded and, if recorded, time_s. Semicolons and tabs
+    A CSV file has the columns participant, trial, presented and responded; others are left alone. Semicolons and tabs
     also separate columns; lines that begin with # are comments. Participants are in the order of the file. A
     `TrialsError` says what is wrong, where, and what helps.
 
@@ -54,11 +44,8 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     names, known = tuple(icons), set(icons)
     places = {name: place for place, name in enumerate(names)}
     answers: dict[str, list[tuple[int, int]]] = {}
-    right: dict[str, list[float]] = {}
     first: dict[tuple[str, str], int] = {}
-    rows = list(table.records((*COLUMNS, TIME)))
-    _check_unit_of_times(file, [row for _, row in rows])
-    for line, row in rows:
+    for line, row in table.records(COLUMNS):
         where = f"{file}:{line}"
         person, trial = label(row["participant"], "participant", where), label(row["trial"], "trial", where)
         if (person, trial) in first:
@@ -69,46 +56,11 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
         first[person, trial] = line
         shown, said = (places[_icon(row[column], column, known, where)] for column in ("presented", "responded"))
         answers.setdefault(person, []).append((shown, said))
-        if row.get(TIME):
-            time = _time(row[TIME], where)
-            if shown == said:
-                right.setdefault(person, []).append(time)
     check_labels(file, answers)
     counts = np.zeros((len(answers), len(names), len(names)))
     for number, pairs in enumerate(answers.values()):
         np.add.at(counts[number], tuple(np.array(pairs).T), 1.0)
-    medians = tuple(float(np.median(right[person])) if person in right else math.nan for person in answers)
-    return Trials(names, tuple(answers), counts, medians, file.name, digest, _unread_times(file, table.header))
-
-
-def _unread_times(file: Path, header: Sequence[str]) -> tuple[str, ...]:
-    """That times in a column of another name are not read, in a table without the one that is."""
-    return tuple(
-        f"{file}: times in the column {quoted(name)} are not read: name it {TIME} and give s, or leave it as it is if "
-        "they are of no interest"
-        for name in header
-        if TIME not in header and LIKE_TIMES.fullmatch(name)
-    )
-
-
-def _check_unit_of_times(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
-    """Refuse answers of a participant, or of all together, whose times can only be milliseconds."""
-    times: dict[str, list[float]] = {}
-    for row in rows:
-        if math.isfinite(value := as_number(row.get(TIME, ""))):
-            times.setdefault(f" of participant {quoted(row['participant'])}", []).append(value)
-    together = {"": [value for each in times.values() for value in each]}
-    for whose, each in (times | together).items():
-        if is_milliseconds(each):
-            raise TrialsError(f"{path}: {TIME}{whose} has a median of {np.median(each):g}: {LIKE_MILLISECONDS}")
-
-
-def is_milliseconds(times: Sequence[float]) -> bool:
-    """Whether times of answers are plainly not in s: whole from 100 on, with a median over a minute, or over 10."""
-    if len(times) < LEAST_TIMES:
-        return False
-    middle, whole = float(np.median(times)), all(time >= 100.0 and time == int(time) for time in times)
-    return middle > SLOWEST_S or (middle > SLOW_S and whole)
+    return Trials(names, tuple(answers), counts, file.name, digest)
 
 
 def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tuple[Table, str]:
@@ -170,13 +122,3 @@ def _icon(cell: str, column: str, known: set[str], where: str) -> str:
     hint = f"did you mean {same[0]}? Names differ by case" if same else did_you_mean(name, known)
     cure = "" if same else "; where somebody answered none of the icons, remove the row" * (column == "responded")
     raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}{cure}")
-
-
-def _time(cell: str, where: str) -> float:
-    value = as_number(cell)
-    if not 0.0 <= value <= LONGEST_TIME_S:
-        raise TrialsError(
-            f"{where}: {TIME} is {quoted(cell)}, not a time of 0 to {LONGEST_TIME_S:g} s; leave it empty where none "
-            "was recorded"
-        )
-    return value

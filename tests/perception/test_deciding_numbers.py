@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.builders import dprime_from_memory
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Observer, draw_people, perceive, rank
-from thermicon.perception.identification.episodes import Episodes, dprime_from_memory, remembered
+from thermicon.perception.identification.episodes import Episodes, remembered
 from thermicon.perception.identification.laboratory_draws import LaboratoryDraws, people_for_intervals
 from thermicon.perception.identification.population import run_end_s
 from thermicon.perception.kernels.episodes import LENGTH, PAUSE
@@ -113,7 +114,7 @@ def test_a_feature_is_named_from_three_tenths_on(cue: Any, observer: Observer, w
         middle = 0.5 * (low + high)
         other = cue(change=-4.0 - middle, name="b")
         both = perceive(one, observer), perceive(other, observer)
-        low, high = (low, middle) if dprime_from_memory(*both, observer) > wanted else (middle, high)
+        low, high = (low, middle) if dprime_from_memory(both, observer) > wanted else (middle, high)
     assert said in pair_reasons(one, other, both, observer, "episodes", remembered(both, observer), (0, 1))[0]
 
 

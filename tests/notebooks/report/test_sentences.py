@@ -11,7 +11,7 @@ import pytest
 from thermicon.notebooks.report.choices import choice_lines, goal_lines
 from thermicon.notebooks.report.pilot_report import USEFUL_PEOPLE, observed_sentences
 from thermicon.perception import Goal
-from thermicon.perception.pilot.trials import Trials, score_person, score_pooled
+from thermicon.perception.pilot.trials import Trials, score
 from thermicon.perception.selection.goal_result import GoalPartResult, GoalResult
 
 FEW = "Two participants allow hardly any interval of all"
@@ -22,8 +22,8 @@ def said(*people: tuple[int, int]) -> str:
     """The sentences on participants with so many right and wrong answers."""
     counts = np.array([[[right, wrong], [0, right]] for right, wrong in people], dtype=float)
     trials = Trials(("a", "b"), tuple(f"P{k}" for k in range(len(people))), counts)
-    each = tuple(score_person(trials, person) for person in range(len(people)))
-    found: Any = SimpleNamespace(trials=trials, pooled=score_pooled(trials), each=each)
+    each = tuple(score(name, own[None]) for name, own in zip(trials.participants, counts, strict=True))
+    found: Any = SimpleNamespace(trials=trials, pooled=score("all", counts), each=each)
     return " ".join(observed_sentences(found))
 
 

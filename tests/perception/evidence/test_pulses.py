@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from tests.builders import dprime_from_memory
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.icons import IconSet, load_library, read_cue
 from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
-from thermicon.perception import Observer, dprime_from_memory, perceive
+from thermicon.perception import Observer, perceive
 from thermicon.perception.arrays import Array
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.confusion import embed
@@ -59,7 +60,7 @@ def test_memory_keeps_distances(icons: IconSet, rig: str, bent: float) -> None:
 def dprime(one: str, other: str) -> float:
     icons, rig = parse(f"{HEAD}icon one {{ {one} }}\nicon other {{ {other} }}\n"), Rig.load("thenar")
     felt = [perceive(simulate(icon, rig, tail_s=12.0 - 4.0)) for icon in icons]
-    return dprime_from_memory(*felt)
+    return dprime_from_memory(felt)
 
 
 def test_a_second_pulse_counts_and_cold_is_not_warm() -> None:
@@ -103,7 +104,7 @@ def test_it_is_named_wherever_it_is_met() -> None:
     traces = simulate_all(icons, rig, end_s=75.0)
     pools = [Pool.of(some, rig, Observer.load(), end_s=75.0) for some in (icons[:1], icons[1:])]
     for met in (
-        lambda: dprime_from_memory(*map(perceive, traces)),
+        lambda: dprime_from_memory([perceive(trace) for trace in traces]),
         lambda: carry_over(icons, rig, 75.0, 3.0),
         lambda: judge_delivered(["long", "other"], traces, traces),
         lambda: pools[0].dprimes(pools[1], "episodes", Observer.load()),

@@ -132,7 +132,7 @@ def test_intervals_are_of_95_percent_and_constants_change_by_more_than_chance() 
     before = np.random.default_rng(0).standard_normal((400, 1)) @ np.ones((1, 2))
     # 6 (1/400 + 1/400) bits are the gain of a shift of 0.204 SD.
     after = before + before.std() * np.array([0.195, 0.213])
-    assert [each.name for each in changed(["a", "b"], before, after, 400.0, ["", ""])] == ["b"]
+    assert [each.constant for each in changed(["a", "b"], before, after, 400.0, ["", ""])] == ["b"]
 
 
 def test_fit_finds_a_pair_that_was_missed_and_nothing_where_all_is_as_predicted() -> None:

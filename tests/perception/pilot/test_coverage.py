@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.builders import weighted_quantile
-from tests.perception.pilot.madeup import USUAL, measurements_of
+from tests.perception.pilot.madeup import USUAL, answers_of, measurements_of, spread
 from thermicon.circuit import Rig
 from thermicon.circuit.cores import quiet_blas
 from thermicon.icons import read_cue
@@ -19,7 +19,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
-from thermicon.perception.pilot.playing import Confusions, answers_of, spread, stage
+from thermicon.perception.pilot.playing import Confusions, stage
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
 
 ENDS = (0.025, 0.975)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.perception.pilot.madeup import synthetic_trials
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet
 from thermicon.perception import rank
@@ -15,7 +16,6 @@ from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.conditioning import Answered
 from thermicon.perception.pilot.laboratory_file import middle_of, off_middle
 from thermicon.perception.pilot.observed import Observed, observed
-from thermicon.perception.pilot.playing import synthetic_trials
 from thermicon.perception.pilot.prediction import Fit
 from thermicon.perception.ranking.sensitivity import sensitivity
 

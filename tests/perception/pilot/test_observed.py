@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.perception.pilot.madeup import synthetic_trials
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError
 from thermicon.icons import IconSet
@@ -16,11 +17,9 @@ from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.conditioning import Answered
 from thermicon.perception.pilot.observed import Observed, observed
-from thermicon.perception.pilot.playing import synthetic_trials, trials_text
 from thermicon.perception.pilot.prediction import Fit
 from thermicon.perception.pilot.states import LaboratoryPrior
 from thermicon.perception.pilot.trials import Trials
-from thermicon.perception.pilot.trials_file import read_trials
 
 
 @pytest.fixture(scope="module")
@@ -47,19 +46,6 @@ def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
     assert abs(offset.std() - 1.0) < 0.1
 
 
-def test_made_up_answers_are_read_back_and_depend_on_the_seed(
-    icons: IconSet, rig: Rig, answers: Trials, tmp_path: Path
-) -> None:
-    path = tmp_path / "t.csv"
-    path.write_text(trials_text(answers, seed=2), encoding="utf-8")
-    assert (read_trials(path, answers.icons).counts == answers.counts).all()
-    assert (answers.presented == 3).all()
-    again = synthetic_trials(icons, rig, participants=3, trials=18, seed=16)
-    other = synthetic_trials(icons, rig, participants=3, trials=18, seed=6)
-    assert (again.counts == answers.counts).all()
-    assert (other.counts != answers.counts).any()
-
-
 @pytest.mark.slow
 def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers: Trials) -> None:
     own = found.to_dict()
@@ -74,13 +60,6 @@ def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers
     for each in (found.fit, found.fit_after):
         assert 0.0 < each.p <= 1.0
         assert len(each.pairs) == 15
-
-
-def test_participants_own_predictions_follow_their_answers(found: Observed[Answered, Fit]) -> None:
-    seen = [score.proportion_correct for score in found.data.each]
-    predicted = [own[0] for own in found.own]
-    assert np.argmax(seen) == np.argmax(predicted)
-    assert max(predicted) - min(predicted) < max(seen) - min(seen)  # shrunk towards the others
 
 
 def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], tmp_path: Path) -> None:
@@ -185,5 +164,3 @@ def test_answers_to_another_set_and_too_few_draws_are_refused(icons: IconSet, ri
         observed(other, icons, rig)
     with pytest.raises(ValueError, match="at least 20 draws, not 5"):
         observed(answers, icons, rig, draws=5)
-    with pytest.raises(ValueError, match="at least one participant and one trial are needed, not 0 and 3"):
-        synthetic_trials(icons, rig, participants=0, trials=3)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from tests.builders import messages
@@ -22,14 +21,12 @@ def written(folder: Path, *rows: str, head: str = HEAD) -> Path:
 
 
 def test_answers_are_counted_by_participant_and_icon(tmp_path: Path) -> None:
-    rows = ("P1,1,dip,dip,1.5", "P2,1,cool-step,warm-step,9", "P1,2,dip,cool-step,8", "P1,3,dip,dip,2.5")
-    found = read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
+    rows = ("P1,1,dip,dip", "P2,1,cool-step,warm-step", "P1,2,dip,cool-step", "P1,3,dip,dip")
+    found = read_trials(written(tmp_path, *rows), ICONS)
     assert found.participants == ("P1", "P2")
     assert found.counts[0].tolist() == [[0, 0, 0], [0, 0, 0], [1, 0, 2]]
     assert found.counts[1].tolist() == [[0, 1, 0], [0, 0, 0], [0, 0, 0]]
-    assert found.time_s[0] == 2.0 and np.isnan(found.time_s[1])  # times of correct answers alone
     assert found.never_presented == ("warm-step",)
-    assert found.single_trial == ("P2",)
     assert len(found.digest) == 16 and found.source == "trials.csv"
 
 
@@ -46,41 +43,6 @@ MESSAGES = messages(__file__)
 def test_a_bad_table_is_refused_with_place_and_cure(tmp_path: Path, text: str) -> None:
     with pytest.raises(TrialsError, match=MESSAGES["trials"][text]):
         read_trials(written(tmp_path, head=text), ICONS)
-
-
-@pytest.mark.parametrize("times", [(1240, 980, 2315), (1240.5, 980.25, 2315.75), (4200, 980, 3700), (850, 0, 990)])
-def test_times_in_milliseconds_are_recognised(tmp_path: Path, times: tuple[float, ...]) -> None:
-    rows = [f"P{k},1,dip,{'dip' if k else 'cool-step'},{time}" for k, time in enumerate(times)]
-    cure = "these look like milliseconds; divide the column by 1000, so that it is in s"
-    with pytest.raises(TrialsError, match=f"trials.csv: time_s has a median of .*: {cure}"):
-        read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
-    seconds = [f"P{k},1,dip,dip,{time / 1000}" for k, time in enumerate(times)]
-    found = read_trials(written(tmp_path, *seconds, head=f"{HEAD},time_s"), ICONS)
-    assert found.time_s == tuple(time / 1000 for time in times)
-
-
-def test_one_participant_in_milliseconds_is_named(tmp_path: Path) -> None:
-    rows = [f"P1,{k},dip,dip,{1.2 + 0.1 * k}" for k in range(9)] + [f"P2,{k},dip,dip,{1200 + k}" for k in range(4)]
-    with pytest.raises(TrialsError, match=r"time_s of participant 'P2' has a median of 1201\.5: these look like mill"):
-        read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
-
-
-@pytest.mark.parametrize("times", [(61.5, 80, 75), (1240, 1.5), (65, 72, 90), (1.2, 1.5, 1800)])
-def test_slow_answers_stay_seconds(tmp_path: Path, times: tuple[float, ...]) -> None:
-    rows = [f"P1,{k},dip,dip,{time}" for k, time in enumerate(times)]
-    found = read_trials(written(tmp_path, *rows, head=f"{HEAD},time_s"), ICONS)
-    assert found.time_s == (float(np.median(times)),)
-
-
-@pytest.mark.parametrize(
-    "column", ["time_ms", "Time_s", "RT", "key_resp.rt", "response_time (s)", "reaction time [ms]"]
-)
-def test_times_under_another_name_are_said_not_to_be_read(tmp_path: Path, column: str) -> None:
-    path = written(tmp_path, "P1,1,dip,dip,900", head=f"{HEAD},{column}")
-    (said,) = read_trials(path, ICONS).warnings
-    assert said.startswith(f"{path}: times in the column {column!r} are not read: name it time_s and give s")
-    for head in (f"{HEAD},{column},time_s", f"{HEAD},timeline,sometimes"):
-        assert read_trials(written(tmp_path, "P1,1,dip,dip,900,0.9", head=head), ICONS).warnings == ()
 
 
 def test_empty_absent_binary_and_large_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

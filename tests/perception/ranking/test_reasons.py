@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 
-from tests.builders import messages
+from tests.builders import dprime_from_memory, messages
 from thermicon.circuit import Rig, Trace, simulate
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, Percept, perceive
 from thermicon.perception.identification.confusion import NOISES
-from thermicon.perception.identification.episodes import PARTS, dprime_from_memory, remembered
+from thermicon.perception.identification.episodes import PARTS, remembered
 from thermicon.perception.kernels import episodes
 from thermicon.perception.ranking.reasons import FEATURES, FIELDS, DistanceComponent, components_of, pair_reasons
 from thermicon.perception.ranking.rules import load_rules
@@ -35,7 +35,7 @@ def parts_of(a: Trace, b: Trace, observer: Observer | None = None) -> dict[str, 
     felt = perceive(a, person), perceive(b, person)
     parts = components_of(remembered(felt, person), 0, 1, person)
     assert tuple(part.name for part in parts) == PARTS
-    assert math.hypot(*(part.value for part in parts)) == pytest.approx(dprime_from_memory(*felt, person), rel=1e-9)
+    assert math.hypot(*(part.value for part in parts)) == pytest.approx(dprime_from_memory(felt, person), rel=1e-9)
     return {part.name: part for part in parts}
 
 
