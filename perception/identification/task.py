@@ -121,11 +121,24 @@ LONGEST_GAP_S = 600.0
 class Task:
     """An identification task; the default has a long pause before every icon, after which all has faded.
 
-    There is no thermal record of what a gap changes. `gap_s` is the time from the end of one icon to the next, 0 to 600
-    s (None: all has faded). The other fields are filled in by `rank` for the icons at hand: `carried` is what the icons
-    before change of each (norms, icons), d′, and `counted` are places of the icons that will be played (none: all).
-    Raises `ValueError` for a gap out of its range.
+    There is no thermal record of what a gap changes. `rank` fills in the other fields for the icons at hand.
 
+    Attributes
+    ----------
+    gap_s
+        Time from the end of one icon to the next, 0 to 600 s; None: all has faded.
+    carried
+        What the icons before change of each (norms, icons), d′.
+    counted
+        Places of the icons that will be played; none: all.
+
+    Raises
+    ------
+    ValueError
+        For a gap out of its range.
+
+    Examples
+    --------
     >>> Task(gap_s=-1.0)
     Traceback (most recent call last):
     ...
