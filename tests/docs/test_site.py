@@ -52,9 +52,7 @@ def test_every_page_and_tutorial_stands_on_the_site(builder: dict[str, ModuleTyp
     assert (folder / "how-to" / "index.md").read_text(encoding="utf-8").count("\nsimulate\n") == 1
 
 
-def test_links_lead_inside_the_site_and_cue_text_is_plain(
-    builder: dict[str, ModuleType], tmp_path: Path
-) -> None:
+def test_links_lead_inside_the_site_and_cue_text_is_plain(builder: dict[str, ModuleType], tmp_path: Path) -> None:
     folder = staged(builder, tmp_path)
     simulate = (folder / "how-to" / "simulate.md").read_text(encoding="utf-8")
     write = (folder / "how-to" / "write-icons.md").read_text(encoding="utf-8")
