@@ -24,6 +24,12 @@ from ..solver.steady import state_under_current
 LONGEST_STEP_S = 2.5e-3
 """Longest step for either program: at 10 ms a steep ramp of the current costs them 2 mK."""
 
+ROWS_HZ = 100.0
+"""Rows per second that ngspice writes."""
+
+RELATIVE_TOLERANCE = 1e-6
+"""Of the solver of either program."""
+
 LEAST_PERFUSION_W_PER_K = 1e-12
 """Perfusion below this has no resistor: it would be larger than either program reads."""
 
@@ -40,9 +46,7 @@ def netlist(
     *,
     rest_A: float | None = None,
     title: str = "drive",
-    rows_Hz: float = 100.0,
     out_file: str | None = None,
-    reltol: float = 1e-6,
 ) -> str:
     """Return a netlist of a rig and a drive that LTspice and ngspice both read.
 
@@ -55,12 +59,8 @@ def netlist(
         later. None: the drive's first current.
     title
         First line of the netlist.
-    rows_Hz
-        Rows per second of `out_file`.
     out_file
         Adds a control section, with which `ngspice -b` writes WRITTEN_BY_NGSPICE to this file, one row per time in s.
-    reltol
-        Relative tolerance of the solver.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def netlist(
     """
     net = network_of(rig)
     names, skin = _skin(rig, net)
-    end, step = float(drive.time_s[-1]), 1.0 / rows_Hz
+    end, step = float(drive.time_s[-1]), 1.0 / ROWS_HZ
     lines = [
         *_header(rig, names, title),
         *_electrical(rig, points(drive, rest_A)),
@@ -89,7 +89,7 @@ def netlist(
         *skin,
         *_probes(net, names),
         "*",
-        f".options reltol={reltol!r} abstol=1e-12 vntol=1e-9",
+        f".options reltol={RELATIVE_TOLERANCE!r} abstol=1e-12 vntol=1e-9",
         f".tran {step!r} {end!r} 0 {min(step, LONGEST_STEP_S)!r}",
     ]
     if out_file is not None:

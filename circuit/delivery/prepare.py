@@ -38,13 +38,6 @@ class Prepared:
     refusals: tuple[Refusal, ...]
     spread: OpenLoopSpread | None = None
 
-    def __repr__(self) -> str:
-        refused = ", ".join(refusal.kind for refusal in self.refusals)
-        return (
-            f"Prepared({self.delivery.icon.name!r} for {self.delivery.device.name}, {self.delivery.file_s:g} s, safety "
-            f"{self.verdict.colour}{f', REFUSED: {refused}' if refused else ''})"
-        )
-
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to know about the delivery, then what is amber; without what it is refused for."""

@@ -40,7 +40,7 @@ def tight(rig: Rig, drive: Drive) -> dict[str, np.ndarray]:
 
 
 def ngspice_error(ngspice: str, folder: Path, rig: Rig, reference: dict[str, np.ndarray]) -> float:
-    text = netlist(rig, CORNERS, out_file="out.txt", reltol=1e-3).replace("abstol=1e-12 vntol=1e-9", "")
+    text = netlist(rig, CORNERS, out_file="out.txt").replace("reltol=1e-06 abstol=1e-12 vntol=1e-9", "reltol=0.001")
     text = "\n".join(".tran 10m 30 0 10m" if line.startswith(".tran") else line for line in text.splitlines())
     (folder / "error.cir").write_text(text)
     subprocess.run([ngspice, "-b", "error.cir"], cwd=folder, capture_output=True, check=True, timeout=60)

@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.daq import Daq
+
 
 def bench_of(quick: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
     """The module of the study's folder that plays and waits."""
@@ -21,41 +23,9 @@ def bench_of(quick: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
     return importlib.import_module("study_bench")
 
 
-class RealTime(types.ModuleType):
-    """A stand-in for nidaqmx that takes as long as the samples do, by the clock on the wall."""
-
-    def __init__(self) -> None:
-        super().__init__("nidaqmx")
-        self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
-        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
-        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=lambda *_, **__: None)
-        self.out: list[Any] = []
-        self.ends = 0.0
-
-    def Task(self) -> RealTime:
-        return self
-
-    def __enter__(self) -> RealTime:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return None
-
-    def write(self, volts: Any, **_: object) -> None:
-        self.out.append(volts)
-        if isinstance(volts, list):
-            self.ends = time.monotonic() + 3.0
-
-    def is_task_done(self) -> bool:
-        return time.monotonic() >= self.ends
-
-    def stop(self) -> None:
-        self.out.append("stopped")
-
-
 @pytest.fixture
 def display(quick: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    device = RealTime()
+    device = Daq(time.monotonic)
     monkeypatch.setitem(sys.modules, "nidaqmx", device)
     monkeypatch.setitem(sys.modules, "nidaqmx.constants", device)
     made = bench_of(quick, monkeypatch).Display("ni", channel="Dev7/ao1")

@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 
+from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
@@ -44,42 +45,6 @@ class Clock:
             event()
 
 
-class Daq(types.ModuleType):
-    """A stand-in for nidaqmx that remembers what is put out, and takes as long as the samples do."""
-
-    def __init__(self, clock: Clock) -> None:
-        super().__init__("nidaqmx")
-        self.clock, self.ends, self.stopped = clock, 0.0, 0
-        self.AcquisitionType = types.SimpleNamespace(FINITE="finite")
-        self.ao_channels = types.SimpleNamespace(add_ao_voltage_chan=lambda *_, **__: None)
-        self.timing = types.SimpleNamespace(cfg_samp_clk_timing=self.sampled)
-        self.rate, self.count = 0.0, 0
-        self.out: list[Any] = []
-
-    def Task(self) -> Daq:
-        return self
-
-    def __enter__(self) -> Daq:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        return None
-
-    def sampled(self, rate: float, sample_mode: str, samps_per_chan: int) -> None:
-        self.rate, self.count = rate, samps_per_chan
-
-    def write(self, volts: Any, auto_start: bool) -> None:
-        self.out.append(volts)
-        if isinstance(volts, list):
-            self.ends = self.clock.now + len(volts) / self.rate
-
-    def is_task_done(self) -> bool:
-        return self.clock.now >= self.ends
-
-    def stop(self) -> None:
-        self.stopped += 1
-
-
 class Bench:
     """A player of drives on a device, with its clock and its folder."""
 
@@ -91,7 +56,7 @@ class Bench:
         (folder / self.drive).write_bytes(self.files[self.drive])
         self.path = str(folder / self.drive)
         self.clock = Clock()
-        self.daq = Daq(self.clock)
+        self.daq = Daq(self.clock.monotonic)
         monkeypatch.setitem(sys.modules, "nidaqmx", self.daq)
         monkeypatch.setitem(sys.modules, "nidaqmx.constants", self.daq)
         self.player: dict[str, Any] = {}
