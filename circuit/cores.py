@@ -14,12 +14,9 @@ _quiet = Lock()
 
 def cores() -> int:
     """Number of cores that this computation may use: all of this process unless `at_most` sets fewer."""
-    return _allowed.get() or available()
-
-
-def available() -> int:
-    """Cores that this process may run on, which in a container can be fewer than the machine has."""
-    if hasattr(os, "sched_getaffinity"):
+    if allowed := _allowed.get():
+        return allowed
+    if hasattr(os, "sched_getaffinity"):  # in a container there can be fewer than the machine has
         return max(1, len(os.sched_getaffinity(0)))
     return os.cpu_count() or 1
 

@@ -99,11 +99,10 @@ class RigFit:
         names = ("key", "unit", "start", "value", "low", "high", "identified", "cure")
         return pd.DataFrame([{name: getattr(item, name) for name in names} for item in self.parameters])
 
-    def rig_text(self, name: str | None = None) -> str:
-        """Return the rig file of the fitted rig, every fitted value with interval and logs; None keeps its name."""
+    def rig_text(self, name: str) -> str:
+        """Return the rig file of the fitted rig, every fitted value with interval and logs, under a name."""
         document: dict[str, Any] = json.loads(self.rig.document)
-        if name:
-            document["name"] = name
+        document["name"] = name
         origin, by, logs = document.setdefault("source", {}), f"thermicon {own_version()}", named(self.sources)
         for item in self.parameters:
             text = (
@@ -125,8 +124,8 @@ class RigFit:
         document["notes"] = [*earlier_notes, note]
         return toml_text(document)
 
-    def save(self, path: str | Path, name: str | None = None) -> None:
-        """Write the fitted rig with its provenance to a `.toml` file, by that file's name unless another is given.
+    def save(self, path: str | Path) -> None:
+        """Write the fitted rig with its provenance to a `.toml` file, by that file's name.
 
         Raises FitError for another ending, and a path that cannot be written.
         """
@@ -137,7 +136,7 @@ class RigFit:
             raise FitError(f"{where}: the name of a rig file ends in .toml; call it {where.name}.toml")
         try:
             with complete_or_absent(where) as draft:
-                draft.write_text(self.rig_text(name or where.stem[:LONGEST_NAME]), encoding="utf-8")
+                draft.write_text(self.rig_text(where.stem[:LONGEST_NAME]), encoding="utf-8")
         except OutputError as problem:
             raise FitError(str(problem)) from None
 

@@ -27,9 +27,6 @@ SAME_FACE = 0.01
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
 
-USUAL_COMMAND_V = 10.0
-"""Analogue outputs of laboratories end here; larger commands need another output or more gain."""
-
 STEP_S, STEPS = 0.01, 2.0
 """Longest step of the solver, and how many a plate must take to follow: with fewer it is some 0.03 K off, or more."""
 
@@ -119,13 +116,8 @@ def _limits(rig: Rig) -> Iterator[str]:
 
 
 def _driver(rig: Rig) -> Iterator[str]:
-    """A current limit that usual converters cannot command, and a plate that is faster than the solver."""
+    """A plate that is faster than the solver."""
     driver, stored = rig.driver, rig.module.cold_plate_J_per_K
-    gain, limit = driver.transconductance_A_per_V, max(driver.current_max_A, -driver.current_min_A)
-    reached = USUAL_COMMAND_V * gain
-    if limit > reached * (1.0 + 1e-9):
-        numbers = {"limit": limit, "gain": gain, "volts": limit / gain, "needed": limit / USUAL_COMMAND_V}
-        yield sentence("warnings.command", usual=USUAL_COMMAND_V, reached=reached, **numbers)
     least_s = STEPS * min(STEP_S, 1.0 / driver.update_Hz)
     through = rig.contact.area_m2 / rig.contact.resistance_m2K_per_W + 1.0 / rig.module.thermal_resistance_K_per_W
     if stored < least_s * through:

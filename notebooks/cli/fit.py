@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from thermicon.circuit.inputs import LONGEST_NAME, line_fault
+from thermicon.circuit.inputs import LONGEST_NAME
 
 from ..files.outputs import check_output, check_separate
 from ..messages import note, usage
@@ -53,9 +53,6 @@ def fit_command(
             readable=False,
         ),
     ] = None,
-    name: Annotated[
-        str | None, opt("NAME", "Name of the fitted rig.  [default: that of the file of -o]", name="--name")
-    ] = None,
     plan: Annotated[
         bool, flag("--plan", "Without a log: how well each choice of sensors will identify these keys.")
     ] = False,
@@ -82,10 +79,6 @@ def fit_command(
         raise usage("is for the time before there is a log; leave out LOG, or --plan", "--plan")
     if plan and (output or figure.figure):
         raise usage("prints a table only; leave out -o and --figure", "--plan")
-    if name is not None and output is None:
-        raise usage("names the rig that -o writes; give -o NEW.toml", "--name")
-    if name is not None and (fault := line_fault(name, LONGEST_NAME)):
-        raise usage(fault, "--name")
     if plan:
         from thermicon.circuit.fitting.laboratory import plan as expect
 
@@ -101,7 +94,7 @@ def fit_command(
     check_separate(logs, [output, figure.figure])
     fitted = fit(list(logs), where, free=keys, offset_K=offset, fixed_skin=fixed_skin)
     if output is not None:
-        write_text(fitted.rig_text(name or output.stem[:LONGEST_NAME]), output)
+        write_text(fitted.rig_text(output.stem[:LONGEST_NAME]), output)
     if figure.figure is not None:
         from thermicon.circuit.fitting.fit_figure import fit_figure
 

@@ -18,7 +18,7 @@ PICTURES = {
     "04_search_a_better_set": 2,
     "05_export_for_an_experiment": 2,
 }
-ALONE = {"08_your_rig_from_a_log": 3}
+ALONE = {"08_your_rig_from_a_log": 2}
 """A tutorial that stands beside the sequence."""
 
 MOST_SAVED = 300_000

@@ -42,7 +42,7 @@ def test_the_fitted_rig_has_the_skin_that_was_logged(foreign: RigFit, true_rig: 
     mine, theirs = (simulate_current(drive, rig, rate_Hz=20.0) for rig in (foreign.rig, true_rig.with_(**THICK)))
     difference = mine.display_C - theirs.display_C
     assert np.abs(difference - difference.mean()).max() < 0.01
-    assert "fitted along" in foreign.rig_text()
+    assert "fitted along" in foreign.rig_text("mine")
 
 
 def test_fixed_skin_is_what_the_rig_has(true_rig: Rig, thenar: Rig) -> None:

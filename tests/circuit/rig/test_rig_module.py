@@ -125,10 +125,6 @@ def test_plates_on_record_are_alumina_over_the_footprint_with_half_the_legs() ->
         assert alumina + legs < build.plate_J_per_K / build.face_cm2 < 1.2 * (alumina + legs)  # the rest is copper
 
 
-def test_a_name_from_the_command_line() -> None:
-    assert THENAR.with_set(["module.name=CP60340"]).module_source.startswith("CP60340, maker's datasheet")
-
-
 def test_a_sheet_that_is_not_there_is_answered_with_those_that_are() -> None:
     rig = THENAR.with_(**{"module.datasheet": [TEC]})
     with pytest.raises(RigError, match=r"no such data sheet; there are 0 \(hot side at 25 °C\)"):

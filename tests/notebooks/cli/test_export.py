@@ -55,7 +55,6 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     assert names(out) == ["cool-step.csv", "cool-step.json", "warm-step.csv", "warm-step.json"]
     for words in (
         "warning: the worst case of safety is milder: contact resistance ±0 % instead of ±30 %",
-        "warning: driver.current_limit_A = 1.5 A takes 15 V of command",
         "cool-step: 8.01 s at 100 Hz on dac-16, receptors within ",
         "safety green in 3 scenarios",
         "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through ",

@@ -34,8 +34,6 @@ def test_a_fit_prints_parameters_and_writes_the_rig_and_the_figure(cli: Cli, log
         OHM,
         "-o",
         rig,
-        "--name",
-        "bench 2",
         "--figure",
         figure,
         *RATE,
@@ -49,7 +47,7 @@ def test_a_fit_prints_parameters_and_writes_the_rig_and_the_figure(cli: Cli, log
     assert max(map(len, lines)) <= 80
     assert said.stderr == f"wrote {rig}\nwrote {figure}\n"
     assert Rig.load(rig).contact.resistance_m2K_per_W == pytest.approx(7e-4, rel=0.02)
-    assert Rig.load(rig).name == "bench 2"
+    assert Rig.load(rig).name == "mine"
     assert figure.stat().st_size > 20_000
 
 
