@@ -13,9 +13,6 @@ if TYPE_CHECKING:
 
     from .rig_fit import ChannelFit, RigFit
 
-COLORS = {"display_C": "#1b7837", "skin_C": "#762a83", "hot_plate_C": "#b35806"}
-"""Measured points on the grey and black curves of a trace."""
-
 COLORS = {"display_C": DISPLAY, "skin_C": SKIN, "hot_plate_C": WARM, "voltage_V": COOL}
 POINTS = "#b9bec4"
 MOST_POINTS = 4000
