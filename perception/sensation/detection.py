@@ -18,67 +18,10 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Array, as_rows, own_arrays
+from ..arrays import Array, as_rows
 from ..criteria import FELT_FROM
 from ..kernels.parallel import over_rows
 from ..observer.observer import CHANNELS, Channel, Observer
-
-
-@dataclass(frozen=True, slots=True)
-class ResponseTimes:
-    """Distributions of response times, one a row: `time_s` (n_time,), `probability` (rows, n_time) of one by then.
-
-    `cold_share` (rows,) is the share of the responses that the cold channel gave.
-    """
-
-    time_s: Array
-    probability: Array
-    cold_share: Array
-
-    def __post_init__(self) -> None:
-        own_arrays(self, "time_s", "probability", "cold_share")
-        if self.probability.shape != (self.cold_share.size, self.time_s.size):
-            raise ValueError(f"response times: {self.probability.shape} probabilities for {self.time_s.size} times")
-
-    def quantile(self, share: float = 0.5) -> Array:
-        """Time (rows,) by which a response came in this share of trials, s; inf where it comes in fewer.
-
-        Early false alarms count, as they do in an experiment.
-        """
-        if not 0.0 < share < 1.0:
-            raise ValueError(f"a share of trials lies between 0 and 1, not {share:g}")
-        return np.array([time_of(given, self.time_s, share) for given in self.probability])
-
-    def __repr__(self) -> str:
-        low, middle, high = (float(np.median(self.quantile(share))) for share in (0.25, 0.5, 0.75))
-        by = f"quarters by {low:.2f}, {middle:.2f} and {high:.2f} s"
-        return f"ResponseTimes({self.cold_share.size} rows: {by})"
-
-
-def response_times(
-    psi_cold: ArrayLike,
-    psi_warm: ArrayLike,
-    dt_s: float,
-    observer: Observer,
-    *,
-    conduction_s: tuple[ArrayLike, ArrayLike],
-    decision_s: ArrayLike,
-    criterion: tuple[ArrayLike, ArrayLike] = (1.0, 1.0),
-) -> ResponseTimes:
-    """Response to whichever channel's crossing arrives first; sensations of shape (..., n_time).
-
-    `conduction_s` (cold, warm), `decision_s` in s and `criterion` (cold, warm), in multiples of the observer's, are one
-    number or one for each leading index. Gain and decision differ from trial to trial. Times run on past the end of
-    the sensations by the slowest delay, so that none is cut off.
-    """
-    rows, samples = as_rows(psi_cold)[0].shape
-    slowest = float(np.exp(quarters(observer.decision_noise)).max() * np.max(decision_s))
-    latest = max(float(np.max(each)) for each in conduction_s) + slowest
-    times = samples + int(np.ceil(latest / dt_s)) + 1
-    _, given, share = report_courses(
-        psi_cold, psi_warm, dt_s, observer, conduction_s, decision_s, criterion, times=times, corrected=False
-    )
-    return ResponseTimes(dt_s * np.arange(times), given.reshape(rows, times), share.reshape(rows))
 
 
 def report_courses(
@@ -96,8 +39,9 @@ def report_courses(
 ) -> tuple[Array, Array, Array]:
     """Probability (...,) of a report, of one by each of so many times (..., times), and cold's share of it.
 
-    Arguments are as in `response_times`; times lie `every` samples apart. Corrected, reports of noise alone are left
-    out. Without times (0) only the first is computed.
+    Sensations have the shape (..., n_time). `conduction_s` (cold, warm), `decision_s` in s and `criterion` (cold,
+    warm), in multiples of the observer's, are one number or one for each leading index. Times lie `every` samples
+    apart. Corrected, reports of noise alone are left out. Without times (0) only the first is computed.
     """
     from ..kernels.reports import report
 

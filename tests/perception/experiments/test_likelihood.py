@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.perception.timed import ResponseTimes, response_times
 from thermicon.circuit import Rig
 from thermicon.perception import Observer
 from thermicon.perception.evidence.results import load_constants
@@ -19,7 +20,7 @@ from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.published import PEAKS_C, STRIP_CM2, TWO_STRIPS_CM2, Predictions
 from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
-from thermicon.perception.sensation.detection import ResponseTimes, detect, response_times
+from thermicon.perception.sensation.detection import detect
 from thermicon.perception.sensation.sensation import receptor_drive, sensitivity
 
 NOBODY_DIFFERS = (

@@ -9,18 +9,17 @@ import pytest
 from scipy.stats import norm
 
 from tests.perception.survival import log_survival
+from tests.perception.timed import response_times
 from thermicon.perception import Observer
 from thermicon.perception.arrays import Array
 from thermicon.perception.observer.observer import CHANNELS
 from thermicon.perception.sensation.detection import (
-    ResponseTimes,
     channel_name,
     criterion_of,
     detect,
     false_alarms,
     pooled,
     quarters,
-    response_times,
 )
 
 
@@ -216,7 +215,6 @@ def test_conduction_and_decision_come_on_top_and_decide_who_is_first(observer: O
     assert math.isinf(middle[2])
     assert found.cold_share[:2] == pytest.approx([1.0, 1.0], abs=1e-3)
     assert found.time_s[-1] > 2.0 + 1.4
-    assert "3 rows" in repr(found)
 
 
 def test_trials_differ_in_gain_and_decision(observer: Observer) -> None:
@@ -236,11 +234,3 @@ def test_a_persons_criterion_delays_the_answer(observer: Observer) -> None:
         psi, 0 * psi, 0.01, observer, conduction_s=(0.1, 0.1), decision_s=0.2, criterion=([0.8, 1.6], 1.0)
     )
     assert found.quantile()[1] > found.quantile()[0] + 0.4
-
-
-def test_messages(observer: Observer) -> None:
-    found = response_times(np.zeros(9), np.zeros(9), 0.01, observer, conduction_s=(0.3, 1.0), decision_s=0.2)
-    with pytest.raises(ValueError, match=r"a share of trials lies between 0 and 1, not 1"):
-        found.quantile(1.0)
-    with pytest.raises(ValueError, match=r"response times: \(1, 3\) probabilities for 2 times"):
-        ResponseTimes(np.zeros(2), np.zeros((1, 3)), np.zeros(1))
