@@ -90,7 +90,7 @@ def draws_sentences(found: Observed[Any, Any]) -> list[str]:
 def constants(found: Observed[Any, Any]) -> list[Block]:
     """The constants that moved, with units; offsets of the laboratories of the evidence are left out."""
     header = found.prior.draws.header
-    moved = [each for each in found.constants if not header.is_offset(each.constant)]
+    moved = [each for each in found.constants if each.constant not in header.offsets]
     if not moved:
         return [Text("No constant moved by more than chance.")]
     points = [

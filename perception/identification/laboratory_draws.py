@@ -136,8 +136,7 @@ class DrawnLaboratories:
         """The observer and the people of a laboratory with these values of the constants (constants,)."""
         named = dict(zip(self.names, values.tolist(), strict=True))
         offsets = named[OFFSETS[0]], named[OFFSETS[1]]
-        base = Observer.load(variable=self.variable)
-        return laboratory_with(base, named, offsets, people, self.seed, self.age_years)
+        return laboratory_with(self.variable, named, offsets, people, self.seed, self.age_years)
 
     def invited(self, people: int) -> NDArray[np.int64]:
         """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""

@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -21,10 +20,10 @@ from thermicon.circuit.records import Table
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array, own_arrays
-from .channels import CHANNELS, Channel, Variable, check_variable, source_of
+from .channels import CHANNELS, Variable, check_variable
 from .draws_file import DrawsHeader, read_draws, shipped_file
-from .observer import INFERRED, OF_BOTH, OF_CHANNEL, Observer, Receptor, variant_records
-from .parts import NOISE, OF_MEMORY, Ratings
+from .observer import Observer, shipped_constants, variant_records
+from .parts import NOISE
 from .people import People, draw_people
 
 BETWEEN_LABORATORIES = "sensitivity between laboratories"
@@ -106,32 +105,22 @@ class PosteriorDraws:
         return low, middle, high
 
     def table(self, k: int) -> Table:
-        """The observer's records with the constants of one draw: for `Observer.from_table`, and how people differ."""
-        values, variant = self.draw(k), source_of(self.variable)
-        records = []
-        for record in variant_records(self.variable):
-            remembered = NOISE if record.quantity == "memory noise" else record.quantity
-            if remembered in self.memory_names:
-                records.append(replace(record, value=values[remembered], low=None, high=None))
-                continue
-            if not record.source.startswith(FROM_EVIDENCE):
-                records.append(record)
-                continue
-            quantity = record.quantity.removesuffix(variant) if variant else record.quantity
-            name = f"{record.channel} {quantity}" if record.channel in CHANNELS else quantity
-            # The default variant's own number gives way to that of this variant.
-            if name not in values:
-                records.append(record)
-            elif record.quantity == f"{quantity}{variant}":
-                value = values[name]
-                records.append(replace(record, value=value, low=None, high=None, method=f"draw {k} of the posterior"))
-                if variant:
-                    records.append(replace(records[-1], quantity=quantity))
+        """The records of the shipped observer with the constants of one draw of the default variant."""
+        values, records = self.draw(k), []
+        for record in variant_records():
+            name = f"{record.channel} {record.quantity}" if record.channel in CHANNELS else record.quantity
+            name = NOISE if record.quantity == "memory noise" else name
+            if name in self.memory_names:
+                record = replace(record, value=values[name], low=None, high=None)
+            elif name in values and record.source.startswith(FROM_EVIDENCE):
+                method = f"draw {k} of the posterior"
+                record = replace(record, value=values[name], low=None, high=None, method=method)
+            records.append(record)
         return Table(f"draw {k}", tuple(records))
 
     def observer(self, k: int) -> Observer:
         """The observer of one draw."""
-        return observer_with(Observer.load(variable=self.variable), self.draw(k))
+        return Observer.from_constants({**shipped_constants(self.variable), **self.draw(k)}, self.variable)
 
     def nominal(self) -> Observer:
         """The observer of the first draw, which is nearest to the medians. The shipped observer is the maximum."""
@@ -157,44 +146,19 @@ def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
     return PosteriorDraws(header, names, draws, memory_names, memory)
 
 
-def observer_with(base: Observer, values: Mapping[str, float]) -> Observer:
-    """The observer whose constants, those of memory among them, have these values; all else is that of `base`."""
-
-    def given(fields: Mapping[str, str], channel: str = "") -> dict[str, Any]:
-        names = {field: f"{channel} {name}".strip() for field, name in fields.items()}
-        return {field: values[name] for field, name in names.items() if name in values}
-
-    def receptor(channel: Channel) -> Receptor:
-        own, moved = base.receptor(channel), given(OF_BOTH) | given(OF_CHANNEL, channel)
-        if own.limit_C is None:
-            moved.pop("limit_C", None)
-        return replace(own, **moved)
-
-    constants, memory = given(INFERRED), base.memory
-    gain_noise = constants.get("gain_noise", base.gain_noise)
-
-    def ratings(channel: Channel) -> Ratings:
-        own = memory.ratings(channel)
-        exponent = values.get(f"{channel} rating exponent", own.exponent)
-        # What repeated ratings scatter by, without the part that gain noise makes of it.
-        scatter = math.sqrt(max(own.scatter**2 - (own.exponent * own.rated * base.gain_noise) ** 2, 0.0))
-        whole = math.hypot(values.get("scatter of ratings", scatter), exponent * own.rated * gain_noise)
-        return Ratings(values.get(f"{channel} rating at threshold", own.at_threshold), exponent, own.rated, whole)
-
-    remembered = replace(memory, cold=ratings("cold"), warm=ratings("warm"), **given(OF_MEMORY))
-    return replace(base, cold=receptor("cold"), warm=receptor("warm"), memory=remembered, **constants)
-
-
 def laboratory_with(
-    base: Observer,
+    variable: Variable,
     values: Mapping[str, float],
     offsets: tuple[float, float],
     people: int,
     seed: int,
     age_years: float | None = None,
 ) -> tuple[Observer, People]:
-    """The observer and people of a laboratory with these constants; cold and warm `offsets` are how much more sensitive
-    (ln) its people are.
+    """The observer and people of a laboratory with these constants, those of memory among them, and else the shipped.
+
+    Cold and warm `offsets` are how much more sensitive (ln) its people are.
     """
     drawn = draw_people(people, seed, age_years=age_years, spreads=values)
-    return observer_with(base, values), drawn.less_sensitive(-offsets[0], -offsets[1])
+    cold, warm = math.exp(-offsets[0]) * drawn.threshold_cold, math.exp(-offsets[1]) * drawn.threshold_warm
+    observer = Observer.from_constants({**shipped_constants(variable), **values}, variable)
+    return observer, replace(drawn, threshold_cold=cold, threshold_warm=warm)

@@ -1,7 +1,6 @@
 """The table of posterior draws as a file: header lines that say what it was made from, then one row a draw.
 
-It is written by `python -m thermicon.perception.evidence`. Reading needs numpy alone and refuses a table of other
-evidence or another form.
+It is written by `python -m thermicon.perception.evidence`. Reading refuses a table of other evidence or another form.
 """
 
 from __future__ import annotations
@@ -9,7 +8,6 @@ from __future__ import annotations
 import csv
 import hashlib
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, fields
 from io import StringIO
 from pathlib import Path
@@ -39,8 +37,6 @@ LABORATORY_LINE = "# written by thermicon observed from inputs "
 CURE = "write it again with python -m thermicon.perception.evidence sample -o FILE"
 CONSTANTS = DATA / "constants.csv"
 APPROXIMATE = "normal approximation"
-RECEPTOR_MODEL = "adapting"
-"""The receptor model that a file names; there is one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,14 +63,9 @@ class DrawsHeader:
     offsets: tuple[str, ...]
     resampled: str = ""
     rig: str = ""
-    model: str = RECEPTOR_MODEL
 
     def __post_init__(self) -> None:
         check_variable(self.variable)
-
-    def is_offset(self, name: str) -> bool:
-        """Whether a column is the offset of one laboratory of the evidence, in SDs of the spread between them."""
-        return name in self.offsets
 
     @property
     def status(self) -> str:
@@ -92,7 +83,6 @@ LABELS: Mapping[str, str] = {
     "priors": "priors",
     "program": "program",
     "variable": "sensory variable",
-    "model": "receptor model",
     "left_out": "left out",
     "sampler": "sampler",
     "seed": "seed",
@@ -190,12 +180,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
 def _numbers(
     file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int, judged: Sequence[int]
 ) -> Array:
-    """The rows as numbers (rows, names), all at once; cell by cell only where one of them is wrong."""
-    with suppress(ValueError):
-        draws = np.array(rows, dtype=np.float64)
-        objections = (objection_to(names[place], float(value)) for place in judged for value in draws[:, place])
-        if draws.shape == (len(rows), len(names)) and (abs(draws) <= LARGEST).all() and not any(objections):
-            return draws
+    """The rows as numbers (rows, names)."""
     draws = np.empty((len(rows), len(names)))
     for number, row in enumerate(rows):
         where = f"{file}, line {first_line + number}"
@@ -222,9 +207,6 @@ def _header(name: str, head: Sequence[str]) -> DrawsHeader:
     if inputs != current:
         raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {CURE}")
     labels = {**LABELS, **OF_LABORATORY}
-    if known["receptor model"] != RECEPTOR_MODEL:
-        model = quoted(known["receptor model"])
-        raise RecordError(f"{name}: draws of the receptor model {model}, not {RECEPTOR_MODEL}: {CURE}")
     read: dict[str, Any] = {"inputs": inputs, **{field: known.get(label, "") for field, label in labels.items()}}
     for field in ("seed", "likelihoods", "r_hat", "ess"):
         read[field] = _number(read[field], f"{name}, {labels[field]}")
@@ -266,8 +248,7 @@ def _inferred(variable: Variable) -> dict[str, bool]:
     with CONSTANTS.open(encoding="utf-8", newline="") as file:
         file.readline()
         rows = csv.DictReader(file)
-        ours = (row for row in rows if row["variable"] == variable)
-        return {row["name"]: float(row["prior_low"]) > 0.0 for row in ours}
+        return {row["name"]: float(row["prior_low"]) > 0.0 for row in rows if row["variable"] == variable}
 
 
 def current_inputs(table: Path = CONSTANTS) -> str:

@@ -11,11 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from numpy.typing import ArrayLike
 
-from thermicon.circuit.records import Table, load_records
+from thermicon.circuit.records import RecordError, Table, load_records
 
 from ..arrays import Array
 from .channels import (
@@ -30,11 +31,15 @@ from .channels import (
     drive_unit,
     source_of,
 )
-from .observer_file import check_complete, read_records
-from .parts import EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
+from .parts import BAR, MISSING, NOISE, OF_MEMORY, SHARE, EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
 
 __all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "Receptor", "check_norm", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
+CURE = (
+    f"begin with a copy of the shipped file, {DATA / 'observer.toml'}, and change numbers there; or infer all of them "
+    "again from your evidence with python -m thermicon.perception.evidence fit and python -m "
+    "thermicon.perception.evidence observer"
+)
 INFERRED: Mapping[str, str] = {
     "integration_s": "integration time",
     "a": "slope of sensation",
@@ -56,6 +61,7 @@ OF_CHANNEL: Mapping[str, str] = {
 }
 OF_BOTH: Mapping[str, str] = {"adaptation_s": "slow adaptation time", "softness_K": "softness of the limits"}
 """Fields of a receptor: constants of which each channel has its own, and those that both share."""
+OF_RATINGS = ("rating at threshold", "rating exponent", "mean rating")
 FOREARM_SITES = ("forearm", "wrist", "arm")
 
 
@@ -149,50 +155,39 @@ class Observer:
 
     @classmethod
     def from_table(cls, table: Table, *, variable: Variable = "temperature") -> Observer:
-        """Build from calibrated records; a missing one is a `RecordError` that names it.
+        """Build from calibrated records; a missing one is a `RecordError` that names it."""
+        return cls.from_constants(constants_of(table, variable), variable)
 
-        A variant's own number stands under the quantity's name with the variant's ending, where it has one.
-        """
-        check_variable(variable)
-        variant, known = source_of(variable), {record.quantity for record in table}
-        check_complete(table, variable, variant)
-
-        def number(quantity: str, channel: str = "", site: str = "", method: str = "") -> float:
-            own = f"{quantity}{variant}"
-            return table.one(own if own in known else quantity, channel=channel, site=site, method=method).central
+    @classmethod
+    def from_constants(cls, values: Mapping[str, Any], variable: Variable = "temperature") -> Observer:
+        """Build from constants by the names of `constants_of`; further ones are left alone."""
 
         def receptor(channel: Channel) -> Receptor:
-            constants: dict[str, Any] = {field: number(name) for field, name in OF_BOTH.items()}
-            names = {field: name for field, name in OF_CHANNEL.items() if variable != "heat flow" or name != "limit"}
-            constants |= {field: number(name, channel) for field, name in names.items()}
-            flux = table.one("neutral heat flow", channel=channel).interval if variable == "heat flow" else None
-            return Receptor(**constants, neutral_flux=flux)
+            names = {**{field: f"{channel} {name}" for field, name in OF_CHANNEL.items()}, **OF_BOTH}
+            constants = {field: values[name] for field, name in names.items() if name in values}
+            if variable == "heat flow":
+                constants |= {"limit_C": None, "neutral_flux": values[f"{channel} neutral heat flow"]}
+            return Receptor(**constants)
 
         def ratings(channel: Channel) -> Ratings:
-            rated, exponent = number("mean rating", channel), number("rating exponent", channel)
-            scatter = math.hypot(number("scatter of ratings"), exponent * rated * number("gain noise"))
-            return Ratings(number("rating at threshold", channel), exponent, rated, scatter)
+            unit, exponent, rated = (values[f"{channel} {name}"] for name in OF_RATINGS)
+            # What repeated ratings scatter by, with the part that gain noise makes of it.
+            scatter = math.hypot(values["scatter of ratings"], exponent * rated * values["gain noise"])
+            return Ratings(unit, exponent, rated, scatter)
 
-        low, high = table.one("neutral zone").interval
-        constants: dict[str, Any] = {field: number(name) for field, name in INFERRED.items()}
+        low, high = values["neutral zone"]
+        remembered = {field: values[name] for field, name in OF_MEMORY.items()}
         return cls(
-            **constants,
+            **{field: values[name] for field, name in INFERRED.items()},
             cold=receptor("cold"),
             warm=receptor("warm"),
             neutral_low_C=low,
             neutral_high_C=high,
-            reference_area_m2=number("reference area") * 1e-4,
-            path_hand_m=number("path length to the cord", site="hand"),
-            path_forearm_m=number("path length to the cord", site="forearm"),
-            lapse=number("lapse rate"),
-            memory=EpisodeMemory(
-                timing=number("memory noise", method="episodes"),
-                share=number("share of the scatter of ratings"),
-                missing=number("cost of a missing episode"),
-                bar=number("bar of an episode"),
-                cold=ratings("cold"),
-                warm=ratings("warm"),
-            ),
+            reference_area_m2=values["reference area"] * 1e-4,
+            path_hand_m=values["path of the hand"],
+            path_forearm_m=values["path of the forearm"],
+            lapse=values["lapse rate"],
+            memory=EpisodeMemory(**remembered, cold=ratings("cold"), warm=ratings("warm")),
             variable=variable,
         )
 
@@ -243,6 +238,34 @@ def on_forearm(site: str) -> bool:
     return any(name in site.lower() for name in FOREARM_SITES)
 
 
+def constants_of(table: Table, variable: Variable) -> dict[str, Any]:
+    """Constants of an observer by the names that draws have them under, and intervals of what a variant adapts to.
+
+    A variant's own number stands under the quantity's name with the variant's ending, where it has one. A missing
+    quantity is a `RecordError` that names it.
+    """
+    variant, known = source_of(check_variable(variable)), {record.quantity for record in table}
+
+    def number(quantity: str, **keys: str) -> float:
+        own = f"{quantity}{variant}"
+        return table.one(own if own in known else quantity, **keys).central
+
+    shared = (*INFERRED.values(), *OF_BOTH.values(), SHARE, MISSING, BAR, "scatter of ratings", "reference area")
+    try:
+        found: dict[str, Any] = {name: number(name) for name in (*shared, "lapse rate")}
+        found |= {NOISE: number("memory noise", method="episodes"), "neutral zone": table.one("neutral zone").interval}
+        found |= {f"path of the {site}": number("path length to the cord", site=site) for site in ("hand", "forearm")}
+        for channel in CHANNELS:
+            for name in (*OF_CHANNEL.values(), *OF_RATINGS):
+                if name != "limit" or variable == "temperature":
+                    found[f"{channel} {name}"] = number(name, channel=channel)
+            if variable == "heat flow":
+                found[f"{channel} neutral heat flow"] = table.one("neutral heat flow", channel=channel).interval
+    except RecordError as wrong:
+        raise RecordError(f"{wrong}. Cure: {CURE}") from None
+    return found
+
+
 @lru_cache(maxsize=1)
 def load_thresholds() -> Table:
     """The shipped table of published numbers."""
@@ -255,6 +278,23 @@ def observer_records() -> Table:
     return load_records(DATA / "observer.toml")
 
 
+def read_records(path: Path) -> Table:
+    """Records of an observer's file; a RecordError where a quantity has another unit than the shipped one.
+
+    Values are not converted.
+    """
+    table = load_records(path)
+    shipped = {record.quantity: record.unit for record in observer_records()}
+    for record in table:
+        unit = shipped.get(record.quantity, record.unit)
+        if record.unit != unit:
+            raise RecordError(
+                f"{table.name}: {record.quantity}: unit {record.unit!r}, but this quantity is in {unit!r}: convert the "
+                "value and its interval, and write that unit"
+            )
+    return table
+
+
 @lru_cache(maxsize=4)
 def variant_records(variable: Variable = "temperature") -> Table:
     """The shipped records without those of other variants: all that an observer of this variant makes use of."""
@@ -265,5 +305,11 @@ def variant_records(variable: Variable = "temperature") -> Table:
 
 
 @lru_cache(maxsize=2)
+def shipped_constants(variable: Variable) -> Mapping[str, Any]:
+    """Constants of the shipped observer in a variant."""
+    return MappingProxyType(constants_of(observer_records(), variable))
+
+
+@lru_cache(maxsize=2)
 def _shipped(variable: Variable) -> Observer:
-    return Observer.from_table(observer_records(), variable=variable)
+    return Observer.from_constants(shipped_constants(variable), variable)

@@ -18,9 +18,8 @@ from thermicon.circuit.records import RecordError, Table
 
 from .channels import CHANNELS, VARIABLES
 from .draws import PosteriorDraws
-from .observer import DATA, Observer, variant_records
-from .observer_file import read_records
-from .people import SPREADS, People, age_factor, draw_people
+from .observer import DATA, Observer, read_records, variant_records
+from .people import People, age_factor, draw_people
 
 SHIPPED = "shipped"
 OF_PEOPLE = (
@@ -32,7 +31,7 @@ OF_PEOPLE = (
 """Inferred constants of people that both channels share; sensitivities have one a channel."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True)
 class ObserverModel:
     """The observer of a file with its people and its posterior.
 
@@ -48,10 +47,10 @@ class ObserverModel:
 
     name: str
     digest: str
-    nominal: Observer
-    spreads: Mapping[str, float] | None = field(repr=False)
-    records: Table = field(repr=False)
-    posterior: PosteriorDraws | None
+    nominal: Observer = field(compare=False)
+    spreads: Mapping[str, float] | None = field(compare=False)
+    records: Table = field(compare=False)
+    posterior: PosteriorDraws | None = field(compare=False)
     age_years: float | None = None
 
     @classmethod
@@ -109,16 +108,6 @@ class ObserverModel:
             age_factor(age_years, channel)
         return replace(self, age_years=age_years)
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, ObserverModel) and self._identity == other._identity
-
-    def __hash__(self) -> int:
-        return hash(self._identity)
-
-    @property
-    def _identity(self) -> tuple[str, str, float | None]:
-        return self.name, self.digest, self.age_years
-
     def for_jobs(self) -> ObserverModel | None:
         """What batches need of it, without the draws: None for the shipped one, which every worker has."""
         return replace(self, posterior=None) if self.key else None
@@ -141,15 +130,6 @@ def _shipped_digest() -> str:
 
 def _spreads(records: Table) -> dict[str, float]:
     """How people differ by the records of an observer file; what it lacks is a RecordError that names it."""
-    found: dict[str, float] = {}
-    wanted = [(name, "") for name in OF_PEOPLE]
-    wanted += [(SPREADS["threshold"].format("").strip(), channel) for channel in CHANNELS]
-    for name, channel in wanted:
-        matches = [record for record in records if record.quantity == name and record.channel in (channel, "both", "")]
-        if not matches:
-            raise RecordError(
-                f"{records.name}: {name!r}{f' of {channel}' if channel else ''}, which says how people differ, is "
-                "missing: begin with a copy of the shipped observer.toml"
-            )
-        found[f"{channel} {name}" if channel else name] = matches[0].central
-    return found
+    shared = {name: records.one(name).central for name in OF_PEOPLE}
+    name = "sensitivity between people"
+    return shared | {f"{channel} {name}": records.one(name, channel=channel).central for channel in CHANNELS}

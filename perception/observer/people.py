@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from statistics import NormalDist
 from types import MappingProxyType
@@ -68,22 +68,13 @@ class People:
         """The persons from one number up to another."""
         return People(**{field.name: getattr(self, field.name)[start:stop] for field in fields(self)})
 
-    def less_sensitive(self, cold: float, warm: float) -> People:
-        """The same persons with thresholds raised by so much (ln): those of another laboratory, or of another age."""
-        thresholds = {"threshold_cold": math.exp(cold) * self.threshold_cold}
-        return replace(self, **thresholds, threshold_warm=math.exp(warm) * self.threshold_warm)
-
     def rigs(self, rig: Rig) -> list[Rig]:
         """The rig as each person meets it: own contact resistance and own outermost layer."""
         columns = (self.contact_resistance.tolist(), self.outer_layer.tolist())
         return [_as_met(rig, contact, layer) for contact, layer in zip(*columns, strict=True)]
 
     def __repr__(self) -> str:
-        return (
-            f"People({len(self)}: threshold multipliers cold {_span(self.threshold_cold)}, "
-            f"warm {_span(self.threshold_warm)}, memory noise {_span(self.memory)} of nominal, "
-            f"criterion cold {_span(self.criterion_cold)})"
-        )
+        return f"People({len(self)})"
 
 
 @lru_cache(maxsize=1024)
@@ -239,7 +230,3 @@ def _triangular(uniform: Array, low: float, mode: float, high: float) -> Array:
     left = low + np.sqrt(uniform * (high - low) * (mode - low))
     right = high - np.sqrt((1.0 - uniform) * (high - low) * (high - mode))
     return np.where(uniform < split, left, right)
-
-
-def _span(column: Array) -> str:
-    return f"{column.min():.2g}–{column.max():.2g}"

@@ -58,7 +58,7 @@ def laboratory_draws(
     memory = values[:, [prior.names.index(name) for name in remembered]]
     header = prior.draws.header
     # Offsets of the laboratories of the evidence say nothing of this one.
-    counted = np.hstack([own[:, [k for k, name in enumerate(names) if not header.is_offset(name)]], memory])
+    counted = np.hstack([own[:, [k for k, name in enumerate(names) if name not in header.offsets]], memory])
     first = middle_of(some, counted, predicted, played)
     order = [first, *(k for k in range(len(own)) if k != first)]
     distinct = len(np.unique(np.hstack([own, memory]), axis=0))

@@ -83,7 +83,6 @@ class LaboratoryPrior:
         # Symmetric roots keep each coordinate near its own constant, which the surrogate of the likelihood relies on.
         self._spread = (vectors * np.sqrt(values)) @ vectors.T
         self._whitened = off @ ((vectors * turned) @ vectors.T)
-        self.base = Observer.load(variable=draws.variable)
 
     @classmethod
     def of(cls, observer: ObserverModel | Path | str | None, norm: Norm) -> LaboratoryPrior:
@@ -138,7 +137,7 @@ class LaboratoryPrior:
     def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, by a row of `values`, and people who come there."""
         named = dict(zip(self.names, values.tolist(), strict=True))
-        return laboratory_with(self.base, named, (named[OFFSETS[0]], named[OFFSETS[1]]), people, seed)
+        return laboratory_with(self.draws.variable, named, (named[OFFSETS[0]], named[OFFSETS[1]]), people, seed)
 
 
 def _scores(parameter: Uncertain, draws: PosteriorDraws) -> Array:

@@ -103,7 +103,6 @@ def test_a_number_that_no_person_has_is_refused_in_every_draw(
     [
         ("# form: 1", "# form: 9", r"line 2: form 9 .*reads.* 1"),
         (current_inputs(), "0123456789abcdef", r"made from evidence and priors 0123"),
-        ("model: adapting", "model: ring-de-dear", r"draws of the receptor model 'ring-de-dear', not adapting"),
         ("# sampler:", "# simpler:", r"the header has no line 'sampler'"),
         ("cold limit,", "cold limt,", r"'cold limt' is not a constant.*cold limit"),
         ("cold limit,", "warm limit,", r"two columns have one name"),

@@ -58,7 +58,7 @@ def test_effects_are_ordered_and_measurements_too(found: Sensitivity) -> None:
 
 def test_every_constant_has_its_measurement() -> None:
     draws = PosteriorDraws.load()
-    names = [name for name in draws.names if not draws.header.is_offset(name)]
+    names = [name for name in draws.names if name not in draws.header.offsets]
     names += [parameter.name for norm in NORMS for parameter in memory_parameters(norm)]
     names += ["laboratory, cold", "laboratory, warm", "contact resistance", "thickness of the outermost layer"]
     assert {base_name(name) for name in names} == set().union(*load_measurements().values())
