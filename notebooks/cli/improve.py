@@ -99,8 +99,10 @@ def improve_command(
         raise usage("is a question of its own: leave out --choose, --edits and --evaluations", "--up-to")
     if edits and searched:
         raise usage("edits icons as they are, which a search does not leave: leave out --evaluations", "--edits")
-    if must and choose is None:
-        raise usage("needs --choose K, which chooses the best K icons", "--must")
+    if must and (choose is None or searched):
+        raise usage(
+            "needs --choose K, which chooses the best K icons; a search keeps all that are no families", "--must"
+        )
     if objective is not None and not (choose or up_to or searched):
         raise usage("needs --choose K, --up-to K or a search of families", "--objective")
     kinds = (".cue",) if searched else (*TRACE_SUFFIXES, *FIGURE_SUFFIXES) if up_to is not None else (".json",)
@@ -145,9 +147,7 @@ def improve_command(
 
         count = USUAL_EVALUATIONS if evaluations is None else evaluations
         with progress_bar("searching") as progress:
-            found = search(
-                icons, where, count=choose, objective=what, evaluations=count, must=must, progress=progress, **how
-            )
+            found = search(icons, where, count=choose, objective=what, evaluations=count, progress=progress, **how)
         for path in outputs:
             write_text(str(found.found), path)
         told = [] if STDOUT in outputs else beside_start(found, icons, where, how)

@@ -71,9 +71,6 @@ class DistanceComponent:
             "b": self.b,
         }
 
-    def __repr__(self) -> str:
-        return f"DistanceComponent({self.name} {self.value:.3g} d′)"
-
 
 def components_of(episodes: Episodes, i: int, j: int, observer: Observer) -> tuple[DistanceComponent, ...]:
     """The components of two of the first person's icons, in the order of `PARTS`; their squares sum to d′²."""

@@ -91,7 +91,6 @@ def search(
     seed: int = 0,
     tracking: str | None = None,
     norm: str = USUAL_NORM,
-    must: Sequence[str] | None = None,
     goal: Goal | str | None = None,
     parameters: int | None = None,
     observer: ObserverModel | Path | str | None = None,
@@ -120,8 +119,6 @@ def search(
         What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
     norm
         What is remembered, as in `rank`.
-    must
-        Names of the icons of the file that are not families and must stay; None: all of them stay.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
         `safety`, or for the nominal person its `detected` or `onset`. Of the sets held at the end, the one that comes
@@ -163,7 +160,7 @@ def search(
         wanted.check_count(count)
     if count is None and wanted is not None and wanted.of("count") is not None:
         count = int(wanted.of("count") or 0)
-    run, model = SearchRun(icons, count, must), ObserverModel.of(observer)
+    run, model = SearchRun(icons, count), ObserverModel.of(observer)
     nominal = Evaluator(rig, objective, check_norm(norm), seed, model.nominal, tracking, wanted)
     few = nominal.with_people(model)
     draws, parts = model.draw_count(parameters, DRAWS), _judged_by(wanted)

@@ -23,7 +23,7 @@ from .subset_identification import ALIKE, SubsetIdentification, climb
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
-    from thermicon.icons import Family, Icon, IconSet
+    from thermicon.icons import Icon, IconSet
 
 PEOPLE = 24
 SAMPLED = 400
@@ -84,13 +84,13 @@ class Evaluator:
 class SearchRun:
     """Pools of icons about the best set so far; the best set in each pool is looked for as in `choose`.
 
-    `fixed` icons stay, `optional` ones may be left out, and `free` places are for those and members of the families;
-    with `each`, every family has one place. `tried` counts icons.
+    `fixed` icons stay, and `free` places are for members of the families; with `each`, every family has one place.
+    `tried` counts icons.
     """
 
-    def __init__(self, icons: IconSet, count: int | None, must: Sequence[str] | None) -> None:
-        fixed, optional, self.free = split_icons(icons, count, must)
-        self.fixed, self.optional = [Candidate(icon) for icon in fixed], [Candidate(icon) for icon in optional]
+    def __init__(self, icons: IconSet, count: int | None) -> None:
+        fixed, self.free = split_icons(icons, count)
+        self.fixed = [Candidate(icon) for icon in fixed]
         self.families, self.each = icons.families, count is None
         self.must = tuple(range(len(fixed)))
         self.count = len(fixed) + self.free
@@ -98,7 +98,7 @@ class SearchRun:
 
     def start(self, judge: Evaluator, rng: np.random.Generator) -> list[Candidate]:
         """The best of the members that the families count out, or of a sample of them."""
-        pool = [*self.fixed, *self.optional, *sample_candidates(self.families, SAMPLED, rng)]
+        pool = [*self.fixed, *sample_candidates(self.families, SAMPLED, rng)]
         found = self.best(pool, judge)
         if found is None:
             raise ChoiceError(self._nothing(judge, pool))
@@ -118,8 +118,7 @@ class SearchRun:
         for _ in range(rounds):
             about = held[len(self.fixed) :]
             near = [candidate.moved(rng, step * float(rng.exponential())) for candidate in about for _ in range(batch)]
-            others = [candidate for candidate in self.optional if candidate not in held]
-            pool = [*held, *others, *(candidate for candidate in near if candidate is not None)]
+            pool = [*held, *(candidate for candidate in near if candidate is not None)]
             better = self.best(pool, judge, held)
             moved = better is not None and [g.icon for g in better] != [g.icon for g in held]
             held = better if better is not None else held
@@ -170,36 +169,23 @@ class SearchRun:
         )
 
 
-def split_icons(
-    icons: IconSet, count: int | None, must: Sequence[str] | None
-) -> tuple[tuple[Icon, ...], tuple[Icon, ...], int]:
-    """Plain icons that stay, plain icons that may be left out, and how many icons are free; `must` None: all stay.
+def split_icons(icons: IconSet, count: int | None) -> tuple[list[Icon], int]:
+    """Plain icons, which stay, and how many icons are free.
 
-    Raises `ChoiceError` for a file without families, unknown names, and numbers of icons that leave nothing to search.
+    Raises `ChoiceError` for a file without families, and for numbers of icons that leave nothing to search.
     """
     from thermicon.icons import Icon
     from thermicon.icons.model.icon import played_icons
-    from thermicon.icons.near_words import did_you_mean
 
-    families: tuple[Family, ...] = icons.families
-    if not families:
+    if not icons.families:
         raise ChoiceError("nothing to search: the file has no family, such as icon dip(depth in 1..6 step 1 °C) { … }")
-    for family in families:
+    for family in icons.families:
         if next(iter(played_icons(family.template)), None) is not None:
             raise ChoiceError(f"family {family.name} plays another icon, which a search cannot carry along")
-    plain = tuple(entry for entry in icons.entries if isinstance(entry, Icon))
-    names = [icon.name for icon in plain]
-    for name in must or ():
-        if name not in names:
-            known = did_you_mean(name, names) if names else "the file has families only"
-            raise ChoiceError(f"no plain icon is called {name!r}, which must be in the set: {known}")
-    if must and count is None:
-        raise ChoiceError("which icons must stay is a question only where some are chosen: give --choose K as well")
-    fixed = plain if must is None else tuple(icon for icon in plain if icon.name in must)
-    optional = tuple(icon for icon in plain if icon not in fixed)
-    wanted = len(fixed) + len(families) if count is None else count
+    fixed = [entry for entry in icons.entries if isinstance(entry, Icon)]
+    wanted = len(fixed) + len(icons.families) if count is None else count
     if wanted < 2:
         raise ChoiceError("one icon is never confused: ask for 2 or more with --choose K, or give a second family")
     if wanted <= len(fixed):
         raise ChoiceError(f"{wanted} icons leave nothing to search: {len(fixed)} that are not families must stay")
-    return fixed, optional, wanted - len(fixed)
+    return fixed, wanted - len(fixed)

@@ -153,10 +153,8 @@ class SubsetIdentification:
                 found[place, others] = self.replaced(chosen, place, others.tolist(), objective)
         return found
 
-    def enumerated(
-        self, count: int, objective: Objective, must: Sequence[int], limits: Limits
-    ) -> tuple[tuple[int, ...], float, int] | None:
-        """The best of all subsets that hold `must` and keep the limits, its score, and how many were looked at.
+    def enumerated(self, count: int, objective: Objective, must: Sequence[int], limits: Limits) -> SubsetChoice | None:
+        """The best of all subsets that hold `must` and keep the limits.
 
         All that share all but their last icon are scored together.
         """
@@ -174,7 +172,9 @@ class SubsetIdentification:
             if scores.max() > value:
                 value = float(scores.max())
                 best = tuple(sorted((*head, last[int(scores.argmax())])))
-        return None if best is None else (best, self.score(best, objective), seen)
+        if best is None:
+            return None
+        return SubsetChoice(best, own := self.score(best, objective), own, seen)
 
 
 def pick(
@@ -191,8 +191,7 @@ def pick(
     if namings is None or objective == "worst":
         return max_min_subset(middle, count, must, within)
     if math.comb(len(middle) - len(must), count - len(must)) <= MOST_SUBSETS:
-        optimum = namings.enumerated(count, objective, must, within)
-        return None if optimum is None else SubsetChoice(optimum[0], optimum[1], optimum[1], optimum[2])
+        return namings.enumerated(count, objective, must, within)
     return _climbed(middle, namings, count, objective, must, within, seed)
 
 
@@ -208,7 +207,7 @@ def _climbed(
     """The best of the widest choice and of random ones, each improved by single swaps until none helps."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 6]))
     others = [k for k in range(len(middle)) if k not in must]
-    widest = pick(middle, None, count, "worst", must, limits)
+    widest = max_min_subset(middle, count, must, limits)
     if widest is None:
         return None
     drawn = [
@@ -244,23 +243,17 @@ def climb(
     """Single swaps that improve an objective until none does: the places, their score, and how many were tried."""
     chosen, score, tried = list(start), namings.score(start, objective), 0
     while True:
-        allowed = swaps(chosen, middle, must, limits)
+        # Not one that must stay, none for one that is alike another of the chosen, and within limits.
+        allowed = np.ones((len(chosen), len(middle)), dtype=bool)
+        allowed[:, chosen] = False
+        for row, thing in zip(allowed, chosen, strict=True):
+            rest = [k for k in chosen if k != thing]
+            row &= (middle[rest] > ALIKE).all(axis=0) & (thing not in must)
+            for one in np.flatnonzero(row).tolist() if limits.most else []:
+                row[one] = limits.kept([*rest, one])
         found = namings.swapped(chosen, objective, allowed)
         tried += int(allowed.sum())
         place, other = (int(k) for k in np.unravel_index(int(found.argmax()), found.shape))
         if not found[place, other] > score + LEAST_GAIN:
             return chosen, score, tried
         score, chosen[place] = float(found[place, other]), other
-
-
-def swaps(chosen: Sequence[int], middle: Array, must: Sequence[int], limits: Limits) -> NDArray[np.bool_]:
-    """Which icon (chosen, n) may replace a chosen one: not one that must stay, none alike another, within limits."""
-    allowed = np.ones((len(chosen), len(middle)), dtype=bool)
-    allowed[:, list(chosen)] = False
-    for place, thing in enumerate(chosen):
-        rest = [k for k in chosen if k != thing]
-        allowed[place] &= (middle[rest] > ALIKE).all(axis=0) & (thing not in must)
-        if limits.most:
-            for other in np.flatnonzero(allowed[place]):
-                allowed[place, other] = limits.kept([*rest, int(other)])
-    return allowed

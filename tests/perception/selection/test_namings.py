@@ -30,9 +30,9 @@ def test_enumeration_is_brute_force(objective: Objective, n: int, count: int, mu
     assert found is not None
     allowed = [c for c in combinations(range(n), count) if set(must) <= set(c)]
     scores = [held.score(c, objective) for c in allowed]
-    assert found[0] == allowed[int(np.argmax(scores))]
-    assert found[1] == max(scores)
-    assert found[2] == len(allowed)
+    assert found.chosen == allowed[int(np.argmax(scores))]
+    assert found.value == found.bound == max(scores)
+    assert found.seen == len(allowed)
 
 
 def test_enumeration_keeps_limits() -> None:
@@ -41,8 +41,8 @@ def test_enumeration_keeps_limits() -> None:
     found = held.enumerated(3, "correct", (), limits)
     allowed = [c for c in combinations(range(7), 3) if limits.kept(c)]
     assert found is not None
-    assert 0 < found[2] == len(allowed) < math.comb(7, 3)
-    assert found[1] == max(held.score(c, "correct") for c in allowed)
+    assert 0 < found.seen == len(allowed) < math.comb(7, 3)
+    assert found.value == found.bound == max(held.score(c, "correct") for c in allowed)
     assert held.enumerated(3, "correct", (), replace(limits, most=(1.0,))) is None
 
 

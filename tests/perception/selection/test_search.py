@@ -118,13 +118,6 @@ def test_totals_and_a_goal_are_kept(small: IconSet, rig: Rig) -> None:
     assert sum(duration_s(icon, rig) for icon in asked.found) <= most + 1e-6
 
 
-def test_only_icons_that_must_stay_do(small: IconSet, rig: Rig) -> None:
-    stays = search(small, rig, count=2, evaluations=40, people=6, must=["plain"])
-    assert "plain" in [icon.name for icon in stays.found]
-    free = search(small, rig, count=2, evaluations=40, people=6, must=[])
-    assert free.after.d_prime >= stays.after.d_prime
-
-
 def test_of_the_sets_held_at_the_end_the_goal_chooses(
     small: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
