@@ -43,7 +43,6 @@ class Drawing:
 
     icon: Icon
     rig: Rig
-    observer: Observer
     trace: Trace
     percept: Percept
     verdict: SafetyVerdict
@@ -70,7 +69,6 @@ class Scene:
 
     text: str
     rig: Rig
-    observer: Observer
     icon: str | None
     names: tuple[str, ...]
     count: int
@@ -113,7 +111,7 @@ def scene(
     reading = read_text(text)
     names, count, drawing = ((), 0, None) if before is None else (before.names, before.count, before.drawing)
     person = Observer.load() if observer is None else observer
-    made = Scene(text, rig, person, wanted, names, count, reading.troubles, _once(notes), True, drawing)
+    made = Scene(text, rig, wanted, names, count, reading.troubles, _once(notes), True, drawing)
     if reading.icons is None:
         return _counted(made, reading.more)
     chosen, remarks = _chosen(reading, wanted, before)
@@ -154,7 +152,6 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     return Drawing(
         icon=icon,
         rig=rig,
-        observer=observer,
         trace=trace,
         percept=percept,
         verdict=judge_safety(trace),

@@ -73,6 +73,7 @@ class ExportView(LiveView[ExportRequest]):
         self.body = widgets.VBox(
             [said["delivered"], said["gate"], said["figure"]], layout={"flex": "3 1 700px", "min_width": "0"}
         )
+        self.stale_parts = (self.body,)
         row = widgets.Box([left, self.body]).add_class("thermicon-row")
         self.box = widgets.VBox([row]).add_class("thermicon-export")
         self._say("drives are prepared when this tab opens")
@@ -96,9 +97,6 @@ class ExportView(LiveView[ExportRequest]):
 
     def _show_finished(self) -> None:
         self._allow()
-
-    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
-        return (self.body,)
 
     def write(self) -> None:
         """Write the files, or report why that is refused; then nothing is written."""

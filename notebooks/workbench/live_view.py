@@ -65,7 +65,7 @@ class BackgroundWorker:
         self.number = 0
         self.fail = fail
         self._one = Lock()
-        self._threads: list[Thread] = []
+        self.threads: list[Thread] = []
 
     def ask(self, work: Work, after_s: float = 0.0) -> None:
         """Start a job after a delay in s, during which a newer one may replace it."""
@@ -76,24 +76,12 @@ class BackgroundWorker:
             loop = None  # plain Python: there is no event loop of a page
         job = Job(self, self.number, loop)
         thread = Thread(target=self._run, args=(job, work, after_s), name="thermicon work", daemon=True)
-        self._threads = [each for each in self._threads if each.is_alive()] + [thread]
+        self.threads = [each for each in self.threads if each.is_alive()] + [thread]
         thread.start()
 
     def forget(self) -> None:
         """Make the running job stale without starting a new one."""
         self.number += 1
-
-    @property
-    def busy(self) -> bool:
-        """Whether a job is running or waiting."""
-        return any(thread.is_alive() for thread in self._threads)
-
-    def wait(self, timeout_s: float = 60.0) -> bool:
-        """Wait until all jobs have ended; False after the timeout in s. Not for handlers of the page."""
-        until = time.monotonic() + timeout_s
-        for thread in tuple(self._threads):
-            thread.join(max(0.0, until - time.monotonic()))
-        return not self.busy
 
     def _run(self, job: Job, work: Work, after_s: float) -> None:
         until = time.monotonic() + after_s
@@ -113,7 +101,8 @@ class BackgroundWorker:
 class LiveView(ABC, Generic[Request]):
     """One request at a time: new ones replace old ones, and results of an older request are marked as stale.
 
-    ``shown`` says whether the tab is visible; ``box`` holds its widgets, ``said`` its pieces of HTML by name.
+    ``shown`` says whether the tab is visible; ``box`` holds its widgets, ``said`` its pieces of HTML by name,
+    ``stale_parts`` what is marked while it is out of date.
     """
 
     settles_s: float
@@ -124,6 +113,7 @@ class LiveView(ABC, Generic[Request]):
         self.shown = False
         self.said: dict[str, widgets.HTML] = {}
         self.box: widgets.VBox
+        self.stale_parts: tuple[widgets.Widget, ...] = ()
         self.worker = BackgroundWorker(self._failed)
         self._running: Request | None = None
         self._finished: Request | None = None
@@ -172,10 +162,6 @@ class LiveView(ABC, Generic[Request]):
     def _show_finished(self) -> None:
         """Say that the result on the page is that of the request."""
 
-    @abstractmethod
-    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
-        """Widgets that are marked while their content is out of date."""
-
     def _mark_outdated(self, request: Request) -> None:
         self._mark(self._finished is not None)
 
@@ -188,7 +174,7 @@ class LiveView(ABC, Generic[Request]):
         self._say(self._failure, "th-caution")
 
     def _mark(self, stale: bool) -> None:
-        for part in self._stale_parts():
+        for part in self.stale_parts:
             (part.add_class if stale else part.remove_class)("thermicon-stale")
 
     def _say(self, text: str, kind: str = "th-status") -> None:

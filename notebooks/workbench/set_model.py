@@ -17,7 +17,7 @@ from ..timeline.scene import draw
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon
-    from thermicon.perception import Ranking
+    from thermicon.perception import Observer, Ranking
     from thermicon.perception.identification.map import PerceptualMap
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.ranking.scores import PairScore
@@ -36,10 +36,7 @@ PANELS = (
 
 @dataclass(frozen=True, slots=True)
 class RankedSet:
-    """A ranking, its text and rig, its map, the order of its heat maps, and what it took (ms).
-
-    ``observer`` is what it is predicted with; None: the shipped one.
-    """
+    """A ranking, its text and rig, its map, the order of its heat maps, and what it took (ms)."""
 
     text: str
     rig: Rig
@@ -48,7 +45,6 @@ class RankedSet:
     map: PerceptualMap | None
     order: tuple[int, ...]
     ms: float
-    observer: ObserverModel | None = None
 
     @property
     def labels(self) -> list[str]:
@@ -97,7 +93,7 @@ def rank_set(
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
     ms = 1e3 * (time.perf_counter() - began)
-    return RankedSet(text, rig, tuple(reading.icons), made, laid, order, ms, observer)
+    return RankedSet(text, rig, tuple(reading.icons), made, laid, order, ms)
 
 
 def why_not(reading: Reading) -> str | None:
@@ -141,11 +137,9 @@ def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) ->
     return CanvasFrame(meta, (distances.astype(np.float32).ravel(), confusions.astype(np.float32).ravel()))
 
 
-def overlay_frame(made: RankedSet, a: str, b: str) -> CanvasFrame:
+def overlay_frame(made: RankedSet, nominal: Observer, a: str, b: str) -> CanvasFrame:
     """Two icons over each other on one clock: skin, sensation of cold and of warmth; one icon alone where a is b."""
-    from thermicon.perception import Observer
-
-    nominal, reading = Observer.load() if made.observer is None else made.observer.nominal, read_text(made.text)
+    reading = read_text(made.text)
     icons = {icon.name: icon for icon in made.icons}
     drawn = {name: draw(icons[name], made.rig, nominal, reading) for name in dict.fromkeys((a, b))}
     clock = max((each.trace.time_s for each in drawn.values()), key=lambda time_s: time_s[-1])

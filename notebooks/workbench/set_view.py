@@ -73,6 +73,7 @@ class SetView(LiveView[SetRequest]):
         self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
         self.box = widgets.VBox([top, self.body]).add_class("thermicon-set")
         self.body.layout.display = "none"
+        self.stale_parts = self.body, said["scores"]
         self._say("the set is ranked when this tab opens")
 
     def warm(self) -> None:
@@ -99,16 +100,13 @@ class SetView(LiveView[SetRequest]):
         if self.made is not None:
             self._say(f"{self.made.ranking.people} people")
 
-    def _stale_parts(self) -> tuple[widgets.Widget, ...]:
-        return self.body, self.said["scores"]
-
     def pick(self, a: str, b: str) -> None:
         """Select a pair: show both icons together, why they are confused, and the cheapest edit."""
         made = self.made
         if made is None:
             return
         self.picked, self.edit = (a, b), None
-        frame = overlay_frame(made, a, b)
+        frame = overlay_frame(made, self.design.observer, a, b)
         self.overlay.frame(frame.meta, frame.buffers)
         self._below.layout.display = ""
         self.apply.disabled = True

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import re
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -111,17 +109,3 @@ def drawn(page: Page) -> Iterator[Bench]:
     made.frame(design())
     yield made
     assert made.wrong == []
-
-
-@pytest.fixture
-def shot(page: Page, tmp_path: Path, request: pytest.FixtureRequest) -> Callable[[str], Path]:
-    """``shot("design")`` saves the window as PNG in the folder THERMICON_SCREENSHOTS, or in the test's own."""
-
-    def take(name: str) -> Path:
-        folder = Path(os.environ.get("THERMICON_SCREENSHOTS") or tmp_path)
-        folder.mkdir(parents=True, exist_ok=True)
-        path = folder / f"{re.sub(r'[^a-z0-9]+', '-', name.lower())}.png"
-        page.screenshot(path=path)
-        return path
-
-    return take

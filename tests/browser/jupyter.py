@@ -40,22 +40,19 @@ class Server:
 def running(module: str, options: Sequence[str], folder: Path, own: Path) -> Iterator[Server]:
     """``python -m MODULE OPTIONS`` in a folder, with settings and runtime files under ``own`` only, until the end."""
     own.mkdir(parents=True, exist_ok=True)
-    port, log = free_port(), own / f"{module}.log"
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    log = own / f"{module}.log"
     command = [sys.executable, "-m", module, *options, "--no-browser", f"--port={port}"]
     address = f"http://127.0.0.1:{port}"
-    with _started(command, folder, environment(own), log, f"{address}/api"):
-        yield Server(address, folder, log)
-
-
-@contextmanager
-def _started(command: Sequence[str], folder: Path, places: dict[str, str], log: Path, address: str) -> Iterator[None]:
     with log.open("wb") as said:
         process = subprocess.Popen(
-            command, cwd=folder, env=places, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT
+            command, cwd=folder, env=environment(own), stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT
         )
         try:
-            _wait_for(address, process, log)
-            yield
+            _wait_for(f"{address}/api", process, log)
+            yield Server(address, folder, log)
         finally:
             process.terminate()
             try:
@@ -63,13 +60,6 @@ def _started(command: Sequence[str], folder: Path, places: dict[str, str], log: 
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
-
-
-def free_port() -> int:
-    """A port of this machine that nobody uses right now."""
-    with socket.socket() as tried:
-        tried.bind(("127.0.0.1", 0))
-        return int(tried.getsockname()[1])
 
 
 def environment(own: Path) -> dict[str, str]:

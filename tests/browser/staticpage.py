@@ -42,13 +42,9 @@ TROUBLE = {
     "suggestion": "  hold for 4 s",
 }
 ROWS = 600
-# How much of a canvas is drawn on; the picture of the numbers on an axis; how many pixels are light, and how many dark.
+# How much of a canvas is drawn on; how many pixels are light, and how many dark.
 PIXELS = "c.getContext('2d').getImageData(0, 0, c.width, c.height).data"
 INKED = f"c => new Uint32Array({PIXELS}.buffer).filter((pixel) => pixel).length"
-NUMBERS = """() => {
-  const c = document.querySelector(".tm-base");
-  return c.getContext("2d").getImageData(0, 0, 44, c.height).data.join();
-}"""
 SHADES = f"""() => {{
   const c = document.querySelector(".tm-base"), data = {PIXELS};
   let light = 0, dark = 0;
@@ -66,11 +62,10 @@ def packed(values: Any) -> str:
 
 def design(**changes: Any) -> dict[str, Any]:
     """A frame of one panel with a straight fall from 32 to 26 °C in 6 s, and three corners."""
-    skin = {"key": "skin", "label": "skin", "buffer": 0, "role": "ink", "dash": [], "width": 1.5, "step": False}
+    skin = {"key": "skin", "label": "skin", "buffer": 0, "role": "ink"}
     handle = {"panel": "temperature", "moves_time": True, "moves_level": True, "why": None, "line": 4}
     fixed = {"moves_time": False, "moves_level": False, "why": "rest is at baseline"}
-    panel = {"key": "temperature", "label": "temperature (°C)", "height": 1, "series": [skin]}
-    panel |= {"levels": [], "spans": [], "marks": []}
+    panel = {"key": "temperature", "label": "temperature (°C)", "series": [skin]}
     return {
         "type": "frame",
         "view": "design",
@@ -78,12 +73,8 @@ def design(**changes: Any) -> dict[str, Any]:
         "text": TEXT,
         "icons": ["dip", "rise"],
         "icon": "dip",
-        "troubles": [],
-        "stale": False,
         "can_undo": True,
-        "can_redo": False,
         "badge": {"colour": "green", "text": "no limit is passed", "more": ["28 °C at 2 s"]},
-        "notes": [],
         "time": {"t0": 0.0, "dt": 0.01, "n": ROWS + 1},
         "panels": [panel],
         "handles": [

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +32,7 @@ def told(found: list[dict[str, Any]]) -> str:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, shot: Callable[[str], Path], scheme: str) -> None:
+def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str) -> None:
     page = bench
     dark(page, scheme == "dark")
     wrong = {"design": findings(page)}
@@ -48,11 +47,9 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, shot: Calla
     wait_until_refined(page)
     page.wait_for_timeout(3000)
     wrong["set"] = findings(page)
-    shot(f"axe-set-{scheme}")
     open_tab(page, "Export")
     expect(page.locator(".thermicon-export")).to_contain_text("ready to be written", timeout=30_000)
     wrong["export"] = findings(page)
-    shot(f"axe-export-{scheme}")
     open_tab(page, "Versions")
     page.get_by_role("button", name="Keep this version").click()
     open_tab(page, "Design")
@@ -60,14 +57,12 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, shot: Calla
     open_tab(page, "Versions")
     expect(page.locator(".thermicon-versions .changes")).to_be_visible()
     wrong["versions"] = findings(page)
-    shot(f"axe-versions-{scheme}")
     open_tab(page, "Design")
     page.locator(".tm-words summary").first.click()
     wrong["words"] = findings(page, ".tm-timeline")
     type_text(page, "cue 1; icon a { hold for 1 }")
     expect(page.locator(".tm-status")).to_contain_text("1 error")
     wrong["error"] = findings(page)
-    shot(f"axe-error-{scheme}")
     wrong = {view: found for view, found in wrong.items() if found}
     assert wrong == {}, json.dumps(wrong, indent=1, ensure_ascii=False)
 

@@ -1,14 +1,13 @@
-"""Heat maps, themes, several views and speed of the canvas module alone, in a static page."""
+"""Heat maps, themes, several views and screen readers of the canvas module alone, in a static page."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
 
-import numpy
 import pytest
 
-from tests.browser.staticpage import SHADES, TEXT, Bench, design, open_bench
+from tests.browser.staticpage import SHADES, TEXT, TROUBLE, Bench, design, open_bench
 
 
 @pytest.fixture
@@ -95,16 +94,25 @@ def test_two_views_of_one_model_show_one_text_and_leave_nothing_behind(page: Any
     assert page.evaluate("listeners.size") == 1
 
 
-@pytest.mark.benchmark
-def test_3000_points_times_10_series_are_drawn_in_8_ms(page: Any, made: Bench) -> None:
-    made.show("traces")
-    clock = numpy.arange(3_000) * 0.01
-    wavy = [numpy.sin(clock * (1 + k / 5)) + 0.05 * numpy.cos(clock * 71 * k) for k in range(10)]
-    roles = ("ink", "cool", "warm")
-    series = [{"key": str(k), "label": f"s{k}", "buffer": k, "role": roles[k % 3], "width": 1.5} for k in range(10)]
-    panels = [{"key": f"p{k}", "label": f"p{k} (K)", "height": 1, "series": series[k::4]} for k in range(4)]
-    meta = {"type": "frame", "view": "traces", "seq": 0, "time": {"t0": 0, "dt": 0.01, "n": 3_000}, "panels": panels}
-    for _ in range(15):
-        made.frame(meta, *wavy)
-    took = [each["draw_ms"] for each in page.evaluate("__thermicon.traces")]
-    assert numpy.percentile(took[3:], 25) < 8.0, "the better frames: others work on this machine as well"
+def test_screen_readers_hear_the_cursor_once_and_names_without_signs(drawn: Bench) -> None:
+    page = drawn.page
+    assert page.locator(".tm-sign").evaluate_all("all => all.map((e) => e.getAttribute('aria-hidden'))") == ["true"] * 2
+    assert page.locator(".tm-timeline output").count() == 0, "an <output> is read aloud at each change"
+    page.locator(".tm-stage").focus()
+    page.keyboard.press("End")
+    drawn.said("At 6.00 s: skin 26.00 °C")
+    page.keyboard.press("Home")
+    drawn.said("At 0.00 s: skin 32.00 °C")
+
+
+def test_the_list_of_errors_can_be_read_in_the_dark(page: Any) -> None:
+    made = open_bench(page)
+    page.emulate_media(color_scheme="dark")
+    made.show()
+    made.frame(design(troubles=[TROUBLE]))
+    made.set_caret(0)
+    page.keyboard.press("Control+Shift+M")
+    made.set_caret(0)
+    chosen = page.locator(".cm-panel-lint [aria-selected]")
+    assert chosen.evaluate("e => getComputedStyle(e).backgroundColor") == "rgba(79, 209, 191, 0.14)"
+    assert chosen.evaluate("e => getComputedStyle(e).color") == "rgb(232, 235, 238)"

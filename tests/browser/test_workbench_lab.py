@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 from playwright.sync_api import Page, expect
 
-from tests.browser.jupyter import Server, dark, open_notebook, reload, restart_kernel, run_all, save
+from tests.browser.jupyter import Server, open_notebook, reload, restart_kernel, run_all, save
 from tests.browser.onbench import (
     TWO,
     click_a_confusion,
@@ -22,32 +19,25 @@ from tests.browser.onbench import (
     write_drives,
 )
 
-Shot = Callable[[str], Path]
 MOST_SAVED = 300_000
 
 
-def test_text_and_curve_stay_in_step(bench: Page, shot: Shot) -> None:
+def test_text_and_curve_stay_in_step(bench: Page) -> None:
     fits = bench.evaluate(
         "() => { const box = (name) => document.querySelector(name).getBoundingClientRect();"
         " return box('.thermicon').bottom - box('.jp-Notebook').bottom; }"
     )
     assert fits <= 0, "the design view does not fit into the window"
-    shot("lab-design-light")
-    dark(bench)
-    shot("lab-design-dark")
-    dark(bench, False)
     type_drag_and_err(bench)
 
 
-def test_it_designs_compares_and_exports(bench: Page, lab: Server, shot: Shot) -> None:
+def test_it_designs_compares_and_exports(bench: Page, lab: Server) -> None:
     bench.set_viewport_size({"width": 900, "height": 800})
     type_below_the_first_screen(bench)
     bench.set_viewport_size({"width": 1280, "height": 800})
     type_text(bench, TWO)
     click_a_confusion(bench)
-    shot("lab-set")
     write_drives(bench, lab.folder / "drives")
-    shot("lab-export")
     assert (lab.folder / "drives" / "near.csv").exists()
 
 
@@ -88,7 +78,7 @@ CUT = """all => all.filter((label) => {
 }).map((label) => label.textContent)"""
 
 
-def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server, shot: Shot) -> None:
+def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server) -> None:
     type_text(bench, TWO)
     expect(root(bench)).to_have_attribute("data-icon", "near")
     reload(bench)
@@ -115,11 +105,9 @@ def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server, shot:
     assert lost.count() > 10
     assert lost.evaluate_all(icons) == 0, "a lost kernel leaves no mark"
     assert knobs.evaluate_all(places) == before, "and moves nothing"
-    shot("lab-kernel-restarted")
     run_all(bench)
     wait_until_drawn(bench)
     expect(banner).to_be_hidden()
-    shot("lab-text-kept")
     bench.get_by_role("button", name="Restore it").click()
     expect(root(bench)).to_have_attribute("data-icon", "nigh")
     expect_text(bench, typed)

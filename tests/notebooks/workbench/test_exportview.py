@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.circuit.surerig import sure_rig
+from tests.notebooks.workbench.openbench import wait
 from thermicon.icons import parse
 from thermicon.icons.atomic import OutputError
 from thermicon.notebooks.workbench.design_model import DesignModel
@@ -36,7 +37,7 @@ class Bench:
         self.wait()
 
     def wait(self) -> None:
-        assert self.view.worker.wait()
+        wait(self.view.worker)
 
     def said(self, name: str) -> str:
         return str(self.view.said[name].value)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
 
 from tests.builders import few_draws, missing
-from tests.notebooks.workbench.openbench import SAID
+from tests.notebooks.workbench.openbench import SAID, wait
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
@@ -54,8 +55,8 @@ class Bench:
         self.design.receive({"type": "text", "text": text})
 
     def wait(self) -> None:
-        assert self.view.worker.wait()
-        assert self.view.editor.wait()
+        wait(self.view.worker)
+        wait(self.view.editor)
 
     def said(self, name: str) -> str:
         return str(self.view.said[name].value)
@@ -117,7 +118,7 @@ def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> N
 
 
 def test_both_icons_lie_over_each_other_on_one_clock(ranked: Bench) -> None:
-    frame = overlay_frame(ranked.made, "near", "far")
+    frame = overlay_frame(ranked.made, ranked.design.observer, "near", "far")
     assert [panel["key"] for panel in frame.meta["panels"]] == ["skin", "cold", "warm"]
     assert [series["label"] for series in frame.meta["panels"][0]["series"]] == ["near", "far"]
     assert {len(buffer) for buffer in frame.buffers} == {frame.meta["time"]["n"]}
@@ -150,7 +151,7 @@ def test_nothing_is_ranked_while_the_view_is_not_shown() -> None:
     view = SetView(design, lambda text: None)
     design.on_change(view.renew)
     design.receive({"type": "text", "text": THREE})
-    assert not view.worker.busy
+    assert view.worker.threads == []
     assert view.made is None
     assert "when this tab opens" in view.said["status"].value
 
@@ -179,9 +180,33 @@ def test_the_newest_job_wins_and_nobody_hears_of_the_others() -> None:
 
     worker.ask(slow)
     worker.ask(lambda job: job.on_page(lambda: done.append("newest")))
-    assert worker.wait(10)
+    wait(worker)
     assert "never" not in done
     assert done[-1] == "newest"
+
+
+def test_a_request_that_failed_says_so_again_and_ends_the_work_on_the_one_after_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    go = Event()
+
+    def ranked(text: str, *given: Any) -> None:
+        if "# fail" in text:
+            raise ValueError("it failed")
+        assert go.wait(20)
+
+    monkeypatch.setattr("thermicon.notebooks.workbench.set_view.rank_set", ranked)
+    monkeypatch.setattr(SetView, "settles_s", 0.0)
+    bench = Bench(TWO + "# fail")
+    for text, words in (("cue 1", "the text has errors"), (TWO + "# slow", "ranking")):
+        assert "it failed" in bench.said("status")
+        bench.design.show_text(text)
+        assert words in bench.said("status")
+        bench.design.receive({"type": "undo"})
+    go.set()
+    bench.wait()
+    assert "it failed" in bench.said("status")
+    assert bench.view.made is None
 
 
 @pytest.mark.parametrize("name", ["near", "nearer"])
