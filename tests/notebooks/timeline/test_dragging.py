@@ -84,7 +84,6 @@ def test_what_a_parameter_writes_does_not_move_and_what_stands_beside_it_does() 
     text = "cue 1\nicon dip(size in [3, 6] K) {\n  cool by size over 2 s; return at 3 K/s\n}\n"
     reading = read_text(text)
     icon = reading.icons.icons[1] if reading.icons else None
-    assert icon is not None
     handle = handles_of(icon, reading.family_of(icon.name))[0]
     assert (handle.moves_time, handle.moves_level) == (True, False)
     assert handle.why == "the parameter size of the family writes this amount"

@@ -75,7 +75,6 @@ def test_a_frame_has_all_that_the_canvas_draws(rig: Rig) -> None:
     (onset,) = (mark["label"] for mark in panels["sensation"]["marks"] if mark["label"].startswith("onset"))
     assert onset.endswith(" s, response clock, p 1.00")
     skin = next(series for series in panels["temperature"]["series"] if series["key"] == "skin")
-    assert made.drawing is not None
     assert np.allclose(frame.buffers[skin["buffer"]], made.drawing.trace.skin_C, atol=1e-5)
 
 
@@ -104,7 +103,6 @@ def test_a_long_run_is_thinned_on_a_uniform_clock(rig: Rig) -> None:
     assert MOST_POINTS / 2 < time["n"] <= MOST_POINTS
     calm = frame_of(scene("cue 1\nicon calm { rest for 20 s }\n", rig))
     assert calm.meta["time"] == {"t0": 0.0, "dt": pytest.approx(0.01), "n": MOST_POINTS + 1}, "row by row"
-    assert made.drawing is not None
     assert time["t0"] + time["dt"] * (time["n"] - 1) == pytest.approx(made.drawing.trace.time_s[-1], abs=time["dt"])
     assert frame.buffers[2][100] == pytest.approx(np.interp(100 * time["dt"], made.drawing.trace.time_s,
                                                             made.drawing.trace.skin_C), abs=1e-4)  # fmt: skip

@@ -32,7 +32,6 @@ def dip(rig: Rig) -> Scene:
 
 def test_a_scene_is_what_the_circuit_and_the_observer_say(dip: Scene, rig: Rig) -> None:
     drawing = dip.drawing
-    assert drawing is not None
     trace = simulate(parse(DIP)["dip"], rig, tail_s=TAIL_S)
     assert np.array_equal(drawing.trace.skin_C, trace.skin_C)
     assert drawing.percept.onset_s == perceive(trace).onset_s
@@ -43,7 +42,6 @@ def test_a_scene_is_what_the_circuit_and_the_observer_say(dip: Scene, rig: Rig) 
 
 
 def test_moments_are_on_the_clocks_that_they_name(dip: Scene) -> None:
-    assert dip.drawing is not None
     by_kind = {moment.kind: moment for moment in dip.drawing.moments}
     percept = dip.drawing.percept
     assert by_kind["onset"].time_s == percept.onset_s
@@ -53,7 +51,6 @@ def test_moments_are_on_the_clocks_that_they_name(dip: Scene) -> None:
     assert by_kind["physical peak"].label.startswith("physical peak (cold) ")
     assert [moment.time_s for moment in dip.drawing.moments] == sorted(m.time_s for m in dip.drawing.moments)
     both = scene(str(load_library("six-icons")), dip.rig, "cold-to-warm").drawing
-    assert both is not None
     assert [m.channel for m in both.moments if m.kind == "felt peak"] == ["cold", "warm"]
 
 
@@ -127,7 +124,6 @@ def test_members_of_families_can_be_chosen_and_their_list_is_short(rig: Rig) -> 
 
 def test_what_is_not_reached_says_why_and_when(rig: Rig) -> None:
     made = scene("cue 1\nicon deep { cool by 9 °C at 10 °C/s; hold for 4 s; return at 1 °C/s }\n", rig)
-    assert made.drawing is not None
     assert made.notes[0].startswith("deep is not reached: it misses its target by ")
     assert made.notes[0].endswith("limited by the current limit from 0.00 s")
     (missed,) = made.drawing.missed
@@ -141,17 +137,14 @@ def test_what_is_not_reached_says_why_and_when(rig: Rig) -> None:
 
 def test_a_step_on_its_way_is_not_missed(rig: Rig) -> None:
     made = scene("cue 1\nset { control display }\nicon s { step cool by 3 °C; hold for 4 s }\n", rig).drawing
-    assert made is not None
     assert made.missed == ()
     late = scene("cue 1\nset { control display }\nicon s { step cool by 20 °C; hold for 2 s; return at 4 °C/s }", rig)
-    assert late.drawing is not None
     assert late.drawing.missed[0].from_s < 0.1
 
 
 def test_a_current_beyond_the_driver_is_not_played_as_written(rig: Rig) -> None:
     text = "cue 1\nset { control current }\nicon push { to 2 A over 1 s; hold for 1 s; return over 1 s }\n"
     made = scene(text, rig)
-    assert made.drawing is not None
     assert made.notes[0].startswith("push is not played as written: the drive needs 2 A at 1.00 s")
     (span,) = made.drawing.missed
     assert span.from_s == pytest.approx(0.74, abs=0.03)
@@ -197,7 +190,6 @@ def test_another_site_and_other_notes_are_told_once(rig: Rig) -> None:
 
 def test_long_icons_have_fewer_rows_on_a_uniform_clock(rig: Rig) -> None:
     made = scene("cue 1\nicon long { rest for 20 min; cool by 3 °C over 7.3 s }\n", rig).drawing
-    assert made is not None
     assert len(made.trace.time_s) <= MOST_ROWS + 1
     steps = np.diff(made.trace.time_s)
     assert np.allclose(steps, steps[0], rtol=1e-6)

@@ -14,7 +14,6 @@ def opened(source: str = TEXT) -> tuple[Workbench, VersionsView]:
     bench = Workbench(source)
     assert bench.page is not None
     view = bench.versions_view
-    assert view is not None
     bench.tabs.selected_index = 3
     assert view.shown
     return bench, view
@@ -38,7 +37,6 @@ def test_a_version_is_kept_and_what_is_edited_is_shown_beside_it() -> None:
 
 def test_a_version_comes_back_with_its_icon_as_a_step_that_can_be_undone() -> None:
     bench, view = opened()
-    assert bench.design_view is not None
     bench.design_view._receive({"type": "icon", "name": "b", "seq": 1})
     view.keep.click()
     bench.text = TYPED
@@ -56,7 +54,6 @@ def test_the_newest_of_several_is_selected_and_a_choice_stays() -> None:
         bench.text = text
         view.keep.click()
     assert [title.split(", ")[1:] for title, _ in view.list.options] == [["a"], ["a"]]
-    assert view.picked is not None
     assert view.picked.text == TYPED
     view.list.value = view.list.options[1][1]
     bench.text = TYPED + "# more\n"

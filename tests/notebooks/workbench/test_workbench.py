@@ -51,11 +51,9 @@ def send(bench: Workbench) -> Send:
     seq = [100]
 
     def message(**content: Any) -> dict[str, Any]:
-        assert bench.design_view is not None
         seq[0] += 1
         canvas = bench.design_view.canvas
         canvas._receive(canvas, {"seq": seq[0], **content}, [])
-        assert canvas._newest is not None
         meta = canvas._newest[0]
         assert meta["seq"] == seq[0]
         return dict(meta)
@@ -64,9 +62,7 @@ def send(bench: Workbench) -> Send:
 
 
 def turned(bench: Workbench, key: str, value: float | str) -> dict[str, Any]:
-    assert bench.design_view is not None
     bench.design_view.sliders[key].value = value
-    assert bench.design_view.canvas._newest is not None
     return dict(bench.design_view.canvas._newest[0])
 
 
@@ -76,9 +72,7 @@ def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send)
     assert not answer["stale"]
     assert answer["handles"][0]["y"] == 27.0
     assert bench.icon is not None
-    assert bench.trace is not None
     assert bench.trace.skin_C.min() < 28.5
-    assert bench.percept is not None
     assert bench.percept.channel == "cold"
     assert send(type="hello")["text"] == bench.text, "a page that is opened later"
 
@@ -108,7 +102,6 @@ def test_a_drag_is_one_step_and_undo_and_redo_carry_the_text(bench: Workbench, s
     assert "cool by 5 °C" in send(type="redo")["text"]
     assert "nothing to redo" in send(type="redo")["notes"][0]
     bench.text = DIP.replace("dip", "sip")
-    assert bench.icon is not None
     assert bench.icon.name == "sip"
     assert "cool by 5 °C" in send(type="undo")["text"]
 
@@ -130,7 +123,6 @@ def test_a_drag_that_was_cut_off_does_not_bring_the_text_of_another_file_back() 
 
 def test_another_icon_is_shown_and_an_unknown_one_is_said(bench: Workbench, send: Send) -> None:
     assert send(type="icon", name="glow")["icon"] == "glow"
-    assert bench.icon is not None
     assert bench.icon.name == "glow"
     assert "no icon is called gone" in send(type="icon", name="gone")["notes"][0]
 
@@ -149,7 +141,6 @@ def test_an_impossible_value_is_told_and_reset_brings_all_back(bench: Workbench,
     answer = turned(bench, "driver.current_limit_A", 0.1)
     assert answer["notes"]
     assert send(type="text", text=DIP.replace("4 °C", "3 °C"))["icon"] == "dip"
-    assert bench.design_view is not None
     bench.design_view.reset.click()
     assert bench.rig.driver.current_max_A == 1.5
     assert bench.design_view.sliders["skin.rest_C"].value == 32.0
