@@ -35,7 +35,7 @@ class DocumentBar:
 
     def __init__(self, view: DesignView) -> None:
         self.view, self.design = view, view.design
-        self._quiet = False
+        self._taken = self.design.nominal.name  # what is selected of the list of rigs
         self._rigs: dict[str, Rig] = {}
         self.title, self.said = widgets.HTML(), widgets.HTML()
         self.buttons = {
@@ -120,23 +120,16 @@ class DocumentBar:
         """Show the icons on a rig that was shown before, or load it by name or path."""
         from thermicon.circuit import Rig
 
-        if self._quiet:
+        if name == self._taken:
             return
         try:
             path = str(self.document.folder / name) if name.endswith(".toml") else name
             self.view.take_rig(self._rigs.get(name) or Rig.load(path))
         except Exception:
-            self._show_rig()  # the list goes back to the rig that is still used
+            self._offer_rigs()  # the list goes back to the rig that is still used
             raise
+        self._taken = name
         self.say("")
-
-    def _show_rig(self) -> None:
-        """Show which rig is used, and which rigs there are."""
-        self._quiet = True
-        try:
-            self._offer_rigs()
-        finally:
-            self._quiet = False
 
     def _offer_rigs(self) -> None:
         from thermicon.circuit.rig.rig import rig_names
@@ -145,8 +138,8 @@ class DocumentBar:
         if nominal.name not in rig_names():
             self._rigs[nominal.name] = nominal  # it may lie in another folder, so it is not loaded by its name
         files = self._files("*.toml")[:MOST_RIGS]
-        self.rig.options = list(dict.fromkeys([nominal.name, *self._rigs, *rig_names(), *files]))
-        self.rig.value = nominal.name
+        self.rig.options = list(dict.fromkeys([self._taken, *self._rigs, *rig_names(), *files]))
+        self.rig.value = self._taken
 
     def _open_panel(self) -> widgets.Widget:
         self.files = widgets.Select(options=[], rows=9, description="open", layout={"width": "330px"})
@@ -191,7 +184,7 @@ class DocumentBar:
         else:
             self.design.open(Document.open(self.document.place(source), self.document.keeps))
         self.path.value = self.name.value = ""
-        self._show_rig()
+        self._offer_rigs()
         self._show_offer()
         self._after("")
 

@@ -43,6 +43,9 @@ def test_a_new_model_is_told_the_text_and_that_is_said(edited: Bench) -> None:
     assert edited.sent("text") == []
     edited.again("three")
     assert left(edited) == [], "the kernel has it"
+    append(edited, "# newer")
+    edited.again("four")
+    assert left(edited) == [TEXT + "# newer"]
 
 
 def test_the_same_model_is_told_nothing_and_goes_on_in_its_place(edited: Bench) -> None:
@@ -53,13 +56,6 @@ def test_the_same_model_is_told_nothing_and_goes_on_in_its_place(edited: Bench) 
     assert left(edited) == [], "the kernel knows better"
     edited.again("two")
     assert left(edited) == [TEXT + "# mine!"]
-
-
-def test_a_newer_edit_takes_the_place_of_the_kept_text(edited: Bench) -> None:
-    edited.again("two")
-    append(edited, "# newer")
-    edited.again("three")
-    assert left(edited) == [TEXT + "# newer"]
 
 
 def test_texts_of_the_kernel_are_kept_and_another_source_finds_nothing(edited: Bench) -> None:
