@@ -11,7 +11,7 @@ conditions of the squared deviation of the log group mean, in SDs of the simulat
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -136,9 +136,8 @@ class PairFit:
 class Fit:
     """What the same experiment would have given: `p` of the test of fit, scores as reported, and every pair.
 
-    `proportion_correct` and `information_bits_plugin` are median and 95 % of the simulated experiments, as is the share
-    of right answers to each of `icons` that was presented; `p_people` is the share of experiments whose participants
-    differ as much as the observed ones (None for fewer than three participants).
+    `proportion_correct` and `information_bits_plugin` are median and 95 % of the simulated experiments; `p_people` is
+    the share of experiments whose participants differ as much as the observed ones (None for fewer than three).
     """
 
     p: float
@@ -146,7 +145,6 @@ class Fit:
     proportion_correct: Three
     information_bits_plugin: Three
     pairs: tuple[PairFit, ...]
-    icons: Mapping[str, Three]
 
     @property
     def missed(self) -> tuple[PairFit, ...]:
@@ -208,11 +206,6 @@ def compare(trials: Trials, played: Confusions, *, seed: int = 0) -> Fit:
         proportion_correct=median_three(np.trace(pooled, axis1=1, axis2=2) / trials.total),
         information_bits_plugin=median_three(np.array([plugin_information(one)[0] for one in pooled])),
         pairs=tuple(_pairs(trials, seen, pooled)),
-        icons={
-            name: median_three(pooled[:, k, k] / times)
-            for k, (name, times) in enumerate(zip(trials.icons, seen.sum(axis=1).tolist(), strict=True))
-            if times
-        },
     )
 
 
