@@ -74,13 +74,6 @@ def tightened(uncertainty: Uncertainty) -> tuple[str, ...]:
     )
 
 
-def stated(uncertainty: Uncertainty) -> str:
-    """All uncertainties in words, for the heading of a verdict."""
-    return ", ".join(
-        f"{words} ±{scale * getattr(uncertainty, key):g} {unit}" for key, (words, _, scale, unit) in WORDS.items()
-    )
-
-
 @cache
 def _shipped() -> dict[str, float]:
     return {record.quantity: record.central for record in uncertainty_table()}

@@ -257,7 +257,7 @@ class Harm:
 class SingleFault:
     """A single fault: its kind, the verdict on the drive with it, and what is to be told of harm and prevention.
 
-    Kinds and the names of their values are those of `words.FAULTS`, which has their sentences.
+    Kinds and the names of their values are those of `circuit/data/fault-words.toml`, which has their sentences.
     """
 
     kind: str

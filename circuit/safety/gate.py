@@ -90,13 +90,6 @@ class Gate(Judged):
         return not hard_of(findings_of(self.once)) and self.repeated.shortest_pause_s is not None
 
     @property
-    def text(self) -> str:
-        """The verdict as a table: every rule with its worst value, the limit, time, scenario and source."""
-        from .words import gate_lines
-
-        return "\n".join(gate_lines(self))
-
-    @property
     def demanded(self) -> dict[str, object]:
         """What the hardware must prevent, in the form of sidecars and players."""
         return self.demands.to_dict()

@@ -176,17 +176,6 @@ class Play:
 
 
 @dataclass(frozen=True, slots=True)
-class TimeBeyond:
-    """Total time in s that a temperature is above (`upper`) or below a limit in °C, on the rig as given."""
-
-    quantity: str
-    severity: str
-    upper: bool
-    limit_C: float
-    seconds: float
-
-
-@dataclass(frozen=True, slots=True)
 class Session(Judged):
     """A session on a rig.
 
@@ -208,8 +197,6 @@ class Session(Judged):
         Number of corners.
     checks
         Every rule in its worst scenario.
-    time_beyond
-        Time beyond each limit, on the rig as given.
     dose_cem43_min, henriques
         Thermal dose in min at 43 °C, and burn integral, of the rig as given.
     energy_J
@@ -236,7 +223,6 @@ class Session(Judged):
     uncertainty: Uncertainty
     scenarios: int
     checks: tuple[Check, ...]
-    time_beyond: tuple[TimeBeyond, ...]
     dose_cem43_min: float
     henriques: float
     energy_J: float
@@ -319,7 +305,6 @@ class Session(Judged):
                 for place in ("skin", "display", "hot_plate", "cold_receptor", "warm_receptor")
                 for side in ("min", "max")
             },
-            "time_beyond": [asdict(each) for each in self.time_beyond],
             "checks": [check.to_dict() for check in self.checks],
             "uncertainty": self.uncertainty.model_dump(),
             "limits": self.limits.to_dict(),

@@ -33,7 +33,7 @@ from .checks import Check, Judged, worst_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
 from .plant import Single
-from .session import Play, Session, SessionError, SessionPlan, TimeBeyond, check_length
+from .session import Play, Session, SessionError, SessionPlan, check_length
 from .tally import WATCHED, Tally, cem43_min, henriques
 from .verdict import SafetyVerdict, checks_of
 
@@ -164,10 +164,6 @@ def held_A(drive: Drive, count: int, update_Hz: float) -> Array:
     return np.asarray(np.diff(np.interp(edges, times, charge)) * update_Hz)
 
 
-PLACES = {"display": "display_C", "hot plate": "hot_plate_C", "cold-receptor depth": "cold_receptor_C"}
-"""Columns of temperatures that limits are about, where it is not the skin surface."""
-
-
 Progress = Callable[[int, int], None]
 
 
@@ -250,7 +246,6 @@ def play_session(
         uncertainty=rig.uncertainty,
         scenarios=worst.scenarios,
         checks=worst.checks,
-        time_beyond=_times_beyond(rules, trace),
         dose_cem43_min=float(cem43_min(trace.time_s, trace.skin_C)[-1]),
         henriques=float(henriques(trace.time_s, trace.skin_C)[-1]),
         energy_J=float(power.sum()),
@@ -284,18 +279,6 @@ def _plays(plan: SessionPlan, played: SessionDrive, trace: Trace, limits: Limits
             )
         )
     return tuple(plays)
-
-
-def _times_beyond(limits: Limits, trace: Trace) -> tuple[TimeBeyond, ...]:
-    """Time in s beyond every limit of a temperature in °C; a row counts until the next."""
-    steps, totals = np.diff(trace.time_s), []
-    for rule in limits.rules:
-        if rule.unit != "°C" or rule.relative:
-            continue
-        values = getattr(trace, PLACES.get(rule.quantity, "skin_C"))[:-1]
-        over = values > rule.limit if rule.upper else values < rule.limit
-        totals.append(TimeBeyond(rule.quantity, rule.severity, rule.upper, rule.limit, float(steps[over].sum())))
-    return tuple(totals)
 
 
 def worst_case_of(

@@ -1,24 +1,25 @@
-"""Verdicts in words: scenarios, checks, cures, single faults, repetition and the table of a gate, from their records.
+"""Verdicts in words: scenarios, checks, cures, single faults and repetition, from their records.
 
 Nothing is decided here and nothing that decides imports this module: it is loaded when somebody reads.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import lru_cache
+import tomllib
+from collections.abc import Sequence
+from functools import cache, lru_cache
+from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import signed, significant
 
-from ..rig.uncertainty import WORDS, stated, tightened
+from ..rig.uncertainty import WORDS
 from .checks import Before, Check, Cure, Scenario, cures_of, hard_of
-from .plant import ENDING_S, RECOVERED_K
+from .plant import ENDING_S
 from .repeated import PRACTICAL_S
 
 if TYPE_CHECKING:
     from .checks import Harm, SingleFault
-    from .gate import Gate
     from .repeated import Repeated
 
 WHAT_IT_IS_NOT = (
@@ -128,106 +129,22 @@ def repeated_reason(repeated: Repeated) -> str | None:
     return f"{reason}; the shortest safe pause is {shortest:g} s (--pause {shortest:g})"
 
 
-def repeated_text(repeated: Repeated) -> str:
-    """Pause, plays, recovery and verdict in one line."""
-    back = "later than 10 min" if repeated.recovery_s is None else f"{repeated.recovery_s:g} s"
-    shortest = "none" if repeated.shortest_pause_s is None else f"{repeated.shortest_pause_s:g} s"
-    return (
-        f"{repeated.colour}, {repeated.plays} plays in {repeated.session_s / 60:g} min with {repeated.pause_s:g} s "
-        f"between them (back within {RECOVERED_K:g} K of rest: {back}; shortest safe pause: {shortest})"
-    )
-
-
-def gate_lines(verdict: Gate) -> Iterator[str]:
-    """The verdict as a table: every rule with its worst value, the limit, time, scenario and source."""
-    unsure = verdict.uncertainty
-    yield (
-        f"safety {verdict.colour.upper()}: {verdict.duration_s:.4g} s on {verdict.rig_name} and {ENDING_S:g} s after, "
-        f"in {verdict.scenarios} scenarios ({stated(unsure)}; {', '.join(verdict.after_C)})"
-    )
-    yield f"repeated plays: {repeated_text(verdict.repeated)}"
-    table = [("", "rule", "worst", "limit", "at", "in", "source"), *(_row(verdict, check) for check in verdict.checks)]
-    widths = [max(len(row[column]) for row in table) for column in range(len(table[0]) - 1)]
-    for row in table:
-        yield "  ".join([*(cell.ljust(width) for cell, width in zip(row, widths, strict=False)), row[-1]]).rstrip()
-    after = ", ".join(f"{value:.1f} °C ({ending})" for ending, value in verdict.after_C.items())
-    yield f"skin {ENDING_S:g} s after the last sample, on the rig as given: {after}"
-    if verdict.drift_C is not None:
-        yield f"zero current is not the baseline: in the end it takes the skin to {verdict.drift_C:.1f} °C"
-    if verdict.limits.changed:
-        yield f"limits changed by the rig: {'; '.join(verdict.limits.changed)}"
-    if verdict.limits.loosened:
-        yield f"limits LOOSENED: {'; '.join(verdict.limits.loosened)}. Reason given: {verdict.limits.reason}"
-    if claims := tightened(unsure):
-        yield f"uncertainty SMALLER than shipped: {'; '.join(claims)}. Reason given: {unsure.reason}"
-    for fault in verdict.demands.faults:
-        told = fault_table(fault)
-        yield f"single fault, {told['fault']}: {told['text']}; prevented by {told['prevented_by']}"
-    yield WHAT_IT_IS_NOT
-
-
-def _row(verdict: Gate, check: Check) -> tuple[str, ...]:
-    mark = "ok" if check.passed else ("RED" if check.severity == "hard" else "amber")
-    late = check.time_s - verdict.duration_s
-    when = f"{check.time_s:.2f} s" + (f" ({late:.1f} s after)" if late > 0 else "")
-    value, limit = (f"{figure}{_unit(check)}" for figure in figures(check))
-    of_limit = f"{'≤' if check.upper else '≥'} {limit} {check.severity}"
-    return mark, check.quantity, value, of_limit, when, check.scenario, check.source
-
-
 def _unit(check: Check) -> str:
     return "" if check.unit == "1" else f" {check.unit}"
 
 
-FAULTS: dict[str, tuple[str, str, tuple[tuple[str, str, str], ...]]] = {
-    "hang": ("host hangs in mid-play", "the current hangs for {lasts_s:.2g} s: {harm}", (
-        ("watchdog_s", "a watchdog that cuts the current after {watchdog_s:g} s without a message from the host", ""),
-        ("", "a cut-off on the measured temperature", "; no watchdog is quick enough"),
-    )),
-    "stuck": ("driver stuck at its limit", "{harms}", (
-        ("react_s", "a cut-off at {ends} on the measured display, within {react_s:g} s", ""),
-        ("limit_A", "a current limit of {limit_A:.2g} A in the driver's hardware",
-         "; no cut-off is quick enough at {most_A:g} A"),
-        ("", "a smaller or shorter drive",
-         ": no cut-off is quick enough, and no current limit that still plays this one is low enough"),
-    )),
-    "unpowered": ("first play on a display that was without power", "{found}", (
-        ("rest_s", "holding the rest for {rest_s:g} s before the first play, without contact or with", ""),
-        ("at_once", "nothing need be", ""),
-        ("", "no rest up to 10 min", "; bring the display to its baseline before it touches the skin"),
-    )),
-    "swapped": ("poles swapped", "skin {low} … {high} °C", (
-        ("", "{test_A} A for {check.test_s:g} s before the first play",
-         ": the display must cool by {check.display_change_at_least_K:g} K or more"),
-    )),
-    "set-point hang": ("set-point hangs in mid-play", "display held at {levels} for {ending_s:g} s", (
-        ("", "a return to the baseline {watchdog_s:g} s after the last message from the host", ""),
-    )),
-    "loop stuck": (
-        "loop stuck at the end of its range", "display at {levels}; a hard limit is passed after {passed_s:.2g} s", (
-            ("react_s", "the device's own cut-off at {ends}, within {react_s:g} s", ""),
-            ("", "the protection of the device's maker, which must keep the display within {cut_off.low:g} … "
-             "{cut_off.high:g} °C", "; no cut-off that acts afterwards is quick enough"),
-        ),
-    ),
-    "unpowered loop": (
-        "first play on a display that was without power", "the display is between {low} and {high} °C", (
-            ("", "holding the baseline for {rest} before the first play", ""),
-        ),
-    ),
-    "loop lost": ("sensor lost or poles swapped: the loop runs to the driver's limit", "{harms}", (
-        ("", "a cut-off at {ends} on a second sensor of its own, within {react_s:g} s", ""),
-    )),
-}  # fmt: skip
-"""What fails, what it does, and what prevents harm, with the reason: the first whose value is there and not 0."""
+@cache
+def _fault_words() -> dict[str, Any]:
+    """What each kind of fault is called, what it does, and what prevents its harm."""
+    return tomllib.loads((resources.files("thermicon.circuit") / "data" / "fault-words.toml").read_text("utf-8"))
 
 
 def fault_table(fault: SingleFault) -> dict[str, object]:
     """A single fault as a sidecar holds it: what fails, the verdict, what it does, and what prevents harm."""
-    name, text, _ = FAULTS[fault.kind]
+    words = _fault_words()[fault.kind]
     told, cure, why = _prevented(fault)
-    prevented = f"{cure}{why}"
-    return {"fault": name, "colour": fault.colour, "text": text.format(**told), "prevented_by": prevented}
+    text = words["does"].format(**told)
+    return {"fault": words["name"], "colour": fault.colour, "text": text, "prevented_by": f"{cure}{why}"}
 
 
 def fault_cure(fault: SingleFault) -> str:
@@ -251,7 +168,8 @@ def _prevented(fault: SingleFault) -> tuple[dict[str, Any], str, str]:
         span, told["test_A"] = check.swapped_skin_C, signed(check.test_current_A, ".3g")
     if span is not None:
         told["low"], told["high"] = (signed(level, ".1f") for level in span)
-    cure, why = next((cure, why) for key, cure, why in FAULTS[fault.kind][2] if not key or told[key])
+    ways = _fault_words()[fault.kind]["prevented"]
+    cure, why = next((cure, why) for key, cure, why in ways if not key or told[key])
     return told, cure.format(**told), why.format(**told)
 
 

@@ -110,13 +110,7 @@ def summary_lines(session: Session) -> list[str]:
         f"  baseline   {number(session.baseline_drift_K, 2)} K at most; within 0.1 K again {after} after the end",
         f"  energy     {number(session.energy_J)} J into the module",
     ]
-    over = [
-        f"  beyond     {number(each.seconds, 2)} s {'above' if each.upper else 'below'} the {each.severity} limit of "
-        f"{number(each.limit_C)} °C ({each.quantity})"
-        for each in session.time_beyond
-        if each.seconds > 0
-    ]
-    return [*lines, *over]
+    return lines
 
 
 def _dose_lines(session: Session) -> list[str]:

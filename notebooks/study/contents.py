@@ -151,7 +151,7 @@ def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, in
 def _session_facts(session: Session) -> dict[str, object]:
     """The verdict on a session without its plays."""
     whole = session.to_dict()
-    left_out = ("plays", "checks", "uncertainty", "limits", "what_it_is_not", "time_beyond")
+    left_out = ("plays", "checks", "uncertainty", "limits", "what_it_is_not")
     return {key: value for key, value in whole.items() if key not in left_out}
 
 

@@ -109,11 +109,6 @@ def test_what_is_safe_once_is_not_safe_in_a_session(rig: Rig) -> None:
     assert "skin surface" in str(often.reason)
     verdicts = [play.verdict for play in often.plays]
     assert verdicts == sorted(verdicts, key=("green", "amber", "red").index)
-    over = {(each.quantity, each.severity, each.upper): each.seconds for each in often.time_beyond}
-    trace = often.trace
-    above = float(np.diff(trace.time_s)[trace.skin_C[:-1] > 42.0].sum())
-    assert over["skin surface", "hard", True] == pytest.approx(above)
-    assert above > 0
 
 
 def test_replayed_drives_move_the_baseline_and_a_tracked_display_hardly(six: IconSet, rig: Rig) -> None:

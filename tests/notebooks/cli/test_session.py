@@ -26,7 +26,7 @@ KEYS = (
     *("henriques", "henriques_worst", "henriques_limit", "baseline_drift_K", "recovery_s", "energy_J", "rest_A"),
     *(f"{place}_{side}_C" for place in ("skin", "display", "hot_plate") for side in ("min", "max")),
     *(f"{place}_receptor_{side}_C" for place in ("cold", "warm") for side in ("min", "max")),
-    *("time_beyond", "checks", "uncertainty", "limits", "plays"),
+    *("checks", "uncertainty", "limits", "plays"),
     *("rig_changes", "rig_text"),
 )
 
