@@ -14,15 +14,13 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
-from .options import MOST_ICONS, RigOptions, flag, opt, sets_like, warn_of_frames
+from .options import MOST_ICONS, RigOptions, flag, opt, warn_of_site
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
-NoFiles = Annotated[
-    list[str] | None, typer.Argument(metavar="FILE", autocompletion=sets_like, help="Cue files, or shipped sets.")
-]
+NoFiles = Annotated[list[str] | None, typer.Argument(metavar="FILE", help="Cue files, or shipped sets.")]
 START_C = 32.0
 """Initial temperature without a baseline or a rig: the resting temperature of the default rig."""
 
@@ -126,7 +124,7 @@ def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
     """One message for everything in this set that the rig cannot do; another site is only a warning on stderr."""
     from thermicon.circuit.solver.static import check_static
 
-    warn_of_frames([file], icons, rig)
+    warn_of_site(file, icons, rig)
     count = len(icons)
     chosen: Sequence[Icon] = icons.icons
     if count > MOST_ICONS:

@@ -13,8 +13,7 @@ from thermicon.icons.number_text import number
 from ..files.outputs import check_separate
 from ..files.trace_files import Curves, LogError, align, curves_of, quantity, read_curves
 from ..messages import load_rig, note, usage
-from ..report.blocks import Text
-from ..report.run_report import Comparison, compare_report, comparison_line, headline
+from ..report.run_report import Comparison, compare_report, headline
 from ..report.terminal import show
 from .options import FigureOptions, IconName, RigOptions, flag, opt, pick, read_set
 
@@ -23,10 +22,6 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
-MOST_IN_A_SET = 30
-"""Larger sets are compared icon by icon alone."""
-PEOPLE = 100
-"""Virtual people who identify both sets."""
 TABLES = (".csv", ".parquet")
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
 HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or .parquet"
@@ -57,8 +52,8 @@ def compare_command(
     """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
-    .csv or .parquet files with time_s and columns of a trace. Of two sets, the icons with the same name are compared,
-    and how well the icons of each set are identified is predicted.
+    .csv or .parquet files with time_s and columns of a trace. Of two sets, the icons with the same name are compared;
+    rank predicts how well each is identified.
     """
     kind, both = kind_of_both(first, second), (first, second)
     given = (file, icon, rig.rig, rig.changes, align)
@@ -66,7 +61,6 @@ def compare_command(
         if value and kind not in kinds:
             raise usage(why, option)
     check_separate([first, second], [figure.figure])
-    said = ""
     if kind == "rig":
         icons = pick(read_set([file or DEFAULT_SET]), icon or (DEFAULT_ICON if file is None else None))
         one, other = (load_rig(name, rig.changes, named=True) for name in both)
@@ -75,17 +69,15 @@ def compare_command(
         used = rig.load()
         made = [_played("", (_named(first, "A"), _named(second, "B")), (used, used), both)]
     elif kind == "set":
-        made, said = _sets(both, icon, rig.load())
+        made = _sets(both, icon, rig.load())
     else:
         made = [_tables(both, icon, align)]
     if figure.figure is not None:
         from ..figures.compare_figure import compare_figure
 
-        if not made:
-            raise usage("curves are compared of icons with the same name, and these sets have none", "--figure")
         pairs = [(each.title, each.both) for each in made]
         figure.write(compare_figure(pairs, across=figure.look.across(3)))
-    show([*(block for each in made for block in compare_report(each)), *([Text(said)] if said else [])])
+    show([block for each in made for block in compare_report(each)])
 
 
 def kind_of(text: str, option: str) -> str:
@@ -142,27 +134,17 @@ def _named(text: str, option: str) -> Icon:
     return pick(read_set([file]), name)[0]
 
 
-def _sets(names: tuple[str, str], icon: str | None, rig: Rig) -> tuple[list[Comparison], str]:
-    """Compare the icons with the same name, or the one named, and predict how well both sets are identified."""
-    one, other = (read_set([name]) for name in names)
-    if icon is not None:
-        pair = (pick(one, icon)[0], pick(other, icon)[0])
-        return [_played(icon, pair, (rig, rig), names)], ""
-    others = {each.name: each for each in other}
-    common = {each.name: (each, others[each.name]) for each in one if each.name in others}
-    alone = [f"{each.name} ({file})" for file, icons in zip(names, (one, other), strict=True) for each in icons
-             if each.name not in common]  # fmt: skip
+def _sets(names: tuple[str, str], icon: str | None, rig: Rig) -> list[Comparison]:
+    """Compare the icons with the same name, or the one named."""
+    one, other = ({each.name: each for each in pick(read_set([name]), icon)} for name in names)
+    common = [name for name in one if name in other]
+    alone = [f"{name} ({file})" for file, icons in zip(names, (one, other), strict=True) for name in icons
+             if name not in common]  # fmt: skip
     if alone:
         note(f"only in one of the two sets: {', '.join(alone)}")
-    made = [_played(name, pair, (rig, rig), names) for name, pair in common.items()]
-    if any(not 2 <= len(icons) <= MOST_IN_A_SET for icons in (one, other)):
-        if not made:
-            raise LogError(f"{names[0]} and {names[1]}: no icon has the same name, and sets of 2 to 30 are compared")
-        return made, ""
-    from thermicon.perception.selection.appraise import appraise
-
-    first, second = (appraise(list(each), rig, people=PEOPLE) for each in (one, other))
-    return made, comparison_line(first, second, PEOPLE)
+    if not common:
+        raise LogError(f"{names[0]} and {names[1]}: no icon has the same name; write two icons as FILE:ICON")
+    return [_played(name, (one[name], other[name]), (rig, rig), names) for name in common]
 
 
 def _played(title: str, icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig], names: tuple[str, str]) -> Comparison:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -21,7 +20,6 @@ if TYPE_CHECKING:
     from thermicon.icons import IconSet
 
 SUFFIXES = (".cue", ".json")
-_TEXT_OR_COMMENT = re.compile(r'"(?:[^"\\\n]|\\.)*"|#')
 
 
 def convert_command(
@@ -64,8 +62,6 @@ def convert_command(
         icons = only_icon(icons, icon)
     text = to_json(icons) if output.suffix.lower() == ".json" else str(icons)
     write_text(text, output, f": {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
-    if has_comments(file):
-        note(f"comments in {Path(file).name} were dropped")
 
 
 def read(file: str, given: dict[str, Any]) -> IconSet:
@@ -91,13 +87,3 @@ def only_icon(icons: IconSet, name: str) -> IconSet:
 
     (found,) = pick(icons, name)
     return replace(icons, entries=parse(str(found)).entries)
-
-
-def has_comments(file: str) -> bool:
-    """Whether a cue file has comments, which no set keeps."""
-    from thermicon.icons.files.shipped import file_bytes
-
-    if file.lower().endswith(".csv") or (data := file_bytes(file)) is None:
-        return False
-    text = data.decode("utf-8", errors="replace")
-    return any(match.group() == "#" for match in _TEXT_OR_COMMENT.finditer(text))

@@ -25,7 +25,7 @@ from .options import (
     opt,
     out,
     read_set,
-    warn_of_frames,
+    warn_of_site,
     write_frame,
     write_text,
 )
@@ -87,12 +87,12 @@ def improve_command(
     asks for icons as they are; all other icons stay. Totals, numbers and single icons that a goal asks for are kept.
     What is found is the best for the model: test it with people.
     """
-    from thermicon.icons import Family, IconSet
+    from thermicon.icons import Family
     from thermicon.perception import Goal
 
     wanted = None if goal is None else Goal.parse(goal)
     icons = read_set(files)
-    has_families = isinstance(icons, IconSet) and any(isinstance(entry, Family) for entry in icons.entries)
+    has_families = any(isinstance(entry, Family) for entry in icons.entries)
     as_they_are = choose is not None or up_to is not None or edits
     searched = evaluations is not None or (has_families and not as_they_are)
     if up_to is not None and (choose is not None or edits or searched):
@@ -128,7 +128,7 @@ def improve_command(
         raise usage("one file is searched; join its families into one set", "FILE")
     where = rig.load()
     model = crowd.load(where)
-    warn_of_frames(files, icons, where)
+    warn_of_site(files[0], icons, where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
     what = objective or ("correct" if up_to is not None else _objective(wanted))
     if up_to is not None:

@@ -7,15 +7,14 @@ their options out beside its own for typer.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_type_hints
 
 import typer
 
 from thermicon.icons.atomic import complete_or_absent
-from thermicon.icons.number_text import number
 
 from ..figures.style import SCREEN, Look, read_width_mm
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
@@ -34,20 +33,6 @@ MOST_ICONS = 2000
 LONGEST_TAIL_S = 86_400.0
 
 
-def rigs_like(incomplete: str) -> list[str]:
-    """Shipped rigs that begin so, for the shell."""
-    from thermicon.circuit.rig.rig import rig_names
-
-    return [name for name in rig_names() if name.startswith(incomplete)]
-
-
-def sets_like(incomplete: str) -> list[str]:
-    """Shipped sets that begin so, for the shell."""
-    from thermicon.icons.files.shipped import library_names
-
-    return [name for name in library_names() if name.startswith(incomplete)]
-
-
 def opt(metavar: str, what: str, least: Any = None, most: Any = None, name: str = "", **more: Any) -> Any:
     """An option with a value, of a number with its limits; it is called as its argument unless it has a name."""
     return typer.Option(*name.split(), metavar=metavar, min=least, max=most, help=what, **more)
@@ -63,19 +48,12 @@ def out(ending: str, what: str, *names: str) -> Any:
     return typer.Option(*names, metavar=ending, readable=False, help=what)
 
 
+A_FILE = "A cue file, or the name of a shipped set."
 FileNames = Annotated[
-    list[str],
-    typer.Argument(metavar="FILE", autocompletion=sets_like, help="Cue files, or names of shipped sets (six-icons)."),
+    list[str], typer.Argument(metavar="FILE", help="Cue files, or names of shipped sets (six-icons).")
 ]
-FileName = Annotated[
-    str, typer.Argument(metavar="FILE", autocompletion=sets_like, help="A cue file, or the name of a shipped set.")
-]
-NoFile = Annotated[
-    str | None,
-    typer.Argument(
-        metavar="FILE", autocompletion=sets_like, show_default=False, help="A cue file, or the name of a shipped set."
-    ),
-]
+FileName = Annotated[str, typer.Argument(metavar="FILE", help=A_FILE)]
+NoFile = Annotated[str | None, typer.Argument(metavar="FILE", show_default=False, help=A_FILE)]
 IconName = Annotated[str | None, opt("NAME", "Only this icon of the file.", name="--icon")]
 Tail = Annotated[float, opt("S", "Seconds simulated after the last corner.", 0.0, LONGEST_TAIL_S)]
 Json = Annotated[Path | None, out("OUT", "Write every number as JSON; - prints it.", "--json")]
@@ -112,9 +90,7 @@ class Options:
 class RigOptions(Options):
     """The rig, with changes of single keys."""
 
-    rig: Annotated[
-        str | None, opt("RIG", "A shipped rig or a .toml file.  [default: thenar]", autocompletion=rigs_like)
-    ] = None
+    rig: Annotated[str | None, opt("RIG", "A shipped rig or a .toml file.  [default: thenar]")] = None
     set: Annotated[list[str] | None, opt("KEY=VALUE", "Change one key of the rig; may be given several times.")] = None
 
     def __post_init__(self) -> None:
@@ -223,43 +199,25 @@ class FigureOptions(Options):
 
 
 class JoinError(Exception):
-    """Files that cannot be joined, because two of them have an icon of the same name."""
-
-
-@dataclass(frozen=True, slots=True)
-class Joined:
-    """Several sets taken as one. Unlike those of an ``IconSet``, its icons may prescribe different things."""
-
-    sets: tuple[IconSet, ...]
-    files: tuple[str, ...]
-
-    @property
-    def title(self) -> str:
-        """The titles of all sets, the name of its file for one that has none; nothing where none has a title."""
-        if not any(each.title for each in self.sets):
-            return ""
-        return "; ".join(each.title or Path(file).name for file, each in zip(self.files, self.sets, strict=True))
-
-    def __iter__(self) -> Iterator[Icon]:
-        return (icon for each in self.sets for icon in each)
-
-    def __len__(self) -> int:
-        return sum(map(len, self.sets))
-
-    def __str__(self) -> str:
-        return "\n".join(map(str, self.sets))
+    """Files that cannot be joined: they prescribe different things, or two have an icon of the same name."""
 
 
 def read_set(files: Sequence[str], rig: Rig | None = None) -> IconSet:
-    """Read files and join their icons into one set, and warn of what does not fit a rig.
+    """Read files and join their icons into one set, and warn where it is for another site than a rig's.
 
-    JoinError when two icons share a name.
+    JoinError when they differ in site, control or baseline, or when two icons share a name.
     """
     from thermicon.icons import read_cue
 
     sets = [read_cue(file) for file in files]
+    joined = sets[0]
     owner: dict[str, str] = {}
     for file, each in zip(files, sets, strict=True) if len(sets) > 1 else ():
+        if each.context != joined.context:
+            raise JoinError(
+                f"{file} differs from {files[0]} in site, control or baseline, which one set has in common: put the "
+                "icons into one file, or take each file by itself"
+            )
         for icon in each:
             if icon.name in owner:
                 raise JoinError(
@@ -267,28 +225,22 @@ def read_set(files: Sequence[str], rig: Rig | None = None) -> IconSet:
                     f"names must differ within a set, so rename one of them"
                 )
             owner[icon.name] = file
-    joined = sets[0] if len(sets) == 1 else cast("IconSet", Joined(tuple(sets), tuple(files)))
+    if len(sets) > 1:
+        titles = [each.title or Path(file).name for file, each in zip(files, sets, strict=True)]
+        title = "; ".join(titles) if any(each.title for each in sets) else ""
+        joined = replace(joined, title=title, entries=tuple(entry for each in sets for entry in each.entries))
     if rig is not None:
-        warn_of_frames(files, joined, rig)
+        warn_of_site(files[0], joined, rig)
     return joined
 
 
-def warn_of_frames(files: Sequence[str], icons: IconSet, rig: Rig) -> tuple[str, ...]:
-    """Warn on stderr of files for another site than the rig's, and of different baselines; return the warnings."""
-    warnings: list[str] = []
-    sets = icons.sets if isinstance(icons, Joined) else (icons,)
-    levels: dict[float, list[str]] = {}
-    for file, each in zip(files, sets, strict=True):
-        if each.context.site not in (None, rig.site):
-            warnings.append(f"{file} is for the site {each.context.site}, the rig {rig.name} is for {rig.site}")
-        own = each.context.baseline_C
-        levels.setdefault(rig.skin.rest_C if own is None else own, []).append(Path(file).name)
-    if len(levels) > 1:
-        told = ", ".join(f"{number(level, 2)} °C in {' and '.join(names)}" for level, names in levels.items())
-        warnings.append(f"baselines differ: {told}; between them the skin must adapt again, which the model leaves out")
-    for warning in warnings:
-        note(f"warning: {warning}")
-    return tuple(warnings)
+def warn_of_site(file: str, icons: IconSet, rig: Rig) -> tuple[str, ...]:
+    """Warn on stderr of a set for another site than the rig's; return the warnings."""
+    if icons.context.site in (None, rig.site):
+        return ()
+    warning = f"{file} is for the site {icons.context.site}, the rig {rig.name} is for {rig.site}"
+    note(f"warning: {warning}")
+    return (warning,)
 
 
 def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:

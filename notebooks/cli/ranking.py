@@ -28,7 +28,7 @@ from .options import (
     opt,
     out,
     read_set,
-    warn_of_frames,
+    warn_of_site,
     write_text,
 )
 
@@ -139,7 +139,7 @@ def rank_command(
     from ..report.set_report import cures, report_of
 
     where = rig.load()
-    warnings = (*where.warnings, *warn_of_frames(files, icons, where))
+    warnings = (*where.warnings, *warn_of_site(files[0], icons, where))
     model = crowd.load(where)
     draws = crowd.draws(model)
     _say_if_first()
@@ -175,7 +175,7 @@ def doubt_about(
     if len(icons) < 2:
         fail(f"{files[0]}: --doubt needs at least two icons, since one alone is never confused")
     where = rig.load()
-    warn_of_frames(files, icons, where)
+    warn_of_site(files[0], icons, where)
     model = crowd.load(where, "what carries the doubt is read from draws of a posterior")
     draws = check_draws(model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
     asked = {name: value for name, value in crowd.asked.items() if name != "tracking"}
@@ -193,7 +193,7 @@ def _following(ranking: Ranking, icons: IconSet, files: Sequence[str], rig: RigO
     """The command that helps most, to be copied: with this rig, and where it predicts with these people."""
     from thermicon.icons import Family
 
-    step = next_step(ranking, any(isinstance(each, Family) for each in getattr(icons, "entries", ())))
+    step = next_step(ranking, any(isinstance(each, Family) for each in icons.entries))
     if step.options[:1] == ("--set",):  # the new value stands in place of the earlier one
         key = step.options[1].partition("=")[0]
         rig = replace(rig, set=[change for change in rig.changes if change.partition("=")[0].strip() != key] or None)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
-from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, key_beside, on_one_clock
+from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, on_one_clock
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,14 +18,12 @@ if TYPE_CHECKING:
     from thermicon.circuit import Trace
     from thermicon.perception import Percept
 
-    from ..timeline.scene import Drawing, Scene
+    from ..timeline.scene import Scene
 
 FELT_TAIL_S = 5.0
 """How long an overview follows sensation after the last corner, unless a tail is given."""
 WIDEST, MOST_LINES = 110, 6
 """Letters of a line, and lines, of what the figure of a scene says."""
-CHANNELS = {"cold": COOL, "warm": WARM}
-DASHES = {"felt peak": "--", "physical peak": "-"}
 
 
 def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
@@ -133,7 +131,7 @@ def _evenly_timed(trace: Trace) -> Trace:
 
 
 def scene_figure(scene: Scene) -> Figure:
-    """Draw a scene: the overview of its icon, with unreached spans and events; safety and notes above.
+    """Draw a scene: the overview of its icon, with safety and notes above.
 
     A scene without a drawing gives a figure that says why.
     """
@@ -150,22 +148,6 @@ def scene_figure(scene: Scene) -> Figure:
         figure.suptitle("\n".join(lines), fontsize=10, x=0.01, ha="left")
         return figure
     figure = overview(scene.drawing.trace, scene.drawing.percept, scene.drawing.rig.changes)
-    _draw_events(scene.drawing, figure)
     head = figure.get_suptitle() + (", as it was before the errors" if scene.stale and scene.troubles else "")
     figure.suptitle("\n".join([head, *lines]), fontsize=10)
     return figure
-
-
-def _draw_events(drawing: Drawing, figure: Figure) -> None:
-    """Spans that miss the target, and peaks of the skin and of what is felt."""
-    temperatures, sensation = figure.axes[0], figure.axes[-1]
-    for ax in (temperatures, figure.axes[2]):
-        for n, missed in enumerate(drawing.missed):
-            label = missed.label.replace(": ", ":\n") if n == 0 else ""
-            ax.axvspan(missed.from_s, missed.to_s, fc=LIMIT, ec=LIMIT, alpha=0.15, hatch="//", lw=0, label=label)
-    for moment in (each for each in drawing.moments if each.kind != "onset"):  # which the overview marks
-        ax = temperatures if moment.kind == "physical peak" else sensation
-        label = moment.label.replace(") ", ")\n")
-        ax.axvline(moment.time_s, color=CHANNELS[moment.channel], lw=1.0, ls=DASHES[moment.kind], label=label)
-    for ax in figure.axes:
-        key_beside(ax)

@@ -80,17 +80,13 @@ def plain(*axes: Axes, grid: Literal["both", "x"] = "both") -> None:
         ax.spines[["top", "right"]].set_visible(False)
 
 
-def key_beside(ax: Axes) -> None:
-    """Put the key of a panel at its right, outside, where it covers no line."""
-    ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8, handlelength=2.6)
-
-
 def on_one_clock(figure: Figure, axes: Sequence[Axes], time: str, title: str) -> None:
     """Dress panels below one another on one axis of time: grid, keys beside them, name of the axis, title."""
     for ax in axes:
         plain(ax)
         ax.margins(x=0.0)
-        key_beside(ax)
+        # at the right, outside, where it covers no line
+        ax.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=8, handlelength=2.6)
     axes[-1].set_xlabel(time)
     figure.align_ylabels(list(axes))
     figure.suptitle(title, fontsize=11, wrap=True)

@@ -278,5 +278,6 @@ def more_than_chance(missed: int, pairs: int) -> bool:
     >>> more_than_chance(3, 15), more_than_chance(2, 15)
     (True, False)
     """
-    fewer = sum(math.comb(pairs, k) * 0.05**k * 0.95 ** (pairs - k) for k in range(missed))
-    return 1.0 - fewer < POOR
+    from scipy.stats import binom
+
+    return bool(binom.sf(missed - 1, pairs, 0.05) < POOR)

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from thermicon.circuit import Session, Trace
-    from thermicon.perception.selection.appraise import Appraisal
 
 MOST_SHOWN = 60
 """Plays in the table of a session; all of them are in the JSON."""
@@ -223,10 +222,3 @@ def compare_report(made: Comparison) -> list[Block]:
         Text(both.said),
         Text(made.after),
     ]
-
-
-def comparison_line(one: Appraisal, other: Appraisal, people: int) -> str:
-    """Report how well the icons of two sets are identified by the same people."""
-    first, second = (f"{percent(each.proportion_correct)} correct, d′" for each in (one, other))
-    worst = f"of the worst pair {one.d_prime:.1f}"
-    return f"predicted for {people} virtual people: A {first} {worst}; B {second} {other.d_prime:.1f}"

@@ -22,14 +22,6 @@ def test_a_set_is_written_as_json_and_as_cue_text_over_what_was_there(cli: Cli, 
     assert as_cue.read_text(encoding="utf-8") == str(load_library("six-icons"))
 
 
-def test_lost_comments_are_told(cli: Cli, tmp_path: Path) -> None:
-    path = tmp_path / "a.cue"
-    path.write_text('cue 1 # version\nicon a means "no # comment" { hold for 1 s }\n')
-    assert "comments in a.cue were dropped" in cli("convert", path, "-o", tmp_path / "a.json").stderr
-    path.write_text('cue 1\nicon a means "no # \\" comment" { hold for 1 s }\n')
-    assert "were dropped" not in cli("convert", path, "-o", tmp_path / "a.json").stderr
-
-
 def test_a_recording_becomes_an_icon(cli: Cli, tmp_path: Path) -> None:
     path, out = tmp_path / "dip.csv", tmp_path / "dip.cue"
     path.write_text("time_s,a,b\n0,32.1,9\n2,26,9\n4,26.04,9\n6,25.97,9\n8,32.1,9\n", encoding="utf-8")

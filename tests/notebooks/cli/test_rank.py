@@ -107,20 +107,18 @@ def test_the_next_command_is_chosen_by_what_was_found(
 
 def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
     more = tmp_path / "more.cue"
-    more.write_text(
-        "cue 1\nset more { control skin; baseline 33 °C }\nicon slow { warm by 2 °C at 0.5 °C/s; return at 1 °C/s }\n",
-        encoding="utf-8",
-    )
-    said = cli.good("rank", two, more, "--people", 5, "--intervals", 0, "--json", "-")
-    assert json.loads(said.stdout)["confusion"]["labels"] == ["cool-step", "warm-step", "slow"]
-    assert said.stderr == (
-        "warning: baselines differ: 32 °C in two.cue, 33 °C in more.cue; between them the skin must adapt again, "
-        "which the model leaves out\n"
-    )
-    table = cli("rank", two, more, "--people", 5, "--intervals", 0).stdout
-    assert table.startswith("Two for a test; more.cue\n")
+    head = "cue 1\nset more { site thenar; control display; baseline 32 °C }\n"
+    more.write_text(head + "icon slow { warm by 2 °C at 0.5 °C/s; return at 1 °C/s }\n", encoding="utf-8")
+    said = cli.good("rank", two, more, "--people", 5, "--intervals", 0)
+    assert said.stdout.startswith("Two for a test; more.cue\n")
+    for name in ("cool-step", "warm-step", "slow"):
+        assert f"\n{name} " in said.stdout
     first, *_ = cli("rank", more, "--people", 5, "--intervals", 0).stdout.splitlines()
     assert "detected" in first, "a file without a title has none"
+    more.write_text(more.read_text(encoding="utf-8").replace("32", "33"), encoding="utf-8")
+    said = cli("rank", two, more)
+    assert said.exit_code == 1
+    assert "more.cue differs from" in said.stderr and "site, control or baseline" in said.stderr
 
 
 def test_a_set_that_asks_too_much_says_the_worst_in_twenty_lines(cli: Cli, tmp_path: Path) -> None:
