@@ -54,20 +54,17 @@ def corner_text(deviations: tuple[float, ...]) -> str:
     return ", ".join(moved) or "the rig as given"
 
 
-def scenario_text(run: Scenario, short: bool = False) -> str:
-    """A scenario: the corner, the way in which it is played, what was played before, and what follows.
-
-    `short` leaves the pause of repeated plays out.
-    """
+def scenario_text(run: Scenario) -> str:
+    """A scenario: the corner, the way in which it is played, what was played before, and what follows."""
     corner = run.corner if isinstance(run.corner, str) else corner_text(run.corner)
-    before = "" if run.before is None else _before(run.before, short)
+    before = "" if run.before is None else _before(run.before)
     return ", ".join(part for part in (corner, run.way, before, run.ending and f"then {run.ending}") if part)
 
 
-def _before(before: Before, short: bool) -> str:
+def _before(before: Before) -> str:
     pause = f"{before.pause_s:.4g} s of pause"
     if before.plays in REPEATED:
-        return f"repeated{'' if short else f' plays with {pause}'}{REPEATED[before.plays]}"
+        return f"repeated plays with {pause}{REPEATED[before.plays]}"
     return BEFORE[before.plays].format(pause=pause)
 
 

@@ -6,7 +6,6 @@ What holds for all icons of an export is said once, and of what differs the stri
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, signed
@@ -14,7 +13,7 @@ from thermicon.icons.number_text import number, signed
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
-    from thermicon.circuit.safety.checks import Demands, Scenario
+    from thermicon.circuit.safety.checks import Demands
     from thermicon.circuit.safety.gate import Gate
     from thermicon.circuit.safety.repeated import Repeated
 
@@ -136,21 +135,6 @@ def steps_of(delivery: DeliveredDrive) -> str:
     if isinstance(played, Setpoints):
         return f"in {len(played.segments)} segments"
     return f"at {number(delivery.rate_Hz, 1)} Hz"
-
-
-def short_scenario(run: Scenario) -> str:
-    """A scenario in few words: which quantities of the rig are high and which low, whether repeated, what follows."""
-    from thermicon.circuit.rig.uncertainty import WORDS
-    from thermicon.circuit.safety.words import scenario_text
-
-    sides: dict[str, list[str]] = {}
-    if not isinstance(run.corner, str):
-        for value, (_, name, *_) in zip(run.corner, WORDS.values(), strict=True):
-            if value:
-                sides.setdefault("high" if value > 0.0 else "low", []).append(name)
-    corner = [f"{side} {', '.join(names)}" for side, names in sides.items()]
-    rest = scenario_text(replace(run, corner="") if corner else run, short=True)
-    return "; ".join([*corner, *([rest] if rest else [])])
 
 
 def _recovery(repeated: Repeated) -> float:

@@ -11,7 +11,7 @@ from thermicon.icons.number_text import number, percent
 from ..cli.export import warning_lines
 from ..report.blocks import Bullets, Cards, Cell, Facts, Heading, Text, fragment, grid, shown
 from ..report.choices import laboratory
-from ..report.gate_words import CAUTION, gate_words, short_scenario, steps_of
+from ..report.gate_words import CAUTION, gate_words, steps_of
 from ..report.rank_details import caveat, edit_text, outside_lines, trouble_lines
 from ..report.rank_report import cards, icon_table
 from ..timeline.frames import WORDS, terms_of
@@ -109,7 +109,7 @@ def _delivered(icon: Prepared, felt: PerceivedChange | None) -> tuple[str | Cell
 def gate_html(icon: Prepared) -> str:
     """The gate's verdict on one icon: every rule with its worst value, the limit, time and scenario.
 
-    Scenarios are shortened, in full as tooltips; sources are numbered below the table.
+    Sources are numbered below the table.
     """
     verdict = icon.verdict
     checks: Sequence[Check] = getattr(verdict, "checks", ())
@@ -142,7 +142,6 @@ def _check(check: Check, source_number: int) -> dict[str, object]:
         "source_number": source_number,
         "time": f"{check.time_s:.2f} s",
         "scenario": check.scenario,
-        "short_scenario": short_scenario(check.run),
     }
 
 
