@@ -92,10 +92,9 @@ def check_changes(changes: Sequence[str]) -> None:
             raise usage(f"{change!r} is not of the form KEY=VALUE, for example contact.area_cm2=4", "--set")
 
 
-def load_rig(name: str | None, changes: Sequence[str], *, module_matters: bool = True, named: bool = False) -> Rig:
+def load_rig(name: str | None, changes: Sequence[str], *, named: bool = False) -> Rig:
     """Load the rig of ``--rig`` with the changes of ``--set``; its warnings go to stderr.
 
-    Commands that neither simulate nor export say nothing of the data sheets of its module, which does not matter there.
     `named`: warnings say of which rig they are.
     """
     check_changes(changes)
@@ -104,10 +103,8 @@ def load_rig(name: str | None, changes: Sequence[str], *, module_matters: bool =
     rig = Rig.load(name or DEFAULT_RIG)
     if changes:
         rig = rig.with_set(list(changes))
-    sheets = () if rig.pump is None or module_matters else rig.pump.origin.warnings
     for warning in rig.warnings:
-        if warning not in sheets:
-            note(f"warning: {f'{rig.name}: ' if named else ''}{warning}")
+        note(f"warning: {f'{rig.name}: ' if named else ''}{warning}")
     return rig
 
 

@@ -49,7 +49,7 @@ def check_command(
         raise Missing("argument 'FILE...'")
     if fix:
         format_files(files)
-    check(files, rig.load(module_matters=False) if rig.given else None)
+    check(files, rig.load() if rig.given else None)
 
 
 def explain_error(code: str) -> None:

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from thermicon.icons.atomic import OutputError
-
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
 from ..messages import progress_bar, usage
 from ..report.improve_report import frontier_report, search_report
@@ -108,20 +106,6 @@ def improve_command(
     kinds = (".cue",) if searched else (*TRACE_SUFFIXES, *FIGURE_SUFFIXES) if up_to is not None else (".json",)
     outputs = output or []
     for path in outputs:
-        if path.suffix.lower() == ".cue" and not searched:
-            cure = (
-                "FILE has no family to search"
-                if not has_families
-                else (
-                    "add --evaluations N to search the families"
-                    if choose
-                    else "leave out --edits and --up-to to search"
-                )
-            )
-            raise OutputError(
-                f"cannot write {path}: what this finds is written as {' or '.join(kinds)}, not .cue, which is for a "
-                f"searched set; {cure}"
-            )
         check_output(path, kinds, "what this finds")
     check_separate(files, outputs)
     if searched and len(files) > 1:

@@ -53,7 +53,7 @@ def cite_file(file: str, rig: RigOptions) -> None:
     from thermicon.circuit.rig.rig_words import rig_summary
     from thermicon.icons.files.cite import methods
 
-    where = rig.load(module_matters=False) if rig.given else None
+    where = rig.load() if rig.given else None
     icons = read_set([file], where)
     typer.echo(methods(icons, None if where is None else rig_summary(where, for_methods=True)))
 

@@ -6,7 +6,6 @@ of this package.
 
 from __future__ import annotations
 
-import gc
 import io
 import os
 import sys
@@ -183,8 +182,6 @@ def __getattr__(name: str) -> Any:
 
 def main() -> None:
     """Run the command line of the process; the entry point of the ``thermicon`` command."""
-    # What imports create is not garbage, and looking for some after each 700 objects takes a twentieth of a command.
-    gc.set_threshold(100_000)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # where the output has no code for a character
@@ -192,8 +189,6 @@ def main() -> None:
         program(sys.argv[1:])(prog_name="thermicon")
     except KeyboardInterrupt:
         sys.exit(interrupted().exit_code)
-    finally:
-        gc.freeze()  # a process that ends needs no last search for garbage either
 
 
 if __name__ == "__main__":

@@ -106,9 +106,9 @@ class RigOptions(Options):
         """Whether a rig or a change was asked for."""
         return self.rig is not None or bool(self.set)
 
-    def load(self, *, module_matters: bool = True) -> Rig:
+    def load(self) -> Rig:
         """The rig with its changes; its warnings go to stderr."""
-        return load_rig(self.rig, self.changes, module_matters=module_matters)
+        return load_rig(self.rig, self.changes)
 
     def words(self, *, paths: bool = False) -> list[str]:
         """As for any group; the usual rig is left out."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from json import dumps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,7 +14,7 @@ import typer
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import check_draws, fail, note, progress_bar, usage
-from ..report.rank_report import doubt_report, next_step, rank_report
+from ..report.rank_report import doubt_report, rank_report
 from ..report.terminal import show
 from .options import (
     MOST_ICONS,
@@ -33,7 +33,6 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from thermicon.icons import IconSet
     from thermicon.perception import Ranking, Task
 
 TRIALS, MOST_WORKERS = 48, 1024
@@ -55,22 +54,14 @@ class TaskOptions(Options):
     ] = None
 
     def __post_init__(self) -> None:
-        self.read()
+        self.load()
 
-    @property
-    def trials(self) -> int:
-        """Number of trials."""
-        return int(self.read().get("trials", TRIALS))
-
-    def load(self) -> Task:
-        """The task, as the model takes it."""
+    def load(self) -> tuple[int, Task]:
+        """Number of trials, and the task as the model takes it; a usage error for what no experiment has."""
         from thermicon.perception import Task
 
-        return Task(self.read().get("gap"))
-
-    def read(self) -> dict[str, float]:
-        """The values by their keys; a usage error for what no experiment has."""
-        return dict(_read_task(text) for text in self.task or [])
+        given = dict(_read_task(text) for text in self.task or [])
+        return int(given.get("trials", TRIALS)), Task(given.get("gap"))
 
 
 def _read_task(text: str) -> tuple[str, float]:
@@ -143,7 +134,8 @@ def rank_command(
     model = crowd.load(where)
     draws = crowd.draws(model)
     _say_if_first()
-    asked = {**crowd.asked, "trials": task.trials, "task": task.load(), "observer": model}
+    trials, named = task.load()
+    asked = {**crowd.asked, "trials": trials, "task": named, "observer": model}
     found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
@@ -160,7 +152,7 @@ def rank_command(
     if json == STDOUT:
         typer.echo(found.to_json())
     else:
-        show(rank_report(found, icons.title, near, _following(found.ranking, icons, files, rig, crowd), details))
+        show(rank_report(found, icons.title, near, _following(found.ranking, files, rig, crowd), details))
 
 
 def doubt_about(
@@ -189,16 +181,13 @@ def doubt_about(
         show(doubt_report(found, icons.title))
 
 
-def _following(ranking: Ranking, icons: IconSet, files: Sequence[str], rig: RigOptions, crowd: CrowdOptions) -> str:
-    """The command that helps most, to be copied: with this rig, and where it predicts with these people."""
-    from thermicon.icons import Family
+def _following(ranking: Ranking, files: Sequence[str], rig: RigOptions, crowd: CrowdOptions) -> str:
+    """The command that comes next, to be copied: edits where icons are hardly told apart, otherwise the export."""
+    from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
 
-    step = next_step(ranking, any(isinstance(each, Family) for each in icons.entries))
-    if step.options[:1] == ("--set",):  # the new value stands in place of the earlier one
-        key = step.options[1].partition("=")[0]
-        rig = replace(rig, set=[change for change in rig.changes if change.partition("=")[0].strip() != key] or None)
-    groups = (rig, crowd) if step.command in ("rank", "improve") else (rig,)
-    return f"{command_text(files, *groups, paths=True, command=step.command)} {shlex.join(step.options)}".rstrip()
+    if any(pair.d_prime < DISTINGUISHABLE_DPRIME for pair in ranking.pairs):
+        return f"{command_text(files, rig, crowd, paths=True, command='improve')} --edits"
+    return f"{command_text(files, rig, paths=True, command='export')} --to csv -o drives"
 
 
 def read_workers(text: str | None) -> int | str | None:

@@ -79,18 +79,11 @@ class Grid:
 
 @dataclass(frozen=True, slots=True)
 class Facts:
-    """Pairs of a name and its value, one per line."""
+    """Pairs of a name and its value, one per line; as ``cards``, pages show large numbers with their meanings below."""
 
     type: ClassVar[str] = "facts"
     rows: tuple[tuple[str, str], ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Cards:
-    """Large numbers side by side, each with its meaning below."""
-
-    type: ClassVar[str] = "cards"
-    cards: tuple[tuple[str, str], ...]
+    cards: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +97,7 @@ class Picture:
     data: bytes
 
 
-Block = Heading | Text | Code | Bullets | Grid | Facts | Cards | Picture
+Block = Heading | Text | Code | Bullets | Grid | Facts | Picture
 
 
 def grid(

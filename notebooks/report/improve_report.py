@@ -48,7 +48,6 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
     said = [
         f"The {len(largest.icons)}: {names}",
         *(["* not proven to be the best of their number"] * any(not point.optimal for point in found.points)),
-        *_amber(found),
         *_goal(found),
         *(f"Left out: {name} {reason}" for name, reason in largest.excluded[:MOST_EXCLUDED]),
         *([f"and {more} more left out"] if more > 0 else []),
@@ -64,13 +63,6 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
             "predictions of a model, not measurements."
         ),
     ]
-
-
-def _amber(found: Frontier) -> Iterator[str]:
-    """From how many icons on a choice has one that passes a soft limit; nothing where none has."""
-    sizes = [str(len(point.icons)) for point in found.points if found.amber(point)]
-    if sizes:
-        yield f"With icons that pass a soft limit of safety (amber): the choices of {', '.join(sizes)}"
 
 
 def _goal(found: Frontier) -> Iterator[str]:

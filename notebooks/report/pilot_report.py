@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,8 +20,6 @@ MOST_PEOPLE, MOST_PAIRS = 20, 8
 POOR, DOUBTFUL = 0.05, 0.1
 LEAST_TRIALS = 20
 """Answers below which a test of fit judges nobody: a single slip decides it."""
-USEFUL_PEOPLE = 5
-"""Participants from which on Student's interval is below three standard errors to either side (of two: 12.7)."""
 LEAST_LABORATORIES = 100
 """Laboratories below which widths of intervals scatter by over 15 %, and other constants are hardly tried."""
 MOST_CONSTANTS = 8
@@ -169,25 +166,13 @@ def _row(score: AnswerScore) -> list[str]:
 
 
 def observed_sentences(data: Answered) -> list[str]:
-    """Bias of the bits, how little two participants say of others, and what the answers do not cover."""
+    """Bias of the bits, and what the answers do not cover."""
     pooled, trials = data.pooled, data.trials
     lines = [
         f"Bits are corrected for bias (Miller–Madow): the plug-in estimate of the pooled answers is "
         f"{pooled.information_bits_plugin:.2f} bits, {pooled.information_bits_bias:.2f} too many by that formula; "
         "with few trials some bias is left."
     ]
-    if len(data.each) == 2:
-        lines.append(
-            "Two participants allow hardly any interval of all (with one degree of freedom, 12.7 standard errors to "
-            f"either side); from {USEFUL_PEOPLE} participants on it becomes useful."
-        )
-    mean = sum(score.proportion_correct for score in data.each) / len(data.each)
-    uneven = len({score.trials for score in data.each}) > 1
-    if uneven and percent(mean) != percent(pooled.proportion_correct):
-        lines.append(
-            f"In the row of all, every answer counts alike, so participants with more trials count more; the mean of "
-            f"the participants is {percent(mean)} correct."
-        )
     if trials.never_presented:
         lines.append(
             f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "

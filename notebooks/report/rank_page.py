@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from .set_report import SetReport
 
 MOST_OVERVIEWS = 24
-FEW, LARGE, SMALL, MAPS = 12, 84, 66, 120
-"""Dots an inch: of overviews, large for few icons, and of the maps of the set."""
+OVERVIEWS, MAPS = 75, 120
+"""Dots an inch of overviews, and of the maps of the set."""
 OVERVIEW_PIXELS = 700
 MOST_PAIRS = 60
 LIMITS = (
@@ -170,7 +170,6 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
         text = str(icon)  # without the head of its file
         yield Code(text[text.find("\nicon ") + 1 :].rstrip("\n"))
         if place < MOST_OVERVIEWS:
-            figure = felt_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), rig.changes)
-            data = small_png(figure, LARGE if len(members) <= FEW else SMALL)
+            data = small_png(felt_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), rig.changes), OVERVIEWS)
             alt = f"temperatures, heat flow, current and sensation of {icon.name}"
             yield Picture("", alt, OVERVIEW_PIXELS, data)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span, seconds
 
-from .blocks import Block, Bullets, Cards, Cell, Grid, Heading, Text, grid, printed_unit
+from .blocks import Block, Bullets, Cell, Facts, Grid, Heading, Text, grid, printed_unit
 from .choices import choice_lines, goal_lines, laboratory
 from .rank_details import (
     caveat,
@@ -23,7 +22,6 @@ from .rank_details import (
 )
 
 if TYPE_CHECKING:
-    from thermicon.perception import Ranking
     from thermicon.perception.ranking.sensitivity import Sensitivity
 
     from .set_report import SetReport
@@ -32,19 +30,9 @@ MOST_ROWS = 8
 """Icons in the table of a ranking without details, which then has about twenty lines at 80 columns."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
-LARGEST_CM2 = 36.0
-"""Contact that is advised at most: four times that of the shipped modules; assumed."""
 MOST_CONSTANTS = 12
 """Constants in the table of what carries the doubt; a file has them all."""
 RANKED = ("icon", "detected", "onset", "channel", "correct", "most confused with")
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """The command that helps a set most: its name, and options behind the file and those of the ranking."""
-
-    command: str
-    options: tuple[str, ...] = ()
 
 
 def rank_report(
@@ -71,7 +59,7 @@ def rank_report(
     return [
         *([Heading(title, 1)] if title else []),
         *([Text("\n".join(goal_lines(result["goal"])))] if result["goal"] else []),
-        Cards(cards(result, where)),
+        Facts(cards(result, where), cards=True),
         Text("\n".join(filter(None, said))),
         *told,
         *([] if details else edits_blocks(result)),
@@ -142,38 +130,6 @@ def rival(confusion: Mapping[str, Any], place: int) -> str:
         return "–"
     share, label = max(others)
     return f"{label} {percent(share)}"
-
-
-def next_step(ranking: Ranking, has_families: bool) -> Step:
-    """Choose the command that helps a set most, from the records of its ranking.
-
-    What cannot be played goes first; then icons that are hardly felt get a contact twice as wide, unless a current is
-    prescribed or that were too large; then come icons that are not distinguished, and at last the export.
-    """
-    from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
-
-    fine = [icon.name for icon in ranking.icons if icon.playable]
-    if not fine:
-        return Step("simulate")
-    weak = [pair for pair in ranking.pairs if pair.d_prime < DISTINGUISHABLE_DPRIME]
-    current = ranking.job.icons[0].context.control == "current"
-    twice_cm2, faint = (
-        2e4 * ranking.job.rig.contact.area_m2,
-        min(i.detected_probability for i in ranking.icons) < BARELY,
-    )
-    if len(fine) == len(ranking.icons) and not current and faint and twice_cm2 <= LARGEST_CM2 + 1e-9:
-        return Step("rank", ("--set", f"contact.area_cm2={twice_cm2:.4g}"))
-    if weak and has_families:
-        return Step("improve")
-    left = set(fine)
-    for pair in sorted(weak, key=lambda pair: pair.d_prime):
-        if {pair.a, pair.b} <= left:
-            left.remove(pair.b)
-    if len(left) == len(ranking.icons):
-        return Step("export", ("--to", "csv", "-o", "drives"))
-    if len(left) >= max(2.0, 0.5 * len(ranking.icons)):
-        return Step("improve", ("--choose", str(len(left))))
-    return Step("improve", ("--edits",))
 
 
 def doubt_report(found: Sensitivity, title: str) -> list[Block]:

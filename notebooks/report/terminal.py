@@ -10,14 +10,12 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from .blocks import Block, Bullets, Cards, Code, Facts, Grid, Heading, Picture, Text
+from .blocks import Block, Bullets, Code, Facts, Grid, Heading, Picture, Text
 
 if TYPE_CHECKING:
     from rich.console import JustifyMethod
     from rich.table import Table
 
-_ABOVE: dict[type, tuple[type, ...]] = {Bullets: (Text, Heading), Text: (Cards,)}
-"""What a block belongs to, so that no empty line stands between."""
 WIDEST = 1000
 VALUE = re.compile(r"(?<=\d) (?=(?:%|°C|°C/s|K|K/s|m?s|mm|cm²|A|J|bits|bits/s)(?![\w/]))")
 """The space between a number and its unit."""
@@ -41,7 +39,9 @@ def lines(blocks: Sequence[Block], width: int, is_terminal: bool = True) -> list
     shown = [block for block in blocks if not isinstance(block, Picture) and block not in (Bullets(()), Text(""))]
     said = list(_block(shown[0], width, is_terminal)) if shown else []
     for before, block in pairwise(shown):
-        joined = isinstance(block, Bullets | Text) and isinstance(before, _ABOVE[type(block)])
+        joined = (isinstance(block, Bullets) and isinstance(before, Text | Heading)) or (
+            isinstance(block, Text) and isinstance(before, Facts)
+        )
         said += [*([] if joined else [""]), *_block(block, width, is_terminal)]
     return said
 
@@ -49,10 +49,9 @@ def lines(blocks: Sequence[Block], width: int, is_terminal: bool = True) -> list
 def _block(block: Block, width: int, is_terminal: bool) -> Iterator[str]:
     if isinstance(block, Grid):
         yield from rendered(_table(block), width, is_terminal)
-    elif isinstance(block, (Facts, Cards)):
-        rows = block.rows if isinstance(block, Facts) else block.cards
-        wide = max(len(name) for name, _ in rows) + 2
-        for name, value in rows:
+    elif isinstance(block, Facts):
+        wide = max(len(name) for name, _ in block.rows) + 2
+        for name, value in block.rows:
             yield from hanging(f"{name.ljust(wide)}{value}", width, wide).splitlines()
     elif isinstance(block, Bullets):
         for point in block.points:

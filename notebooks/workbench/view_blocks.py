@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from thermicon.icons.number_text import number, percent
 
 from ..cli.export import warning_lines
-from ..report.blocks import Bullets, Cards, Cell, Facts, Heading, Text, fragment, grid, shown
+from ..report.blocks import Bullets, Cell, Facts, Heading, Text, fragment, grid, shown
 from ..report.choices import laboratory
 from ..report.gate_words import CAUTION, gate_words, steps_of
 from ..report.rank_details import caveat, edit_text, outside_lines, trouble_lines
@@ -46,7 +46,7 @@ def set_html(ranking: Ranking, result: dict[str, Any]) -> dict[str, str]:
     meaning = "Confusion: share of trials in which the icon of a row is answered with that of a column."
     simulated = f"Limits of this simulation: {limits}; export judges worst cases."
     return {
-        "scores": shown(Text(ALONE, "note") if len(icons) == 1 else Cards(cards(result, where))),
+        "scores": shown(Text(ALONE, "note") if len(icons) == 1 else Facts(cards(result, where), cards=True)),
         "table": shown(icon_table([rows[row["icon"]] for row in ranking.rows()], result)),
         "notes": shown(*(Text(line, "note") for line in (*trouble_lines(icons, {}), *outside_lines(icons)))),
         "caveat": shown(Text(f"{meaning} {caveat(result)}{by} {simulated}", "soft"))

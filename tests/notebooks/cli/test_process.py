@@ -47,14 +47,6 @@ def test_quiet_is_without_notes_and_with_errors(cli: Cli, two: Path, tmp_path: P
     assert cli("simulate", two, "-o", tmp_path / "t.csv").stderr
 
 
-def test_the_shell_completes_rigs_and_sets(process: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("_THERMICON_COMPLETE", "complete_bash")
-    for words, found in (("thermicon rank six", "six-icons"), ("thermicon rank six-icons --rig fo", "forearm")):
-        monkeypatch.setenv("COMP_WORDS", words)
-        monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
-        assert found in process().stdout
-
-
 @posix
 def test_an_interrupt_ends_with_130_and_no_traceback() -> None:
     program = (

@@ -11,12 +11,9 @@ from typing import Any
 import pytest
 
 from tests.builders import few_draws
-from thermicon.circuit import Rig
-from thermicon.icons import load_library
 from thermicon.icons.number_text import percent_span
 from thermicon.notebooks.cli import ranking
 from thermicon.notebooks.cli.options import CrowdOptions, RigOptions
-from thermicon.notebooks.report.rank_report import Step, next_step
 from thermicon.perception.observer.observer import DATA
 
 Cli = Callable[..., Any]
@@ -74,35 +71,16 @@ def test_what_is_asked_first_stands_in_a_few_lines(process: Cli) -> None:
 
 
 @pytest.mark.parametrize(
-    ("d_primes", "detected", "playable", "families", "step"),
+    ("d_prime", "said"),
     [
-        ((2.6, 3.0, 3.0), 0.76, 3, False, Step("export", ("--to", "csv", "-o", "drives"))),
-        ((2.5, 3.0, 3.0), 0.9, 3, False, Step("improve", ("--choose", "2"))),
-        ((1.0, 3.0, 3.0), 0.9, 3, True, Step("improve")),
-        ((1.0, 1.0, 1.0), 0.9, 3, False, Step("improve", ("--edits",))),
-        ((1.0, 3.0, 3.0), 0.74, 3, False, Step("rank", ("--set", "contact.area_cm2=18"))),
-        ((3.0, 3.0, 3.0), 0.9, 2, False, Step("improve", ("--choose", "2"))),
-        ((3.0, 3.0, 3.0), 0.9, 0, False, Step("simulate")),
+        (2.57, "thermicon export 'my icons.cue' --set contact.area_cm2=9 --to csv -o drives"),
+        (2.5, "thermicon improve 'my icons.cue' --set contact.area_cm2=9 --people 7 --edits"),
     ],
 )
-def test_the_next_command_is_chosen_by_what_was_found(
-    d_primes: tuple[float, ...], detected: float, playable: int, families: bool, step: Step
-) -> None:
-    icons = [
-        SimpleNamespace(name=name, playable=place < playable, detected_probability=detected)
-        for place, name in enumerate("abc")
-    ]
-    names = (("a", "b"), ("a", "c"), ("b", "c"))
-    pairs = [SimpleNamespace(a=a, b=b, d_prime=d) for (a, b), d in zip(names, d_primes, strict=True)]
-    job = SimpleNamespace(icons=tuple(load_library("six-icons")), rig=Rig.load("thenar"))
-    found: Any = SimpleNamespace(icons=icons, pairs=pairs, job=job)
-    assert next_step(found, families) == step
-    if step.command == "rank":
-        rig = RigOptions(set=["driver.current_limit_A=1", "contact.area_cm2=9"])
-        said = ranking._following(found, load_library("six-icons"), ["six-icons"], rig, CrowdOptions())
-        assert said == "thermicon rank six-icons --set driver.current_limit_A=1 --set contact.area_cm2=18"
-    job.rig = Rig.load("thenar").with_(**{"contact.area_cm2": 18.1})
-    assert next_step(found, families).command != "rank", "no contact of over 36 cm² is advised"
+def test_the_next_command_is_chosen_by_what_was_found(d_prime: float, said: str) -> None:
+    found: Any = SimpleNamespace(pairs=[SimpleNamespace(d_prime=9.0), SimpleNamespace(d_prime=d_prime)])
+    rig, crowd = RigOptions(set=["contact.area_cm2=9"]), CrowdOptions(people=7)
+    assert ranking._following(found, ["my icons.cue"], rig, crowd) == said
 
 
 def test_files_are_joined_into_one_set(cli: Cli, two: Path, tmp_path: Path) -> None:
@@ -133,7 +111,6 @@ def test_a_set_that_asks_too_much_says_the_worst_in_twenty_lines(cli: Cli, tmp_p
     assert len(lines) <= 20
     assert "burn is NOT SAFE and not reached: " in " ".join(lines)
     assert any(line.endswith(" more notes: thermicon rank --details") for line in lines)
-    assert f"Next: thermicon simulate {path}" in lines
 
 
 def test_a_first_ranking_says_once_on_a_terminal_that_it_compiles(
