@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -14,7 +13,7 @@ from thermicon.icons.number_text import number
 
 from ..files.outputs import STDOUT, check_output
 from ..messages import fail, note, usage
-from .options import IconName, opt, out, pick, read_set, write_text
+from .options import opt, out, read_set, write_text
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -28,7 +27,6 @@ def convert_command(
         Path,
         out("OUT", "The file to write: .cue or .json.", "-o", "--output"),
     ],
-    icon: IconName = None,
     tolerance: Annotated[
         float | None,
         opt("K", "For .csv: largest deviation of the icon from the recording, in K.", name="--tolerance"),
@@ -58,8 +56,6 @@ def convert_command(
     from thermicon.icons import to_json
 
     icons = read(file, given)
-    if icon is not None:
-        icons = only_icon(icons, icon)
     text = to_json(icons) if output.suffix.lower() == ".json" else str(icons)
     write_text(text, output, f": {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
 
@@ -79,11 +75,3 @@ def read(file: str, given: dict[str, Any]) -> IconSet:
     corners = icon.corners()
     note(f"{icon.name}: {len(corners)} corners, {number(corners.duration_s, 2)} s")
     return IconSet("", "", icon.context, Metadata(), (icon,))
-
-
-def only_icon(icons: IconSet, name: str) -> IconSet:
-    """Return the set with one of its icons, or of the members of its families, and with what this one plays."""
-    from thermicon.icons import parse
-
-    (found,) = pick(icons, name)
-    return replace(icons, entries=parse(str(found)).entries)

@@ -114,15 +114,16 @@ def demands_text(gates: Sequence[Named]) -> str:
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):
         parts.append("polarity check before the first play")
     unrested = [name for name, one in every if one.rest_before_first_play_s is None]
-    rested = [(name, one) for name, one in every if one.rest_before_first_play_s]
     if unrested:
         whose = _of(_names(unrested), len(unrested) < len(every))
         parts.append(f"a display at its baseline before it touches the skin{whose}")
-    elif rested:
-        parts.append(f"rest held for {_longest(every)} before the first play")
+    elif any(one.rest_before_first_play_s for _, one in every):
+        longest = _strictest(every, lambda one: one.rest_before_first_play_s or 0.0, max)
+        parts.append(f"rest held for {longest} before the first play")
     limited = [(name, one) for name, one in every if one.zero_current_at_most_s is not None]
     if limited:
-        parts.append(f"zero current in contact for {_strictest(limited, _zero_s)} at most")
+        shortest = _strictest(limited, lambda one: one.zero_current_at_most_s or 0.0)
+        parts.append(f"zero current in contact for {shortest} at most")
     pause_s = max(one.pause_at_least_s or 0.0 for _, one in every)
     return f"{', '.join(parts)}; in any play after {number(pause_s, 1)} s of pause or more"
 
@@ -145,18 +146,12 @@ def _recovery_text(repeated: Repeated) -> str:
     return "more than 10 min" if repeated.recovery_s is None else f"{number(repeated.recovery_s, 1)} s"
 
 
-def _strictest(every: Sequence[tuple[str, Demands]], seconds: Callable[[Demands], float]) -> str:
-    name, least = min(((name, seconds(one)) for name, one in every), key=lambda each: each[1])
-    return f"{least:g} s" + _of(name, len({seconds(one) for _, one in every}) > 1)
-
-
-def _longest(every: Sequence[tuple[str, Demands]]) -> str:
-    name, most = max(((name, one.rest_before_first_play_s or 0.0) for name, one in every), key=lambda each: each[1])
-    return f"{most:g} s" + _of(name, len({one.rest_before_first_play_s for _, one in every}) > 1)
-
-
-def _zero_s(one: Demands) -> float:
-    return one.zero_current_at_most_s or 0.0
+def _strictest(
+    every: Sequence[tuple[str, Demands]], seconds: Callable[[Demands], float], strictest: Callable[..., float] = min
+) -> str:
+    wanted = [seconds(one) for _, one in every]
+    most = strictest(wanted)
+    return f"{most:g} s" + _of(every[wanted.index(most)][0], len(set(wanted)) > 1)
 
 
 def _of(name: str, needed: bool) -> str:

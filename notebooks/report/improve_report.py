@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading, Text, grid
-from .choices import NAMES, goal_lines, goal_value, laboratory
+from .choices import NAMES, goal_lines, laboratory
 from .rank_details import trouble_lines
 from .rank_report import BARELY
 
@@ -119,7 +119,7 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
 
 
 def _scores(found: SearchResult, before: SetReport, after: SetReport) -> Iterator[tuple[str, str, str]]:
-    """Rows of scores; of shares of people that the goal asks for, what it judges."""
+    """Rows of scores."""
     a, b, pair = found.before, found.after, (before.ranking, after.ranking)
     yield "worst pair, d′", number(a.d_prime), number(b.d_prime)
     yield "proportion correct", percent(a.proportion_correct), percent(b.proportion_correct)
@@ -130,11 +130,6 @@ def _scores(found: SearchResult, before: SetReport, after: SetReport) -> Iterato
     if len(intervals) == len(pair):
         one, other = (percent_span(*each.proportion_correct) for each in intervals)
         yield f"  {laboratory(pair[1].observer, pair[1].own_laboratory)} (95 %)", one, other
-    if before.goal is not None and after.goal is not None:
-        for parts in zip(before.goal.parts, after.goal.parts, strict=True):
-            if (people := parts[0].part.people) is not None:
-                one, other = (goal_value(part.to_dict())[0] for part in parts)
-                yield f"  goal: {parts[0].part.quantity} for {100.0 * people:g} % of people", one, other
     yield "information, bits", f"{a.information_bits:.2f}", f"{b.information_bits:.2f}"
     yield "information rate, bits/s", f"{a.bits_per_s:.2f}", f"{b.bits_per_s:.2f}"
     yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)

@@ -25,19 +25,8 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_fit_prints_parameters_and_writes_the_rig_and_the_figure(cli: Cli, log: Path, tmp_path: Path) -> None:
     rig, figure = tmp_path / "mine.toml", tmp_path / "fit.png"
-    said = cli.good(
-        "fit",
-        log,
-        "--free",
-        f"{CONTACT},{SEEBECK}",
-        "--free",
-        OHM,
-        "-o",
-        rig,
-        "--figure",
-        figure,
-        *RATE,
-    )
+    keys = ("--free", f"{CONTACT},{SEEBECK}", "--free", OHM)
+    said = cli.good("fit", log, *keys, "-o", rig, "--figure", figure, *RATE)
     lines = said.stdout.splitlines()
     assert lines[0].split() == ["key", "fitted", "95", "%", "interval", "±"]
     assert [line.split()[0] for line in lines[2:5]] == [CONTACT, SEEBECK, OHM]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -90,7 +89,6 @@ def test_search_says_what_a_goal_lacks(cli: Cli, families: Path) -> None:
     options = ("--evaluations", 20, "--people", 6, "--intervals", 8)
     said = cli.good("improve", families, *options, "--goal", "correct >= 99.9 % for 95 % of people, time <= 60 s")
     words = " ".join(said.stdout.split())
-    assert re.search(r"goal: correct for 95 % of people \d+\.\d % \d+\.\d %", words)
     for part in (
         *("a new laboratory (95 %)", "✗ correct >= 99.9 % for 95 % of people: ", "✓ time <= 60 s: "),
         *("Not reached by this search",),
