@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
-TABLES = (".csv", ".parquet")
+TABLES = (".csv",)
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
-HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or .parquet"
+HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv"
 
 APPLIES = {
     "--file": (("rig",), "belongs to two rigs; two sets are A and B"),
@@ -52,7 +52,7 @@ def compare_command(
     """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
-    .csv or .parquet files with time_s and columns of a trace. Of two sets, the icons with the same name are compared;
+    .csv files with time_s and columns of a trace. Of two sets, the icons with the same name are compared;
     rank predicts how well each is identified.
     """
     kind, both = kind_of_both(first, second), (first, second)
