@@ -2,6 +2,7 @@
 from .observer.observer import Observer as Observer
 from .observer.people import draw_people as draw_people
 from .sensation.percept import perceive as perceive, Percept as Percept
+from .experiments.measure import Condition as Condition, measure as measure
 from .identification.confusion import confuse as confuse, Confusion as Confusion
 from .identification.measures import information_bits as information_bits
 from .identification.task import Task as Task

@@ -58,10 +58,34 @@ DRAWS, LEAST_DRAWS = 100, 2
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """What was measured, and the ramp of the display it was measured with.
+    """What was measured, and the ramp of the display it was measured with; changes and rates are without sign.
 
-    `size_K` is the change that was timed or rated, and where a ramp of limits ends; None for forced choice and yes/no.
-    Changes and rates are without sign.
+    Parameters
+    ----------
+    kind
+        ``threshold``, ``reaction_time`` or ``rating``.
+    method
+        ``forced_choice``, ``yes_no`` or ``limits``; ``choice`` or ``simple``; ``magnitude``.
+    channel
+        ``cold`` or ``warm``.
+    baseline_C
+        Where the ramp starts, °C.
+    size_K
+        Change that was timed or rated, and where a ramp of limits ends, K; None for forced choice and yes/no.
+    rate_K_per_s
+        Rate of the ramp, K/s.
+    hold_s
+        How long its end is held, s.
+
+    Raises
+    ------
+    ValueError
+        For a method of another kind, a rate of 0, and a size that is missing.
+
+    Examples
+    --------
+    >>> Condition("threshold", "limits", "cold", 32.0, 12.0, 1.0, 0.0).label
+    'cold, limits, 1 K/s'
     """
 
     kind: Kind
