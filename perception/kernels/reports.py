@@ -26,7 +26,6 @@ from .passage import (
     Z_MIDDLE,
     Z_STEP,
     between,
-    cumulative,
     looked_up,
 )  # fmt: skip
 
@@ -37,7 +36,7 @@ COLD, WARM = range(2)
 
 def _report(
     cold: Any, warm: Any, dt: float, criterion: Any, tau: float, a: float, raised: Any, late: Any, decision: Any,
-    corrected: bool, every: int, probability: Any, reported: Any, cold_share: Any,
+    every: int, probability: Any, reported: Any, cold_share: Any,
 ) -> None:  # fmt: skip
     """Fill the `probability` (rows,) of a report at all, of one by each time (rows, times), and the share by cold.
 
@@ -53,14 +52,14 @@ def _report(
     share = 1.0 / raised.size
     for row in range(cold.shape[0]):
         # Between these times something changes; before them nothing has, and after them all stays as it is.
-        first, last = (times, 0) if corrected else (0, times)
+        first, last = times, 0
         for channel in range(2):
             psi = cold[row] if channel == COLD else warm[row]
             begin[channel], end[channel] = changing(psi)
             own, delay = risen[channel], late[row, channel] / dt
             for t in range(samples):
                 own[t] = expm1(psi[t] / a)
-            if corrected and begin[channel] < samples:
+            if begin[channel] < samples:
                 first = min(first, int((begin[channel] - 1 + delay) / every))
                 last = max(last, int((end[channel] + delay) / every) + 2)
         last = min(last, times)
@@ -73,7 +72,7 @@ def _report(
                     continue  # without change, all gains give the same
                 survive(
                     risen[channel], raised[gain], a, begin[channel], end[channel], dt, criterion[row, channel], tau,
-                    corrected, room, logs[channel],
+                    room, logs[channel],
                 )  # fmt: skip
                 delayed(logs[channel], every, late[row, channel] / dt, passed[channel, 1:])
             unreported += share * math.exp(logs[COLD, samples - 1] + logs[WARM, samples - 1])
@@ -114,21 +113,17 @@ def _changing(psi: Any) -> tuple[int, int]:
 
 def _survive(
     risen: Any, raised: float, a: float, begin: int, end: int, dt: float, criterion: float, tau: float,
-    corrected: bool, room: Any, log_left: Any,
+    room: Any, log_left: Any,
 ) -> None:  # fmt: skip
     """Fill the log probability (n_time,) that the change of a sensation from its first sample has not passed yet.
 
     `risen` (n_time,) is e^(ψ/a) − 1 of a sensation that changes from the sample `begin` to `end`, and `raised` how much
-    larger its drive is. Corrected, it is relative to that of no change at all: the crossings of noise alone are left
-    out. What comes after a report is certain is not computed.
+    larger its drive is. It is relative to that of no change at all: the crossings of noise alone are left out. What
+    comes after a report is certain is not computed.
     """
     silent = RISE[Z_MIDDLE] / tau * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
-    spared = silent if corrected else 0.0
-    left, at_start = 0.0 if corrected else math.log(cumulative(criterion)), a * log1p(raised * risen[0])
-    log_left[0] = left
-    for t in range(1, begin):
-        left -= dt * (silent - spared)
-        log_left[t] = left
+    left, at_start = 0.0, a * log1p(raised * risen[0])
+    log_left[:begin] = left
     psi, fall, last = room[0], room[1], 0.0
     for start in range(begin, end, AT_ONCE):
         count = min(AT_ONCE, end - start)
@@ -142,7 +137,7 @@ def _survive(
         for i in range(count):
             twice = now[i] + before[i]
             rate = fall[i] / tau * between(MILLS, (criterion - 0.5 * twice - GAP_FROM) / GAP_STEP)
-            fall[i] = dt * ((rate if twice > 0.0 else silent) - spared)
+            fall[i] = dt * ((rate if twice > 0.0 else silent) - silent)
         last = psi[count]
         for i in range(count):
             left -= fall[i]
@@ -150,9 +145,7 @@ def _survive(
             if left < CERTAIN:
                 log_left[start + i :] = left
                 return
-    for t in range(end, log_left.size):
-        left -= dt * (silent - spared)
-        log_left[t] = left
+    log_left[end:] = left
 
 
 def _delayed(course: Any, every: int, delay: float, found: Any) -> None:

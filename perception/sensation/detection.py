@@ -24,50 +24,6 @@ from ..kernels.parallel import over_rows
 from ..observer.observer import CHANNELS, Channel, Observer
 
 
-def report_courses(
-    psi_cold: ArrayLike,
-    psi_warm: ArrayLike,
-    dt_s: float,
-    observer: Observer,
-    conduction_s: tuple[ArrayLike, ArrayLike],
-    decision_s: ArrayLike,
-    criterion: tuple[ArrayLike, ArrayLike],
-    *,
-    times: int,
-    corrected: bool,
-    every: int = 1,
-) -> tuple[Array, Array, Array]:
-    """Probability (...,) of a report, of one by each of so many times (..., times), and cold's share of it.
-
-    Sensations have the shape (..., n_time). `conduction_s` (cold, warm), `decision_s` in s and `criterion` (cold,
-    warm), in multiples of the observer's, are one number or one for each leading index. Times lie `every` samples
-    apart. Corrected, reports of noise alone are left out. Without times (0) only the first is computed.
-    """
-    from ..kernels.reports import report
-
-    (cold, shape), (warm, warm_shape) = as_rows(psi_cold), as_rows(psi_warm)
-    if shape != warm_shape:
-        raise ValueError(f"cold and warm sensation differ in shape: {shape} and {warm_shape}")
-    rows, lead = cold.shape[0], shape[:-1]
-
-    def both(values: tuple[ArrayLike, ArrayLike]) -> Array:
-        return np.stack([np.broadcast_to(np.asarray(own, dtype=np.float64), lead).reshape(-1) for own in values], -1)
-
-    criteria, late = observer.criterion * both(criterion), both(conduction_s)
-    decisions = both((decision_s, 0.0))[:, :1] * np.exp(quarters(observer.decision_noise))
-    raised = np.exp(observer.p * quarters(observer.gain_noise))
-    probability, reported, share = np.empty(rows), np.empty((rows, times)), np.zeros(rows)
-
-    def work(part: slice) -> None:
-        report(
-            cold[part], warm[part], dt_s, criteria[part], observer.noise_correlation_s, observer.a, raised,
-            late[part], decisions[part], corrected, every, probability[part], reported[part], share[part],
-        )  # fmt: skip
-
-    over_rows(work, rows, cold.size)
-    return probability.reshape(lead), reported.reshape(*lead, times), share.reshape(lead)
-
-
 def time_of(given: Array, time_s: Array, probability: float) -> float:
     """When (s) the probability (n_time,) of a report first reaches a value; inf where it never does."""
     reached = given >= probability
@@ -168,25 +124,36 @@ def detect(
     presentation; the window of a crossing is that of the sensations. The criteria are multiples of the observer's; the
     four keywords are one number or one for each leading index.
     """
+    from ..kernels.reports import report
+
     path = np.asarray(observer.path_hand_m if path_m is None else path_m, dtype=np.float64)
     conduction = observer.delay_s("cold", path), observer.delay_s("warm", path)
     decision = observer.decision_s if decision_s is None else decision_s
+    (cold, shape), (warm, warm_shape) = as_rows(psi_cold), as_rows(psi_warm)
+    if shape != warm_shape:
+        raise ValueError(f"cold and warm sensation differ in shape: {shape} and {warm_shape}")
+    rows, lead = cold.shape[0], shape[:-1]
     step = report_step(dt_s)
     every = round(step / dt_s)
-    count = math.ceil((np.shape(psi_cold)[-1] + LATEST_S / dt_s) / every) if times else 0
-    probability, reported, share = report_courses(
-        psi_cold,
-        psi_warm,
-        dt_s,
-        observer,
-        conduction,
-        decision,
-        (criterion_cold, criterion_warm),
-        times=count,
-        corrected=True,
-        every=every,
-    )
-    return Detection(probability, share, reported if times else None, step)
+    count = math.ceil((shape[-1] + LATEST_S / dt_s) / every) if times else 0
+
+    def each_row(*values: ArrayLike) -> Array:
+        return np.stack([np.broadcast_to(np.asarray(own, dtype=np.float64), lead).reshape(-1) for own in values], -1)
+
+    criteria, late = observer.criterion * each_row(criterion_cold, criterion_warm), each_row(*conduction)
+    decisions = each_row(decision) * np.exp(quarters(observer.decision_noise))
+    raised = np.exp(observer.p * quarters(observer.gain_noise))
+    probability, reported, share = np.empty(rows), np.empty((rows, count)), np.zeros(rows)
+
+    def work(part: slice) -> None:
+        report(
+            cold[part], warm[part], dt_s, criteria[part], observer.noise_correlation_s, observer.a, raised,
+            late[part], decisions[part], every, probability[part], reported[part], share[part],
+        )  # fmt: skip
+
+    over_rows(work, rows, cold.size)
+    courses = reported.reshape(*lead, count) if times else None
+    return Detection(probability.reshape(lead), share.reshape(lead), courses, step)
 
 
 def channel_name(index: int) -> Channel | None:

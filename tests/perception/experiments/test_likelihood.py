@@ -5,12 +5,13 @@ What is compared is one median person, young, of a laboratory without an offset.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from tests.perception.timed import ResponseTimes, response_times
+from tests.perception.survival import answered
 from thermicon.circuit import Rig
 from thermicon.perception import Observer
 from thermicon.perception.evidence.results import load_constants
@@ -20,7 +21,7 @@ from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.published import PEAKS_C, STRIP_CM2, TWO_STRIPS_CM2, Predictions
 from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
-from thermicon.perception.sensation.detection import detect
+from thermicon.perception.sensation.detection import detect, time_of
 from thermicon.perception.sensation.sensation import receptor_drive, sensitivity
 
 NOBODY_DIFFERS = (
@@ -72,13 +73,12 @@ def played(on: Bench, channel: Channel, size_K: float, rate_K_per_s: float, hold
 
 def answers(
     cold: np.ndarray, warm: np.ndarray, dt_s: float, person: Observer, caution: float = 1.0, choice_s: float = 0.0
-) -> ResponseTimes:
+) -> Callable[[float], float]:
+    """The time by which a share of trials is answered."""
     path = person.path_m("forearm")
-    late = person.delay_s("cold", path), person.delay_s("warm", path)
-    decision_s = person.decision_s + choice_s
-    return response_times(
-        cold, warm, dt_s, person, conduction_s=late, decision_s=decision_s, criterion=(caution, caution)
-    )
+    late = float(person.delay_s("cold", path)), float(person.delay_s("warm", path))
+    time, given = answered(cold, warm, dt_s, person, late, person.decision_s + choice_s, caution)
+    return lambda share: time_of(given, time, share)
 
 
 def multiple(stimulus: Stimulus, channel: Channel, person: Observer) -> float:
@@ -104,8 +104,8 @@ def test_reaction_times(channel: Channel, predicted: Predictions, person: Observ
     medians = []
     for strips in (1, 5):
         stimulus = played(bench(strips * STRIP_CM2, 31.0), channel, size, rate, 2.0)
-        cold, warm = (psi[:, 0] for psi in stimulus.felt(person))
-        medians.append(answers(cold, warm, stimulus.dt_s, person, choice_s=person.choice_s).quantile()[0])
+        cold, warm = (psi[0, 0] for psi in stimulus.felt(person))
+        medians.append(answers(cold, warm, stimulus.dt_s, person, choice_s=person.choice_s)(0.5))
     one, five = medians
     assert five == pytest.approx(math.exp(predicted["E1", "rt_gm_5strip_onset_clock", channel]), rel=0.01)
     by_area = math.log(five / one) / math.log(5.0)
@@ -128,11 +128,11 @@ def test_limits(channel: Channel, predicted: Predictions, person: Observer) -> N
     """E3: the geometric mean within 3 %, scatter of trials within 15 %: 500 parts of their distribution, 16 there."""
     on, mean = bench(5 * STRIP_CM2, 32.0), math.exp(predicted["E3", "threshold_gm", channel])
     stimulus = played(on, channel, 12.0, 1.0, 2.0)
-    cold, warm = (psi[:, 0] for psi in stimulus.felt(person))
+    cold, warm = (psi[0, 0] for psi in stimulus.felt(person))
     found = answers(cold, warm, stimulus.dt_s, person)
     # At 1 K/s the change at a press is its time.
-    assert found.quantile()[0] == pytest.approx(mean, rel=0.03)
-    pressed = np.array([found.quantile((k + 0.5) / 500)[0] for k in range(500)])
+    assert found(0.5) == pytest.approx(mean, rel=0.03)
+    pressed = np.array([found((k + 0.5) / 500) for k in range(500)])
     logs = np.log10(pressed[pressed > experiments.ANTICIPATION_K])
     assert 10.0 ** logs.mean() == pytest.approx(mean, rel=0.03)
     assert logs.std() == pytest.approx(predicted["E3", "within_sd_log10_median_person", channel], rel=0.15)
@@ -165,14 +165,14 @@ def test_cooling_after_warmth(predicted: Predictions, person: Observer) -> None:
             f"hold for {start_s - 2.0 * rise / 2.5 - 0.75:.9g} s; cool by 14 K at 1 K/s"
         )
         stimulus = on.play([course], start_s + 15.0)
-        cold, warm = (psi[:, 0] for psi in stimulus.felt(person))
+        cold, warm = (psi[0, 0] for psi in stimulus.felt(person))
         start = round(start_s / stimulus.dt_s)
-        falling = cold[:, start:].copy()
-        falling[:, 0] = 0.0  # what the pulse leaves of cold when the fall begins is part of it
+        falling = cold[start:].copy()
+        falling[0] = 0.0  # what the pulse leaves of cold when the fall begins is part of it
         found = answers(falling, np.zeros_like(falling), stimulus.dt_s, person, VALUES["caution after a pre-pulse"])
         more = 0.0 if level == 1 else predicted["E5", f"ratio_to_lowest_peak{level}_age_lt36", "cold"]
-        assert found.quantile()[0] == pytest.approx(math.exp(lowest + more), rel=0.03)
-        wrong, lingering = VALUES["wrong labels"], VALUES["warmth that lingers"] * float(warm[:, :start].max())
+        assert found(0.5) == pytest.approx(math.exp(lowest + more), rel=0.03)
+        wrong, lingering = VALUES["wrong labels"], VALUES["warmth that lingers"] * float(warm[:start].max())
         share = predicted["E5", f"share_called_warm_peak{level}_age_lt36", "cold"]
         assert wrong + (0.5 - wrong) * -math.expm1(-lingering) == pytest.approx(share, abs=0.001)
 

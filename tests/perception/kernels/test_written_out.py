@@ -19,7 +19,6 @@ from thermicon.perception.kernels.passage import (
     Z_FROM,
     Z_MIDDLE,
     Z_STEP,
-    cumulative,
     looked_up,
 )
 
@@ -42,11 +41,11 @@ def course(n: int, kind: int, chance: np.random.Generator) -> Array:
     return psi
 
 
-def survived(psi: Array, raised: float, criterion: float, corrected: bool) -> Array:
+def survived(psi: Array, raised: float, criterion: float) -> Array:
     change = A * np.log1p(raised * np.expm1(psi / A))
     change = np.abs(change - change[0])
     silent = RISE[Z_MIDDLE] / TAU * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
-    left = 0.0 if corrected else math.log(cumulative(criterion))
+    left = 0.0
     logs = [left]
     for before, now in zip(change[:-1].tolist(), change[1:].tolist(), strict=True):
         z = (now - before) * TAU / DT
@@ -54,7 +53,7 @@ def survived(psi: Array, raised: float, criterion: float, corrected: bool) -> Ar
         rise = max(looked_up(RISE, z, Z_FROM, Z_STEP), z)
         rate = rise / TAU * looked_up(MILLS, gap, GAP_FROM, GAP_STEP) if now + before > 0.0 else silent
         if left >= CERTAIN:
-            left -= DT * (rate - silent * corrected)
+            left -= DT * (rate - silent)
         logs.append(left)
     return np.array(logs)
 
@@ -65,13 +64,12 @@ def later(values: Array, every: int, delay: float, times: int) -> Array:
 
 
 def reported(
-    psi: list[Array], criterion: Array, raised: Array, late: Array, decision: Array, corrected: bool, every: int,
-    times: int,
+    psi: list[Array], criterion: Array, raised: Array, late: Array, decision: Array, every: int, times: int
 ) -> tuple[float, Array, float]:  # fmt: skip
     """Probability of a report, of one by each time, and those by cold, of one row."""
     answered, by_cold, missed = np.zeros(times), 0.0, 0.0
     for size in raised.tolist():
-        logs = [survived(psi[k], size, criterion[k], corrected) for k in range(2)]
+        logs = [survived(psi[k], size, criterion[k]) for k in range(2)]
         missed += math.exp(logs[0][-1] + logs[1][-1]) / raised.size
         passed = [np.concatenate([[0.0], later(logs[k], every, late[k] / DT, times)]) for k in range(2)]
         left = np.exp(passed[0] + passed[1])
@@ -88,8 +86,7 @@ def reported(
 
 @pytest.mark.parametrize("samples", [2, 3, 64, 65, 66, 130])
 @pytest.mark.parametrize("every", [1, 3])
-@pytest.mark.parametrize("corrected", [True, False])
-def test_reports(samples: int, every: int, corrected: bool) -> None:
+def test_reports(samples: int, every: int) -> None:
     chance = np.random.default_rng(samples)
     # As many times as it takes, one, and fewer than the sensations go on for.
     for times in (samples // every + 20, 1, max(2, samples // every // 2)):
@@ -99,13 +96,9 @@ def test_reports(samples: int, every: int, corrected: bool) -> None:
         late = chance.choice([0.0, 0.005, 0.01, 0.123, 3.0], (rows, 2))
         decision = chance.choice([0.0, 0.2, 0.333, 9.0], (rows, 3))
         probability, given, share = np.full(rows, np.nan), np.full((rows, times), np.nan), np.full(rows, np.nan)
-        reports.report(
-            cold, warm, DT, criterion, TAU, A, raised, late, decision, corrected, every, probability, given, share
-        )
+        reports.report(cold, warm, DT, criterion, TAU, A, raised, late, decision, every, probability, given, share)
         for row in range(rows):
-            expected = reported(
-                [cold[row], warm[row]], criterion[row], raised, late[row], decision[row], corrected, every, times
-            )
+            expected = reported([cold[row], warm[row]], criterion[row], raised, late[row], decision[row], every, times)
             assert probability[row] == pytest.approx(expected[0], abs=1e-6)
             assert given[row] == pytest.approx(expected[1], abs=1e-6)
             if expected[1][-1] > 1e-4:
