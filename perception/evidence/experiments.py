@@ -219,7 +219,7 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
         size = measured(setting, _threshold("yes_no", channel, hold_s=HOLD_S), keen)
         start = round(size + HOLD_S, 2)
         played = _thenar("skin").play([ramp(channel, size, 1.0, HOLD_S, back=True)], start + HOLD_S + 2.0)
-        cold, warm = (psi[0, 0] for psi in played.felt(asked))
+        cold, warm = (psi[0] for psi in played.felt(asked))
         after = (warm if channel == "cold" else cold)[round(start / played.dt_s) :]
         return float(detect(after, np.zeros_like(after), played.dt_s, asked).probability)
 

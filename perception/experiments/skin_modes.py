@@ -96,19 +96,18 @@ class SkinModes:
 
 
 def course_of(ramp_response: Array, baseline: float, corners: Sequence[Corner], dt_s: float, rows: int) -> Array:
-    """A course (rows,) from a baseline by corners of the display, for skin with a `ramp_response` of `rows` or more."""
-    from ..kernels import kernels
+    """A course (rows,) from a baseline by corners of the display, for skin with a `ramp_response` of `rows` or more.
 
-    starts, slopes, slope, start = [], [], 0.0, (0.0, 0.0)
+    It is a sum of ramps, one from every corner on, by how much the slope changes there.
+    """
+    course, row, known = np.full(rows, baseline), np.arange(rows), np.arange(ramp_response.size)
+    slope, start = 0.0, (0.0, 0.0)
     for corner in (*corners, None):
         rate = 0.0 if corner is None else (corner[1] - start[1]) / (corner[0] - start[0])
         if rate != slope:
-            starts.append(start[0])
-            slopes.append(rate - slope)
+            course += (rate - slope) * np.interp(row - start[0] / dt_s, known, ramp_response)
         if corner is not None:
             slope, start = rate, corner
-    course = np.full(rows, baseline)
-    kernels.superpose(ramp_response, dt_s, np.array(starts), np.array(slopes), course)
     return course
 
 

@@ -3,7 +3,7 @@
 Every kernel runs over rows independently, so that splitting rows over threads changes no bit.
 
 A unit ramp of the surface from time 0 on gives s·t − Σ_m w_m·(1 − e^(−λ_m·t))/λ_m at a depth; on a uniform clock each
-exponential is the last one times e^(−λ_m·dt). A course with corners is a sum of ramps that start later.
+exponential is the last one times e^(−λ_m·dt).
 
 For a channel with sign s (−1 cold, +1 warm), receptor temperature T, limit L and softness δ:
 
@@ -81,18 +81,6 @@ def _ramp_response(steady: float, weight: Any, rate: Any, dt: float, response: A
         response[t] = steady * dt * t - lost
 
 
-def _superpose(unit: Any, dt: float, starts: Any, slopes: Any, course: Any) -> None:
-    """Add to a course (n_time,) ramps that start at `starts` and change the slope by `slopes`, both (n,)."""
-    for k in range(starts.size):
-        first = max(math.ceil(starts[k] / dt - 1e-9), 0)
-        for t in range(first, course.size):
-            place = t - starts[k] / dt
-            whole = max(int(place), 0)
-            part = place - whole
-            later = unit[min(whole + 1, unit.size - 1)]
-            course[t] += slopes[k] * ((1.0 - part) * unit[whole] + part * later)
-
-
 DRAWS_AT_ONCE = 512
 
 
@@ -142,10 +130,8 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
 
 
 Loop = Callable[..., None]
-_compile: Any = kernel(nogil=True)
 _contracted: Any = kernel(nogil=True, fastmath={"reassoc", "nsz", "contract"})
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
 sensation: Loop = vectorised(_sensation)
 nearest: Loop = _vector(_nearest)
 ramp_response: Loop = _contracted(_ramp_response)
-superpose: Loop = _compile(_superpose)

@@ -15,12 +15,9 @@ import numpy as np
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, Variable, receptor_input, sign_of
 from ..observer.observer import Observer
-from .percept import uniform_clock
-from .sensation import receptor_drive, sensation
+from .percept import perceive_many, uniform_clock
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from thermicon.circuit import Rig, Trace
 
 Surface = Literal["skin", "display"]
@@ -58,24 +55,10 @@ class Stimulus:
         """Temperature of the face of the skin or of the display, °C, shape (k, rows)."""
         return np.stack([getattr(trace, f"{surface}_C")[: self.rows] for trace in self.traces])
 
-    def felt(
-        self, observer: Observer, threshold_cold: ArrayLike = 1.0, threshold_warm: ArrayLike = 1.0
-    ) -> tuple[Array, Array]:
-        """Sensations (cold, warm) of n persons, shape (n, k, rows), by their multipliers of the thresholds (n,)."""
-        own = [np.atleast_1d(np.asarray(one, dtype=np.float64)) for one in (threshold_cold, threshold_warm)]
-        found = []
-        for channel, multiple in zip(CHANNELS, own, strict=True):
-            drive = receptor_drive(self.received(observer.variable, channel), self.dt_s, channel, observer)
-            every = np.broadcast_to(drive, (multiple.size, *drive.shape))
-            found.append(
-                sensation(every, channel, observer, area_m2=self.area_m2, site=self.site, threshold=multiple[:, None])
-            )
-        return found[0], found[1]
-
-    def __repr__(self) -> str:
-        missed = sum(not trace.reachable for trace in self.traces)
-        said = f", {missed} not reached" if missed else ""
-        return f"Stimulus({len(self.traces)} on {self.traces[0].rig_name}, {self.time_s[-1]:.3g} s{said})"
+    def felt(self, observer: Observer) -> tuple[Array, Array]:
+        """Sensations (cold, warm) of the nominal person, shape (k, rows)."""
+        at_cold, at_warm = (self.received(observer.variable, channel) for channel in CHANNELS)
+        return perceive_many(at_cold, at_warm, self.dt_s, observer, area_m2=self.area_m2, site=self.site)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +67,8 @@ class Bench:
 
     >>> from thermicon.circuit import Rig
     >>> bench = Bench(Rig.load("thenar"))
-    >>> bench.play([ramp("warm", 0.2, 1.0, hold_s=2.0)], 3.0)
-    Stimulus(1 on thenar, 3 s)
+    >>> bench.play([ramp("warm", 0.2, 1.0, hold_s=2.0)], 3.0).rows
+    301
     """
 
     rig: Rig
@@ -124,20 +107,13 @@ def ramp(channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float = 0
     return "; ".join(parts)
 
 
-def curve(change_K: Array, step_s: float) -> str:
-    """Course through changes from baseline, one every `step_s`, straight in between; ends where the last one is."""
-    parts, level = [], 0.0
-    for target in np.round(np.asarray(change_K, dtype=np.float64), 6).tolist():
-        moved = target - level
-        if moved == 0.0:
-            parts.append(f"hold for {step_s:.9g} s")
-        else:
-            parts.append(f"{'warm' if moved > 0 else 'cool'} by {abs(moved):.9g} K over {step_s:.9g} s")
-        level = target
-    return "\n".join(parts)
+STEP_S = 0.05
+"""Between two corners of a smooth pulse."""
 
 
-def raised_cosine(channel: Channel, size_K: float, duration_s: float, step_s: float = 0.05) -> str:
-    """Course of one smooth pulse, size·(1 − cos 2πt/T)/2, whose corners lie on the curve every `step_s`."""
-    time = step_s * np.arange(1, round(duration_s / step_s) + 1)
-    return curve(sign_of(channel) * 0.5 * size_K * (1.0 - np.cos(2.0 * np.pi * time / duration_s)), step_s)
+def raised_cosine(channel: Channel, size_K: float, duration_s: float) -> str:
+    """Course of one smooth pulse, size·(1 − cos 2πt/T)/2, whose corners lie on the curve."""
+    time = STEP_S * np.arange(round(duration_s / STEP_S) + 1)
+    levels = sign_of(channel) * 0.5 * size_K * (1.0 - np.cos(2.0 * np.pi * time / duration_s))
+    moved = np.diff(levels.round(6)).tolist()
+    return "\n".join(f"{'warm' if by > 0 else 'cool'} by {abs(by):.9g} K over {STEP_S:g} s" for by in moved)

@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, as_rows
+from ..arrays import Array
 from ..criteria import FELT_FROM
 from ..drawn import Drawn
 from ..observer.channels import CHANNELS, Channel, receptor_input
 from ..observer.observer import Observer
 from .coverage import outside_data
 from .detection import channel_name, detect
-from .sensation import receptor_drive, sense
+from .sensation import receptor_drive, sensation
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
@@ -215,7 +215,7 @@ def perceive_many(
     for channel, received in zip(CHANNELS, (cold_received, warm_received), strict=True):
         psi = receptor_drive(received, dt_s, channel, observer)
         # In place: memory as large as the input is what takes long in a large batch.
-        sense(as_rows(psi)[0], psi, channel, observer, area_m2=area_m2, site=site, threshold=multiples[channel])
+        sensation(psi, channel, observer, area_m2=area_m2, site=site, threshold=multiples[channel], out=psi)
         felt.append(psi)
     return felt[0], felt[1]
 

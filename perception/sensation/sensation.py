@@ -69,33 +69,19 @@ def sensation(
     area_m2: float | None = None,
     site: str | None = None,
     threshold: ArrayLike = 1.0,
+    out: Array | None = None,
 ) -> Array:
     """Sensation ψ in d′ units, of shape (..., n_time) like the drive (`observer.drive_unit`).
 
     `area_m2` is the area of contact (None: the reference area), `site` where on the body (None: the
     thenar); `threshold` multiplies the thresholds of this person, age included, one number or one
-    for each leading index.
+    for each leading index. It is written to `out`, which may be the drive, where that is given.
     """
-    rows, shape = as_rows(drive)
-    psi = np.empty(shape)
-    sense(rows, psi, channel, observer, area_m2=area_m2, site=site, threshold=threshold)
-    return psi
-
-
-def sense(
-    rows: Array,
-    psi: Array,
-    channel: Channel,
-    observer: Observer,
-    *,
-    area_m2: float | None,
-    site: str | None,
-    threshold: ArrayLike,
-) -> None:
-    """Fill `psi` (..., n_time) with the sensation of drives seen as rows; both may be the same memory."""
     from ..kernels import kernels
 
-    shape, felt = psi.shape, psi.reshape(rows.shape)
+    rows, shape = as_rows(drive)
+    psi = np.empty(shape) if out is None else out
+    felt = psi.reshape(rows.shape)
     unit = observer.receptor(channel).threshold_drive / sensitivity(channel, observer, area_m2, site)
     multiples = np.broadcast_to(np.asarray(threshold, dtype=np.float64), shape[:-1])
     scale = np.ascontiguousarray(1.0 / (unit * multiples)).reshape(-1)
@@ -104,6 +90,7 @@ def sense(
         kernels.sensation(rows[part], scale[part], observer.a, observer.p, observer.transducer.b, felt[part])
 
     over_rows(work, rows.shape[0], rows.size)
+    return psi
 
 
 def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, site: str | None = None) -> float:

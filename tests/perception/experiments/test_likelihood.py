@@ -104,7 +104,7 @@ def test_reaction_times(channel: Channel, predicted: Predictions, person: Observ
     medians = []
     for strips in (1, 5):
         stimulus = played(bench(strips * STRIP_CM2, 31.0), channel, size, rate, 2.0)
-        cold, warm = (psi[0, 0] for psi in stimulus.felt(person))
+        cold, warm = (psi[0] for psi in stimulus.felt(person))
         medians.append(answers(cold, warm, stimulus.dt_s, person, choice_s=person.choice_s)(0.5))
     one, five = medians
     assert five == pytest.approx(math.exp(predicted["E1", "rt_gm_5strip_onset_clock", channel]), rel=0.01)
@@ -128,7 +128,7 @@ def test_limits(channel: Channel, predicted: Predictions, person: Observer) -> N
     """E3: the geometric mean within 3 %, scatter of trials within 15 %: 500 parts of their distribution, 16 there."""
     on, mean = bench(5 * STRIP_CM2, 32.0), math.exp(predicted["E3", "threshold_gm", channel])
     stimulus = played(on, channel, 12.0, 1.0, 2.0)
-    cold, warm = (psi[0, 0] for psi in stimulus.felt(person))
+    cold, warm = (psi[0] for psi in stimulus.felt(person))
     found = answers(cold, warm, stimulus.dt_s, person)
     # At 1 K/s the change at a press is its time.
     assert found(0.5) == pytest.approx(mean, rel=0.03)
@@ -146,7 +146,7 @@ def test_yes_no(channel: Channel, predicted: Predictions, person: Observer) -> N
     reported = []
     for size in sizes.tolist():
         stimulus = played(on, channel, size, experiments.DETECTION_K_PER_S, experiments.PLATEAU_S)
-        cold, warm = (psi[0, 0] for psi in stimulus.felt(cautious))
+        cold, warm = (psi[0] for psi in stimulus.felt(cautious))
         reported.append(float(detect(cold, warm, stimulus.dt_s, cautious, times=False).probability))
     own = np.maximum.accumulate(reported) + 1e-9 * np.arange(sizes.size)
     low, half, high = np.exp(np.interp([0.1587, 0.5, 0.8413], own, np.log(sizes)))
@@ -165,7 +165,7 @@ def test_cooling_after_warmth(predicted: Predictions, person: Observer) -> None:
             f"hold for {start_s - 2.0 * rise / 2.5 - 0.75:.9g} s; cool by 14 K at 1 K/s"
         )
         stimulus = on.play([course], start_s + 15.0)
-        cold, warm = (psi[0, 0] for psi in stimulus.felt(person))
+        cold, warm = (psi[0] for psi in stimulus.felt(person))
         start = round(start_s / stimulus.dt_s)
         falling = cold[start:].copy()
         falling[0] = 0.0  # what the pulse leaves of cold when the fall begins is part of it

@@ -46,7 +46,7 @@ def test_heat_flow_fades_in_a_hold_where_temperature_does_not() -> None:
     played = Bench(Rig.load("thenar")).play([ramp("cold", 1.0, 1.0, 5.0)], 6.0)
     left = []
     for variable in ("temperature", "heat flow"):
-        cold = played.felt(Observer.load(variable=variable))[0][0, 0]  # type: ignore[arg-type]
+        cold = played.felt(Observer.load(variable=variable))[0][0]  # type: ignore[arg-type]
         left.append(cold[-1] / cold.max())
     assert left[1] < 0.7 * left[0]
 

@@ -10,7 +10,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.perception import Observer, perceive, rank
 from thermicon.perception.observer.observer import load_thresholds
-from thermicon.perception.sensation.bench import Bench, curve, raised_cosine, ramp
+from thermicon.perception.sensation.bench import Bench, raised_cosine, ramp
 from thermicon.perception.sensation.coverage import load_coverage, outside_data, outside_site
 
 
@@ -34,11 +34,8 @@ def test_what_is_felt_is_what_perceive_says(bench: Bench) -> None:
     person, played = Observer.load(), bench.play([ramp("cold", 0.5, 1.0, 1.0)], 2.0)
     cold, warm = played.felt(person)
     percept = perceive(played.traces[0], person)
-    assert cold[0, 0] == pytest.approx(percept.psi_cold)
-    assert warm[0, 0] == pytest.approx(percept.psi_warm)
-    dull = played.felt(person, [1.0, 2.0], [1.0, 1.0])[0]
-    assert dull.shape == (2, 1, 201)
-    assert dull[1].max() < dull[0].max()
+    assert cold[0] == pytest.approx(percept.psi_cold)
+    assert warm[0] == pytest.approx(percept.psi_warm)
 
 
 def test_a_smooth_pulse_lies_on_its_curve() -> None:
@@ -52,9 +49,6 @@ def test_a_smooth_pulse_lies_on_its_curve() -> None:
 def test_messages(bench: Bench) -> None:
     with pytest.raises(ValueError, match=r"a course of 3 s does not end by 2 s"):
         bench.play([ramp("cold", 1.0, 1.0, 2.0)], 2.0)
-    assert curve(np.array([1.0, 1.0, 0.0]), 0.5) == "warm by 1 K over 0.5 s\nhold for 0.5 s\ncool by 1 K over 0.5 s"
-    said = repr(bench.play([ramp("cold", 20.0, 20.0)], 2.0))
-    assert said == "Stimulus(1 on thenar, 2 s, 1 not reached)"
     wrong: Any = "deep"
     with pytest.raises(ValueError, match=r"prescribed at skin or display, not at 'deep'"):
         Bench(bench.rig, surface=wrong)
