@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from json import dumps
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import check_draws, fail, note, progress_bar, usage
-from ..report.rank_report import doubt_report, rank_report
+from ..report.rank_report import doubt_report, rank_report, rules_report
 from ..report.terminal import show
 from .options import (
     MOST_ICONS,
@@ -34,10 +34,30 @@ from .options import (
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking, Task
+    from thermicon.perception.observer.observer_model import ObserverModel
 
 TRIALS, MOST_WORKERS = 48, 1024
 TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s")}
 """Keys of --task with their limits, those of `thermicon.perception.Task`, repeated here to avoid its imports."""
+
+
+@dataclass(frozen=True)
+class RankedBy(CrowdOptions):
+    """Virtual people with a form of memory, or the rules of the literature, which have no draws."""
+
+    norm: Annotated[
+        Literal["episodes", "naming", "rules"],
+        typer.Option("--norm", "--by", help="How icons are remembered; rules: by the literature's rules, not people."),
+    ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """Arguments of `rank`, whose result has the rules' scores whatever the norm."""
+        return {**super().asked, "norm": "episodes"} if self.norm == "rules" else super().asked
+
+    def draws(self, model: ObserverModel) -> int:
+        """How many draws to use."""
+        return 0 if self.norm == "rules" else super().draws(model)
 
 
 @dataclass(frozen=True)
@@ -80,7 +100,7 @@ def _read_task(text: str) -> tuple[str, float]:
 
 def rank_command(
     files: FileNames,
-    crowd: CrowdOptions,
+    crowd: RankedBy,
     task: TaskOptions,
     rig: RigOptions,
     figure: FigureOptions,
@@ -114,6 +134,8 @@ def rank_command(
         check_output(json, (".json",), "JSON")
     check_separate(files, [json, report, figure.figure])
     here = read_workers(workers)
+    if crowd.norm == "rules" and (doubt or report is not None):
+        raise usage("is about predictions for people: leave out --by rules", "--doubt" if doubt else "--report")
     if doubt:
         given = {"--task": task.task, "--report": report, "--workers": workers, "--details": details}
         for option, value in {**given, "--tracking": crowd.tracking}.items():
@@ -151,6 +173,8 @@ def rank_command(
         write_text(page(found, icons, where, command, near), report)
     if json == STDOUT:
         typer.echo(found.to_json())
+    elif crowd.norm == "rules":
+        show(rules_report(found.ranking, icons.title))
     else:
         show(rank_report(found, icons.title, near, _following(found.ranking, files, rig, crowd), details))
 

@@ -123,12 +123,13 @@ def _pairs(result: dict[str, Any]) -> Iterator[Block]:
 
 
 def view_parts(ranking: Ranking) -> Iterator[Block]:
-    """Yield heat maps and perceptual map; nothing for one icon."""
+    """Yield heat maps, perceptual map and the worst pair's ROC; nothing for one icon."""
     if len(ranking.icons) < 2:
         return
     from thermicon.perception.identification.map import map_of
     from thermicon.perception.plots.draw_heat import plot_confusion, plot_distance
     from thermicon.perception.plots.draw_map import plot_map
+    from thermicon.perception.plots.plot import plot_roc
 
     yield Heading("Pictures of the set")
     confused = "Rows: the icon presented. Columns: the response. The diagonal is correct. Similar icons are adjacent."
@@ -142,6 +143,10 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     if found.covariance is not None:
         bent += f" Each ellipse holds half of {found.people} people, whose maps were rotated and shifted onto this one."
     yield _drawn(plot_map(found), "the icons as points of a plane", bent)
+    worst = next((pair for pair in ranking.pairs if (pair.a, pair.b) == ranking.worst_pair), None)
+    if worst is not None:
+        roc = "Hits against false alarms for the pair that is confused most often, whatever the criterion."
+        yield _drawn(plot_roc(worst), "receiver operating characteristic of the worst pair", roc)
 
 
 def _drawn(axes: Axes, said: str, caption: str) -> Picture:

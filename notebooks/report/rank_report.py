@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -22,11 +23,12 @@ from .rank_details import (
 )
 
 if TYPE_CHECKING:
+    from thermicon.perception import Ranking
     from thermicon.perception.ranking.sensitivity import Sensitivity
 
     from .set_report import SetReport
 
-MOST_ROWS = 8
+MOST_ROWS = 5
 """Icons in the table of a ranking without details, which then has about twenty lines at 80 columns."""
 BARELY = 0.75
 """An icon that fewer trials than these report is named: a good score of the set does not help who does not feel it."""
@@ -67,6 +69,42 @@ def rank_report(
         icon_table(icons, result, None if details else MOST_ROWS),
         *(detail_blocks(result) if details else []),
         Text(caveat(result) if details else f"{short} More: {'rank ' * (not following)}--details"),
+    ]
+
+
+def rules_report(ranking: Ranking, title: str) -> list[Block]:
+    """Report a set by rules of thumb alone: one row per icon, the best first, and what each rule found."""
+
+    def margin(value: float | None) -> float:
+        return math.inf if value is None else value
+
+    numbers = ("score", "rules passed", "distinct pairs", "margin")
+    rows = [
+        (
+            row["icon"],
+            percent(row["rules_score"]),
+            f"{row['rules_passed']} of {row['rules']}",
+            f"{row['pairs_distinguishable_by_rules']} of {len(ranking.icons) - 1}",
+            "–" if row["rules_margin"] is None else f"{1.0 + row['rules_margin']:.3g} ×",
+        )
+        for row in sorted(
+            ranking.rows(), key=lambda row: (-row["rules_score"], -margin(row["rules_margin"]), row["icon"])
+        )
+    ]
+    points = [f"{icon.name}: {rule.text}" for icon in ranking.icons for rule in icon.rules if not rule.from_model]
+    points += [rule.text for rule in ranking.rules]
+    worst = sorted(ranking.pairs, key=lambda pair: (pair.rules_pass, margin(pair.rules_margin), pair.a, pair.b))[:1]
+    points += [f"worst pair, {pair.a} and {pair.b}: {rule.text}" for pair in worst for rule in pair.rules]
+    apart = sum(pair.rules_pass for pair in ranking.pairs)
+    return [
+        *([Heading(title, 1)] if title else []),
+        grid(("icon", *numbers), rows, numbers),
+        Text(f"{apart} of {count_of(len(ranking.pairs), 'pair')} distinguishable by the rules:"),
+        Bullets(tuple(points)),
+        Text(
+            "Scored by rules of thumb alone: the share of rules passed, equally weighted, then the smallest margin as "
+            "a multiple of its threshold. Rules on latency and felt peak need the model and are not counted."
+        ),
     ]
 
 

@@ -63,11 +63,21 @@ def test_the_json_has_the_promised_keys_and_the_details_its_numbers(cli: Cli, tw
 
 def test_what_is_asked_first_stands_in_a_few_lines(process: Cli) -> None:
     said = process("rank", "wave-confusions", "--people", 4, "--intervals", 0).stdout.splitlines()
-    assert len(said) <= 24
+    assert len(said) <= 21
     assert "\x1b" not in "".join(said)
     assert [line.split()[0] for line in said[2:6]] == [said[2].split()[0], said[3].split()[0], said[4].split()[0], "d′"]
     assert any(line.startswith("Next: thermicon improve wave-confusions --people 4 --intervals 0 ") for line in said)
-    assert any(line.split()[:3] == ["and", "4", "more"] for line in said)
+    assert any(line.split()[:3] == ["and", "7", "more"] for line in said)
+
+
+def test_rules_of_thumb_score_a_set_without_the_model(cli: Cli) -> None:
+    said = " ".join(cli.good("rank", "six-icons", "--by", "rules", "--people", 4).stdout.split())
+    assert "warming-step 100 % 3 of 3 5 of 5 3.01 ×" in said
+    assert "15 of 15 pairs distinguishable by the rules" in said
+    assert "rate of change (ROC) at the receptor (cold): 1.12 K/s against at least 0.1 K/s: passes" in said
+    assert said.index("cooling-step 100") < said.index("double-dip 100") < said.index("warming-step 100")
+    assert "worst pair, warming-step and linear-warming: rate ratio" in said
+    assert "detected" not in said
 
 
 @pytest.mark.parametrize(
