@@ -1,4 +1,4 @@
-"""What tests of several rooms build: key words of messages, the observer file of a laboratory, weighted quantiles."""
+"""What tests of several rooms build: words of messages, sets of steps, a laboratory's observer, weighted quantiles."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.icons import IconSet, parse
 from thermicon.perception import Observer, Percept
 from thermicon.perception.identification.episodes import episode_distances, remembered
 
@@ -24,6 +25,14 @@ def messages(beside: str, name: str = "messages.toml") -> dict[str, Any]:
 def missing(words: str | list[str], told: str) -> list[str]:
     """Key words that are not in what was said."""
     return [word for word in ([words] if isinstance(words, str) else words) if word not in told]
+
+
+def steps(**by_K: float) -> IconSet:
+    """Icons that cool (negative) or warm the display by so much at 3 K/s for 2 s."""
+    rest = "K at 3 K/s; hold for 2 s; return at 3 K/s }"
+    ways = {name: f"{'cool' if change < 0 else 'warm'} by {abs(change):g}" for name, change in by_K.items()}
+    icons = (f"icon {name} {{ {way} {rest}" for name, way in ways.items())
+    return parse("cue 1; set s { control display; baseline 32 °C };" + ";".join(icons))
 
 
 def dprime_from_memory(felt: Sequence[Percept], observer: Observer | None = None) -> float:

@@ -4,11 +4,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tests.builders import steps
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, rank
 from thermicon.perception.identification.confusion import NAMED_SAMPLES as NAMED
 from thermicon.perception.identification.confusion import sampling_error
+from thermicon.perception.plots.draw_heat import plot_distance
+from thermicon.perception.ranking import batches
 
 TOP = (
     "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash task icons pairs "
@@ -31,14 +34,12 @@ SET = (
 )
 
 
-@pytest.fixture(scope="module")
-def rig() -> Rig:
-    return Rig.load("thenar")
+RIG, SIX = Rig.load("thenar"), load_library("six-icons")
 
 
 @pytest.fixture(scope="module")
-def ranking(rig: Rig) -> Ranking:
-    return rank(load_library("six-icons"), rig, people=12, seed=7, parameters=4)
+def ranking() -> Ranking:
+    return rank(SIX, RIG, people=12, seed=7, parameters=4)
 
 
 @pytest.fixture(scope="module")
@@ -81,19 +82,19 @@ def test_numbers_hang_together(held: Any) -> None:
         assert pair["confused_probability"] == pytest.approx((matrix[i, j] + matrix[j, i]) / 2)
 
 
-def test_same_arguments_same_bytes(ranking: Ranking, rig: Rig) -> None:
+def test_same_arguments_same_bytes(ranking: Ranking) -> None:
     calls: list[tuple[int, int]] = []
-    again = rank(
-        load_library("six-icons"),
-        rig,
-        people=12,
-        seed=7,
-        parameters=4,
-        progress=lambda done, total: calls.append((done, total)),
-    )
+    again = rank(SIX, RIG, people=12, seed=7, parameters=4, progress=lambda *steps: calls.append(steps))
     assert again.to_json() == ranking.to_json()
     assert calls == [(k, 7) for k in range(1, 8)]
     assert "NaN" not in ranking.to_json()
+
+
+@pytest.mark.slow
+def test_the_same_bytes_whatever_the_number_of_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(batches, "SAMPLES_AT_ONCE", 36_000)  # three people of the six icons
+    texts = {rank(SIX, RIG, people=10, parameters=2, workers=workers).to_json() for workers in (1, 2, 3, None)}
+    assert len(texts) == 1
 
 
 def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
@@ -101,28 +102,20 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     correct = [row["proportion_correct"] for row in rows]
     assert correct == sorted(correct, reverse=True)
     assert ranking.to_frame().shape == (6, len(rows[0]))
-    assert repr(ranking).startswith("Ranking(predicted: 6 icons on thenar, 12 people, ")
     axes = ranking.plot()
-    assert sorted(t.get_text() for t in axes.get_xticklabels()) == sorted(ranking.labels)
     assert axes.get_title().startswith("Predicted answers, % (diagonal correct: ")
-    assert ranking._repr_html_().startswith("<svg")
-    from thermicon.perception.plots.draw_heat import plot_distance
-
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
+    assert ranking._repr_html_().startswith("<svg")
     apart = plot_distance(ranking)
     assert apart.get_title() == "Predicted d′ between icons (episodes norm)"
     assert (apart.get_xlabel(), apart.get_ylabel()) == ("… and", "d′ between …")
-    assert len(apart.texts) == len(axes.texts) == 36  # every cell says its number, so no colour bar is needed
 
 
-def test_what_was_changed_on_the_rig_is_told(rig: Rig) -> None:
-    other = rig.with_(**{"contact.area_cm2": 4}).with_set(["driver.current_limit_A=1.2"])
+def test_what_was_changed_on_the_rig_is_told() -> None:
+    other = RIG.with_(**{"contact.area_cm2": 4}).with_set(["driver.current_limit_A=1.2"])
     ranking = rank(parse(BY_CURRENT % "to 0.5 A at 0.4 A/s"), other, people=1, parameters=0)
     assert ranking.to_dict()["rig_changes"] == ["contact.area_cm2=4", "driver.current_limit_A=1.2"]
-    assert repr(ranking) == (
-        "Ranking(predicted: 1 icon on thenar with contact.area_cm2=4, driver.current_limit_A=1.2, 1 person, "
-        "100.0 % correct)"
-    )
+    assert " on thenar with contact.area_cm2=4, driver.current_limit_A=1.2, 1 person, " in repr(ranking)
 
 
 BY_CURRENT = "cue 1\nset s { control current; baseline 32 °C }\nicon a { %s }"
@@ -135,52 +128,43 @@ BY_CURRENT = "cue 1\nset s { control current; baseline 32 °C }\nicon a { %s }"
         ("to -3 A at 20 A/s; hold for 20 s", False, ["hard", "-1.5 … 1.5 A", "; "]),
     ],
 )
-def test_why_an_icon_cannot_be_played(rig: Rig, course: str, safe: bool, said: list[str]) -> None:
-    icon = rank(parse(BY_CURRENT % course), rig, people=1, parameters=0).icons[0]
+def test_why_an_icon_cannot_be_played(course: str, safe: bool, said: list[str]) -> None:
+    icon = rank(parse(BY_CURRENT % course), RIG, people=1, parameters=0).icons[0]
     assert (icon.reachable, icon.safe) == (False, safe)
     assert icon.reason is not None and all(words in icon.reason for words in said)
 
 
-def test_soft_limits_are_cautions(rig: Rig) -> None:
+def test_soft_limits_are_cautions() -> None:
     text = "cue 1\nset s { control display; baseline 32 °C }\nicon a { cool by 12 °C at 2 °C/s; hold for 9 s }"
-    ranking = rank(parse(text), rig, people=1, parameters=0)
+    ranking = rank(parse(text), RIG, people=1, parameters=0)
     assert ranking.icons[0].safe
     assert ranking.icons[0].reason is None
     assert any("soft" in caution for caution in ranking.icons[0].cautions)
     assert ranking.to_dict()["icons"][0]["cautions"] == list(ranking.icons[0].cautions)
 
 
-def test_what_rules_and_model_disagree_on_says_by_how_much(rig: Rig) -> None:
-    head = "cue 1\nset s { control display; baseline 32 °C }\n"
-    a, b = (
-        f"icon {n} {{ cool by {k} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n" for n, k in (("a", 3), ("b", 3.3))
-    )
-    (found,) = rank(parse(head + a + b), rig, people=2, parameters=0).rules_disagree
+def test_what_rules_and_model_disagree_on_says_by_how_much() -> None:
+    (found,) = rank(steps(a=-3, b=-3.3), RIG, people=2, parameters=0).rules_disagree
     assert (found["a"], found["b"], found["rules"], found["model"]) == ("a", "b", True, False)
     assert found["text"].startswith("a and b: rules: distinguishable; model: d′ ")
     assert float(found["text"].split("d′ ")[1].split(",")[0]) < 2.563
     assert found["text"].endswith(", below the 2.563 criterion")
 
 
-def test_what_does_not_exist_is_null(rig: Rig) -> None:
+def test_what_does_not_exist_is_null() -> None:
     text = "cue 1\nset s { control skin; baseline 32 °C }\nicon faint { cool by 0.01 °C at 0.1 °C/s; hold for 1 s }"
-    ranking = rank(parse(text), rig, people=2, parameters=0)
-    assert repr(ranking) == "Ranking(predicted: 1 icon on thenar, 2 people, 100.0 % correct [100, 100])"
+    ranking = rank(parse(text), RIG, people=2, parameters=0)
     held = json.loads(ranking.to_json())
     icon, whole = held["icons"][0], held["set"]
-    assert icon["onset_s"] is None
-    assert icon["channel"] is None
-    assert whole["information_bits"] is None
-    assert whole["worst_pair"] is None
-    assert held["pairs"] == []
+    assert icon["onset_s"] is icon["channel"] is whole["information_bits"] is whole["worst_pair"] is None
+    assert held["pairs"] == whole["rules_disagree"] == []
     assert held["confusion"]["probability"] == [[1.0]]
-    assert whole["rules_disagree"] == []
 
 
 @pytest.mark.slow
-def test_changes_of_order_under_another_norm_are_told(rig: Rig) -> None:
+def test_changes_of_order_under_another_norm_are_told() -> None:
     icons = load_library("wave-confusions")
-    by = {norm: rank(icons, rig, people=10, parameters=0, norm=norm) for norm in ("episodes", "naming")}
+    by = {norm: rank(icons, RIG, people=10, parameters=0, norm=norm) for norm in ("episodes", "naming")}
     changes = by["episodes"].norm_changes["naming"]
     assert changes
     places = {norm: {icon.name: icon.proportion_correct for icon in ranking.icons} for norm, ranking in by.items()}
@@ -189,10 +173,8 @@ def test_changes_of_order_under_another_norm_are_told(rig: Rig) -> None:
         assert places["naming"][worse] > places["naming"][better]
 
 
-def test_identical_icons_are_guessed(rig: Rig) -> None:
-    body = "{ cool by 3 °C at 3 °C/s; hold for 2 s; return at 3 °C/s }"
-    text = f"cue 1\nset s {{ control display; baseline 32 °C }}\nicon a {body}\nicon b {body}"
-    ranking = rank(parse(text), rig, people=3, parameters=0)
+def test_identical_icons_are_guessed() -> None:
+    ranking = rank(steps(a=-3, b=-3), RIG, people=3, parameters=0)
     assert ranking.proportion_correct == pytest.approx(0.5)
     assert ranking.information_bits == pytest.approx(0.0, abs=1e-9)
     assert ranking.pairs[0].d_prime == pytest.approx(0.0)
@@ -200,12 +182,9 @@ def test_identical_icons_are_guessed(rig: Rig) -> None:
     assert ranking.tracking == "display"
 
 
-def test_rules_use_no_number_of_the_model(rig: Rig) -> None:
+def test_rules_use_no_number_of_the_model() -> None:
     """The score of an icon is the share of its rules and of its pairs that pass; the nearest pair has no margin."""
-    head = "cue 1\nset s { control display; baseline 32 °C }\n"
-    body = "; hold for 2 s; return at 3 °C/s }\n"
-    icons = "".join(f"icon {n} {{ cool by {k} °C at 3 °C/s{body}" for n, k in (("a", 3), ("b", 3.05), ("c", 3.4)))
-    ranking = rank(parse(head + icons), rig, people=2, parameters=0)
+    ranking = rank(steps(a=-3, b=-3.05, c=-3.4), RIG, people=2, parameters=0)
     for row in ranking.rows():
         assert row["rules_score"] == (row["rules_passed"] + row["pairs_distinguishable_by_rules"]) / (row["rules"] + 2)
     held = ranking.to_dict()
@@ -217,15 +196,19 @@ def test_rules_use_no_number_of_the_model(rig: Rig) -> None:
     assert all(pair["distinguishable_by_rules"] == pair["rules"][-1]["pass"] for pair in held["pairs"])
 
 
-def test_messages(rig: Rig) -> None:
-    icons = load_library("six-icons")
-    with pytest.raises(ValueError, match=r"there is no norm 'mean'"):
-        rank(icons, rig, norm="mean")
+def test_messages() -> None:
+    for told, said in (
+        ({"norm": "mean"}, "there is no norm 'mean'"),
+        ({"workers": 0}, "at least one worker is needed, not 0"),
+        ({"people": 0}, "at least one person is needed, not 0"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            rank(SIX, RIG, parameters=0, **told)  # type: ignore[arg-type]
 
 
-def test_direct_naming_states_the_error_of_its_own_trials(rig: Rig) -> None:
+def test_direct_naming_states_the_error_of_its_own_trials() -> None:
     pair = parse("cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow { warm by 3 K at 2 K/s }")
-    named = rank(pair, rig, people=4, parameters=0, norm="naming")
+    named = rank(pair, RIG, people=4, parameters=0, norm="naming")
     assert named.felt.standard_error == pytest.approx(sampling_error(named.confusion, 4 * NAMED), rel=1e-12)
     assert named.felt.person_standard_error > named.felt.standard_error > 0.0
-    assert rank(pair, rig, people=4, parameters=0).felt.standard_error == 0.0
+    assert rank(pair, RIG, people=4, parameters=0).felt.standard_error == 0.0

@@ -2,9 +2,8 @@ from typing import Any
 
 import pytest
 
-from tests.builders import messages
+from tests.builders import messages, steps
 from thermicon.circuit import Rig, simulate
-from thermicon.icons import parse
 from thermicon.perception import Observer, perceive
 from thermicon.perception.ranking.rules import (
     DISTINGUISHABLE,
@@ -39,36 +38,29 @@ def test_a_rule_says_value_limit_margin_and_source(cue: Any, observer: Observer)
     assert (change.passed, change.threshold, change.unit) == (True, 0.11, "K")
     assert change.threshold_low is change.to_dict()["threshold_low"] is None
     assert (change.value, change.margin) == (pytest.approx(6.0), pytest.approx(5.89))
-    assert change.text == "change at the receptor (cold): 6 K against at least 0.11 K: passes"
     assert "Stevens & Choo 1998" in change.source
     assert "change at the receptor (warm)" not in found
     assert (zone.passed, zone.value, zone.margin, zone.threshold_low, zone.threshold) == (True, 32.0, 2.0, 30.0, 36.0)
     slow = scored(cue, observer, change=0.15, rate=0.05)
     assert slow["change at the receptor (warm)"].margin == pytest.approx(-0.05)
-    text = "rate of change (ROC) at the receptor (warm): 0.05 K/s against at least 0.1 K/s: fails"
-    assert slow["rate at the receptor (warm)"].text == text
+
+
+@pytest.mark.parametrize("case", MESSAGES["icon"])
+def test_what_a_rule_says_of_an_icon(cue: Any, observer: Observer, case: str) -> None:
+    changes, said = MESSAGES["icon"][case]
+    assert said in [rule.text for rule in scored(cue, observer, **changes).values()]
 
 
 def test_latency_is_held_against_its_window(cue: Any, observer: Observer) -> None:
     late = scored(cue, observer, change=6.0)["latency (warm)"]
     assert late.value is not None and late.value > 1.4 + 0.2
     assert (late.passed, late.threshold_low, late.threshold) == (False, 0.5, 0.9)
-    assert (late.to_dict()["threshold_low"], late.to_dict()["threshold"]) == (0.5, 0.9)
     assert late.margin == pytest.approx(0.9 - late.value)
     assert "against 0.5 to 0.9 s: fails" in late.text
     unfelt = scored(cue, observer, change=0.15)["latency (warm)"]
     assert (unfelt.passed, unfelt.value, unfelt.margin) == (False, None, None)
-    assert unfelt.text == (
-        "latency: the nominal person does not feel the icon, so it has no onset to compare with 0.5 to 0.9 s"
-    )
     for changes in ({"change": 0.15, "rate": 0.05}, {"change": 5.0, "rate": 0.09, "hold": 1.0, "end_s": 130.0}):
         assert not any(name.startswith("latency") for name in scored(cue, observer, **changes))  # rates over 0.1 K/s
-
-
-@pytest.mark.parametrize(("change", "said"), [(-0.10999, "fails"), (-0.11001, "passes")])
-def test_rounding_does_not_undo_a_verdict(cue: Any, observer: Observer, change: float, said: str) -> None:
-    text = scored(cue, observer, change=change)["change at the receptor (cold)"].text
-    assert text == f"change at the receptor (cold): {-change:g} K against at least 0.11 K: {said}"
 
 
 @pytest.mark.parametrize("case", MESSAGES["rules"])
@@ -84,10 +76,6 @@ def test_what_rules_say_of_a_pair(cue: Any, case: str) -> None:
 
 
 def test_rules_are_records_that_say_whose_they_are() -> None:
-    for record in load_rules():
-        assert record.get("scope") in ("icon", "pair", "set")
-        assert record.get("basis") in ("trace", "rig", "model")
-        assert str(record.get("statement"))
     ours = [r for r in load_rules() if r.source.startswith("this project")]
     assert {r.quantity for r in ours} == {"depth", "direction", "peak", "rate ratio", "onset", DISTINGUISHABLE}
     for name, limit in MESSAGES["limits"].items():
@@ -100,25 +88,17 @@ def test_rules_are_records_that_say_whose_they_are() -> None:
 def test_felt_peaks_are_held_against_the_published_signs(cue: Any, observer: Observer) -> None:
     warm = scored(cue, observer, change=4.0, rate=1.0, hold=0.0)["felt peak (warm)"]
     assert warm.passed and warm.value is not None and warm.value > 0
-    said = f"felt peak (warm): predicted {warm.value:.2f} s after that of the skin, published after it: passes"
-    assert warm.text == said
+    assert f" {warm.value:.2f} s after that of the skin, published after it: passes" in warm.text
     cold = scored(cue, observer, change=-4.0, rate=1.0, hold=0.0)["felt peak (cold)"]
     assert cold.value is not None
     assert (cold.passed, cold.margin) == (cold.value < 0, -cold.value)
 
 
-def test_only_latency_and_felt_peak_come_from_the_model(cue: Any, observer: Observer) -> None:
-    found = scored(cue, observer, change=-4.0)
-    assert {r.quantity for r in found.values() if r.from_model} == {"latency", "felt peak"}
-    assert not any(r.from_model for r in pair(cue, {"change": 4.0}, {"change": -4.0}).values())
-    assert found["latency (cold)"].to_dict()["from_model"] is True
-
-
 def test_depths_are_a_rule_on_the_rig() -> None:
     cold, warm = rig_rules(Rig.load("thenar"))
     assert (cold.passed, warm.passed) == (True, True)
-    assert cold.text == (
-        "depth (cold): 0.1 mm against 0.046 to 0.21 mm: passes; on this rig that is inside the viable epidermis"
+    assert cold.text.endswith(
+        "0.1 mm against 0.046 to 0.21 mm: passes; on this rig that is inside the viable epidermis"
     )
     deep = rig_rules(Rig.load("thenar").with_(**{"skin.warm_receptor_mm": 0.5}))[1]
     assert (deep.passed, deep.margin) == (False, pytest.approx(-0.08))
@@ -139,6 +119,7 @@ def test_a_score_is_the_share_passed_without_those_of_the_model(cue: Any, observ
     rules = icon_rules(trace, perceive(trace, observer))
     own = counted(rules)
     assert {r.quantity for r in rules} - {r.quantity for r in own} == {"latency", "felt peak"}
+    assert [r.to_dict()["from_model"] for r in rules] == [r not in own for r in rules]
     assert [r.passed for r in own] == [False, True, True]
     share, margin = icon_score(rules, [(True, 0.3), (False, -0.2)])
     assert (share, margin) == (pytest.approx(3 / 5), pytest.approx(0.05 / 0.11 - 1.0))
@@ -155,11 +136,9 @@ def test_the_margin_of_a_pair_is_that_of_its_safest_rule(cue: Any) -> None:
 
 
 def test_directions_that_nobody_feels_tell_nothing_apart() -> None:
-    text = "cue 1\nset s { control display; baseline 32 °C }\n" + "".join(
-        f"icon {name} {{ {way} by {size} °C at 3 °C/s; hold for 2 s; return at 3 °C/s }}\n"
-        for name, way, size in (("up", "warm", 0.02), ("down", "cool", 0.02), ("strong", "cool", 2))
+    up, down, strong = (
+        simulate(icon, Rig.load("thenar"), tail_s=5.0) for icon in steps(up=0.02, down=-0.02, strong=-2)
     )
-    up, down, strong = (simulate(icon, Rig.load("thenar"), tail_s=5.0) for icon in parse(text))
     assert not pair_rules(up, down)[-1].passed
     assert "directions differ below the threshold alone" in pair_rules(up, down)[0].text
     assert pair_rules(up, strong)[-1].passed

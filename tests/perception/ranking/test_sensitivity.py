@@ -69,7 +69,6 @@ def test_as_a_picture(found: Sensitivity) -> None:
     assert [t.get_text() for t in axes.get_yticklabels()] == [each.constant for each in found.effects][:16]
     assert axes.yaxis_inverted()
     assert len({bar.get_facecolor()[:3] for bar in axes.patches}) == 2
-    assert found._repr_html_().startswith("<svg")
 
 
 def test_the_same_arguments_give_the_same_numbers(found: Sensitivity, rig: Rig) -> None:

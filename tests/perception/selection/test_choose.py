@@ -1,4 +1,5 @@
 from dataclasses import replace
+from functools import lru_cache
 from itertools import combinations
 from typing import Any
 
@@ -6,11 +7,10 @@ import numpy as np
 import pytest
 
 from tests.builders import messages
-from thermicon.circuit import Rig, Trace
+from thermicon.circuit import Rig
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import choose, draw_people, rank
-from thermicon.perception.observer.people import People
 from thermicon.perception.selection.appraise import appraise, population_dprime
 from thermicon.perception.selection.request import ChoiceError, Selection
 
@@ -27,38 +27,41 @@ HOT = "icon hot { warm by 20 °C at 3 °C/s; hold for 5 s; return at 3 °C/s }\n
 FAST = "icon fast { cool by 12 °C at 60 °C/s; return at 60 °C/s }\n"
 
 
-@pytest.fixture(scope="module")
-def crowd() -> People:
-    return draw_people(12, 1)
+CROWD = draw_people(12, 1)
 
 
 class Pool:
     """Icons with what `rank` knows of them."""
 
-    def __init__(self, text: str, rig: Rig, crowd: People) -> None:
+    def __init__(self, text: str) -> None:
         self.icons: list[Icon] = list(parse(HEAD + text))
-        self.rig, self.crowd = rig, crowd
-        self.traces: tuple[Trace, ...] = simulate_all(self.icons, rig, end_s=30.0)
-        self.ranking = rank(parse(HEAD + text), rig, people=len(crowd), seed=1, parameters=0)
-        self.d, self.durations = population_dprime(self.icons, rig, crowd)
+        self.ranking = rank(self.icons, Rig.load("thenar"), people=len(CROWD), seed=1, parameters=0)
 
     def choose(self, *arguments: Any, **more: Any) -> Any:
         return choose(self.ranking, Selection(*arguments, **more), parameters=0)
 
 
-@pytest.fixture(scope="module")
-def pool(rig: Rig, crowd: People) -> Pool:
-    return Pool(GOOD, rig, crowd)
+POOLS = {
+    "pool": GOOD,
+    "bad": GOOD + TWICE + HOT + FAST,
+    "single": GOOD.split("\n")[0],
+    "hots": HOT + HOT.replace("icon hot", "icon hotter").replace("20 °C", "19 °C"),
+}
 
 
-@pytest.fixture(scope="module")
-def bad(rig: Rig, crowd: People) -> Pool:
-    return Pool(GOOD + TWICE + HOT + FAST, rig, crowd)
+@lru_cache
+def pool_of(name: str) -> Pool:
+    return Pool(POOLS[name])
 
 
-def test_the_worst_pair_is_that_of_the_best_choice(pool: Pool) -> None:
+@pytest.fixture
+def pool() -> Pool:
+    return pool_of("pool")
+
+
+def test_the_worst_pair_is_that_of_the_best_choice(pool: Pool, rig: Rig) -> None:
     found = pool.choose(3)
-    middle = np.median(pool.d, axis=0)
+    middle = np.median(population_dprime(pool.icons, rig, CROWD)[0], axis=0)
     values = {c: sorted(middle[a, b] for a, b in combinations(c, 2)) for c in combinations(range(5), 3)}
     best = max(values, key=lambda c: values[c])  # among equal ones that with the farther next nearest pair
     assert found.icons == tuple(pool.icons[k].name for k in best)
@@ -68,10 +71,10 @@ def test_the_worst_pair_is_that_of_the_best_choice(pool: Pool) -> None:
     assert middle[a, b] == found.value
 
 
-def test_it_is_judged_again_at_its_own_range(pool: Pool, rig: Rig, crowd: People) -> None:
+def test_it_is_judged_again_at_its_own_range(pool: Pool, rig: Rig) -> None:
     found = pool.choose(3, "bits")
     chosen = [icon for icon in pool.icons if icon.name in found.icons]
-    assert found.at_own_range == appraise(chosen, rig, people=crowd, seed=1)
+    assert found.at_own_range == appraise(chosen, rig, people=CROWD, seed=1)
     assert found.optimal
     assert found.value == found.bound
     assert found.seen == 10
@@ -82,9 +85,9 @@ def test_time_and_energy_are_those_of_the_traces_and_are_kept(pool: Pool, rig: R
     chosen = [k for k, icon in enumerate(pool.icons) if icon.name in free.icons]
     lengths = [duration_s(pool.icons[k], rig) for k in chosen]
     assert free.total_s == pytest.approx(sum(lengths))
-    energy = 0.0
+    energy, traces = 0.0, simulate_all(pool.icons, rig, end_s=30.0)
     for k, length in zip(chosen, lengths, strict=True):
-        trace = pool.traces[k]
+        trace = traces[k]
         rows = trace.time_s < length - 1e-9
         steps = np.minimum(np.append(trace.time_s[1:], np.inf), length) - trace.time_s
         energy += float((trace.voltage_V * trace.current_A * steps)[rows].sum())
@@ -116,7 +119,8 @@ def test_intervals_are_those_of_the_chosen(six: IconSet, rig: Rig) -> None:
     assert (low, high) == pytest.approx(alone.new_laboratory.proportion_correct, abs=0.02)
 
 
-def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named(bad: Pool) -> None:
+def test_what_cannot_be_played_or_stands_twice_is_left_out_and_named() -> None:
+    bad = pool_of("bad")
     found = bad.choose(5)
     why = dict(found.excluded)
     assert set(found.icons) == {"a", "b", "c", "d", "e"}
@@ -131,19 +135,7 @@ CHOICES = messages(__file__)["choice"]
 
 
 @pytest.mark.parametrize("asked", CHOICES)
-def test_what_cannot_be_chosen_is_told(asked: str, request: pytest.FixtureRequest) -> None:
+def test_what_cannot_be_chosen_is_told(asked: str) -> None:
     which, _, words = asked.partition(": ")
     with pytest.raises(ChoiceError, match=f"^{CHOICES[asked]}"):
-        request.getfixturevalue(which).choose(**{"count": 3, **eval(f"dict({words})")})
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (GOOD.split("\n")[0], r"there is only 1 icon$"),
-        (HOT + HOT.replace("icon hot", "icon hotter").replace("20 °C", "19 °C"), r"none is left \(hot is not safe"),
-    ],
-)
-def test_too_few_are_no_pool(text: str, said: str, rig: Rig, crowd: People) -> None:
-    with pytest.raises(ChoiceError, match=f"^2 icons cannot be chosen: {said}"):
-        Pool(text, rig, crowd).choose(2)
+        pool_of(which).choose(**{"count": 3, **eval(f"dict({words})")})

@@ -47,7 +47,6 @@ def test_as_a_table_and_a_picture(found: Frontier) -> None:
     axes = found.plot()
     assert axes.get_ylabel() == "correct (%)"
     assert len(axes.lines) == 3
-    assert repr(found).startswith("Frontier(2 to 5 of 6 icons by worst on thenar")
 
 
 def test_total_time_ends_the_curve(six: IconSet, rig: Rig) -> None:
