@@ -203,7 +203,7 @@ def test_messages() -> None:
         ({"people": 0}, "at least one person is needed, not 0"),
     ):
         with pytest.raises(ValueError, match=said):
-            rank(SIX, RIG, parameters=0, **told)  # type: ignore[arg-type]
+            rank(SIX, RIG, parameters=0, **told)
 
 
 def test_direct_naming_states_the_error_of_its_own_trials() -> None:
