@@ -224,8 +224,3 @@ def test_comments_before_the_brace_of_a_set_are_kept() -> None:
     assert "# first\n# second\nset a {\n  site x\n}" in format_text(text)
 
 
-@pytest.mark.parametrize("head", ["set a", "set", "icon a"])
-def test_a_block_that_never_opens_is_reported_once(head: str) -> None:
-    with pytest.raises(CueErrors, match="E114 missing block") as caught:
-        parse(f"cue 1\n{head}\nicon b {{ hold for 1 s }}\n")
-    assert [error.code for error in caught.value.errors] == ["E114"]

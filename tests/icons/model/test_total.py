@@ -2,11 +2,13 @@
 
 import re
 import time
-from collections.abc import Callable
+from itertools import count
+from typing import Any
 
 import pytest
 from hypothesis import strategies as st
 
+from tests.builders import messages
 from tests.properties import for_any
 from thermicon.icons import CueErrors, IconSet, load_library, parse
 from thermicon.icons.language.source import MOST_BYTES
@@ -65,122 +67,47 @@ def test_any_newline_and_a_byte_order_mark(newline: str) -> None:
         parse(newline.join(["cue 1", "icon x { hold for 4 }"]), "a.cue")
 
 
-@pytest.mark.parametrize(
-    ("data", "kind"),
-    [(b"PK\3\4...", "a Word document"), (b"%PDF-1.7", "a PDF"), (b"\x89PNG\r\n", "PNG"), (b"\xff\xd8\xff\xe0", "JPEG")],
-)
-def test_other_kinds_of_file_are_named(data: bytes, kind: str) -> None:
-    with pytest.raises(CueErrors, match=f"E006 binary file\n  this is .*{kind}"):
-        parse(data, "x")
+HOSTILE = messages(__file__, "hostile.toml")
 
 
-PAIR = "a in 1..1000 step 1 ms, b in 1..10 step 1 ms"
+def text_of(row: dict[str, Any]) -> str:
+    """A text as it stands, or one of nearly the largest size: units between head and tail, `<n>` being its number."""
+    if "text" in row:
+        return str(row["text"])
+    parts, left = [row["head"]], MOST_BYTES - len((row["head"] + row.get("tail", "")).encode())
+    for n in count():
+        part = row["unit"].replace("<n>", str(n)).replace("<n+1>", str(n + 1)).replace("<n+2>", str(n + 2))
+        left -= len(part.encode())
+        if left < 0:
+            break
+        parts.append(part)
+    return "".join(parts) + row.get("tail", "")
 
 
-def full(head: str, unit: str | Callable[[int], str], tail: str = "") -> Callable[[], str]:
-    """What makes a text of nearly the largest size: units between head and tail."""
-
-    def text() -> str:
-        make = unit if callable(unit) else lambda _: unit
-        parts = [head]
-        left = MOST_BYTES - len((head + tail).encode())
-        while (left := left - len((part := make(len(parts) - 1)).encode())) >= 0:
-            parts.append(part)
-        return "".join(parts) + tail
-
-    return text
-
-
-def doubling(depth: int) -> str:
-    plays = "".join(f"icon i{n} {{ play i{n + 1}; play i{n + 1} }}\n" for n in range(depth))
-    return f"cue 1\n{plays}icon i{depth} {{ rest for 1 ms }}"
-
-
-def nested(depth: int, parameters: str, inside: str) -> str:
-    opening = f"repeat {'n' if parameters else 3} {{ "
-    return f"cue 1\nicon x{parameters} {{ {opening * depth}{inside}{' }' * (depth + 1)}"
-
-
-QUICK: dict[str, tuple[str | Callable[[], str], str]] = {
-    "plays doubling 16 deep": (doubling(16), ""),
-    "plays doubling 20 deep": (doubling(20), "E220"),
-    "repeats tripling 19 deep": (nested(19, "", "warm by 1e-6 K at 1 K/s"), "E220"),
-    "repeats of a family 12 deep": (nested(12, f"({PAIR}, n in [1, 2, 3])", "hold for a; hold for b"), "E231"),
-    "a wave of 1 µs for an hour": ("cue 1\nicon x { sine by 1 K every 0.001 ms for 60 min }", "E220"),
-    "the largest sine": ("cue 1\nicon x { sine by 28 K every 1 min for 60 min }", ""),
-    "10,000 members": (f"cue 1\nicon f({PAIR}) {{ warm by 1 K over a; hold for b }}", ""),
-    "a hundred statements of a hundred thousand": (
-        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; " + "hold for b; " * 100 + "}",
-        "E231",
-    ),
-    "a hundred thousand members that fail": (
-        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; rest for b }}",
-        "E205",
-    ),
-    "a million members": (f"cue 1\nicon f({PAIR}, c in 1..100 step 1 K) {{ warm by c over a; hold for b }}", "E231"),
-    "errors on lines of their own": (full("cue 1\nicon x {\n", "hodl for 1 s\n", "}"), "E101"),
-    "errors on one line": (full("cue 1\nicon x { ", "hold for 4; ", "}"), "E102"),
-    "parentheses": (full("cue 1\nicon f", "("), "E113"),
-    "headers that break": (full("cue 1\n", "icon f(a in [\n"), "E118"),
-    "blocks that never close": ("cue 1\nicon x { " + "repeat 2 { " * 20_000, "E115"),
-    "a number without end": ("cue 1\nicon x { hold for 1e" + "9" * 200_000 + " s }", "E218"),
-    "quotation marks": ('"' * 200_000, "E101"),
-    "a list without commas": (full("cue 1\nicon f(a in [1", " 1", "] ms) { hold for a }"), "E118"),
-}
-FULL: dict[str, tuple[str | Callable[[], str], str]] = {
-    "100,000 members": (
-        f"cue 1\nicon f({PAIR}, c in 1..10 step 1 K) {{ warm by c over a; hold for b }}",
-        "",
-    ),
-    "families of ten thousand": (
-        full("cue 1\n", lambda n: f"icon f{n}({PAIR}) {{ warm by 1 K over a; hold for b }}\n"),
-        "E231",
-    ),
-    "one line": (full("cue 1\nicon x { ", "hold for 1 ms; ", "}"), ""),
-    "ten thousand icons": (full("cue 1\n", lambda n: f"icon i{n}{{rest for 1s}};"), ""),
-    "icons with one name": (full("cue 1\n", "icon a {rest for 1 s}\n"), "E211"),
-    "plays of no icon": (full("cue 1\n", lambda n: f"icon i{n} {{play j{n}}}\n"), "E230"),
-    "a chain of plays": (full("cue 1\n", lambda n: f"icon i{n} {{play i{n + 1}}}\n"), "E115"),
-    "sines of many sizes": (
-        full("cue 1\n", lambda n: f"icon x{n} {{ sine by {1 + n / 1000} K every 1 s for 1 s }}\n"),
-        "E220",
-    ),
-    "a long list of values": (full("cue 1\nicon f(a in [1", lambda n: f",{n + 2}", "] ms) { hold for a }"), ""),
-    "one value many times": (full("cue 1\nicon f(a in [1", ",1", "] ms) { hold for a }"), "E213"),
-    "thousands of parameters": (
-        full("cue 1\nicon f(x in [1] s", lambda n: f",p{n} in[1]s", ") { hold for x }"),
-        "E227",
-    ),
-    "thousands of families": (full("cue 1\n", lambda n: f"icon f{n}(a in [1,2]s) {{hold for a}}\n"), ""),
-    "thousands of uses": (full(f"cue 1\nicon f({PAIR}) {{ ", "hold for b; hold for a; ", "}"), "E231"),
-    "thousands of holes": (full('cue 1\nicon f(a in [1] s) means "', "{b}", '" { hold for a }'), "E226"),
-    "thousands of totals": (full("cue 1\nicon x { hold for 1 s; ", "total 2 s; ", "}"), "E222"),
-    "nested repeats": (
-        full("cue 1\nicon x { ", "repeat 1 { warm by 1e-6 K over 1 ms; " * 10 + " }" * 10 + "; ", "}"),
-        "",
-    ),
-    "newlines": (full("cue 1\nicon f(", "\n"), "E113"),
-}
-
-
-def soon(given: str | Callable[[], str], code: str) -> None:
-    text = given() if callable(given) else given
+def soon(row: dict[str, Any]) -> None:
+    text = text_of(row)
     begin = time.process_time()
     try:
         assert parse(text).entries
-        assert not code
+        assert not row["code"]
     except CueErrors as found:
         assert str(found)
-        assert code in {error.code for error in found.errors}, str(found.errors[0])
+        assert row["code"] in {error.code for error in found.errors}, str(found.errors[0])
     assert time.process_time() - begin < 20
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", HOSTILE["quick"])
 def test_a_hostile_text_is_answered_soon(name: str) -> None:
-    soon(*QUICK[name])
+    soon(HOSTILE["quick"][name])
+
+
+@pytest.mark.parametrize("repeats", [16, 20])
+def test_plays_that_double_are_counted(repeats: int) -> None:
+    plays = "".join(f"icon i{n} {{ play i{n + 1}; play i{n + 1} }}\n" for n in range(repeats))
+    soon({"text": f"cue 1\n{plays}icon i{repeats} {{ rest for 1 ms }}", "code": "E220" if repeats > 16 else ""})
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", FULL)
+@pytest.mark.parametrize("name", HOSTILE["full"])
 def test_a_text_of_the_largest_size_is_answered_soon(name: str) -> None:
-    soon(*FULL[name])
+    soon(HOSTILE["full"][name])
