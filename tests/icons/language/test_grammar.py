@@ -1,13 +1,13 @@
-"""What recovery relies on in lark's private state.
+"""What recovery relies on in lark's private state: a new version of lark that changes it fails here first."""
 
-A new version of lark that changes it fails here first.
-"""
-
+import re
 from importlib import resources
 
 from lark import Token
 
 from thermicon.icons.language.source import grammar
+from thermicon.icons.model.units import UNITS
+from thermicon.icons.model.words import CLAUSES, VOCABULARY
 
 CUE = resources.files("thermicon.icons").joinpath("library", "six-icons.cue").read_text(encoding="utf-8")
 
@@ -41,3 +41,11 @@ def test_the_table_gives_an_action_and_where_it_leads() -> None:
     assert {"icon", "statement"} & {str(rule.origin.name).lstrip("_") for rule in rules}
     assert all(isinstance(rule.expansion, list | tuple) for rule in rules)
     assert {kind for kind in first if kind.isupper()} == parser.accepts()
+
+
+def test_words_and_units_that_editors_colour_are_those_of_the_grammar() -> None:
+    text = resources.files("thermicon.icons").joinpath("grammar.lark").read_text(encoding="utf-8")
+    code, quantity = re.sub(r"//[^\n]*", "", text), r"(?m)^[A-Z_]*(?:ABSOLUTE|DIFFERENCE|RATE|TIME|CURRENT): .*$"
+    assert set(re.findall(r'"([a-z]+)"', re.sub(quantity, "", code))) == {*CLAUSES}.union(*VOCABULARY.values())
+    units = re.findall(r'"([^"]+)"', " ".join(re.findall(quantity, code)))
+    assert set(units) == {unit for kind in UNITS.values() for unit in kind if unit}

@@ -132,12 +132,20 @@ def test_shipped_files_are_in_canonical_layout(name: str) -> None:
     assert format_text(text) == text
 
 
-TIDY = messages(__file__, "cases.toml")["tidy"]
+TIDY, LAID_OUT = (messages(__file__, "cases.toml")[name] for name in ("tidy", "laid_out"))
 
 
 @pytest.mark.parametrize("written", TIDY)
 def test_a_statement(written: str) -> None:
     assert format_text(body([written, "hold for 1 s"])) == body([TIDY[written], "hold for 1 s"])
+
+
+@pytest.mark.parametrize("case", LAID_OUT, ids=lambda case: case["what"])
+@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
+def test_a_text_is_laid_out(case: dict[str, str], newline: str) -> None:
+    text = case["text"].replace("\n", newline)
+    assert format_text("\ufeff" + text) == format_text(text.encode("utf-8-sig")) == case["out"]
+    assert str(parse(case["out"])) == str(parse(text))
 
 
 @pytest.mark.parametrize("digits", ["." + "1" * 39, "−." + "1" * 38, "+0" + "." + "1" * 37])
@@ -147,53 +155,6 @@ def test_a_tidy_number_is_not_too_long_to_read(digits: str) -> None:
     assert len(tidy_number(digits)) <= 40
 
 
-def test_one_liners_are_opened_up_and_comments_stay_with_their_lines() -> None:
-    text = (
-        "# about the file\ncue 1 # version\nicon a{repeat 3{warm by 1 K at 1 K/s;hold for 1 s}# end of repeat\n\n\n"
-        " #own\n  hold for 1 s;;   # last\n\n}\nicon b{rest for 1 s}# short\n# at the end"
-    )
-    assert format_text(text) == (
-        "# about the file\ncue 1  # version\n\n"
-        "icon a {\n  repeat 3 {\n    warm by 1 K at 1 K/s\n    hold for 1 s\n  }  # end of repeat\n\n"
-        "  #own\n  hold for 1 s  # last\n}\n\n"
-        "icon b {\n  rest for 1 s\n}  # short\n\n# at the end\n"
-    )
-
-
-def test_headers_take_one_line_or_a_line_for_each_part() -> None:
-    def made(header: str) -> str:
-        return format_text(f"cue 1\n{header} {{ hold for 1 s }}").removeprefix("cue 1\n\n").partition("  hold")[0]
-
-    assert made('icon x\n\n means "a"\n  by "b"\n') == 'icon x means "a" by "b" {\n'
-    long = "m" * 60
-    assert made(f'icon x means "{long}" by "{long}"') == f'icon x\n  means "{long}"\n  by "{long}"\n{{\n'
-    assert made(f'icon x means "{long}{long}"') == f'icon x means "{long}{long}" {{\n'
-    assert made('icon x # c\n means "a" # d\n # e\n') == '# c\n# d\n# e\nicon x means "a" {\n'
-
-
-def test_parameters_take_one_line_or_a_line_each() -> None:
-    def made(over: str, header: str = "") -> str:
-        text = f"cue 1; icon x {over}{header} {{ pulse by a for b; pulse by a for b }}"
-        return format_text(text).removeprefix("cue 1\n\n").partition("  pulse")[0]
-
-    assert made("( a in[1,2]K,\n\n b in 1 .. 3 step .5 s )") == "icon x(a in [1, 2] K, b in 1..3 step 0.5 s) {\n"
-    assert made("( # c\na in [1] K, # d\nb in [2] s\n)") == "# c\n# d\nicon x(a in [1] K, b in [2] s) {\n"
-    many = ", ".join(map(str, range(1, 29)))
-    assert made(f"(a in [{many}] K, b in [{many}] s)") == f"icon x(\n  a in [{many}] K,\n  b in [{many}] s\n) {{\n"
-
-
-def test_names_that_are_words_or_units_stay() -> None:
-    text = "cue 1\n\nicon degC {\n  hold for 1 s\n}\n\nicon icon {\n  play degC\n}\n"
-    assert format_text(text) == text
-
-
-@pytest.mark.parametrize("newline", ["\r\n", "\r"])
-def test_line_ends_and_a_byte_order_mark(newline: str) -> None:
-    text = "cue 1\n\nicon x {\n  hold for 1 s  # c\n}\n"
-    assert format_text("\ufeff" + text.replace("\n", newline)) == text
-    assert format_text(text.replace("\n", newline).encode("utf-8-sig")) == text
-
-
 def test_what_cannot_be_parsed_is_told_as_parse_tells_it() -> None:
     text = "cue 1\nicon x { hold for 4 }\nicon y { rest for -1 s }"
     with pytest.raises(CueErrors, match="E102") as told:
@@ -201,26 +162,3 @@ def test_what_cannot_be_parsed_is_told_as_parse_tells_it() -> None:
     with pytest.raises(CueErrors, match="E102") as parsed:
         parse(text, "a.cue")
     assert str(told.value) == str(parsed.value)
-
-
-BRACES = 'cue 1\n\nset a "T" {\n  site x\n}\n\nicon b means "c" {\n  hold for 1 s\n}\n'
-
-
-@pytest.mark.parametrize("between", [" ", "\n", "\n\n\n", "  \n\t"])
-def test_a_brace_may_stand_on_a_line_of_its_own(between: str) -> None:
-    text = f'cue 1\nset a "T"{between}{{\n site x\n}}\nicon b means "c"{between}{{\n hold for 1 s\n}}\n'
-    assert str(parse(text)) == BRACES
-    assert format_text(text) == BRACES
-
-
-def test_a_set_without_a_name_may_have_its_brace_below() -> None:
-    text = "cue 1\nset\n{ control display }\nicon b { hold for 1 s }\n"
-    assert parse(text).context.control == "display"
-    assert "set {\n  control display\n}" in format_text(text)
-
-
-def test_comments_before_the_brace_of_a_set_are_kept() -> None:
-    text = "cue 1\nset a # first\n# second\n{\n site x\n}\nicon b { hold for 1 s }\n"
-    assert "# first\n# second\nset a {\n  site x\n}" in format_text(text)
-
-

@@ -1,6 +1,8 @@
 """Plots and pictures: what they show, and that no text of a file gets out of its place."""
 
+import math
 import re
+from itertools import pairwise
 from xml.etree import ElementTree
 
 import pytest
@@ -56,24 +58,11 @@ def test_texts_cannot_become_markup(show: str) -> None:
     assert not any(name.startswith("on") for each in tree.iter() for name in each.attrib)
 
 
-def test_marks_that_turn_the_writing_direction_reach_no_picture() -> None:
-    with pytest.raises(ValueError, match=r"means: the text holds the control character U\+202E"):
-        Metadata(means="warm \u202emraw")
-
-
-def test_a_long_title_is_cut() -> None:
-    title = Icon("x" * 90, (Hold(1),)).plot().get_title()
-    assert title.endswith("…") and len(title) == 48
-
-
 def test_members_are_chosen_evenly_with_the_corners() -> None:
     assert evenly(100, 4) == [0, 33, 66, 99]
     assert chosen((1,), 24) == [0]
     for sizes, most in (((100, 100, 100), 24), ((100, 100, 100), 8), ((7, 5), 3), ((2,) * 9, 24)):
-        places = chosen(sizes, most)
-        count = 1
-        for size in sizes:
-            count *= size
+        places, count = chosen(sizes, most), math.prod(sizes)
         assert len(places) <= most
         assert {0, count - 1} <= set(places) <= set(range(count))
     # The last value of the last parameter must not be all that is ever drawn.
@@ -89,22 +78,33 @@ def test_a_family_of_eight_has_a_legend_with_values() -> None:
     assert len(looks) == 9
 
 
-def test_a_large_family_is_coloured_by_direction() -> None:
-    ax = HUGE.families[0].plot()
-    assert (len(ax.collections), ax.get_legend()) == (24, None)
-    assert ax.get_title() == "many: 1,000 icons, 24 drawn"
-    assert ax.get_xlim()[1] > 100
-
-
-def test_a_set_plots_with_names_and_its_title() -> None:
+def test_titles_legends_and_labels() -> None:
     ax = SIX.plot()
     assert [text.get_text() for text in ax.get_legend().get_texts()] == [icon.name for icon in SIX]
-    assert (ax.get_title(), ax.get_ylabel()) == (
-        "Six thermal icons after Singhal and Jones",
-        "display temperature (°C)",
-    )
+    assert (ax.get_title(), ax.get_ylabel()) == (SIX.title, "display temperature (°C)")
     assert CURRENT.plot().get_ylabel() == "current (A)"
     assert HUGE.plot().get_title() == "1,000 icons (24 of 1,000 drawn)"
+    ax = HUGE.families[0].plot()
+    assert (len(ax.collections), ax.get_legend(), ax.get_title()) == (24, None, "many: 1,000 icons, 24 drawn")
+    assert ax.get_xlim()[1] > 100
+    title = Icon("x" * 90, (Hold(1),)).plot().get_title()
+    assert title.endswith("…") and len(title) == 48
+    two = Icon("a", (Hold(1),)), Icon("b", (Hold(2),))
+    ax = IconSet("", "costs $1 and ${", Context(), Metadata(), two).plot()
+    ax.figure.canvas.draw()
+    assert ax.get_title() == "costs $1 and ${", "dollars are no formula"
+
+
+def test_a_plot_shows_levels_times_and_directions() -> None:
+    ax = SIX["cooling-step"].plot()
+    (lines,) = ax.collections
+    corners = [[0.0, 32.0], [2.0, 26.0], [6.0, 26.0], [8.0, 32.0]]
+    assert [segment.tolist() for segment in lines.get_segments()] == [list(each) for each in pairwise(corners)]
+    assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM)]
+    assert (ax.get_title(), ax.get_xlabel()) == ("cooling-step", "time (s)")
+    (lines,) = SHAPES["step"].plot().collections
+    assert list(lines.get_linewidths()) == [1.5, 2.5, 1.5, 2.5], "steps are thinner than ramps"
+    assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM, STAY)]
 
 
 def test_plots_draw_on_the_axes_they_are_given() -> None:
@@ -113,61 +113,20 @@ def test_plots_draw_on_the_axes_they_are_given() -> None:
         assert drawn.plot(ax) is ax
 
 
-def test_dollars_in_titles_are_no_formula() -> None:
-    icons = IconSet("", "costs $1 and ${", Context(), Metadata(), (Icon("a", (Hold(1),)), Icon("b", (Hold(2),))))
-    ax = icons.plot()
-    ax.figure.canvas.draw()
-    assert ax.get_title() == "costs $1 and ${"
-
-
-def test_steps_are_thinner_than_ramps_in_a_plot() -> None:
-    (lines,) = SHAPES["step"].plot().collections
-    assert list(lines.get_linewidths()) == [1.5, 2.5, 1.5, 2.5]
-    assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM, STAY)]
-
-
 def test_the_library_is_a_table_with_pictures() -> None:
     shelf = library()
     assert shelf["six-icons"] == SIX
     assert list(shelf) == sorted(shelf)
     (six,) = (entry for entry in shelf.entries if entry.name == "six-icons")
-    assert (six.icons, six.title) == (6, "Six thermal icons after Singhal and Jones")
+    assert (six.icons, six.title, six.source) == (6, SIX.title, "after Singhal and Jones, 2015 and 2018")
     assert six.intent.startswith("a quick, strong cooling; a moderate warming")
-    assert six.source == "after Singhal and Jones, 2015 and 2018"
-    rows = repr(shelf).splitlines()
-    assert any(re.fullmatch(r"six-icons +6 +Six thermal icons after Singhal and Jones", row) for row in rows)
-    assert "Six thermal icons after Singhal and Jones" in shelf._repr_html_()
+    assert any(re.fullmatch(rf"six-icons +6 +{SIX.title}", row) for row in repr(shelf).splitlines())
+    assert SIX.title in shelf._repr_html_()
     assert list(shelf.to_frame().columns) == ["name", "icons", "title", "intent", "source"]
-
-
-def test_an_unknown_shipped_set_is_told() -> None:
-    with pytest.raises(
-        KeyError, match=r"no shipped set is called 'six-icon'; did you mean six-icons\? there are: calibration"
-    ):
-        library()["six-icon"]
-    assert "six-icon" not in library()
-
-
-def test_families_in_the_library_count_without_being_made() -> None:
-    shelf = Library((("huge", HUGE),))
-    assert shelf.entries[0].icons == 1_000
-    assert "1,000" in repr(shelf)
-
-
-def test_a_plot_shows_levels_times_and_directions() -> None:
-    ax = SIX["cooling-step"].plot()
-    (lines,) = ax.collections
-    assert [segment.tolist() for segment in lines.get_segments()] == [
-        [[0.0, 32.0], [2.0, 26.0]],
-        [[2.0, 26.0], [6.0, 26.0]],
-        [[6.0, 26.0], [8.0, 32.0]],
-    ]
-    assert [tuple(colour[:3]) for colour in lines.get_colors()] == [to_rgb(c) for c in (COOL, STAY, WARM)]
-    assert (ax.get_title(), ax.get_xlabel(), ax.get_ylabel()) == (
-        "cooling-step",
-        "time (s)",
-        "display temperature (°C)",
-    )
+    assert Library((("huge", HUGE),)).entries[0].icons == 1_000
+    assert "six-icon" not in shelf
+    with pytest.raises(KeyError, match=r"no shipped set is called 'six-icon'; did you mean six-icons\? there are: cal"):
+        shelf["six-icon"]
 
 
 def test_cool_and_warm_differ_in_grey() -> None:

@@ -27,7 +27,8 @@ def table(time: Array, value: Array, column: str = "display_C") -> str:
     return f"time_s,{column}\n{rows}"
 
 
-DIP = "time_s,display_C\n0,32\n1,32\n3,26\n7,26\n9,32\n"
+MESSAGES = messages(__file__)
+DIP = MESSAGES["tables"]["plain"]
 DIP_ICON = (Rest(1), Ramp("cool", to_C=26, duration_s=2), Hold(4), Return(duration_s=2))
 
 
@@ -43,28 +44,9 @@ def test_a_recording_becomes_an_icon_that_reads_well(tmp_path: Path) -> None:
     assert np.abs(icon.corners().at(time) - value).max() <= 0.05
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        DIP,
-        DIP.replace("\n", "\r\n"),
-        "\ufeff" + DIP,
-        DIP.replace(",", ";"),
-        DIP.replace(",", "\t"),
-        DIP.replace(",", ";").replace("26", "26,00").replace("32", "+3,2e1"),
-        "sep=;\n" + DIP.replace(",", ";"),
-        "# bench 2\n\n" + DIP.replace("1,32\n", "\n# still\n 1 , 32.0 \n"),
-        "Time_s,time_s,display_C,note\n9,0,32,a\n9,1,32,\n9,3,26\n9,7,26,,\n9,9,32,b\n",
-        '"time_s","display_C"\n"0","32"\n"1","32"\n"3","26"\n"7","26"\n"9","32"\n',
-        DIP.replace("\n0,", "\n1700000000.1,")
-        .replace("\n1,", "\n1700000001.1,")
-        .replace("\n3,", "\n1700000003.1,")
-        .replace("\n7,", "\n1700000007.1,")
-        .replace("\n9,", "\n1700000009.1,"),
-    ],
-)
-def test_tables_as_programs_write_them(tmp_path: Path, text: str) -> None:
-    icon = from_csv(written(tmp_path, text))
+@pytest.mark.parametrize("written_by", MESSAGES["tables"])
+def test_tables_as_programs_write_them(tmp_path: Path, written_by: str) -> None:
+    icon = from_csv(written(tmp_path, MESSAGES["tables"][written_by]))
     assert icon.statements == DIP_ICON
     assert (icon.name, icon.context.control, icon.context.baseline_C) == ("rec", "display", 32.0)
 
@@ -84,11 +66,8 @@ def test_the_control_follows_the_column_that_tells(tmp_path: Path) -> None:
 def test_one_of_several_temperatures_is_named(tmp_path: Path) -> None:
     path = written(tmp_path, "time_s,display_C,skin_C\n0,30,32\n1,30,31\n")
     icon = from_csv(path, column="skin_C", name="fall")
-    assert (icon.name, icon.context.control, icon.statements) == (
-        "fall",
-        "skin",
-        (Ramp("cool", to_C=31, duration_s=1),),
-    )
+    assert (icon.name, icon.context.control) == ("fall", "skin")
+    assert icon.statements == (Ramp("cool", to_C=31, duration_s=1),)
 
 
 def test_a_step_of_the_recording_is_a_step_of_the_icon(tmp_path: Path) -> None:
@@ -116,7 +95,6 @@ def test_a_minute_at_a_kilohertz(tmp_path: Path) -> None:
     assert len(icon.statements) == 40
 
 
-MESSAGES = messages(__file__)
 LONG_CELL = {
     "text": 'time_s,skin_C\n0,"' + "3" * 140_000,
     "place": "rec.csv:2",
@@ -135,13 +113,17 @@ def test_every_message_about_a_file_is_read(tmp_path: Path, said: dict[str, str]
 
 
 def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ValueError, match=r"gone.csv  E001 no such file\n  no file has this name\n  check its folder"):
-        from_csv(tmp_path / "gone.csv")
-    with pytest.raises(ValueError, match=r"E002 a folder, not a file\n  a recording is one file\n  name a .csv file"):
-        from_csv(tmp_path)
-    with pytest.raises(ValueError, match=r"E003 unreadable file\n  the system says: embedded null byte\n  check that"):
-        from_csv("a\0b.csv")
+    for place, said in (
+        (tmp_path / "gone.csv", "gone.csv  E001 no such file\n  no file has this name\n  check its folder"),
+        (tmp_path, "E002 a folder, not a file\n  a recording is one file\n  name a .csv file"),
+        ("a\0b.csv", "E003 unreadable file\n  the system says: embedded null byte\n  check that"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            from_csv(place)
     path = written(tmp_path, DIP)
+    monkeypatch.setattr("thermicon.icons.recordings.recorded.MOST_ROWS", 4)
+    with pytest.raises(ValueError, match="E004 file too large\n  more than 4 rows\n  keep every tenth row"):
+        from_csv(path)
 
     def refuse(*_: object, **__: object) -> bytes:
         raise PermissionError(13, "Permission denied")
@@ -154,42 +136,10 @@ def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         from_csv(path)
 
 
-def test_a_file_of_too_many_rows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("thermicon.icons.recordings.recorded.MOST_ROWS", 4)
-    with pytest.raises(ValueError, match="E004 file too large\n  more than 4 rows\n  keep every tenth row"):
-        from_csv(written(tmp_path, DIP))
-
-
-def test_a_column_that_is_not_there(tmp_path: Path) -> None:
-    path = written(tmp_path, DIP)
-    with pytest.raises(
-        ValueError, match=r"rec.csv:1  E013 .*\n.*no temperature is called 'displai_C'.*\n.*display_C\?"
-    ):
-        from_csv(path, column="displai_C")
-    with pytest.raises(
-        ValueError, match=r"no temperature is called 'time_s'.*\n  the name must be spelled as in the file"
-    ):
-        from_csv(path, column="time_s")
-
-
-def test_a_baseline_away_from_the_beginning(tmp_path: Path) -> None:
-    message = (
-        r"rec.csv:2  E016 begins away from baseline\n  the recording begins at 32 °C, baseline_C is 31 °C\n"
-        r"  an icon begins at baseline, here within 0.05 K; leave baseline_C out, or cut the file"
-    )
-    with pytest.raises(ValueError, match=message):
-        from_csv(written(tmp_path, DIP), baseline_C=31)
-
-
 def test_a_recording_that_is_noisier_than_the_tolerance(tmp_path: Path) -> None:
     time = np.arange(20_000) / 1000
     path = written(tmp_path, table(time, 32 + np.random.default_rng(0).normal(0, 0.05, len(time))))
-    message = (
-        r"E220 too many corners\n  500 corners are not enough to stay within 0.05 of every reading; the readings "
-        r"scatter by about 0.05 \(standard deviation\), so try a tolerance of 0.3\n  "
-        r"give a larger tolerance \(--tolerance, in Python tolerance_K\)"
-    )
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(ValueError, match=r"E220(?s:.)* 500 corners.* scatter by about 0.05 .*a tolerance of 0.3\n"):
         from_csv(path)
     assert isinstance(from_csv(path, tolerance_K=0.3), Icon)
 
