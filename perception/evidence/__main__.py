@@ -24,7 +24,7 @@ from .calibrate import write_observer
 from .chains import CHAINS, require_extra
 from .posterior import LeftOut, Maximum, Posterior, leave_each_out, maximise
 from .results import CONSTANTS, PREDICTIONS, Constant, PredictedRow, write_rows
-from .sampling import LEAST_STEPS, Sampled, approximate_draws, sample
+from .sampling import LEAST_STEPS, approximate_draws, sample
 
 REFUSED = 3
 LEAST_STEPS_ASKED, MOST_STEPS, USUAL_STEPS = 100, 100_000, 20_000
@@ -112,25 +112,15 @@ def sample_posterior(asked: argparse.Namespace) -> int:
         progress=tell,
     )
     sys.stderr.write("\n")
-    draws = sampled.draws()
-    for name in draws.names:
-        low, median, high = draws.interval(name)
-        sys.stdout.write(f"{name:<44} {median:10.3g} {low:10.3g} {high:10.3g}\n")
-    sys.stdout.write(f"{draws.header.status}; worst: {worst_text(sampled)}\n")
+    sys.stdout.write(f"{sampled.diagnostics}\n")
     if not sampled.diagnostics.converged:
         sys.stderr.write("nothing was written: give more --steps\n")
         return REFUSED
     if asked.output is not None:
+        draws = sampled.draws()
         with complete_or_absent(asked.output) as draft:
             draft.write_text(to_text(draws.header, draws.names, draws.draws), encoding="utf-8")
     return 0
-
-
-def worst_text(sampled: Sampled) -> str:
-    """Diagnostics of the constant that has converged least."""
-    found = sampled.diagnostics
-    place = found.names.index(found.worst)
-    return f"{found.worst}, R-hat {found.r_hat[place]:.3f}, effective sample size {found.ess[place]:.0f}"
 
 
 if __name__ == "__main__":

@@ -14,10 +14,10 @@ small steps stays until the surrogate knows the place.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -33,13 +33,6 @@ LONG, MIDDLE = 0.7, 0.85
 TRAJECTORIES = 3
 BETA, WALK = 0.3, 1.7
 """β of Crank–Nicolson; length of a random walk in SDs over the root of the number of constants."""
-
-
-class HasResiduals(Protocol):
-    """What chains need of a posterior."""
-
-    def residuals(self, vector: Array) -> Array:
-        """Residuals, of which half the squares are the negative log density."""
 
 
 IMPOSSIBLE = -1e300
@@ -92,15 +85,20 @@ def begin(size: int, seed: int, number: int) -> Chain:
     return Chain(start[None], np.full(1, np.nan), tuple(random.get_state(legacy=True)))
 
 
-def extend(chain: Chain, posterior: HasResiduals, reference: Reference, surrogate: Surrogate, steps: int) -> Chain:
-    """The chain with more steps; the same steps whether they are taken at once or in parts."""
+def extend(
+    chain: Chain, residuals: Callable[[Array], Array], reference: Reference, surrogate: Surrogate, steps: int
+) -> Chain:
+    """The chain with more steps; the same steps whether they are taken at once or in parts.
+
+    Half the squares of the residuals of a vector are its negative log density.
+    """
     import emcee
 
     size = reference.middle.size
 
     def log_posterior(white: Array) -> float:
-        residuals = posterior.residuals(reference.vector(white))
-        density = -0.5 * float(residuals @ residuals)
+        missed = residuals(reference.vector(white))
+        density = -0.5 * float(missed @ missed)
         return density if np.isfinite(density) else IMPOSSIBLE
 
     def propose(white: Array, random: np.random.RandomState) -> tuple[Array, Array]:
@@ -153,8 +151,8 @@ class Diagnostics:
         return self.names[int(self.ess.argmin())]
 
     def __repr__(self) -> str:
-        state = "converged" if self.converged else f"not converged, worst {self.worst}"
-        return f"Diagnostics({state}: R-hat up to {self.r_hat.max():.4f}, ESS from {self.ess.min():.0f})"
+        state = "converged" if self.converged else "not converged"
+        return f"{state}, worst {self.worst}: R-hat up to {self.r_hat.max():.3f}, ESS from {self.ess.min():.0f}"
 
 
 def require_extra() -> None:
@@ -168,16 +166,11 @@ def require_extra() -> None:
 
 def diagnose(names: tuple[str, ...], chains: Array) -> Diagnostics:
     """Diagnostics of chains (chains, steps, n)."""
-    stats = _array_stats()
+    stats = import_module("arviz_stats.base").array_stats
     columns = range(chains.shape[2])
     r_hat = np.array([float(stats.rhat(chains[:, :, k])) for k in columns])
     ess = np.array([float(stats.ess(chains[:, :, k], method="bulk")) for k in columns])
     return Diagnostics(names, np.nan_to_num(r_hat, nan=np.inf), np.nan_to_num(ess))
-
-
-def _array_stats() -> Any:
-    require_extra()
-    return import_module("arviz_stats.base").array_stats
 
 
 AROUND, ROUNDS = 2400, (1200, 1200)
@@ -186,9 +179,10 @@ CHAINS, CHAIN_ROUNDS, CHAIN_STEPS = 4, 6, 250
 """Chains that visit the posterior while the surrogate learns, how often it learns from them, and steps in between."""
 WALKERS, WARM_UP, BETWEEN = 12, 20, 2
 """Walkers along the surrogate, and trajectories before the first and between two points."""
-Evaluate = Callable[[Array], Array]
-Visit = Callable[[Sequence[Chain], Reference, Surrogate], Sequence[tuple[Chain, "Points"]]]
-"""Extends chains by CHAIN_STEPS each, and gives the points where they looked."""
+PART = 50
+"""Vectors that a worker gets at once."""
+Run = Callable[..., Iterable[Any]]
+"""`map`, or that of a pool of processes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,57 +201,51 @@ class Points:
 
 
 def learn(
-    posterior: Posterior,
-    reference: Reference,
-    seed: int,
-    evaluate: Evaluate,
-    visit: Visit,
-    progress: Callable[[int], None] | None = None,
+    posterior: Posterior, reference: Reference, seed: int, run: Run, progress: Callable[[int], None]
 ) -> tuple[Surrogate, Reference, Points, tuple[Chain, ...]]:
     """The surrogate of a posterior, its coordinates, the points it was fitted to, and chains that have warmed up.
 
     `reference` is the normal approximation at the maximum; the posterior is wider, so that each round's walk gives the
-    coordinates of the next. `evaluate` gives the misses of all rows (points, rows) at vectors (points, n). What is
-    learnt depends on the seed alone.
+    coordinates of the next. What is learnt depends on the seed alone.
     """
     random = np.random.RandomState(np.random.MT19937(np.random.SeedSequence([seed, 1 << 20])))
-    vectors = reference.vector(random.standard_normal((AROUND, reference.middle.size)))
-    points = Points(vectors, evaluate(vectors))
+
+    def evaluated(vectors: Array) -> Points:
+        parts = np.array_split(vectors, max(1, len(vectors) // PART))
+        return Points(vectors, np.concatenate(list(run(_misses_at, [(posterior, part) for part in parts]))))
+
+    points = evaluated(reference.vector(random.standard_normal((AROUND, reference.middle.size))))
     for size in ROUNDS:
-        if progress is not None:
-            progress(len(points))
+        progress(len(points))
         surrogate = fitted(posterior, reference, points)
         vectors = reference.vector(walked(surrogate, random, size))
-        points = points.joined(Points(vectors, evaluate(vectors)))
+        points = points.joined(evaluated(vectors))
         reference = Reference.at(vectors.mean(axis=0), np.cov(vectors.T))
     chains = tuple(begin(reference.middle.size, seed, number) for number in range(CHAINS))
     for _ in range(CHAIN_ROUNDS):
-        if progress is not None:
-            progress(len(points))
-        visited = visit(chains, reference, fitted(posterior, reference, points, WIDE))
+        progress(len(points))
+        surrogate = fitted(posterior, reference, points, WIDE)
+        visited = list(run(_visited, [(chain, posterior, reference, surrogate) for chain in chains]))
         chains = tuple(chain for chain, _ in visited)
         for _, seen in visited:
             points = points.joined(seen)
     return fitted(posterior, reference, points, WIDE), reference, points, tuple(chain.last for chain in chains)
 
 
-class Recorder:
-    """A posterior that remembers where it was looked at."""
+def _visited(part: tuple[Chain, Posterior, Reference, Surrogate]) -> tuple[Chain, Points]:
+    """A chain with more steps, and the points where it looked; a job of one worker process."""
+    chain, posterior, reference, surrogate = part
+    seen = []
 
-    def __init__(self, posterior: Posterior) -> None:
-        self.posterior = posterior
-        self.seen: list[tuple[Array, Array]] = []
+    def residuals(vector: Array) -> Array:
+        misses = posterior.misses(vector)
+        seen.append((vector, misses))
+        return np.concatenate([misses[posterior.counted], vector])
 
-    def residuals(self, vector: Array) -> Array:
-        """Residuals of the posterior."""
-        misses = self.posterior.misses(vector)
-        self.seen.append((vector, misses))
-        return np.concatenate([misses[self.posterior.counted], vector])
-
-    @property
-    def points(self) -> Points:
-        """All points so far."""
-        return Points(np.stack([vector for vector, _ in self.seen]), np.stack([misses for _, misses in self.seen]))
+    with quiet_blas():
+        chain = extend(chain, residuals, reference, surrogate, CHAIN_STEPS)
+    vectors, misses = (np.stack(each) for each in zip(*seen, strict=True))
+    return chain, Points(vectors, misses)
 
 
 def fitted(
@@ -286,7 +274,7 @@ def walked(surrogate: Surrogate, random: np.random.RandomState, points: int) -> 
     return np.stack(visited)
 
 
-def misses_at(part: tuple[Posterior, Array]) -> Array:
+def _misses_at(part: tuple[Posterior, Array]) -> Array:
     """Misses (points, rows) of all rows, left out or not, at vectors (points, n); a job of one worker process."""
     posterior, vectors = part
     with quiet_blas():

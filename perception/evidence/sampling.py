@@ -7,13 +7,12 @@ not on the number of processes.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from importlib.metadata import version
 from multiprocessing import get_context
-from typing import Any
 
 import numpy as np
 
@@ -23,21 +22,7 @@ from ..arrays import Array
 from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import APPROXIMATE, DrawsHeader
 from ..observer.priors import LABORATORIES, load_priors
-from .chains import (
-    CHAIN_STEPS,
-    CHAINS,
-    ESS,
-    R_HAT,
-    Chain,
-    Diagnostics,
-    Points,
-    Recorder,
-    Reference,
-    diagnose,
-    extend,
-    learn,
-    misses_at,
-)
+from .chains import CHAINS, ESS, R_HAT, Chain, Diagnostics, Reference, Run, diagnose, extend, learn
 from .posterior import Maximum, Posterior, maximise
 from .results import inputs_digest, load_constants
 from .rows import load_rows
@@ -51,8 +36,6 @@ BURN_IN = 0.1
 DRAWS = 1000
 ENOUGH_ESS = 600.0
 """Chains go on until every constant has so many effective draws, more than what counts as converged."""
-PART = 50
-"""Vectors that a worker gets at once."""
 Progress = Callable[[int, int, str], None]
 
 
@@ -90,37 +73,23 @@ def sample(
     workers: int = 1,
     least_steps: int = LEAST_STEPS,
     most_steps: int = MOST_STEPS,
-    progress: Progress | None = None,
+    progress: Progress = lambda done, most, words: None,
 ) -> Sampled:
     """Sample until every constant has converged with effective draws to spare, or until `most_steps` of each chain.
 
     The same seed gives the same draws on the same computer, whose rounding they depend on. `progress` is called with
     (likelihoods so far, the most there may be, diagnostics in words).
     """
-
-    def told(done: int, most: int, words: str) -> None:
-        if progress is not None:
-            progress(done, most, words)
-
-    start = maximise(posterior, shipped_vector(posterior))
+    start, most = maximise(posterior, shipped_vector(posterior)), CHAINS * most_steps
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn")) if workers > 1 else nullcontext(None)
     with pool as shared:
-        run: Callable[..., Iterable[Any]] = map if shared is None else shared.map
-
-        def evaluate(vectors: Array) -> Array:
-            parts = np.array_split(vectors, max(1, len(vectors) // PART))
-            return np.concatenate(list(run(misses_at, [(posterior, part) for part in parts])))
-
-        def visit(chains: Sequence[Chain], at: Reference, by: Surrogate) -> list[tuple[Chain, Points]]:
-            return list(run(_visited, [(chain, posterior, at, by) for chain in chains]))
-
+        run: Run = map if shared is None else shared.map
         surrogate, reference, points, begun = learn(
             posterior,
             Reference.at(start.vector, start.covariance),
             seed,
-            evaluate,
-            visit,
-            lambda count: told(count, count + CHAINS * most_steps, "learning the surrogate"),
+            run,
+            lambda count: progress(count, count + most, "learning the surrogate"),
         )
         chains, steps, enough = list(begun), 0, False
         while steps < most_steps and not (steps >= least_steps and enough):
@@ -129,21 +98,14 @@ def sample(
             steps += more
             found = diagnose(posterior.priors.names, _kept(chains, reference))
             enough = found.converged and float(found.ess.min()) > ENOUGH_ESS
-            words = f"R-hat {found.r_hat.max():.3f}, ESS {found.ess.min():.0f}"
-            told(len(points) + CHAINS * steps, len(points) + CHAINS * most_steps, words)
+            progress(len(points) + CHAINS * steps, len(points) + most, repr(found))
     return Sampled(posterior, _kept(chains, reference), len(points) + CHAINS * steps, found, seed)
 
 
 def _extended(part: tuple[Chain, Posterior, Reference, Surrogate, int]) -> Chain:
+    chain, posterior, reference, surrogate, steps = part
     with quiet_blas():
-        return extend(*part)
-
-
-def _visited(part: tuple[Chain, Posterior, Reference, Surrogate]) -> tuple[Chain, Points]:
-    chain, posterior, reference, surrogate = part
-    recorder = Recorder(posterior)
-    with quiet_blas():
-        return extend(chain, recorder, reference, surrogate, CHAIN_STEPS), recorder.points
+        return extend(chain, posterior.residuals, reference, surrogate, steps)
 
 
 def _kept(chains: Sequence[Chain], reference: Reference) -> Array:

@@ -38,7 +38,7 @@ def test_draws_of_converged_chains_are_written_and_others_refused(
     out = tmp_path / "mine.csv"
     assert main(["sample", "-o", str(out)]) == 3
     said = capsys.readouterr()
-    assert "worst: cold conduction velocity, R-hat 1.070" in said.out
+    assert "not converged, worst cold conduction velocity: R-hat up to 1.070" in said.out
     assert "nothing was written" in said.err
     assert not list(tmp_path.iterdir())
     monkeypatch.setattr(main_module, "sample", lambda *_, **__: sampled(1.003))
