@@ -16,7 +16,7 @@ import numpy as np
 from thermicon.circuit import Rig
 
 from ..experiments.laboratory import Laboratory
-from ..experiments.measure import ADAPTIVE, METHODS, WORDS, Condition, Setting, logs_of
+from ..experiments.measure import ADAPTIVE, Condition, Setting, logs_of
 from ..observer.channels import CHANNELS, Channel, Variable, sign_of
 from ..observer.observer import load_thresholds
 from ..observer.people import YOUNG_YEARS
@@ -107,7 +107,7 @@ def limits(
 ) -> tuple[Predicted, ...]:
     """Limits at 1 °C/s from 32 °C on the back of the hand (9 cm²) or the forearm (10 cm²), cold then warm.
 
-    `people` fill in the spread over persons, of 20 to 30 years unless `age_years` is given.
+    The value is the median of `people`, of 20 to 30 years unless `age_years` is given.
     """
     rig, area = LIMITS[site]
     setting, aged = _setting(rig, area), "" if age_years is None else f", {age_years:g} years"
@@ -122,8 +122,7 @@ def limits(
     ]
     made = []
     for found, one in zip(predict(f"limits on the {site}", asked, variable, draws, seed), conditions, strict=True):
-        low, middle, high = np.percentile(np.exp(logs_of(crowd, setting, one)[0]), [16.0, 50.0, 84.0]).tolist()
-        made.append(replace(found, value=middle, people=(low, high)))
+        made.append(replace(found, value=float(np.median(np.exp(logs_of(crowd, setting, one)[0])))))
     return tuple(made)
 
 
@@ -153,20 +152,6 @@ def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, se
     ]
     asked.append(Asked("warm over cold", "both", "1", said, lambda o: at("warm", largest, o) / at("cold", largest, o)))
     return predict("choice reaction time", asked, variable, draws, seed)
-
-
-def methods(variable: Variable = "temperature", *, draws: int = 0, seed: int = 0) -> tuple[Predicted, ...]:
-    """One observer by three methods at 1 K/s on the back of the hand: forced choice, yes/no, limits, in K."""
-    setting, said = _setting(*LIMITS["hand"]), "display ramps of 1 K/s from 32 °C on the back of the hand, 9 cm²"
-    asked = [
-        Asked(
-            f"threshold by {WORDS[method]}", channel, "K", said,
-            partial(measured, setting, _threshold(method, channel)), noticed_K(channel),
-        )
-        for method in METHODS["threshold"]
-        for channel in CHANNELS
-    ]  # fmt: skip
-    return predict("method", asked, variable, draws, seed)
 
 
 def _setting(rig: str, area_cm2: float) -> Setting:

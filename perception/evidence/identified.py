@@ -164,8 +164,6 @@ def six_icons(found: Identified, trials: int, seed: int) -> tuple[Predicted, ...
         for k, name in enumerate(found.labels)
     ]
     made = [found.predicted("six icons", name, unit, score, top=top) for name, unit, score, top in asked]
-    low, high = np.percentile(proportion_correct(found.probability), [16.0, 84.0]).tolist()
-    made[0] = replace(made[0], people=(low, high))
     made[3] = replace(made[3], conditions=f"{found.said}; plug-in estimate of {trials} trials a person")
     return tuple(made)
 

@@ -36,10 +36,9 @@ class Predicted:
 
     `value` is that of the nominal observer (median of people where there are some), None where nothing
     was felt. `low`, `high` enclose 95 % of the observers that the assumed and calibrated intervals leave
-    possible; `people` is the 16 to 84 % interval over virtual people at nominal parameters. `draws` has the
-    answers of those observers (inf: not felt): the k-th is the same observer in every experiment of a
-    variant that was run with as many draws, so that two predictions can be plotted against each other. `baseline` is
-    what skin temperature alone predicts (None: nothing).
+    possible. `draws` has the answers of those observers (inf: not felt): the k-th is the same observer in every
+    experiment of a variant that was run with as many draws, so that two predictions can be plotted against each other.
+    `baseline` is what skin temperature alone predicts (None: nothing).
     """
 
     experiment: str
@@ -51,17 +50,8 @@ class Predicted:
     high: float | None
     variable: Variable
     conditions: str
-    people: tuple[float, float] | None = None
     draws: tuple[float, ...] = ()
     baseline: float | None = None
-
-    def __repr__(self) -> str:
-        value = "nothing felt" if self.value is None else f"{self.value:.3g} {self.unit}"
-        span = "" if self.low is None or self.high is None else f" [{self.low:.3g}, {self.high:.3g}]"
-        return (
-            f"Predicted({self.experiment}, {self.quantity}, {self.channel}: {value}{span} "
-            f"from {self.variable}; {self.conditions})"
-        )
 
 
 NOBODY_DIFFERS = (

@@ -11,7 +11,7 @@ from thermicon.circuit import Rig
 from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import VARIABLES, Variable
 from ..observer.people import OLD_YEARS
-from .experiments import first_and_return, limits, methods, peak_lead, rate_curve, reaction_times
+from .experiments import first_and_return, limits, peak_lead, rate_curve, reaction_times
 from .identified import (
     WAVES,
     Identified,
@@ -80,7 +80,6 @@ def _experiments(
         partial(limits, "forearm", variable, people=people, **drawn),
         partial(_old, variable, people, seed),
         partial(reaction_times, variable, **drawn),
-        partial(methods, variable, **drawn),
         partial(whole_body_warmth, variable, **drawn),
         partial(peak_lead, variable, **drawn),
         partial(first_and_return, variable, **drawn),

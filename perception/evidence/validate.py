@@ -29,11 +29,10 @@ PEOPLE, TRIALS = 200, 48
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A row as one variant predicts it: what was made of the prediction, verdict, share of draws that hold."""
+    """A row as one variant predicts it: what was made of the prediction, and the verdict."""
 
     predicted: Predicted
     verdict: Verdict
-    share_holding: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,20 +42,6 @@ class Line:
     row: Row
     published: Published
     judged: tuple[Judged, ...]
-
-    @property
-    def nearer(self) -> str:
-        """Which of temperature and heat flow does better; nothing where it is not judged."""
-        warmth, flow = (one.verdict for one in self.judged)
-        if warmth.holds is None:
-            return ""
-        if warmth.holds and flow.holds:
-            return "both"
-        if warmth.holds or flow.holds:
-            return "temperature" if warmth.holds else "heat flow"
-        if math.isclose(warmth.miss, flow.miss, rel_tol=0.02):
-            return "neither"
-        return f"neither, {'temperature' if warmth.miss < flow.miss else 'heat flow'} nearer"
 
     @property
     def baseline(self) -> float | None:
@@ -198,10 +183,7 @@ def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable:
             factor = table.one(row.times).central if row.apply == "times" else -1.0 if row.apply == "negative" else 1.0
             made = _linear(made, factor, 1.0 if row.apply == "one plus" else 0.0)
     made = replace(made, unit=row.unit)
-    share = None
-    if row.judged and made.draws:
-        share = sum(bool(judge_row(row, each, was).holds) for each in made.draws) / len(made.draws)
-    return Judged(made, judge_row(row, made.value, was), share)
+    return Judged(made, judge_row(row, made.value, was))
 
 
 def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
@@ -213,7 +195,7 @@ def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:
     )
     low, high = interval_of(each)
     skin = None if cold.baseline is None or warm.baseline is None else combined(row.apply, cold.baseline, warm.baseline)
-    return replace(cold, channel="both", value=value, low=low, high=high, people=None, draws=each, baseline=skin)
+    return replace(cold, channel="both", value=value, low=low, high=high, draws=each, baseline=skin)
 
 
 def _linear(one: Predicted, times: float, plus: float) -> Predicted:

@@ -49,7 +49,6 @@ def _line(line: Line) -> dict[str, Any]:
         "unit": line.row.unit,
         "published": asdict(line.published),
         "criterion": {"text": criterion_of_row(line.row, line.published), "source": line.row.source},
-        "better": line.nearer or None,
         "baseline": _finite(line.baseline),
         "nearer_to_published": line.nearer_to_published or None,
         "predicted": [_judged(one) for one in line.judged],
@@ -63,8 +62,6 @@ def _judged(one: Judged) -> dict[str, Any]:
         **_data(verdict, "text", verdict="word"),
         "value": _finite(found.value),
         "interval": [_finite(found.low), _finite(found.high)],
-        "people_16_to_84": None if found.people is None else list(found.people),
-        "share_of_draws_that_hold": one.share_holding,
     }
 
 

@@ -15,14 +15,12 @@ class Verdict:
     """`holds` is None for what is shown and not judged; `miss` is 0 where it holds and grows with the miss.
 
     Misses of one row compare between variants: they are logarithms of ratios, or differences in the unit of
-    the row. `text` says the size, with what was asked for. `way` is +1 where the prediction is too high, −1 where
-    it is too low, 0 where it holds or nothing was felt.
+    the row. `text` says the size, with what was asked for.
     """
 
     holds: bool | None
     miss: float
     text: str
-    way: int = 0
 
     @property
     def word(self) -> str:
@@ -53,7 +51,7 @@ def judge_row(row: Row, predicted: float | None, published: Published) -> Verdic
         return Verdict(True, 0.0, asked)
     short = under > 0.0 or (edge and predicted == low)
     size = f"{plain(miss)}{_unit(row)} {'too low' if short else 'too high'}"
-    return Verdict(False, miss, f"{size}; {asked}", -1 if short else 1)
+    return Verdict(False, miss, f"{size}; {asked}")
 
 
 CRITERIA = {
@@ -114,7 +112,7 @@ def _by_ratio(row: Row, predicted: float, published: Published, asked: str) -> V
         way, holds = f"{100.0 * (ratio - 1.0):+.0f} %".replace("-", MINUS), abs(ratio - 1.0) <= limit
     if holds:
         return Verdict(True, 0.0, f"{way}, {asked}")
-    return Verdict(False, abs(math.log(ratio)), f"{way}, {asked}", 1 if ratio > 1.0 else -1)
+    return Verdict(False, abs(math.log(ratio)), f"{way}, {asked}")
 
 
 def _bounds(row: Row, published: Published) -> tuple[float, float, bool]:

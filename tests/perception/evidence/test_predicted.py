@@ -38,7 +38,6 @@ def test_the_seed_decides() -> None:
 def test_what_is_not_felt_is_none() -> None:
     found = predict("x", [Asked("y", "cold", "K", "z", lambda _: float(np.inf))], "temperature", draws=2)
     assert (found[0].value, found[0].low, found[0].high) == (None, None, None)
-    assert repr(found[0]).startswith("Predicted(x, y, cold: nothing felt from temperature")
 
 
 def test_one_person_has_the_skin_of_the_rig_no_offset_and_no_scatter_of_people_but_that_of_age() -> None:
