@@ -130,6 +130,7 @@ def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: Ico
     assert f"95 % of people: {100 * low:.0f}–{100 * high:.0f} %" in words
     for part in ("direction", "intensity", "rate", "duration", "pause"):
         assert part in words
+    assert "receiver operating characteristic of the worst pair" in made
     for heading in ("Settings", "The set", "Pictures of the set", "Icons", "Safety"):
         assert f"<h2>{heading}</h2>" in made
 
