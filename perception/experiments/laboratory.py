@@ -172,22 +172,24 @@ class Laboratory:
         from ..kernels.kernels import adapted_drive
 
         values = self.values
-        skin = _skin(site_rig, values["contact resistance of a thermode"], values["effusivity of living skin"])
+        skin = skin_modes(site_rig, values["contact resistance of a thermode"], values["effusivity of living skin"])
         depth = skin.corneum_m + 1e-3 * values[f"{channel} receptor depth"]
         rows = round(end_s / DT_S) + 1
         ramp, steady = self._response(site_rig, channel, skin, depth, rows)
         baseline = skin.resting(baseline_C, steady, self.variable)
         received = course_of(ramp, baseline, corners, DT_S, rows)
         neutral = _published().neutral_C
-        if self.variable == "heat flow":
+        if self.variable == "heat flow":  # whose limits are so far away that they do nothing
             flows = sorted(skin.baseline(level, depth, "heat flow") for level in neutral)
-            neutral = flows[0], flows[1]
+            limit, neutral = -NO_LIMIT_C * sign_of(channel), (flows[0], flows[1])
+        else:
+            limit = values[f"{channel} limit"]
         drive = np.empty((1, rows))
         adapted_drive(
             received[None],
             DT_S,
             sign_of(channel),
-            self._limit(channel),
+            limit,
             values["softness of the limits"],
             *neutral,
             values["integration time"],
@@ -196,12 +198,6 @@ class Laboratory:
         )
         row: Array = drive[0]
         return row
-
-    def _limit(self, channel: Channel) -> float:
-        """Limit of quality in °C; so far away for heat flow that it does nothing."""
-        if self.variable == "heat flow":
-            return -NO_LIMIT_C * sign_of(channel)
-        return self.values[f"{channel} limit"]
 
     def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:
         """Multiples of threshold per unit of drive of the median person of a laboratory at a site, area and age."""
@@ -280,8 +276,3 @@ def _published() -> _Published:
         known.one("complete adaptation").interval,
         {site: known.one("path length to the cord", site=site).central for site in ("hand", "forearm")},
     )
-
-
-@lru_cache(maxsize=64)
-def _skin(site_rig: str, contact_m2K_per_W: float, effusivity: float) -> SkinModes:
-    return skin_modes(site_rig, contact_m2K_per_W, effusivity)

@@ -111,6 +111,7 @@ def course_of(ramp_response: Array, baseline: float, corners: Sequence[Corner], 
     return course
 
 
+@lru_cache(maxsize=64)
 def skin_modes(site_rig: str, contact_m2K_per_W: float, effusivity: float = 1.0) -> SkinModes:
     """Modes of a shipped rig's skin; `effusivity` multiplies that of living tissue.
 

@@ -57,7 +57,7 @@ def _passage(
             left[start] = left[0]
             start += 1
         for i in range(BLOCK):
-            last[i] = looked_up(psi_table, gain[i] + log_drive[start - 1], LOG_U_FROM, LOG_U_STEP)
+            last[i] = between(psi_table, (gain[i] + log_drive[start - 1] - LOG_U_FROM) / LOG_U_STEP)
         end = samples - 1
         for t in range(start, samples):
             dt = time[t] - time[t - 1]
@@ -103,18 +103,8 @@ def _first_below_index(falling: Any, level: float, end: int) -> int:
     return low
 
 
-def _looked_up(table: Any, x: float, start: float, step: float) -> float:
-    place = (x - start) / step
-    if place <= 0.0:
-        return float(table[0])
-    k = int(place)
-    if k >= table.size - 1:
-        return float(table[table.size - 1])
-    return float(table[k] + (place - k) * (table[k + 1] - table[k]))
-
-
 def _between(table: Any, place: float) -> float:
-    """`looked_up` without branches: what lies outside counts as the end of the table."""
+    """A table at a place between its entries, without branches: what lies outside counts as its end."""
     within = min(max(place, 0.0), table.size - 1.000001)
     k = np.uint32(np.int32(within))
     return float(table[k] + (within - k) * (table[k + np.uint32(1)] - table[k]))
@@ -177,7 +167,6 @@ def _psychometric(reported: Any, log_sizes: Any, shares: Any, logs: Any) -> None
 _compile: Any = kernel(nogil=True)
 _vector: Any = kernel(nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"})
 cumulative: Any = _compile(_cumulative)
-looked_up: Any = _compile(_looked_up)
 between: Any = _vector(_between)
 first_below: Any = _compile(_first_below_index)
 passage: Any = _vector(_passage)

@@ -26,7 +26,6 @@ from .passage import (
     Z_MIDDLE,
     Z_STEP,
     between,
-    looked_up,
 )  # fmt: skip
 
 AT_ONCE = 64
@@ -121,7 +120,7 @@ def _survive(
     larger its drive is. It is relative to that of no change at all: the crossings of noise alone are left out. What
     comes after a report is certain is not computed.
     """
-    silent = RISE[Z_MIDDLE] / tau * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
+    silent = RISE[Z_MIDDLE] / tau * between(MILLS, (criterion - GAP_FROM) / GAP_STEP)
     left, at_start = 0.0, a * log1p(raised * risen[0])
     log_left[:begin] = left
     psi, fall, last = room[0], room[1], 0.0

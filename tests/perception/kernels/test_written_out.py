@@ -19,7 +19,6 @@ from thermicon.perception.kernels.passage import (
     Z_FROM,
     Z_MIDDLE,
     Z_STEP,
-    looked_up,
 )
 
 DT, TAU, A = 0.01, 0.3, 11.0
@@ -41,17 +40,21 @@ def course(n: int, kind: int, chance: np.random.Generator) -> Array:
     return psi
 
 
+def looked_up(table: Array, place: float) -> float:
+    return float(np.interp(place, np.arange(table.size), table))
+
+
 def survived(psi: Array, raised: float, criterion: float) -> Array:
     change = A * np.log1p(raised * np.expm1(psi / A))
     change = np.abs(change - change[0])
-    silent = RISE[Z_MIDDLE] / TAU * looked_up(MILLS, criterion, GAP_FROM, GAP_STEP)
+    silent = RISE[Z_MIDDLE] / TAU * looked_up(MILLS, (criterion - GAP_FROM) / GAP_STEP)
     left = 0.0
     logs = [left]
     for before, now in zip(change[:-1].tolist(), change[1:].tolist(), strict=True):
         z = (now - before) * TAU / DT
         gap = criterion - 0.5 * (now + before)
-        rise = max(looked_up(RISE, z, Z_FROM, Z_STEP), z)
-        rate = rise / TAU * looked_up(MILLS, gap, GAP_FROM, GAP_STEP) if now + before > 0.0 else silent
+        rise = max(looked_up(RISE, (z - Z_FROM) / Z_STEP), z)
+        rate = rise / TAU * looked_up(MILLS, (gap - GAP_FROM) / GAP_STEP) if now + before > 0.0 else silent
         if left >= CERTAIN:
             left -= DT * (rate - silent)
         logs.append(left)
