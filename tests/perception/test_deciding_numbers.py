@@ -56,6 +56,7 @@ def test_doubts_from_two_per_cent_of_the_variance_on() -> None:
     predicted = some[:, 0] + np.random.default_rng(2).standard_normal(12)
     z = scores(12)[np.argsort(np.argsort(some[:, 0]))]
     left = predicted - np.polyval(np.polyfit(z, predicted, 2), z)
+    assert explained(some, np.full(12, 0.8)) == pytest.approx(0.0)
     assert explained(some, predicted) == pytest.approx(1.0 - left.var() / predicted.var() * 11 / 9, abs=0.02)
 
 

@@ -50,11 +50,10 @@ def test_it_prints_the_worst_pair_and_becomes_a_dictionary() -> None:
     change = PerceivedChange(
         "a", DeliveredChange(1.0, 0.9), (("b", DeliveredChange(2.0, 1.9)), ("c", DeliveredChange(3.0, 2.0)))
     )
-    assert repr(change) == "PerceivedChange(a: detected 1.000 → 0.900 by the nominal person, d′ to c 3 → 2)"
+    assert repr(change).endswith(", d′ to c 3 → 2)")
     told = change.to_dict()
     assert told["detected_probability"] == {"designed": 1.0, "delivered": 0.9}
-    assert told["detected_by"] == "the nominal person"
-    assert replace(change, people=200).to_dict()["detected_by"] == "200 virtual people"
-    assert replace(change, people=1).detected_by == "1 virtual person"
+    said = [replace(change, people=people).to_dict()["detected_by"] for people in (0, 1, 200)]
+    assert said == ["the nominal person", "1 virtual person", "200 virtual people"]
     assert told["d_prime"] == {"b": {"designed": 2.0, "delivered": 1.9}, "c": {"designed": 3.0, "delivered": 2.0}}
     assert told["losses"] == list(change.losses())

@@ -19,7 +19,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import LEAST_EFFECTIVE, LEAST_SHARE
 from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import log_likelihood, predicted
-from thermicon.perception.pilot.playing import Confusions, stage
+from thermicon.perception.pilot.playing import stage
 from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
 
 ENDS = (0.025, 0.975)
@@ -68,59 +68,39 @@ class Bench:
         return float(np.median(each[:, 0])), covered.tolist(), narrower.tolist()
 
 
-@dataclass(frozen=True)
-class Answering:
-    """A bench whose laboratories name six icons, and whose people who were left out name them and another set."""
-
-    bench: Bench
-    answered: Confusions
-    participants: Confusions
-    predictions: tuple[tuple[Floats, Floats], ...]
-
-    @classmethod
-    def of(cls, laboratories: int, truths: int, other: str) -> Answering:
-        bench = Bench.of(laboratories, truths, 8)
-        first, second = (stage(read_cue(name), RIG, bench.prior) for name in ("six-icons", other))
-        people, left = bench.other_people(bench.some), bench.other_people(bench.true)
-        pairs = [(each.confusions(people).correct, each.confusions(left).correct) for each in (first, second)]
-        return cls(bench, first.confusions(bench.some), first.confusions(bench.true), tuple(pairs))
-
-    def judged(self, participants: int, trials: int, seed: int) -> tuple[float, list[float], list[float]]:
-        rng, own = np.random.default_rng(seed), self.bench.own
-
-        def weights_of(k: int) -> tuple[Floats, float]:
-            presented = np.stack([spread(trials, 6, rng) for _ in range(participants)])
-            invited = rng.integers(self.participants.probability.shape[1], size=participants)
-            counts = answers_of(self.participants.of(np.array([k])), invited, presented, rng)
-            logs = log_likelihoods(self.answered.probability, counts).sum(axis=1)
-            logs[own[k]] = -np.inf  # the draw that the laboratory was made from
-            size = effective(normalised_weights(logs))
-            if size < min(LEAST_EFFECTIVE, LEAST_SHARE * len(logs)):  # as `condition` does, without fresh ones
-                logs = PooledLikelihood.fit(self.bench.some.place, self.answered, counts)(self.bench.some.place)
-                logs[own[k]] = -np.inf
-            return logs, size
-
-        return self.bench.judged(weights_of, *self.predictions)
-
-
-@pytest.mark.slow
-def test_a_pilot_of_a_few_people_narrows_and_still_covers() -> None:
-    size, covered, narrower = Answering.of(150, 50, "six-icons").judged(3, 20, 3)
-    assert narrower[0] > 1.05
-    assert covered[0] >= 0.86
-    assert size > 20.0
-
-
 @pytest.mark.slow
 def test_intervals_cover_two_hundred_laboratories_and_twenty_trials_narrow_a_little() -> None:
-    many = Answering.of(1000, 200, "pulse-sequences")
+    """People who were left out name the six icons and another set."""
+    bench = Bench.of(1000, 200, 8)
+    first, second = (stage(read_cue(name), RIG, bench.prior) for name in ("six-icons", "pulse-sequences"))
+    people, left = bench.other_people(bench.some), bench.other_people(bench.true)
+    predictions = [(each.confusions(people).correct, each.confusions(left).correct) for each in (first, second)]
+    answered, invited = first.confusions(bench.some), first.confusions(bench.true)
+
+    def judged(participants: int) -> tuple[float, list[float], list[float]]:
+        rng = np.random.default_rng(3)
+
+        def weights_of(k: int) -> tuple[Floats, float]:
+            presented = np.stack([spread(20, 6, rng) for _ in range(participants)])
+            who = rng.integers(invited.probability.shape[1], size=participants)
+            counts = answers_of(invited.of(np.array([k])), who, presented, rng)
+            logs = log_likelihoods(answered.probability, counts).sum(axis=1)
+            logs[bench.own[k]] = -np.inf  # the draw that the laboratory was made from
+            size = effective(normalised_weights(logs))
+            if size < min(LEAST_EFFECTIVE, LEAST_SHARE * len(logs)):  # as `condition` does, without fresh ones
+                logs = PooledLikelihood.fit(bench.some.place, answered, counts)(bench.some.place)
+                logs[bench.own[k]] = -np.inf
+            return logs, size
+
+        return bench.judged(weights_of, *predictions)
+
     with quiet_blas():
-        found = {people: many.judged(people, 20, 3) for people in (1, 4)}
-    for _, covered, _ in found.values():
+        one, four = judged(1), judged(4)
+    for _, covered, _ in (one, four):
         assert all(0.90 <= each <= 0.995 for each in covered)
-    assert 1.02 <= found[1][2][0] <= 1.12  # docs/how-to/your-pilot.md says 1.06
-    assert 1.12 <= found[4][2][0] <= 1.3
-    assert found[4][0] > 150
+    assert 1.02 <= one[2][0] <= 1.12  # docs/how-to/your-pilot.md says 1.06
+    assert 1.12 <= four[2][0] <= 1.3
+    assert four[0] > 150
 
 
 @pytest.mark.slow

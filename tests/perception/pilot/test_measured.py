@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,18 +14,15 @@ from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.experiments.tasks import DISCREPANCY
 from thermicon.perception.observer.draws import PosteriorDraws
-from thermicon.perception.observer.observer import Observer
-from thermicon.perception.pilot.conditioning import Conditioned, Measured, condition
+from thermicon.perception.pilot.conditioning import Measured, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
-    groups_of,
     log_errors,
     log_likelihood,
     person_covariance,
     predicted,
     shared_covariance,
 )
-from thermicon.perception.pilot.measurements_file import Measurements
 from thermicon.perception.pilot.observed import observed
 from thermicon.perception.pilot.states import OFFSETS, LaboratoryPrior
 
@@ -47,7 +44,7 @@ def test_the_likelihood_is_that_of_one_normal_vector(prior: LaboratoryPrior) -> 
     made = synthetic_measurements(RIG, participants=4, seed=1, conditions=conditions)
     values, errors = made.values.copy(), made.errors.copy()
     values[0, 1], errors[2, 0], errors[3, 2] = np.nan, 0.2, 4.0
-    some = Measurements(conditions, made.participants, values, errors, made.trials)
+    some = replace(made, values=values, errors=errors)
     each = predicted(prior, prior.first(3, 0), Setting.of(RIG), conditions)
     assert shared_covariance(some)[2, 2] == pytest.approx(DISCREPANCY**2 + 0.7**2)
     assert person_covariance(some, np.zeros((3, 3)))[2, 2] == pytest.approx(0.4**2, abs=1e-5)
@@ -104,25 +101,12 @@ def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
         assert sign * (high - low) > 0.08
 
 
-def refreshed(prior: LaboratoryPrior, draws: int, kept: int) -> tuple[Measurements, Conditioned]:
-    """Measurements that so few draws do not carry, and the laboratories conditioned on them."""
+@pytest.mark.slow
+def test_too_few_draws_are_refreshed_and_agree_with_many_weighed_draws(prior: LaboratoryPrior) -> None:
     some = synthetic_measurements(RIG, participants=12, trials=60, seed=1, conditions=SHARP)
-    return some, condition(Measured(some, prior, Setting.of(RIG)), prior.first(draws, 2), kept=kept)
-
-
-@pytest.mark.slow
-def test_too_few_draws_are_refreshed(prior: LaboratoryPrior) -> None:
-    _, found = refreshed(prior, 80, 40)
-    assert found.effective < 20.0
-    assert 1 <= found.rounds <= 3
-    assert found.effective_after >= 10.0
-    assert len(found.after) == len(found.simulated_after.mean) == 40
-
-
-@pytest.mark.slow
-def test_refreshed_laboratories_agree_with_many_weighed_draws(prior: LaboratoryPrior) -> None:
-    some, found = refreshed(prior, 200, 150)
-    assert found.rounds
+    found = condition(Measured(some, prior, Setting.of(RIG)), prior.first(200, 2), kept=150)
+    assert 1 <= found.rounds <= 3 and found.effective < 50.0 and found.effective_after >= 37.5
+    assert len(found.after) == len(found.simulated_after.mean) == 150
     many = predicted(prior, prior.first(1000, 5), Setting.of(RIG), SHARP)
     weights = normalised_weights(log_likelihood(some, many))
     assert effective(weights) > 100.0
@@ -137,44 +121,22 @@ def test_ratings_count_by_their_ratios_alone(prior: LaboratoryPrior) -> None:
     small = Condition("rating", "magnitude", "warm", 32.0, 3.0, 5.0, 0.7)
     made = synthetic_measurements(RIG, participants=5, seed=2, conditions=(small, RATING))
     each = predicted(prior, prior.first(60, 0), Setting.of(RIG), (small, RATING))
-    values = 0.9 * made.values
-    halved = Measurements(made.conditions, made.participants, values, made.errors, made.trials)
-    first, second = (normalised_weights(log_likelihood(some, each)) for some in (made, halved))
+    halved, steep = (replace(made, values=values) for values in (0.9 * made.values, made.values * [0.6, 1.5]))
+    first, second, third = (normalised_weights(log_likelihood(some, each)) for some in (made, halved, steep))
     assert float(np.abs(first - second).sum()) < 0.35
-    steeper = made.values * np.array([0.6, 1.5])
-    third = normalised_weights(
-        log_likelihood(Measurements(made.conditions, made.participants, steeper, made.errors, made.trials), each)
-    )
     assert float(np.abs(first - third).sum()) > 0.35
 
 
 @pytest.mark.slow
-def test_what_was_measured_is_kept_as_an_observer(tmp_path: Path) -> None:
+def test_what_was_measured_is_kept_as_an_observer() -> None:
     some = synthetic_measurements(RIG, participants=4, seed=2)
     calls: list[tuple[int, int]] = []
-    found = observed(
-        some, read_cue("six-icons"), RIG, draws=40, progress=lambda done, total: calls.append((done, total))
-    )
-    toml, drawn = found.files()
-    (tmp_path / "lab.toml").write_text(toml, encoding="utf-8")
-    (tmp_path / "lab.csv").write_text(drawn, encoding="utf-8")
-    assert len(PosteriorDraws.load(tmp_path / "lab.csv")) == 20
-    assert Observer.load(tmp_path / "lab.toml").drive_unit == "K"
-    assert "# values: 16" in drawn
+    found = observed(some, read_cue("six-icons"), RIG, draws=40, progress=lambda *steps: calls.append(steps))
+    assert "# values: 16" in found.files()[1]
     assert calls[-1][0] <= calls[-1][1]
-    data = found.to_dict()
-    assert data["effective_sample_size"] > 1.0
-    assert [each["unit"] for each in data["fit_before"]["conditions"]] == ["K", "K", "s", "s"]
+    assert [each["unit"] for each in found.to_dict()["fit_before"]["conditions"]] == ["K", "K", "s", "s"]
 
 
 def test_a_site_without_skin_is_refused() -> None:
     with pytest.raises(ValueError, match=r"thenar, forearm, hand-dorsum, fingertip; thenar is at 'lip'"):
         Setting.of(RIG.with_(**{"skin.site": "lip"}))
-
-
-def test_groups_hold_participants_of_one_pattern() -> None:
-    made = synthetic_measurements(RIG, participants=3, seed=2)
-    values = made.values.copy()
-    values[1, 0] = np.nan
-    some = Measurements(made.conditions, made.participants, values, made.errors, made.trials)
-    assert sorted(group.count for group in groups_of(some)) == [1, 2]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +11,18 @@ from tests.perception.pilot.madeup import synthetic_trials
 from thermicon.circuit import Rig
 from thermicon.circuit.records import RecordError
 from thermicon.icons import IconSet
+from thermicon.perception import rank
+from thermicon.perception.identification.laboratory import DRAWS
 from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.conditioning import Answered
+from thermicon.perception.pilot.laboratory_file import middle_of
 from thermicon.perception.pilot.observed import Observed, observed
 from thermicon.perception.pilot.prediction import Fit
 from thermicon.perception.pilot.states import LaboratoryPrior
 from thermicon.perception.pilot.trials import Trials
+from thermicon.perception.ranking.sensitivity import sensitivity
 
 
 @pytest.fixture(scope="module")
@@ -30,6 +33,15 @@ def answers(icons: IconSet, rig: Rig) -> Trials:
 @pytest.fixture(scope="module")
 def found(icons: IconSet, rig: Rig, answers: Trials) -> Observed[Answered, Fit]:
     return observed(answers, icons, rig, others=[icons], draws=40, seed=1)
+
+
+@pytest.fixture(scope="module")
+def lab(found: Observed[Answered, Fit], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Records of what was kept, with the table of draws beside them."""
+    path = tmp_path_factory.mktemp("kept") / "lab.toml"
+    for name, text in zip((path, path.with_suffix(".csv")), found.files(), strict=True):
+        name.write_text(text, encoding="utf-8")
+    return path
 
 
 def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
@@ -49,24 +61,20 @@ def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
 @pytest.mark.slow
 def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers: Trials) -> None:
     own = found.to_dict()
-    assert json.loads(found.to_json()) == json.loads(json.dumps(own))
     assert own["trials"] == answers.total == 54
     assert own["counts"] == answers.pooled.astype(int).tolist()
     assert [each["who"] for each in own["each"]] == ["P1", "P2", "P3"]
     assert 1.0 <= own["effective_sample_size"] <= 40.0
-    same = own["predictions"][0]["before"], own["predictions"][1]["before"]
-    assert same[0]["proportion_correct"] == same[1]["proportion_correct"]
+    same, other = (each["before"]["proportion_correct"] for each in own["predictions"])
+    assert same == other
     assert own["predictions"][0]["after"]["people"] == 24
     for each in (found.fit, found.fit_after):
         assert 0.0 < each.p <= 1.0
         assert len(each.pairs) == 15
 
 
-def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], tmp_path: Path) -> None:
-    observer, table = found.files()
-    (tmp_path / "lab.toml").write_text(observer, encoding="utf-8")
-    (tmp_path / "lab.csv").write_text(table, encoding="utf-8")
-    draws = PosteriorDraws.load(tmp_path / "lab.csv")
+def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], lab: Path) -> None:
+    table, draws = found.files()[1], PosteriorDraws.load(lab.with_suffix(".csv"))
     assert len(draws) == 20
     assert draws.values(BETWEEN_LABORATORIES).max() < 1e-5  # these draws are of this laboratory
     assert "participants: 3; trials: 54" in draws.header.sampler
@@ -79,19 +87,14 @@ def test_files_are_read_by_observer_and_draws(found: Observed[Answered, Fit], tm
     assert draws.header.status.startswith("resampled by weights from 40 laboratories")
     assert draws.header.rig == "thenar" and draws.one_laboratory and not PosteriorDraws.load().one_laboratory
     assert "# effective draws: " in table and "# participants: 3\n" in table
-    person = Observer.load(tmp_path / "lab.toml")
-    assert PosteriorDraws.load(tmp_path / "lab.csv").nominal() == draws.nominal() == person
-    model = ObserverModel.load(tmp_path / "lab.csv")
-    whole = ObserverModel.load(tmp_path / "lab.toml")
-    assert model.nominal == whole.nominal == person
+    model, whole = ObserverModel.load(lab.with_suffix(".csv")), ObserverModel.load(lab)
+    assert model.nominal == whole.nominal == draws.nominal() == Observer.load(lab)
     for field in ("threshold_cold", "threshold_warm", "criterion_cold", "decision_s", "memory"):
         assert np.array_equal(getattr(model.people(9, 4), field), getattr(whole.people(9, 4), field)), field
 
 
-@pytest.mark.slow
-def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Answered, Fit], tmp_path: Path) -> None:
-    (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
-    draws = PosteriorDraws.load(tmp_path / "lab.csv")
+def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Answered, Fit], lab: Path) -> None:
+    draws = PosteriorDraws.load(lab.with_suffix(".csv"))
     assert draws.memory_names == ("share of the scatter of ratings", "bar of an episode", "memory noise (episodes)")
     assert np.array_equal(draws.draws, found.draws().draws) and np.array_equal(draws.memory, found.draws().memory)
     values = found.prior.values(found.conditioned.after)
@@ -124,11 +127,11 @@ def test_memory_that_cannot_be_is_refused(
         PosteriorDraws.load(path)
 
 
-def test_the_prior_of_a_kept_laboratory_has_its_memory(found: Observed[Answered, Fit], tmp_path: Path) -> None:
-    (tmp_path / "lab.csv").write_text(found.files()[1], encoding="utf-8")
-    draws = PosteriorDraws.load(tmp_path / "lab.csv")
-    prior = LaboratoryPrior(draws, "episodes")
+def test_a_kept_laboratory_is_the_prior_of_the_next_prediction_and_has_its_memory(lab: Path) -> None:
+    draws = PosteriorDraws.load(lab.with_suffix(".csv"))
+    prior = LaboratoryPrior.of(lab.with_suffix(".csv"), "episodes")
     values = prior.values(prior.first(len(draws), 3))
+    assert np.abs(values[:, prior.names.index("sensitivity of the laboratory, cold")]).max() < 1e-4
     assert prior.names.count("memory noise (episodes)") == 1
     for k, name in enumerate(draws.memory_names):
         assert np.allclose(values[:, prior.names.index(name)], draws.memory[:, k], rtol=1e-4, atol=1e-5)
@@ -137,17 +140,8 @@ def test_the_prior_of_a_kept_laboratory_has_its_memory(found: Observed[Answered,
     assert np.ptp(others[:, naming.names.index("cost of a missing episode")]) > 4.0
     column = others[:, naming.names.index("memory noise (episodes)")]
     assert np.allclose(column, draws.memory[:, draws.memory_names.index("memory noise (episodes)")], rtol=1e-4)
-
-
-def test_a_kept_laboratory_is_the_prior_of_the_next_prediction(found: Observed[Answered, Fit], tmp_path: Path) -> None:
-    observer, table = found.files()
-    (tmp_path / "lab.csv").write_text(table, encoding="utf-8")
-    (tmp_path / "lab.toml").write_text(observer, encoding="utf-8")
-    prior = LaboratoryPrior.of(tmp_path / "lab.csv", "episodes")
-    values = prior.values(prior.first(20, 0))
-    assert np.abs(values[:, prior.names.index("sensitivity of the laboratory, cold")]).max() < 1e-4
     with pytest.raises(ValueError, match=r"lab.toml has no posterior draws, .*give a table of draws \(.csv\)"):
-        LaboratoryPrior.of(tmp_path / "lab.toml", "episodes")
+        LaboratoryPrior.of(lab, "episodes")
 
 
 def test_thresholds_carry_the_offset_of_the_laboratory(found: Observed[Answered, Fit]) -> None:
@@ -164,3 +158,44 @@ def test_answers_to_another_set_and_too_few_draws_are_refused(icons: IconSet, ri
         observed(other, icons, rig)
     with pytest.raises(ValueError, match="at least 20 draws, not 5"):
         observed(answers, icons, rig, draws=5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("participants", "trials", "draws", "seed"), [(4, 24, 120, 8), (12, 48, 300, 2), (12, 48, 300, 5), (3, 60, 300, 1)]
+)
+def test_rank_says_of_a_kept_laboratory_what_observed_said(
+    icons: IconSet, rig: Rig, tmp_path: Path, participants: int, trials: int, draws: int, seed: int
+) -> None:
+    answers = synthetic_trials(icons, rig, participants=participants, trials=trials, seed=seed)
+    found, path = observed(answers, icons, rig, draws=draws), tmp_path / "lab.csv"
+    path.write_text(found.files()[1], encoding="utf-8")
+    ranking = rank(icons, rig, observer=path, parameters=min(DRAWS, len(PosteriorDraws.load(path))))
+    assert ranking.new_laboratory is not None
+    middle, low, high = found.predictions[0].after.proportion_correct
+    least, most = ranking.new_laboratory.proportion_correct
+    assert abs(ranking.proportion_correct - middle) < (0.03 if participants == 4 else 0.04)
+    assert min(high, most) - max(low, least) > 0.75 * min(high - low, most - least)
+
+
+@pytest.mark.slow
+def test_draws_judge_with_their_own_memory(icons: IconSet, rig: Rig, tmp_path: Path) -> None:
+    answers, path = synthetic_trials(icons, rig, participants=2, trials=12, seed=4), tmp_path / "lab.csv"
+    path.write_text(observed(answers, icons, rig, draws=130).files()[1], encoding="utf-8")
+    model = ObserverModel.load(path)
+    assert model.posterior is not None
+    found = sensitivity(icons, rig, people=2, draws=64, observer=model)
+    for name, column in zip(model.posterior.memory_names, model.posterior.memory.T, strict=True):
+        (effect,) = (each for each in found.effects if each.constant == name)
+        assert column.min() <= effect.low < effect.high <= column.max()
+    chosen = np.linspace(0, len(model.posterior) - 1, 64).round().astype(int)
+    own = model.posterior.memory[chosen, 0]
+    assert found.effects and any(
+        np.allclose([each.low, each.high], np.percentile(own, [2.5, 97.5])) for each in found.effects
+    )
+
+
+def test_the_laboratory_in_the_middle_predicts_the_mean(found: Observed[Answered, Fit]) -> None:
+    some, played = found.conditioned.after, found.confusions_after
+    number = middle_of(some, found.prior.values(some), played.correct[:, None], found.played)
+    assert abs(played.correct[number] - played.correct.mean()) < 1.2 * played.correct.std()

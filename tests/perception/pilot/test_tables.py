@@ -1,17 +1,28 @@
-"""Tables of answers: what is read, and what each bad table is refused with."""
+"""Tables of answers and of measurements: what is read, and what each bad table is refused with."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.builders import messages
+from thermicon.circuit import Rig
 from thermicon.perception.pilot import trials_file
+from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
 from thermicon.perception.pilot.trials_file import TrialsError, read_trials
 
 ICONS = ("cool-step", "warm-step", "dip")
 HEAD = "participant,trial,presented,responded"
+
+
+VALUES = "participant,kind,method,channel,size_K,value,unit,standard_error,trials,baseline_C"
+GOOD = (
+    "P1,threshold,limits,cold,,1.2,K,0.1,,",
+    "P1,reaction_time,,warm,6,850,ms,,12,31",
+    "P2,rating,,warm,6,40,points,,,",
+)
 
 
 def written(folder: Path, *rows: str, head: str = HEAD) -> Path:
@@ -62,10 +73,44 @@ def test_empty_absent_binary_and_large_files_are_refused(tmp_path: Path, monkeyp
     monkeypatch.setattr(trials_file, "MOST_MB", 1e-5)
     with pytest.raises(TrialsError, match="too large for a table of trials; the limit is 1e-05 MB"):
         read_trials(path, ICONS)
-
-
-def test_more_participants_than_an_experiment_has_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.undo()
     monkeypatch.setattr(trials_file, "MOST_PARTICIPANTS", 2)
-    path = written(tmp_path, *(f"P{k},1,dip,dip" for k in range(3)))
+    written(tmp_path, *(f"P{k},1,dip,dip" for k in range(3)))
     with pytest.raises(TrialsError, match="3 participants; at most 2 are taken: check that the column participant"):
         read_trials(path, ICONS)
+
+
+def test_values_units_defaults_and_gaps_are_read(tmp_path: Path, rig: Rig) -> None:
+    found = read_measurements(written(tmp_path, *GOOD, head=VALUES), rig)
+    limits, time, rating = found.conditions
+    assert (limits.size_K, limits.rate_K_per_s, limits.baseline_C) == (12.0, 1.0, 32.0)
+    assert (time.method, time.rate_K_per_s, time.baseline_C) == ("choice", 5.0, 31.0)
+    assert rating.method == "magnitude"
+    assert found.values[0, 1] == pytest.approx(0.85)
+    assert np.isnan(found.values[0, 2]) and np.isnan(found.values[1, 0])
+    assert found.errors[0, 0] == pytest.approx(0.1)
+    assert found.trials[0, 1] == 12.0
+    assert found.assumed_errors == 1
+    assert len(found.digest) == 16
+
+
+def test_a_table_of_measurements_is_recognised_by_its_header(tmp_path: Path) -> None:
+    assert is_measurements(written(tmp_path, *GOOD, head=VALUES))
+    assert is_measurements(written(tmp_path, head="participant;kind;channel"))
+    assert not is_measurements(written(tmp_path))
+
+
+@pytest.mark.parametrize("row", MESSAGES["measurements"])
+def test_each_mistake_is_named_with_its_line_and_cure(tmp_path: Path, rig: Rig, row: str) -> None:
+    added = row if "12,1.4" in row else row.replace("P1,", "P9,")
+    path = written(tmp_path, *GOOD, added, head=VALUES)
+    with pytest.raises(TrialsError, match=rf"trials\.csv:5: .*{MESSAGES['measurements'][row]}"):
+        read_measurements(path, rig)
+
+
+def test_a_missing_or_misspelt_column_is_named(tmp_path: Path, rig: Rig) -> None:
+    with pytest.raises(TrialsError, match=r"columns missing: channel, unit; found: participant, kind, value"):
+        read_measurements(written(tmp_path, "P1,rating,3", head="participant,kind,value"), rig)
+    head = VALUES.replace("standard_error", "standard_eror")
+    with pytest.raises(TrialsError, match=r"no column 'standard_eror'; did you mean standard_error"):
+        read_measurements(written(tmp_path, *GOOD, head=head), rig)
