@@ -35,7 +35,7 @@ class Said:
     stderr: str
 
 
-class Runner:
+class Cli:
     """``cli("check", "a.cue")`` runs a command, ``cli.good("check", "a.cue")`` one that has to end well."""
 
     def __init__(self, run: Callable[..., Said]) -> None:
@@ -51,7 +51,7 @@ class Runner:
 
 
 @pytest.fixture
-def cli() -> Runner:
+def cli() -> Cli:
     """Runs commands in this process."""
 
     def run(*arguments: str) -> Said:
@@ -60,11 +60,11 @@ def cli() -> Runner:
             raise result.exception
         return Said(result.exit_code, result.stdout, result.stderr)
 
-    return Runner(run)
+    return Cli(run)
 
 
 @pytest.fixture
-def process() -> Runner:
+def process() -> Cli:
     """Runs commands as a person would, each in a process of its own."""
 
     def run(*arguments: str, cwd: Path | None = None) -> Said:
@@ -72,7 +72,7 @@ def process() -> Runner:
         done = subprocess.run(command, capture_output=True, encoding="utf-8", cwd=cwd, timeout=120, check=False)
         return Said(done.returncode, done.stdout, done.stderr)
 
-    return Runner(run)
+    return Cli(run)
 
 
 @pytest.fixture

@@ -5,13 +5,12 @@ from __future__ import annotations
 import stat
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-Cli = Callable[..., Any]
+from tests.notebooks.conftest import Cli
+
 HEAVY = {"numba", "numpy", "pandas", "matplotlib", "scipy", "IPython", "ipywidgets", "rich", "tqdm"}
 LOOSE = "# über alles\ncue 1\nicon dip{cool by 6K at 3 K/s; hold for 500 ms; return at 3 K/s # back\n}\n"
 TIDY = "# über alles\ncue 1\n\nicon dip {\n  cool by 6 K at 3 K/s\n  hold for 500 ms\n  return at 3 K/s  # back\n}\n"

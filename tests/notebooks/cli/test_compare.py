@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,9 +9,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tests.notebooks.conftest import Cli
 from thermicon.notebooks.files.trace_files import Curves, LogError, align, differences
 
-Cli = Callable[..., Any]
 GOOD = "time_s,skin_C\n0,30\n1,31\n2,32\n"
 
 

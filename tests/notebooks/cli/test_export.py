@@ -1,48 +1,40 @@
-"""``thermicon export``: files, words, exit codes; what is refused leaves nothing."""
+"""``thermicon export``: files, words, exit codes, pauses and hardware; what is refused leaves nothing."""
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from dataclasses import replace
 from importlib import resources
+from io import StringIO
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from tests.circuit.surerig import SURE
-from thermicon.circuit import Device, Rig
+from tests.circuit.surerig import SURE, sure_rig
+from tests.notebooks.conftest import Cli
+from thermicon.circuit import Device, Export, Gate, Rig, export
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.icons import read_cue
+from thermicon.circuit.delivery.pack import pack
+from thermicon.icons import load_library, parse, read_cue
+from thermicon.notebooks.report.gate_words import gate_words
+from thermicon.notebooks.workbench.view_blocks import delivered_html, gate_html
 
-Cli = Callable[..., Any]
-STRONG = (
-    "--set", "driver.current_limit_A=4", "--set", "driver.voltage_limit_V=40",
-    "--set", "driver.transconductance_A_per_V=1",
-)  # fmt: skip
+DRIVER = ("driver.current_limit_A=4", "driver.voltage_limit_V=40", "driver.transconductance_A_per_V=1")
+STRONG = [word for change in DRIVER for word in ("--set", change)]
 
 
 def names(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    return sorted(path.name for path in folder.iterdir())
 
 
-def one_icon(folder: Path, name: str, cue: str, control: str = "skin") -> Path:
-    """A file with one icon."""
-    path = folder / f"{name}.cue"
-    path.write_text(
-        f"cue 1\nset s {{ control {control}\n baseline 32 °C }}\nicon {name} {{ {cue} }}\n", encoding="utf-8"
-    )
-    return path
-
-
-def device(folder: Path, name: str, old: str, new: str) -> Path:
-    """A shipped device with another number."""
-    path = folder / "own.toml"
-    shipped = (resources.files("thermicon.circuit") / "devices" / f"{name}.toml").read_text("utf-8")
-    path.write_text(shipped.replace(f"value = {old}", f"value = {new}"), "utf-8")
+def icons(folder: Path, *bodies: str, control: str = "skin") -> Path:
+    """A file with icons a, b …"""
+    path, written = folder / "own.cue", zip("ab", bodies, strict=False)
+    rules = f"cue 1\nset s {{ control {control}; baseline 32 °C }}\n"
+    path.write_text(rules + "".join(f"icon {name} {{ {body} }}\n" for name, body in written), encoding="utf-8")
     return path
 
 
@@ -54,12 +46,9 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     assert (said.exit_code, said.stdout) == (0, "")
     assert names(out) == ["cool-step.csv", "cool-step.json", "warm-step.csv", "warm-step.json"]
     for words in (
-        "warning: the worst case of safety is milder: contact resistance ±0 % instead of ±30 %",
-        "cool-step: 8.01 s at 100 Hz on dac-16, receptors within ",
-        "safety green in 3 scenarios",
-        "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through ",
-        f"wrote 2 drives with their sidecars into {out}: cool-step.json, cool-step.csv, warm-step.json",
-        "to play: put out each row's command at its time",
+        *("safety is milder: contact resistance ±0 % instead of ±30 %", "cool-step: 8.01 s at 100 Hz on dac-16"),
+        *("safety green in 3 scenarios", "warning: cool-step: dac-16 plays −1 … 1 A (−10 … 10 V through "),
+        *(f"wrote 2 drives with their sidecars into {out}: cool-step.json", "to play: put out each row's command"),
     ):
         assert words in said.stderr
     assert said.stderr.splitlines()[-1].startswith("safety is a calculation, not a medical or ethical clearance")
@@ -67,15 +56,16 @@ def test_every_icon_gets_a_drive_and_a_sidecar(cli: Cli, two: Path, tmp_path: Pa
     assert set(told["perception"]["d_prime"]) == {"warm-step"}
 
 
-def test_simulate_replays_an_exported_drive_exactly(cli: Cli, two: Path, tmp_path: Path) -> None:
+def test_simulate_replays_an_exported_drive_exactly_when_it_is_held(cli: Cli, two: Path, tmp_path: Path) -> None:
     cli.good("export", two, "--icon", "warm-step", "--to", "csv", "-o", tmp_path / "out", *SURE)
-    trace = tmp_path / "trace.csv"
-    cli.good("simulate", "--current", tmp_path / "out" / "warm-step.csv", "--hold", "-o", trace, *SURE)
     ours = deliver(read_cue(str(two))["warm-step"], Rig.load("thenar"), Device.load("dac-16")).trace.to_frame()
-    theirs = pd.read_csv(trace)
+    replay = ("simulate", "--current", tmp_path / "out" / "warm-step.csv", "-o", "-", *SURE)
+    held, linear = (pd.read_csv(StringIO(cli.good(*replay, *more).stdout)) for more in (("--hold",), ()))
     for column in ("time_s", "current_A", "display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
         # nine digits are written
-        assert np.abs(theirs[column] - ours[column]).max() < 1e-6, column
+        assert np.abs(held[column] - ours[column]).max() < 1e-6, column
+    assert 1e-3 < np.abs(linear["skin_C"] - ours["skin_C"]).max() < 0.5
+    assert held[["icon", "target_C"]].isna().all(axis=None)
 
 
 @pytest.mark.parametrize(
@@ -92,59 +82,51 @@ def test_every_format_has_a_device_of_its_own(cli: Cli, two: Path, tmp_path: Pat
         assert told["played"]["duration_s"] == told["predicted"]["duration_s"] == 8.0
 
 
-class TestRefused:
-    """Exit code 3, and nothing written."""
+@pytest.mark.parametrize(
+    ("cue", "more", "words"),
+    [
+        ("cool by 20 °C at 2 °C/s; hold for 8 s; return at 2 °C/s", (*STRONG, *SURE[2:]), "red in 9 scenarios"),
+        ("warm by 9.2 °C at 2 °C/s; hold for 3 s; return at 2 °C/s", (), "gain +10 %"),
+    ],
+    ids=["as given", "only in the worst case"],
+)
+def test_unsafe_even_when_forced(cli: Cli, tmp_path: Path, cue: str, more: tuple[str, ...], words: str) -> None:
+    said = cli("export", icons(tmp_path, cue), "--to", "csv", "-o", tmp_path / "out", "--force", *more)
+    assert said.exit_code == 3
+    told = next(line for line in said.stderr.splitlines() if line.startswith("refused"))
+    assert told.startswith("refused: a is NOT SAFE: skin surface reaches ")
+    assert re.search(r"reaches \S+ °C at \S+ s, with .*, (above|below) the hard limit of .* \(.*\)", told)
+    assert words in said.stderr
+    assert "not a medical or ethical clearance" in said.stderr
+    assert said.stderr.endswith("nothing was written\n")
+    assert "--force exports it" not in said.stderr
+    assert not (tmp_path / "out").exists()
 
-    @pytest.mark.parametrize(
-        ("cue", "more", "words"),
-        [
-            (
-                "cool by 20 °C at 2 °C/s; hold for 8 s; return at 2 °C/s",
-                (*STRONG, *SURE[2:]),
-                "safety red in 9 scenarios",
-            ),
-            ("warm by 9.2 °C at 2 °C/s; hold for 3 s; return at 2 °C/s", (), "gain +10 %"),
-        ],
-        ids=["as given", "only in the worst case"],
-    )
-    def test_unsafe_even_when_forced(
-        self, cli: Cli, tmp_path: Path, cue: str, more: tuple[str, ...], words: str
-    ) -> None:
-        path = one_icon(tmp_path, "deep", cue)
-        said = cli("export", path, "--to", "csv", "-o", tmp_path / "out", "--force", *more)
-        assert said.exit_code == 3
-        told = next(line for line in said.stderr.splitlines() if line.startswith("refused"))
-        assert told.startswith("refused: deep is NOT SAFE: skin surface reaches ")
-        assert re.search(r"reaches \S+ °C at \S+ s, with .*, (above|below) the hard limit of .* \(.*\)", told)
-        assert words in said.stderr
-        assert "not a medical or ethical clearance" in said.stderr
-        assert said.stderr.endswith("nothing was written\n")
-        assert "--force exports it" not in said.stderr
-        assert not (tmp_path / "out").exists()
 
-    @pytest.mark.parametrize(
-        ("to", "more", "words"),
-        [
-            ("csv", ("--set", "driver.current_limit_A=0.7"), "cool-step is NOT reached: misses its target by "),
-            ("c-array", ("--device", "own.toml"), "cool-step loses too much: the "),
-        ],
-    )
-    def test_what_is_not_reached_or_lossy_unless_forced(
-        self, cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, to: str, more: tuple[str, ...], words: str
-    ) -> None:
-        monkeypatch.chdir(two.parent)
-        device(two.parent, "pwm-h-bridge-10", "11", "8")
-        said = cli("export", two, "--to", to, "-o", "out", *more, *SURE)
-        assert said.exit_code == 3
-        assert said.stderr.count("refused: cool-step ") == said.stderr.count(f"refused: {words}") == 1
-        assert "--force exports it nevertheless, and the sidecar records that" in said.stderr
-        assert not Path("out").exists()
-        said = cli.good("export", two, "--to", to, "-o", "out", *more, *SURE, "--force")
-        assert f"forced: {words}" in said.stderr
-        told = json.loads(next(Path("out").glob("cool*.json")).read_text())
-        assert told["forced"] is True
-        assert told["forced_over"][0].startswith(("NOT reached: ", "loses too much"))
-        assert told["reached"] is (to != "csv")
+@pytest.mark.parametrize(
+    ("to", "more", "words"),
+    [
+        ("csv", ("--set", "driver.current_limit_A=0.7"), "cool-step is NOT reached: misses its target by "),
+        ("c-array", ("--device", "own.toml"), "cool-step loses too much: the "),
+    ],
+)
+def test_what_is_not_reached_or_lossy_unless_forced(
+    cli: Cli, two: Path, monkeypatch: pytest.MonkeyPatch, to: str, more: tuple[str, ...], words: str
+) -> None:
+    monkeypatch.chdir(two.parent)
+    shipped = (resources.files("thermicon.circuit") / "devices" / "pwm-h-bridge-10.toml").read_text("utf-8")
+    Path("own.toml").write_text(shipped.replace("value = 11", "value = 8"), "utf-8")
+    said = cli("export", two, "--to", to, "-o", "out", *more, *SURE)
+    assert said.exit_code == 3
+    assert said.stderr.count("refused: cool-step ") == said.stderr.count(f"refused: {words}") == 1
+    assert "--force exports it nevertheless, and the sidecar records that" in said.stderr
+    assert not Path("out").exists()
+    said = cli.good("export", two, "--to", to, "-o", "out", *more, *SURE, "--force")
+    assert f"forced: {words}" in said.stderr
+    told = json.loads(next(Path("out").glob("cool*.json")).read_text())
+    assert told["forced"] is True
+    assert told["forced_over"][0].startswith(("NOT reached: ", "loses too much"))
+    assert told["reached"] is (to != "csv")
 
 
 @pytest.mark.parametrize(
@@ -168,11 +150,10 @@ def test_a_file_in_the_way_is_reported_before_anything_is_simulated(
 
 
 def test_another_icon_that_the_device_cannot_play_is_left_out_of_the_comparison(cli: Cli, tmp_path: Path) -> None:
-    path = one_icon(tmp_path, "good", "warm by 2 °C at 1 °C/s; return at 1 °C/s", "display")
-    busy = "icon busy { repeat 400 { warm by 0.2 °C at 4 °C/s; return at 4 °C/s; rest for 0.1 s } }\n"
-    path.write_text(path.read_text(encoding="utf-8") + busy, encoding="utf-8")
-    said = cli.good("export", path, "--icon", "good", "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
-    assert "warning: busy cannot be played, so nothing is compared with it: qst-tcs2: 1200 segments" in said.stderr
+    busy = "repeat 400 { warm by 0.2 °C at 4 °C/s; return at 4 °C/s; rest for 0.1 s }"
+    path = icons(tmp_path, "warm by 2 °C at 1 °C/s; return at 1 °C/s", busy, control="display")
+    said = cli.good("export", path, "--icon", "a", "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
+    assert "warning: b cannot be played, so nothing is compared with it: qst-tcs2: 1200 segments" in said.stderr
 
 
 def test_very_many_icons_are_not_compared_with_each_other(
@@ -182,3 +163,115 @@ def test_very_many_icons_are_not_compared_with_each_other(
     said = cli.good("export", two, "--to", "tcs2-serial", "-o", tmp_path / "out", *SURE)
     assert "warning: 2 icons are too many to compare" in said.stderr
     assert json.loads((tmp_path / "out" / "cool-step.json").read_text())["perception"]["d_prime"] == {}
+
+
+GLOW = """cue 1
+set s { site thenar; control display; baseline 32 °C }
+icon glow { warm by 7 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }
+icon dip { cool by 3 °C at 2 °C/s; return at 2 °C/s }
+"""
+
+
+@pytest.fixture(scope="module")
+def glow() -> Export:
+    """Two icons for PsychoPy, played a minute apart on a rig that is known exactly."""
+    return export(parse(GLOW), sure_rig(), format="psychopy", pause_s=60.0)
+
+
+def verdict(ready: Export, place: int = 0) -> Gate:
+    found = ready.prepared[place].verdict
+    assert isinstance(found, Gate)
+    return found
+
+
+@pytest.mark.slow
+def test_a_pause_that_is_too_short_is_refused_with_the_shortest_as_cure(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "glow.cue").write_text(GLOW, encoding="utf-8")
+    out = tmp_path / "out"
+    arguments = ("export", tmp_path / "glow.cue", "--icon", "glow", "--to", "csv", "-o", out, *SURE[2:])
+    said = cli(*arguments, "--pause", "5", "--force")
+    assert (said.exit_code, out.exists()) == (3, False)
+    (line,) = [line for line in said.stderr.splitlines() if line.startswith("refused")]
+    assert line.startswith("refused: glow is NOT SAFE: skin surface reaches 4")
+    assert "repeated plays with 5 s of pause" in line
+    told = re.search(r"the shortest safe pause is (\S+) s \(--pause (\S+)\)$", line)
+    assert told is not None
+    assert told[1] == told[2]
+    assert 5.0 < float(told[1]) < 60.0
+    assert "the hardware must provide" not in said.stderr
+    said = cli.good(*arguments, "--pause", told[1])
+    assert json.loads((out / "glow.json").read_text())["safety"]["repeated"]["pause_s"] == float(told[1])
+
+
+@pytest.mark.slow
+def test_the_sidecar_has_repetition_and_the_demands(glow: Export) -> None:
+    gate = verdict(glow)
+    about = json.loads(pack(glow.prepared, glow.form)["glow.json"])
+    safety, demands = about["safety"], about["hardware_must_prevent"]
+    assert safety["repeated"]["pause_s"] == 60.0
+    assert safety["repeated"]["plays"] == gate.repeated.plays == 27  # (1800 + 60) / (8.68 + 60) s
+    assert safety["recovery_s"] == gate.repeated.recovery_s
+    assert 0.0 < safety["shortest_pause_s"] < 60.0
+    assert demands == json.loads(json.dumps(gate.demands.to_dict()))
+    assert 0.0 < demands["watchdog_s"] < 60.0
+    cut = demands["cut_off_display_C"]
+    assert cut["low"] < 32.0 < 39.0 < cut["high"] <= 45.0
+    assert cut["react_within_s"] > 0.0
+    assert {"needed", "test_current_A", "test_s", "display_change_at_least_K"} <= set(demands["polarity_check"])
+    assert demands["pause_at_least_s"] == safety["shortest_pause_s"]
+    assert [fault["prevented_by"] for fault in demands["faults"]].count("") == 0
+
+
+def test_players_have_the_strictest_numbers_of_the_gate(glow: Export) -> None:
+    ready = export(parse(GLOW), sure_rig(), format="c-array", pause_s=60.0)
+    player = pack(ready.prepared, ready.form)["thermicon_player.h"].decode()
+    demands = [verdict(ready, place).demands for place in (0, 1)]
+    low, high = (
+        max(one.cut_off_display_C.low for one in demands),
+        min(one.cut_off_display_C.high for one in demands),
+    )
+    rest = max(one.rest_before_first_play_s or 0.0 for one in demands)
+    numbers = {name: float(value) for name, value in re.findall(r"#define THERMICON_(\w+) \(?(-?[\d.]+)f", player)}
+    assert numbers["WATCHDOG_S"] == min(one.watchdog_s for one in demands) != 0.5
+    assert numbers["LOW_C"] == low != 10.0
+    assert numbers["HIGH_C"] == high != 43.0
+    assert numbers["REACT_S"] == min(one.cut_off_display_C.react_within_s for one in demands)
+    assert numbers["REST_S"] == rest != 60.0
+    assert numbers["PAUSE_S"] == demands[0].pause_at_least_s != 60.0
+    player = pack(glow.prepared, glow.form)["play_icons.py"].decode()
+    assert [str(verdict(glow, place).demands) for place in (0, 1)] == list(map(str, demands))
+    assert f"LOW_C, HIGH_C = {low}, {high}" in player
+    assert f"\nREST_S = {rest}" in player
+    assert f"\nPAUSE_S = {demands[0].pause_at_least_s}" in player
+
+
+def test_repetition_and_hardware_of_a_set_are_said_in_two_lines(glow: Export) -> None:
+    (again, repeated), (hardware, demanded) = gate_words(glow.prepared)
+    assert (again, hardware) == ("repeated plays, in any order", "the hardware must provide")
+    assert repeated.startswith("green, 27 to 29 plays in 30 min with 60 s between them; shortest safe pause: ")
+    assert re.search(r"; back within 0.1 K of rest after \S+ s \(dip\) to \S+ s \(glow\)$", repeated)
+    strictest = min((verdict(glow, k).demands.watchdog_s, name) for k, name in enumerate(("glow", "dip")))
+    assert demanded.startswith(f"watchdog {strictest[0]:g} s ({strictest[1]}), cut-off at ")
+    assert "rest held for " in demanded
+
+
+def test_what_no_watchdog_and_no_rest_can_do_is_said(glow: Export) -> None:
+    gate = verdict(glow)
+    worse = replace(gate.demands, watchdog_s=0.0, rest_before_first_play_s=None, zero_current_at_most_s=120.0)
+    ready = [replace(glow.prepared[0], verdict=replace(gate, demands=worse)), glow.prepared[1]]
+    demanded = dict(gate_words(ready))["the hardware must provide"]
+    assert demanded.startswith("a current that cannot hang (glow), for which no watchdog is quick enough, cut-off")
+    assert "a display at its baseline before it touches the skin (glow)" in demanded
+    assert "zero current in contact for 120 s at most" in demanded
+
+
+def test_the_page_of_the_gate_has_every_check_with_its_scenario_and_each_source_once() -> None:
+    ready = export(load_library("six-icons")["cooling-step"], "thenar")
+    shown = gate_html(ready.prepared[0])
+    assert all(f"<td>{check.scenario}</td>" in shown for check in verdict(ready).checks)
+    assert shown.count("<sup") == len(verdict(ready).checks) and "contact −30 %" in shown
+    source = verdict(ready).checks[0].source
+    assert shown.count(f"1 {source}") == 1
+    delivered = delivered_html(ready)
+    assert "<th>repeated plays</th><td>green, 12 plays" in delivered
+    assert delivered.count("the hardware must provide") == 1

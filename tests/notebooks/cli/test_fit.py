@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from tests.notebooks.conftest import Cli
 from thermicon.circuit import Rig
 from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
 
-Cli = Callable[..., Any]
 CONTACT, SEEBECK, OHM = "contact.resistance_m2K_per_W", "module.seebeck_V_per_K", "module.resistance_ohm"
 RATE = ("--set", "driver.update_Hz=20")
 

@@ -12,20 +12,19 @@ import random
 import re
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
-from typing import Any
 
 import pytest
 
+from tests.notebooks.conftest import Cli
 from tests.notebooks.readers import DRIVES, KINDS, Kind
 from thermicon.notebooks.messages import is_ours
 
-Cli = Callable[..., Any]
 COUNT, CHUNKS = int(os.environ.get("THERMICON_FUZZ", "50000")), 50
 SLOWEST_S = 5.0
 

@@ -10,9 +10,9 @@ from typing import Any
 import pandas as pd
 import pytest
 
+from tests.notebooks.conftest import Cli
 from thermicon.icons import parse
 
-Cli = Callable[..., Any]
 FEW = ("--people", 12, "--intervals", 0)
 CHOSEN = ["icons", "objective", "value", "optimal", "bound", "at_own_range"]
 EDIT = ["icon", "old", "new", "cost", "added_s", "d_prime", "recounted_share"]

@@ -10,15 +10,13 @@ import sys
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from tests.notebooks.conftest import Cli
 from thermicon.notebooks.cli import lab
 
-Cli = Callable[..., Any]
 FIRST = "01_first_icon.ipynb"
 TRAPS = ("jupyterlab", "json", "numba", "IPython", "ipykernel", "jupyter_server_config")
 ALL = [*sorted(path.name for path in (Path(__file__).parents[3] / "notebooks").glob("*.ipynb"))]

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from tests.builders import messages, missing
+from tests.notebooks.conftest import Cli
 
-Cli = Callable[..., Any]
 SAID = messages(__file__)
 FILES: dict[str, bytes] = {name: text.encode() for name, text in SAID["files"].items()} | {
     "empty.cue": b"",

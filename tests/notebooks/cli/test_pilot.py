@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import json
 import shlex
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tests.notebooks.conftest import Cli
 from thermicon.perception.observer.draws import PosteriorDraws
 
-Cli = Callable[..., Any]
 QUICK = ("--draws", 24)
 VALUES = """participant,kind,method,channel,size_K,value,unit,standard_error,trials
 ann,threshold,limits,cold,,1.4,K,,10

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from tests.notebooks.conftest import Cli
 from thermicon.circuit import Rig, SessionPlan, play_session
 from thermicon.icons import read_cue
 from thermicon.notebooks.figures.session_figure import session_figure
-
-Cli = Callable[..., Any]
 
 HOT = """cue 1
 set hot { site thenar; control display; baseline 32 °C }

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from tests.notebooks.conftest import Cli
 from tests.notebooks.study.conftest import QUICK, make, write_study
 
-Cli = Callable[..., Any]
 HOT = QUICK.replace('["dip", "glow"]', '["dip", "burn"]')
 
 

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
+from tests.notebooks.conftest import Cli
 from thermicon.notebooks.report.validate_report import TITLE
 from thermicon.perception.evidence.results import load_missed
 from thermicon.perception.evidence.validate import ValidationReport
-
-Cli = Callable[..., Any]
 
 
 def test_the_table_and_the_json(

@@ -6,7 +6,6 @@ import json
 import random
 import re
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +13,13 @@ import pytest
 
 from tests.circuit.delivery.one_drive import prepare
 from tests.circuit.surerig import sure_rig
+from tests.notebooks.conftest import Cli
 from thermicon.circuit import Device
 from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.circuit.delivery.pack import pack, sealed, sidecar_text
 from thermicon.circuit.delivery.verify import verify
 from thermicon.icons import load_library
 
-Cli = Callable[..., Any]
 SIX = load_library("six-icons")
 W, C = "warming-step", "cooling-step"
 
@@ -64,154 +63,152 @@ def said(files: dict[str, bytes]) -> str:
     return "\n".join(str(finding) for finding in found.findings if finding.kind == "wrong")
 
 
-class TestWell:
-    """What was exported belongs together."""
-
-    @pytest.mark.parametrize("name", format_names())
-    def test_every_format(self, by_format: dict[str, dict[str, bytes]], name: str) -> None:
-        found = verify(by_format[name])
-        assert found.findings == ()
-        assert [each.replace("_", "-") for each in found.claims] == ["warming-step.json"]
-
-    def test_another_program_is_told_and_is_not_wrong(self, pair: dict[str, bytes]) -> None:
-        name = "warming-step.json"
-        older = {**pair, name: changed(pair[name], program={"version": "0.0.9", "code_sha256": "0"}, thermicon="0.0.9")}
-        found = verify(older)
-        assert found.well
-        assert "was exported by thermicon 0.0.9, this is " in str(found.findings[0])
-        program = {**json.loads(pair[name])["program"], "code_sha256": "0"}
-        found = verify({**pair, name: changed(pair[name], program=program)})
-        assert found.well
-        assert "by other code of version" in str(found.findings[0])
+@pytest.mark.parametrize("name", format_names())
+def test_every_format(by_format: dict[str, dict[str, bytes]], name: str) -> None:
+    found = verify(by_format[name])
+    assert found.findings == ()
+    assert [each.replace("_", "-") for each in found.claims] == ["warming-step.json"]
 
 
-class TestTampered:
-    """One byte, one file, one name: whatever was changed after the export is wrong."""
-
-    def test_any_byte_of_any_file(self, by_format: dict[str, dict[str, bytes]], pair: dict[str, bytes]) -> None:
-        chance = random.Random(1)
-        for files in (*by_format.values(), pair):
-            for name, content in files.items():
-                places = {0, len(content) // 2, len(content) - 1, *(chance.randrange(len(content)) for _ in range(3))}
-                for place in places:
-                    other = bytearray(content)
-                    other[place] ^= 1 << chance.randrange(8)
-                    assert not verify({**files, name: bytes(other)}).well, (name, place)
-
-    def test_any_file_missing(self, pair: dict[str, bytes]) -> None:
-        for name in pair:
-            files = {other: content for other, content in pair.items() if other != name}
-            words = "has no sidecar that can be read" if name.endswith(".json") else f"{name}: is missing"
-            assert words in said(files)
-
-    @pytest.mark.parametrize(
-        ("moves", "words"),
-        [
-            (
-                {W + ".json": C + ".json", C + ".json": W + ".json"},
-                f"{W}.json: describes {C}.csv, which does not match",
-            ),
-            ({W + ".csv": C + ".csv", C + ".csv": W + ".csv"}, f"{W}.csv: is not the file that was exported with {W}"),
-            ({"other.csv": W + ".csv", W + ".csv": ""}, f"{W}.csv: is missing; it was exported with {W}.json"),
-            ({"other.csv": W + ".csv", W + ".csv": ""}, "other.csv: has no sidecar"),
-            (
-                {"other.csv": W + ".csv", W + ".csv": "", "other.json": W + ".json", W + ".json": ""},
-                f"other.json: describes {W}.csv, which does not match this name",
-            ),
-            ({W + ".csv.json": W + ".json"}, f"describes {W}.csv, as {W}.json does; remove the one that is a copy"),
-        ],
-        ids=["sidecars swapped", "drives swapped", "drive renamed", "drive alone", "both renamed", "sidecar copied"],
-    )
-    def test_files_moved(self, pair: dict[str, bytes], moves: dict[str, str], words: str) -> None:
-        files = {**pair, **{to: pair[name] if name else b"" for to, name in moves.items()}}
-        assert words in said({name: content for name, content in files.items() if moves.get(name) != ""})
-
-    def test_a_damaged_sidecar(self, pair: dict[str, bytes]) -> None:
-        cut = pair[W + ".json"][:-40]
-        text = said({**pair, W + ".json": cut})
-        assert f"{W}.json: is damaged: it cannot be read as JSON" in text
-        assert f"{W}.csv: has no sidecar that can be read, so its content is unknown" in text
-        alone = said({W + ".json": cut, W + ".csv": pair[W + ".csv"]})
-        assert f"{W}.json: is damaged" in alone
-        assert "holds no sidecar" not in alone
-
-    @pytest.mark.parametrize("known", ["as laid out", None, "0"])
-    def test_a_sidecar_whose_own_digest_is_wrong(self, pair: dict[str, bytes], known: str | None) -> None:
-        about = {**json.loads(pair[W + ".json"]), "sidecar_sha256": known}
-        if known is None:
-            del about["sidecar_sha256"]
-        content = sidecar_text(about)
-        if known == "as laid out":
-            content = json.dumps(json.loads(pair[W + ".json"]), ensure_ascii=False).encode()
-        (told,) = said({**pair, W + ".json": content}).splitlines()
-        assert told.startswith(f"{W}.json: was changed after it was exported: its own digest does not match")
-
-    @pytest.mark.parametrize(
-        ("keys", "words"),
-        [
-            ({"rig_sha256": "0"}, r"contains another rig than the one of its digest \(rig_sha256\)"),
-            ({"device_sha256": "0"}, "contains another device than the one of its digest"),
-            ({"device": {"name": "x"}}, "contains another device than the one of its digest"),
-            ({"drive_sha256": None}, f"{W}.csv: is not the file that was exported with {W}.json"),
-            ({"rig": {"document": {}}}, "contains another rig"),
-        ],
-    )
-    def test_a_sidecar_sealed_anew(self, pair: dict[str, bytes], keys: dict[str, Any], words: str) -> None:
-        assert re.search(words, said({**pair, W + ".json": changed(pair[W + ".json"], **keys)}))
+def test_another_program_is_told_and_is_not_wrong(pair: dict[str, bytes]) -> None:
+    name = "warming-step.json"
+    older = {**pair, name: changed(pair[name], program={"version": "0.0.9", "code_sha256": "0"}, thermicon="0.0.9")}
+    found = verify(older)
+    assert found.well
+    assert "was exported by thermicon 0.0.9, this is " in str(found.findings[0])
+    program = {**json.loads(pair[name])["program"], "code_sha256": "0"}
+    found = verify({**pair, name: changed(pair[name], program=program)})
+    assert found.well
+    assert "by other code of version" in str(found.findings[0])
 
 
-class TestHostile:
-    """Folders that nobody exported."""
-
-    @pytest.mark.parametrize(
-        "content",
-        [
-            b"", b"[]", b"{}", b"nan", b"[" * 100_000, b"{" * 100_000, b'{"a": ' + b"9" * 5000 + b"}",
-            b'{"thermicon": "\\ud800", "file": "a.csv"}', b'{"thermicon": 1, "file": 2}', b"\xff\xfe",
-            b'{"thermicon": [], "file": "a.csv", "rig": [], "device": 3, "icon": [], "played": {"segments": []}}',
-            b'{"thermicon": {}, "file": "a.csv", "format": {"name": []}, "rig": {"name": {}, "content_hash": {}}}',
-            b'{"thermicon": {}, "file": "a.csv", "set_files": {"../../x": []}, "program": 1, "icon": {"text": 1}}',
-            b'{"thermicon": {}, "file": "a.csv", "format": {"name": "wav", "frames_per_update": 0}, "played": '
-            b'{"samples": 1e999, "duration_s": NaN, "offset_V": 1, "step_V": 1}}',
-        ],
-    )  # fmt: skip
-    def test_anything_may_be_in_a_sidecar(self, content: bytes) -> None:
-        start = time.monotonic()
-        assert not verify({"a.json": content, "a.csv": b"x"}).well
-        assert time.monotonic() - start < 5
-
-    def test_no_sidecar_at_all(self) -> None:
-        assert "holds no sidecar; give a folder that was exported" in said({"notes.txt": b""})
+def test_any_byte_of_any_file(by_format: dict[str, dict[str, bytes]], pair: dict[str, bytes]) -> None:
+    chance = random.Random(1)
+    for files in (*by_format.values(), pair):
+        for name, content in files.items():
+            places = {0, len(content) // 2, len(content) - 1, *(chance.randrange(len(content)) for _ in range(3))}
+            for place in places:
+                other = bytearray(content)
+                other[place] ^= 1 << chance.randrange(8)
+                assert not verify({**files, name: bytes(other)}).well, (name, place)
 
 
-class TestCommand:
-    """The words and exit codes."""
+def test_any_file_missing(pair: dict[str, bytes]) -> None:
+    for name in pair:
+        files = {other: content for other, content in pair.items() if other != name}
+        words = "has no sidecar that can be read" if name.endswith(".json") else f"{name}: is missing"
+        assert words in said(files)
 
-    def test_all_well(self, cli: Cli, out: Path) -> None:
-        (out / "README.txt").write_text("mine")
-        done = cli.good("export", "--verify", out)
-        assert "warming-step.csv   warming-step.json" in done.stdout
-        assert f"{out}: 2 drives and their sidecars belong together" in " ".join(done.stdout.split())
-        assert done.stderr == "note: README.txt: does not belong to an export and was not checked\n"
 
-    @pytest.mark.parametrize(("name", "belong"), [(W + ".csv", ["yes", "NO"]), ("play_icons.py", ["NO", "NO"])])
-    def test_what_is_wrong_is_named_with_the_cure(self, cli: Cli, out: Path, name: str, belong: list[str]) -> None:
-        with (out / name).open("a") as file:
-            file.write("# mine")
-        done = cli("export", "--verify", out)
-        assert done.exit_code == 1
-        assert [line.split()[-1] for line in done.stdout.splitlines() if "-step.csv" in line] == belong
-        assert done.stderr.count("wrong: ") == 1
-        for words in (f"wrong: {name}: is not the file that was exported", "its digest differs", "export again\n"):
-            assert words in done.stderr
-        assert done.stderr.endswith("1 thing does not belong together\n")
+@pytest.mark.parametrize(
+    ("moves", "words"),
+    [
+        (
+            {W + ".json": C + ".json", C + ".json": W + ".json"},
+            f"{W}.json: describes {C}.csv, which does not match",
+        ),
+        ({W + ".csv": C + ".csv", C + ".csv": W + ".csv"}, f"{W}.csv: is not the file that was exported with {W}"),
+        ({"other.csv": W + ".csv", W + ".csv": ""}, f"{W}.csv: is missing; it was exported with {W}.json"),
+        ({"other.csv": W + ".csv", W + ".csv": ""}, "other.csv: has no sidecar"),
+        (
+            {"other.csv": W + ".csv", W + ".csv": "", "other.json": W + ".json", W + ".json": ""},
+            f"other.json: describes {W}.csv, which does not match this name",
+        ),
+        ({W + ".csv.json": W + ".json"}, f"describes {W}.csv, as {W}.json does; remove the one that is a copy"),
+    ],
+    ids=["sidecars swapped", "drives swapped", "drive renamed", "drive alone", "both renamed", "sidecar copied"],
+)
+def test_files_moved(pair: dict[str, bytes], moves: dict[str, str], words: str) -> None:
+    files = {**pair, **{to: pair[name] if name else b"" for to, name in moves.items()}}
+    assert words in said({name: content for name, content in files.items() if moves.get(name) != ""})
 
-    def test_nothing_of_a_file_reaches_the_terminal_raw(self, cli: Cli, out: Path) -> None:
-        (out / "a.json").write_text('{"thermicon": "\\u001b[2J", "file": "a\\u0007\\u001b[1A.csv"}')
-        done = cli("export", "--verify", out)
-        assert done.exit_code == 1
-        assert not {"\x07", "\x1b"} & set(done.stdout + done.stderr)
 
-    def test_a_folder_without_sidecars_is_named(self, cli: Cli, tmp_path: Path) -> None:
-        (tmp_path / "notes.txt").write_text("mine")
-        assert f"wrong: {tmp_path}: holds no sidecar" in cli("export", "--verify", tmp_path).stderr
+def test_a_damaged_sidecar(pair: dict[str, bytes]) -> None:
+    cut = pair[W + ".json"][:-40]
+    text = said({**pair, W + ".json": cut})
+    assert f"{W}.json: is damaged: it cannot be read as JSON" in text
+    assert f"{W}.csv: has no sidecar that can be read, so its content is unknown" in text
+    alone = said({W + ".json": cut, W + ".csv": pair[W + ".csv"]})
+    assert f"{W}.json: is damaged" in alone
+    assert "holds no sidecar" not in alone
+
+
+@pytest.mark.parametrize("known", ["as laid out", None, "0"])
+def test_a_sidecar_whose_own_digest_is_wrong(pair: dict[str, bytes], known: str | None) -> None:
+    about = {**json.loads(pair[W + ".json"]), "sidecar_sha256": known}
+    if known is None:
+        del about["sidecar_sha256"]
+    content = sidecar_text(about)
+    if known == "as laid out":
+        content = json.dumps(json.loads(pair[W + ".json"]), ensure_ascii=False).encode()
+    (told,) = said({**pair, W + ".json": content}).splitlines()
+    assert told.startswith(f"{W}.json: was changed after it was exported: its own digest does not match")
+
+
+@pytest.mark.parametrize(
+    ("keys", "words"),
+    [
+        ({"rig_sha256": "0"}, r"contains another rig than the one of its digest \(rig_sha256\)"),
+        ({"device_sha256": "0"}, "contains another device than the one of its digest"),
+        ({"device": {"name": "x"}}, "contains another device than the one of its digest"),
+        ({"drive_sha256": None}, f"{W}.csv: is not the file that was exported with {W}.json"),
+        ({"rig": {"document": {}}}, "contains another rig"),
+    ],
+)
+def test_a_sidecar_sealed_anew(pair: dict[str, bytes], keys: dict[str, Any], words: str) -> None:
+    assert re.search(words, said({**pair, W + ".json": changed(pair[W + ".json"], **keys)}))
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"", b"[]", b"{}", b"nan", b"[" * 100_000, b"{" * 100_000, b'{"a": ' + b"9" * 5000 + b"}",
+        b'{"thermicon": "\\ud800", "file": "a.csv"}', b'{"thermicon": 1, "file": 2}', b"\xff\xfe",
+        b'{"thermicon": [], "file": "a.csv", "rig": [], "device": 3, "icon": [], "played": {"segments": []}}',
+        b'{"thermicon": {}, "file": "a.csv", "format": {"name": []}, "rig": {"name": {}, "content_hash": {}}}',
+        b'{"thermicon": {}, "file": "a.csv", "set_files": {"../../x": []}, "program": 1, "icon": {"text": 1}}',
+        b'{"thermicon": {}, "file": "a.csv", "format": {"name": "wav", "frames_per_update": 0}, "played": '
+        b'{"samples": 1e999, "duration_s": NaN, "offset_V": 1, "step_V": 1}}',
+    ],
+)  # fmt: skip
+def test_anything_may_be_in_a_sidecar(content: bytes) -> None:
+    start = time.monotonic()
+    assert not verify({"a.json": content, "a.csv": b"x"}).well
+    assert time.monotonic() - start < 5
+
+
+def test_no_sidecar_at_all() -> None:
+    assert "holds no sidecar; give a folder that was exported" in said({"notes.txt": b""})
+
+
+def test_all_well(cli: Cli, out: Path) -> None:
+    (out / "README.txt").write_text("mine")
+    done = cli.good("export", "--verify", out)
+    assert "warming-step.csv   warming-step.json" in done.stdout
+    assert f"{out}: 2 drives and their sidecars belong together" in " ".join(done.stdout.split())
+    assert done.stderr == "note: README.txt: does not belong to an export and was not checked\n"
+
+
+@pytest.mark.parametrize(("name", "belong"), [(W + ".csv", ["yes", "NO"]), ("play_icons.py", ["NO", "NO"])])
+def test_what_is_wrong_is_named_with_the_cure(cli: Cli, out: Path, name: str, belong: list[str]) -> None:
+    with (out / name).open("a") as file:
+        file.write("# mine")
+    done = cli("export", "--verify", out)
+    assert done.exit_code == 1
+    assert [line.split()[-1] for line in done.stdout.splitlines() if "-step.csv" in line] == belong
+    assert done.stderr.count("wrong: ") == 1
+    for words in (f"wrong: {name}: is not the file that was exported", "its digest differs", "export again\n"):
+        assert words in done.stderr
+    assert done.stderr.endswith("1 thing does not belong together\n")
+
+
+def test_nothing_of_a_file_reaches_the_terminal_raw(cli: Cli, out: Path) -> None:
+    (out / "a.json").write_text('{"thermicon": "\\u001b[2J", "file": "a\\u0007\\u001b[1A.csv"}')
+    done = cli("export", "--verify", out)
+    assert done.exit_code == 1
+    assert not {"\x07", "\x1b"} & set(done.stdout + done.stderr)
+
+
+def test_a_folder_without_sidecars_is_named(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "notes.txt").write_text("mine")
+    assert f"wrong: {tmp_path}: holds no sidecar" in cli("export", "--verify", tmp_path).stderr
