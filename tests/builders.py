@@ -1,9 +1,13 @@
-"""What tests of several rooms build: words of messages, sets of steps, a laboratory's observer, weighted quantiles."""
+"""What tests of several rooms build or wait for: words of messages, steps, a laboratory, quantiles, a server's answer."""
 
 from __future__ import annotations
 
+import socket
+import time
 import tomllib
-from collections.abc import Sequence
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -33,6 +37,28 @@ def steps(**by_K: float) -> IconSet:
     ways = {name: f"{'cool' if change < 0 else 'warm'} by {abs(change):g}" for name, change in by_K.items()}
     icons = (f"icon {name} {{ {way} {rest}" for name, way in ways.items())
     return parse("cue 1; set s { control display; baseline 32 °C };" + ";".join(icons))
+
+
+def free_port() -> int:
+    """A port of this machine that nobody listens at."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        return int(free.getsockname()[1])
+
+
+def answers(address: str, ended: Callable[[], object], within_s: float = 60.0) -> bool:
+    """Wait for a server; whether it answers before it has ended, or the time is over."""
+    until = time.monotonic() + within_s
+    while time.monotonic() < until and ended() is None:
+        try:
+            urllib.request.urlopen(address, timeout=10).close()
+        except urllib.error.HTTPError:
+            return True
+        except OSError:
+            time.sleep(0.1)
+        else:
+            return True
+    return False
 
 
 def dprime_from_memory(felt: Sequence[Percept], observer: Observer | None = None) -> float:

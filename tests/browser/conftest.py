@@ -100,12 +100,17 @@ def bench(page: Page, lab: Server) -> Page:
 
 
 @pytest.fixture
-def drawn(page: Page) -> Iterator[Bench]:
-    """The design view of the canvas alone with its first frame; at the end nothing has gone wrong in the page."""
-    from tests.browser.staticpage import design, open_bench
+def made(page: Page) -> Iterator[Bench]:
+    """The canvas module in a page, without a view; at the end nothing has gone wrong there."""
+    from tests.browser.staticpage import open_bench
 
-    made = open_bench(page)
-    made.show()
-    made.frame(design())
-    yield made
-    assert made.wrong == []
+    bench = open_bench(page)
+    yield bench
+    assert bench.wrong == []
+
+
+@pytest.fixture
+def drawn(made: Bench) -> Bench:
+    """The design view of the canvas alone with its first frame."""
+    made.draw()
+    return made

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-import socket
 import subprocess
 import sys
-import time
-import urllib.error
 import urllib.request
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -16,6 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playwright.sync_api import Locator, Page
+
+from tests.builders import answers, free_port
 
 STARTS_WITHIN_S = 60.0
 RUNS_WITHIN_S = 90.0
@@ -40,10 +39,7 @@ class Server:
 def running(module: str, options: Sequence[str], folder: Path, own: Path) -> Iterator[Server]:
     """``python -m MODULE OPTIONS`` in a folder, with settings and runtime files under ``own`` only, until the end."""
     own.mkdir(parents=True, exist_ok=True)
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    log = own / f"{module}.log"
+    port, log = free_port(), own / f"{module}.log"
     command = [sys.executable, "-m", module, *options, "--no-browser", f"--port={port}"]
     address = f"http://127.0.0.1:{port}"
     with log.open("wb") as said:
@@ -51,7 +47,7 @@ def running(module: str, options: Sequence[str], folder: Path, own: Path) -> Ite
             command, cwd=folder, env=environment(own), stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT
         )
         try:
-            _wait_for(f"{address}/api", process, log)
+            assert answers(f"{address}/api", process.poll, STARTS_WITHIN_S), log.read_text(errors="replace")[-4000:]
             yield Server(address, folder, log)
         finally:
             process.terminate()
@@ -77,21 +73,6 @@ def environment(own: Path) -> dict[str, str]:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(held), encoding="utf-8")
     return {**os.environ, **{name: str(path) for name, path in places.items()}}
-
-
-def _wait_for(address: str, process: subprocess.Popen[bytes], log: Path) -> None:
-    until = time.monotonic() + STARTS_WITHIN_S
-    while time.monotonic() < until:
-        if process.poll() is not None:
-            break
-        try:
-            with urllib.request.urlopen(address, timeout=10):
-                return
-        except urllib.error.HTTPError:
-            return  # it answers
-        except OSError:
-            time.sleep(0.1)
-    raise RuntimeError(f"no answer from {address}:\n{log.read_text(errors='replace')[-4000:]}")
 
 
 def end_kernels(server: Server) -> None:

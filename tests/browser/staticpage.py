@@ -33,12 +33,8 @@ window.ready = true;
 </script></body></html>"""
 TEXT = "cue 1\n\nicon dip {\n  cool by 6 °C at 3 °C/s\n  hold for 4\n  return at 3 °C/s\n}\n"
 TROUBLE = {
-    "line": 5,
-    "column": 12,
-    "end_column": 13,
-    "code": "E102",
-    "headline": "missing unit: this number has no unit",
-    "hint": 'a time is written as "4 s"',
+    **{"line": 5, "column": 12, "end_column": 13, "code": "E102"},
+    **{"headline": "missing unit: this number has no unit", "hint": 'a time is written as "4 s"'},
     "suggestion": "  hold for 4 s",
 }
 ROWS = 600
@@ -64,25 +60,15 @@ def design(**changes: Any) -> dict[str, Any]:
     """A frame of one panel with a straight fall from 32 to 26 °C in 6 s, and three corners."""
     skin = {"key": "skin", "label": "skin", "buffer": 0, "role": "ink"}
     handle = {"panel": "temperature", "moves_time": True, "moves_level": True, "why": None, "line": 4}
-    fixed = {"moves_time": False, "moves_level": False, "why": "rest is at baseline"}
+    fixed = {"moves_time": False, "moves_level": False, "why": "rest is at baseline", "t": 6.0, "y": 26.0}
     panel = {"key": "temperature", "label": "temperature (°C)", "series": [skin]}
     return {
-        "type": "frame",
-        "view": "design",
-        "seq": 0,
-        "text": TEXT,
-        "icons": ["dip", "rise"],
-        "icon": "dip",
-        "can_undo": True,
+        **{"type": "frame", "view": "design", "seq": 0, "text": TEXT, "ms": 2.0},
+        **{"icons": ["dip", "rise"], "icon": "dip", "can_undo": True},
         "badge": {"colour": "green", "text": "no limit is passed", "more": ["28 °C at 2 s"]},
         "time": {"t0": 0.0, "dt": 0.01, "n": ROWS + 1},
         "panels": [panel],
-        "handles": [
-            {**handle, "t": 2.0, "y": 30.0},
-            {**handle, "t": 4.0, "y": 28.0},
-            {**handle, **fixed, "t": 6.0, "y": 26.0},
-        ],
-        "ms": 2.0,
+        "handles": [{**handle, "t": 2.0, "y": 30.0}, {**handle, "t": 4.0, "y": 28.0}, {**handle, **fixed}],
     } | changes
 
 
@@ -98,6 +84,16 @@ class Bench:
 
     def show(self, view: str = "design", key: str = "one") -> None:
         self.page.evaluate("([view, key]) => show(view, key)", [view, key])
+
+    def draw(self, **changes: Any) -> None:
+        """Show the design view with a frame."""
+        self.show()
+        self.frame(design(**changes))
+
+    def append(self, text: str) -> None:
+        """Type at the end of the text."""
+        self.page.locator(".cm-content").first.press("Control+End")
+        self.page.keyboard.type(text)
 
     def frame(self, meta: dict[str, Any], *arrays: Any) -> None:
         given = arrays or (numpy.linspace(32.0, 26.0, ROWS + 1),)

@@ -1,21 +1,15 @@
-"""Heat maps, themes, several views and screen readers of the canvas module alone, in a static page."""
+"""The canvas module alone, in a static page: heat maps, themes, several views, screen readers, unsaved text."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 from tests.browser.staticpage import SHADES, TEXT, TROUBLE, Bench, design, open_bench
 
-
-@pytest.fixture
-def made(page: Any) -> Iterator[Bench]:
-    """The module in a page, without a view; at the end nothing has gone wrong there."""
-    bench = open_bench(page)
-    yield bench
-    assert bench.wrong == []
+OFFER = "An earlier text was saved. Buttons above the editor restore or discard it."
+FORBIDDEN = "Object.defineProperty(window, 'sessionStorage', { get() { throw new DOMException('no') } })"
 
 
 def test_a_view_without_a_drawing_waits_without_a_banner_while_the_kernel_lives(page: Any, made: Bench) -> None:
@@ -28,8 +22,7 @@ def test_a_view_without_a_drawing_waits_without_a_banner_while_the_kernel_lives(
 
 def test_themes_change_the_colours_that_are_drawn(page: Any, made: Bench) -> None:
     page.emulate_media(color_scheme="dark")
-    made.show()
-    made.frame(design())
+    made.draw()
     ground = "() => getComputedStyle(document.querySelector('.tm-root')).backgroundColor"
     light, dark = page.evaluate(SHADES)
     assert light > 5 * dark, "the skin's line is pale on a dark page"
@@ -84,10 +77,8 @@ def test_two_icons_over_each_other_offer_no_corner(page: Any, made: Bench) -> No
 
 def test_two_views_of_one_model_show_one_text_and_leave_nothing_behind(page: Any, made: Bench) -> None:
     made.show()
-    made.show()
-    made.frame(design())
-    page.locator(".cm-content >> nth=0").press("Control+End")
-    page.keyboard.type("#")
+    made.draw()
+    made.append("#")
     assert made.text_in(1) == TEXT + "#"
     page.evaluate("leave()")
     assert page.locator(".tm-root").count() == 1
@@ -105,14 +96,84 @@ def test_screen_readers_hear_the_cursor_once_and_names_without_signs(drawn: Benc
     drawn.said("At 0.00 s: skin 32.00 °C")
 
 
-def test_the_list_of_errors_can_be_read_in_the_dark(page: Any) -> None:
-    made = open_bench(page)
+def test_the_list_of_errors_can_be_read_in_the_dark(page: Any, made: Bench) -> None:
     page.emulate_media(color_scheme="dark")
-    made.show()
-    made.frame(design(troubles=[TROUBLE]))
+    made.draw(troubles=[TROUBLE])
     made.set_caret(0)
     page.keyboard.press("Control+Shift+M")
     made.set_caret(0)
     chosen = page.locator(".cm-panel-lint [aria-selected]")
     assert chosen.evaluate("e => getComputedStyle(e).backgroundColor") == "rgba(79, 209, 191, 0.14)"
     assert chosen.evaluate("e => getComputedStyle(e).color") == "rgb(232, 235, 238)"
+
+
+@pytest.fixture
+def edited(drawn: Bench) -> Bench:
+    """A bench of the model "one" whose text was changed."""
+    drawn.append("# mine")
+    return drawn
+
+
+def left(bench: Bench) -> list[str]:
+    """What the page handed to the kernel that was there before it."""
+    return [message["text"] for message in bench.sent("left")]
+
+
+def test_a_new_model_is_told_the_text_and_that_is_said(edited: Bench) -> None:
+    assert left(edited) == []
+    edited.again("two")
+    assert left(edited) == [TEXT + "# mine"]
+    edited.said(OFFER)
+    assert edited.text == TEXT
+    assert edited.sent("text") == []
+    edited.again("three")
+    assert left(edited) == [], "the kernel has it"
+    edited.append("# newer")
+    edited.again("four")
+    assert left(edited) == [TEXT + "# newer"]
+
+
+def test_the_same_model_is_told_nothing_and_goes_on_in_its_place(edited: Bench) -> None:
+    edited.again("one", text=TEXT + "# mine")
+    assert left(edited) == []
+    edited.append("!")
+    edited.again("one", text=TEXT)
+    assert left(edited) == [], "the kernel knows better"
+    edited.again("two")
+    assert left(edited) == [TEXT + "# mine!"]
+
+
+def test_texts_of_the_kernel_are_kept_and_another_source_finds_nothing(edited: Bench) -> None:
+    edited.answer()
+    edited.frame(design(seq=edited.sent()[-1]["seq"], text=TEXT + "# dragged"))
+    edited.again("two", text="cue 1\n")
+    assert left(edited) == []
+    edited.again("three", text=TEXT + "# dragged")
+    assert left(edited) == []
+    edited.again("four")
+    assert left(edited) == [TEXT + "# dragged"]
+
+
+def test_the_text_can_be_copied_while_there_is_no_answer(edited: Bench) -> None:
+    page = edited.page
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    page.wait_for_selector(".tm-banner:not([hidden])", timeout=5_000)
+    page.get_by_role("button", name="Copy text").click()
+    page.get_by_role("button", name="Copied").wait_for()
+    edited.said("Text copied")
+    page.locator(".cm-content").press("Control+a")
+    page.keyboard.press("Control+v")
+    assert edited.text == TEXT + "# mine"
+    edited.answer()
+    assert page.locator(".tm-banner").is_hidden()
+
+
+def test_where_nothing_may_be_kept_the_banner_says_copy(page: Any) -> None:
+    page.add_init_script(FORBIDDEN)
+    bench = open_bench(page)
+    bench.draw()
+    bench.append("#")
+    page.wait_for_selector(".tm-banner:not([hidden])", timeout=5_000)
+    late = "No answer from the kernel: run the cell again to go on; copy your text first"
+    assert page.locator(".tm-banner [role=alert]").inner_text() == late
+    assert bench.wrong == []

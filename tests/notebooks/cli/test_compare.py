@@ -12,8 +12,6 @@ import pytest
 from tests.notebooks.conftest import Cli
 from thermicon.notebooks.files.trace_files import Curves, LogError, align, differences
 
-GOOD = "time_s,skin_C\n0,30\n1,31\n2,32\n"
-
 
 def row(said: Any, name: str) -> list[str]:
     """Words of the row of the table that begins with a name."""
@@ -42,23 +40,15 @@ def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> Non
     assert row(said, "target")[1:5] == ["10", "K", "2.00", "s"]
 
 
-def measured(folder: Path, cli: Cli, two: Path) -> tuple[Path, Path]:
-    """A trace, and a log made from it: other times, fewer columns, skin 0.2 K warmer, one reading lost."""
-    trace = folder / "trace.csv"
-    cli.good("simulate", two, "--icon", "cool-step", "-o", trace)
-    frame = pd.read_csv(trace)
-    times = np.arange(0.5, 9.0, 0.25)
-    log = pd.DataFrame({"time_s": times, "note": "x"})
-    for column, more in (("display_C", 0.0), ("skin_C", 0.2)):
-        log[column] = np.interp(times, frame["time_s"], frame[column]) + more
-    log.loc[3, "display_C"] = np.nan
-    path = folder / "log.csv"
-    log.to_csv(path, index=False)
-    return trace, path
-
-
 def test_a_trace_and_a_log_are_compared_at_the_times_of_the_log(cli: Cli, two: Path, tmp_path: Path) -> None:
-    trace, log = measured(tmp_path, cli, two)
+    """The log has other times, fewer columns, skin that is 0.2 K warmer, and one reading was lost."""
+    trace, log = tmp_path / "trace.csv", tmp_path / "log.csv"
+    cli.good("simulate", two, "--icon", "cool-step", "-o", trace)
+    frame, times = pd.read_csv(trace), np.arange(0.5, 9.0, 0.25)
+    display, skin = (np.interp(times, frame["time_s"], frame[column]) for column in ("display_C", "skin_C"))
+    display[3] = np.nan
+    logged = {"time_s": times, "note": "x", "display_C": display, "skin_C": skin + 0.2}
+    pd.DataFrame(logged).to_csv(log, index=False)
     said = cli.good("compare", trace, log, "--figure", tmp_path / "a.png")
     assert said.stdout.splitlines()[:2] == ["A  trace.csv", "B  log.csv"]
     assert row(said, "skin")[-2:] == ["0.2", "K"]
@@ -90,13 +80,15 @@ def curves(name: str, time: list[float], whole: bool = False, **columns: list[fl
     return Curves(name, np.array(time), {key: np.array(value) for key, value in columns.items()}, whole)
 
 
-def test_differences_of_known_curves() -> None:
-    a = curves("a", [0, 1, 2], skin_C=[30.0, 30.0, 30.0])
-    b = curves("b", [0, 1, 2], skin_C=[30.0, 33.0, 26.0])
+def test_differences_of_known_curves_leave_out_what_was_not_measured() -> None:
+    a = curves("a", [0, 1, 2, 3], skin_C=[30.0, 30.0, 30.0, 30.0], display_C=[np.nan] * 4)
+    b = curves("b", [0, 1, 2, 3], skin_C=[30.0, 33.0, 26.0, np.nan], display_C=[1.0] * 4)
     (row,) = differences(align(a, b)).to_dict("records")
     assert (row["column"], row["unit"], row["largest"], row["largest_s"], row["rows"]) == ("skin_C", "K", -4, 2, 3)
     assert row["rms"] == pytest.approx(np.sqrt(25 / 3))
     assert row["mean"] == pytest.approx(-1 / 3)
+    with pytest.raises(LogError, match="no column with values in both"):
+        align(curves("a", [0, 1], skin_C=[np.nan] * 2), curves("b", [0, 1], skin_C=[1.0] * 2))
 
 
 def test_a_held_current_is_not_interpolated_and_the_rest_is() -> None:
@@ -105,12 +97,3 @@ def test_a_held_current_is_not_interpolated_and_the_rest_is() -> None:
     both = align(trace, log)
     assert list(both.time_s) == [0.25, 0.75, 1.0]
     assert differences(both)["largest"].tolist() == [0.0, 0.0]
-
-
-def test_what_was_not_measured_is_left_out() -> None:
-    a = curves("a", [0, 1, 2, 3], skin_C=[30.0, 30.0, 30.0, 30.0], display_C=[np.nan] * 4)
-    b = curves("b", [0, 1, 2, 3], skin_C=[31.0, np.nan, 31.0, np.nan], display_C=[1.0] * 4)
-    (row,) = differences(align(a, b)).to_dict("records")
-    assert (row["rows"], row["mean"]) == (2, 1.0)
-    with pytest.raises(LogError, match="no column with values in both"):
-        align(curves("a", [0, 1], skin_C=[np.nan] * 2), curves("b", [0, 1], skin_C=[1.0] * 2))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
 from pathlib import Path
 
 import pytest
 
+from tests.builders import missing
 from tests.notebooks.conftest import Cli
 from thermicon.circuit import Rig
 from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
@@ -61,46 +62,23 @@ def test_what_a_log_does_not_show_is_named_with_the_cure(cli: Cli, log: Path, tm
     assert "widened as far as a rig file may state" in " ".join(said.stdout.split())
 
 
-def spoilt(text: str) -> str:
-    """A log with ten cells that are no numbers."""
-    lines = text.splitlines()
-    place = lines[0].split(",").index("display_C")
-    for row in range(100, 110):
-        cells = lines[row].split(",")
-        lines[row] = ",".join([*cells[:place], "n/a", *cells[place + 1 :]])
-    return "\n".join(lines) + "\n"
-
-
 @pytest.mark.parametrize(
     ("change", "more", "code", "words"),
     [
-        (lambda text: text.replace("display_C", "Display_c"), RATE, 1, ("Display_c: did you mean display_C?",)),
-        (spoilt, RATE, 0, ("display_C is 'n/a' in 10 of",)),
-        (
-            lambda text: text.replace("current_A", "amps"),
-            RATE,
-            1,
-            ("no log has a drive: one of current_A or",),
-        ),
-        (lambda text: text, (*RATE, "rig.csv"), 1, ("has the same content as", "name it once")),
-        (lambda text: text, ("--rig", "tcs2"), 1, ("is a thermode: it has no module to fit",)),
+        (("display_C", "Display_c"), RATE, 1, "Display_c: did you mean display_C?"),
+        ((r"\n(\d\.450000,[^,]*),[^,]*", r"\n\1,n/a"), RATE, 0, "display_C is 'n/a' in 10 of"),
+        (("current_A", "amps"), RATE, 1, "no log has a drive: one of current_A or"),
+        (("", ""), (*RATE, "rig.csv"), 1, ["has the same content as", "name it once"]),
+        (("", ""), ("--rig", "tcs2"), 1, "is a thermode: it has no module to fit"),
     ],
     ids=["column", "cells", "drive", "twice", "thermode"],
 )
 def test_a_doubtful_log_is_told_and_a_useless_one_leaves_nothing(
-    cli: Cli,
-    log: Path,
-    tmp_path: Path,
-    change: Callable[[str], str],
-    more: tuple[str, ...],
-    code: int,
-    words: tuple[str, ...],
+    cli: Cli, log: Path, tmp_path: Path, change: tuple[str, str], more: tuple[str, ...], code: int, words: str
 ) -> None:
     wrong, out = tmp_path / "wrong.csv", tmp_path / "out.toml"
-    wrong.write_text(change(log.read_text(encoding="utf-8")), encoding="utf-8")
+    wrong.write_text(re.sub(*change, log.read_text(encoding="utf-8")), encoding="utf-8")
     said = cli("fit", wrong, *(log if word == "rig.csv" else word for word in more), "--free", CONTACT, "-o", out)
     told = " ".join(said.stderr.split())
-    assert (said.exit_code, out.exists()) == (code, code == 0), told
+    assert (said.exit_code, out.exists(), missing(words, told)) == (code, code == 0, []), told
     assert "Traceback" not in told
-    for word in words:
-        assert word in told

@@ -7,13 +7,11 @@ import signal
 import socket
 import subprocess
 import sys
-import time
-import urllib.error
-import urllib.request
 from pathlib import Path
 
 import pytest
 
+from tests.builders import answers, free_port
 from tests.notebooks.conftest import Cli
 from thermicon.notebooks.cli import lab
 
@@ -62,9 +60,7 @@ def test_a_server_starts_and_ends_and_imports_nothing_from_the_folder(tmp_path: 
     folder.mkdir()
     for name in TRAPS:
         (folder / f"{name}.py").write_text(f"open({str(tmp_path / ('ran-' + name))!r}, 'w')\n")
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
+    port = free_port()
     own = {f"JUPYTER_{name.upper()}_DIR": str(tmp_path / name) for name in ("config", "data", "runtime")}
     command = [sys.executable, "-P", "-m", "thermicon.notebooks.cli.main", "lab", ".", "--no-browser", "--allow-root"]
     program = subprocess.Popen(
@@ -79,7 +75,7 @@ def test_a_server_starts_and_ends_and_imports_nothing_from_the_folder(tmp_path: 
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     try:
-        wait_for(f"http://127.0.0.1:{port}/api")
+        assert answers(f"http://127.0.0.1:{port}/api", program.poll)
         if how == "Ctrl-C":
             os.killpg(program.pid, signal.SIGINT)
         else:
@@ -95,15 +91,3 @@ def test_a_server_starts_and_ends_and_imports_nothing_from_the_folder(tmp_path: 
     assert not list(tmp_path.glob("ran-*")), "a file of the folder was imported"
     with socket.socket() as again, pytest.raises(ConnectionRefusedError):
         again.connect(("127.0.0.1", port))
-
-
-def wait_for(address: str) -> None:
-    for _ in range(400):
-        try:
-            urllib.request.urlopen(address, timeout=5).close()
-            return
-        except urllib.error.HTTPError:
-            return
-        except OSError:
-            time.sleep(0.1)
-    raise AssertionError(f"no answer from {address}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -39,11 +40,8 @@ def test_the_folder_is_verified_as_a_whole(out: Path, tmp_path: Path, cli: Cli) 
             rows = list(csv.DictReader(file))
         assert len(rows) == 10
         assert all((out / row["drive_file"]).is_file() and (out / row["sidecar_file"]).is_file() for row in rows)
-    said = cli.good("export", "--verify", out)
-    copy = tmp_path / "copy"
-    copy.mkdir()
-    for path in out.iterdir():
-        (copy / path.name).write_bytes(path.read_bytes())
+    cli.good("export", "--verify", out)
+    copy = Path(shutil.copytree(out, tmp_path / "copy"))
     conditions = copy / "sub-A_task-quick_conditions.csv"
     conditions.write_text(conditions.read_text(encoding="utf-8").replace("dip", "glow"), encoding="utf-8")
     (copy / "run_study.py").unlink()
@@ -102,46 +100,39 @@ def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
 
 
 @pytest.mark.slow
-def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli) -> None:
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "study.json").write_text("mine", encoding="utf-8")
-    said = cli("study", write_study(tmp_path, QUICK), "-o", out)
-    assert said.exit_code == 1
-    assert "out holds a study already and was kept; give another folder with -o" in " ".join(said.stderr.split())
-    assert [path.name for path in out.iterdir()] == ["study.json"]
-    (out / "study.json").rename(out / "README.txt")
-    said = cli("study", tmp_path / "study.toml", "-o", out)
-    assert "README.txt already exists and was kept; give another folder with -o" in " ".join(said.stderr.split())
-    (out / "README.txt").rename(out / "study.json")
-    (out / "data").mkdir()
-    (out / "data" / "dataset_description.json").write_text("{}", encoding="utf-8")
-    assert "holds a study already" in " ".join(cli("study", tmp_path / "study.toml", "-o", out).stderr.split())
-    (out / "data" / "sub-A_task-quick_answers.csv").write_text("participant\n", encoding="utf-8")
-    said = cli("study", tmp_path / "study.toml", "-o", out)
-    assert "holds the answers of 1 participant (data/) already and was kept" in " ".join(said.stderr.split())
+@pytest.mark.parametrize(
+    ("held", "words"),
+    [
+        (["study.json"], "out holds a study already and was kept; give another folder with -o"),
+        (["README.txt"], "README.txt already exists and was kept; give another folder with -o"),
+        (["study.json", "data/dataset_description.json"], "holds a study already"),
+        (["study.json", "data/sub-A_task-quick_answers.csv"], "holds the answers of 1 participant (data/) already"),
+    ],
+)
+def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli, held: list[str], words: str) -> None:
+    (tmp_path / "out" / "data").mkdir(parents=True)
+    for name in held:
+        (tmp_path / "out" / name).write_text("mine", encoding="utf-8")
+    said = cli("study", write_study(tmp_path, QUICK), "-o", tmp_path / "out")
+    assert (said.exit_code, words in " ".join(said.stderr.split())) == (1, True), said.stderr
+    kept = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*")}
+    assert kept == set(held)
 
 
 @pytest.mark.parametrize(
-    ("changes", "out", "words"),
+    ("old", "new", "out", "words"),
     [
-        (("dip", "dpi"), "out", "study.toml: "),
-        (("repetitions = 2", "repetitions = 0"), "out", "study.toml: "),
-        (
-            ("repetitions = 2", "repetitions = 300"),
-            "out",
-            "260 min for each participant; the limit of a session is 180",
-        ),
-        (("", ""), "two.cue", "is a file; give the name of a folder"),
+        ("dip", "dpi", "out", "study.toml: "),
+        ("repetitions = 2", "repetitions = 300", "out", "260 min for each participant; the limit of a session is 180"),
+        ("", "", "two.cue", "is a file; give the name of a folder"),
     ],
-    ids=["icon", "none", "long", "file"],
+    ids=["icon", "long", "file"],
 )
 def test_bad_input_exits_with_1_and_no_traceback(
-    changes: tuple[str, str], out: str, words: str, tmp_path: Path, cli: Cli
+    old: str, new: str, out: str, words: str, tmp_path: Path, cli: Cli
 ) -> None:
-    said = cli("study", write_study(tmp_path, QUICK.replace(*changes) if changes[0] else QUICK), "-o", tmp_path / out)
-    assert (said.exit_code, said.stdout) == (1, "")
-    assert words in said.stderr
+    said = cli("study", write_study(tmp_path, QUICK.replace(old, new) if old else QUICK), "-o", tmp_path / out)
+    assert (said.exit_code, said.stdout, words in said.stderr) == (1, "", True), said.stderr
     assert not (tmp_path / out).is_dir()
 
 
