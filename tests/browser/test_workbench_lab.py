@@ -1,25 +1,41 @@
-"""The workbench in JupyterLab, as a lab uses it: text and curve, set, export, and going on after an interruption."""
+"""The workbench in JupyterLab: text and curve, set, export, going on after an interruption; how fast a drag is."""
 
 from __future__ import annotations
 
+import re
+import time
+
+import numpy
+import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import Server, open_notebook, reload, restart_kernel, run_all, save
 from tests.browser.onbench import (
+    FIRST_HANDLE,
+    SETTLES_MS,
     TWO,
-    click_a_confusion,
     editor,
     expect_text,
+    open_tab,
     root,
     text_of,
-    type_below_the_first_screen,
-    type_drag_and_err,
     type_text,
     wait_until_drawn,
-    write_drives,
+    wait_until_refined,
 )
 
 MOST_SAVED = 300_000
+
+
+def settled_text(page: Page) -> str:
+    """The cue text when it has not changed for half a second: a drag is followed by several updates."""
+    text = text_of(page)
+    for _ in range(20):
+        page.wait_for_timeout(500)
+        before, text = text, text_of(page)
+        if text == before:
+            return text
+    raise AssertionError("the text goes on changing after the drag")
 
 
 def test_text_and_curve_stay_in_step(bench: Page) -> None:
@@ -28,16 +44,85 @@ def test_text_and_curve_stay_in_step(bench: Page) -> None:
         " return box('.thermicon').bottom - box('.jp-Notebook').bottom; }"
     )
     assert fits <= 0, "the design view does not fit into the window"
-    type_drag_and_err(bench)
+    type_text(bench, TWO)
+    expect(root(bench)).to_have_attribute("data-icon", "near")
+    expect(root(bench)).to_have_attribute("data-colour", "green")
+    bench.wait_for_timeout(300)
+    x, y = bench.evaluate(FIRST_HANDLE)
+    bench.mouse.move(x, y)
+    bench.mouse.down()
+    for step in range(1, 6):
+        bench.mouse.move(x, y + 5.0 * step)
+        bench.wait_for_timeout(30)
+    bench.mouse.up()
+    dragged = settled_text(bench)
+    assert dragged != TWO
+    assert re.search(r"warm by [0-3](\.\d+)? °C at [\d.]+ °C/s  # as far as is pleasant", dragged), dragged
+    type_text(bench, dragged.replace("hold for 2 s", "hold for 2", 1))
+    trouble = bench.locator(".tm-status.tm-has-errors")
+    expect(trouble).to_contain_text("1 error, line 5")
+    expect(trouble).to_contain_text("unit")
+    expect(bench.locator(".cm-lintRange-error")).to_have_count(1)
+    expect(root(bench)).to_have_attribute("data-colour", "grey")
+    bench.locator(".tm-button", has_text="Undo").click()
+    expect(trouble).to_have_count(0)
+    expect_text(bench, dragged)
 
 
-def test_it_designs_compares_and_exports(bench: Page, lab: Server) -> None:
+def test_it_designs_below_the_first_screen_compares_and_exports(bench: Page, lab: Server) -> None:
     bench.set_viewport_size({"width": 900, "height": 800})
-    type_below_the_first_screen(bench)
+    wrong: list[str] = []
+    bench.on("pageerror", lambda problem: wrong.append(str(problem)))
+    scroller = bench.locator(".thermicon .tm-editor .cm-scroller")
+    before = text_of(bench)
+    high, shown = scroller.evaluate("scroller => [scroller.scrollHeight, scroller.clientHeight]")
+    assert high > 1.2 * shown, "the text fits into one screen, so that this shows nothing"
+    scroller.hover()
+    for _ in range(10):
+        bench.mouse.wheel(0, 800)
+        bench.wait_for_timeout(30)
+    end = scroller.evaluate("scroller => scroller.scrollHeight - scroller.clientHeight - scroller.scrollTop")
+    assert end < 2, f"the text ends {end} px below what can be scrolled to"
+    last = bench.locator(".thermicon .tm-editor .cm-line", has_text="}").last
+    last.click()
+    bench.keyboard.press("End")
+    bench.keyboard.press("x")
+    expect(editor(bench)).to_be_focused()
+    assert text_of(bench) == before.rstrip("\n") + "x" + before[len(before.rstrip("\n")) :]
+    expect(bench.locator(".tm-status.tm-has-errors")).to_be_visible()
+    bench.locator(".thermicon .cm-lineNumbers .cm-gutterElement").last.click()
+    expect(editor(bench)).to_be_focused()
+    bench.keyboard.press("x")
+    assert len(text_of(bench)) == len(before) + 2
+    undo = bench.locator(".tm-button", has_text="Undo")
+    undo.click()  # letters typed in one go are one step
+    bench.wait_for_timeout(1500)
+    if text_of(bench) != before:
+        undo.click()
+    expect_text(bench, before)
+    expect(root(bench)).to_have_attribute("data-colour", "green")
+    assert wrong == []
     bench.set_viewport_size({"width": 1280, "height": 800})
     type_text(bench, TWO)
-    click_a_confusion(bench)
-    write_drives(bench, lab.folder / "drives")
+    open_tab(bench, "Set")
+    cell = bench.locator('.tm-map[data-matrix="confusion"] .tm-cell[aria-label^="near, nearer"]')
+    cell.wait_for(timeout=SETTLES_MS)
+    wait_until_refined(bench)
+    cell.click()
+    expect(cell).to_have_class(re.compile("tm-picked"))
+    pair = bench.locator(".thermicon-pair")
+    expect(pair).to_contain_text("confused in")
+    expect(pair.locator(".tm-panel")).to_have_count(3)
+    expect(pair.get_by_role("button", name="Apply edit")).to_be_enabled(timeout=SETTLES_MS)
+    open_tab(bench, "Export")
+    view = bench.locator(".thermicon-export")
+    expect(view).to_contain_text("ready to be written", timeout=SETTLES_MS)
+    expect(view.locator("table.asked")).to_contain_text("shortest safe pause")
+    where = view.locator(".widget-text", has_text="folder").locator("input")
+    where.fill(str(lab.folder / "drives"))
+    where.press("Enter")
+    view.get_by_role("button", name="Write").click()
+    expect(view).to_contain_text("wrote 1 drive")
     assert (lab.folder / "drives" / "near.csv").exists()
 
 
@@ -112,3 +197,38 @@ def test_it_goes_on_after_a_reload_and_a_restart(bench: Page, lab: Server) -> No
     expect(root(bench)).to_have_attribute("data-icon", "nigh")
     expect_text(bench, typed)
     save(bench)
+
+
+# Its run has 3,000 rows.
+LONG = """cue 1
+icon long {
+  cool by 4 °C at 0.5 °C/s
+  hold for 8 s
+  return at 1 °C/s
+}
+"""
+P95_MS, OLDEST_MS = 60.0, 100.0
+DRAGGED = """(from) => window.__thermicon.design.filter(({ drawn_ms, sent_ms }) => drawn_ms > from && sent_ms).map(
+  ({ seq, sent_ms, drawn_ms }) =>
+    ({ whole: drawn_ms - sent_ms, age: performance.timeOrigin + drawn_ms - seq }))"""
+
+
+@pytest.mark.benchmark
+def test_a_drag_at_30_Hz(bench: Page) -> None:
+    type_text(bench, LONG)
+    expect(root(bench)).to_have_attribute("data-icon", "long")
+    bench.wait_for_timeout(500)
+    x, y = bench.evaluate(FIRST_HANDLE)
+    bench.mouse.move(x, y)
+    bench.mouse.down()
+    began = bench.evaluate("performance.now()")
+    start = time.monotonic()
+    for step in range(150):
+        bench.mouse.move(x + 0.15 * step, y - 8 * numpy.sin(step / 8))
+        time.sleep(max(0.0, start + step / 30 - time.monotonic()))
+    bench.mouse.up()
+    bench.wait_for_timeout(500)
+    frames = bench.evaluate(DRAGGED, began)[2:]
+    whole, age = ([frame[name] for frame in frames] for name in ("whole", "age"))
+    assert numpy.percentile(whole, 95) <= P95_MS
+    assert max(age) <= OLDEST_MS

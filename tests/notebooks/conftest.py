@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from thermicon.circuit import Rig
 from thermicon.notebooks.cli.main import app
 
 TWO_ICONS = """cue 1
@@ -73,6 +74,12 @@ def process() -> Cli:
         return Said(done.returncode, done.stdout, done.stderr)
 
     return Cli(run)
+
+
+@pytest.fixture(scope="session")
+def rig() -> Rig:
+    """The default rig."""
+    return Rig.load("thenar")
 
 
 @pytest.fixture

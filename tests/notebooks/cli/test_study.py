@@ -110,9 +110,9 @@ def test_a_session_beyond_its_dose_is_refused(tmp_path: Path, cli: Cli) -> None:
     ],
 )
 def test_files_that_are_there_are_kept(tmp_path: Path, cli: Cli, held: list[str], words: str) -> None:
-    (tmp_path / "out" / "data").mkdir(parents=True)
-    for name in held:
-        (tmp_path / "out" / name).write_text("mine", encoding="utf-8")
+    for path in (tmp_path / "out" / name for name in held):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("mine", encoding="utf-8")
     said = cli("study", write_study(tmp_path, QUICK), "-o", tmp_path / "out")
     assert (said.exit_code, words in " ".join(said.stderr.split())) == (1, True), said.stderr
     kept = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*")}

@@ -1,4 +1,4 @@
-"""The workbench without a browser: its handlers are given what the canvas sends, and what it answers is read."""
+"""The workbench without a browser: what its handlers answer to what the canvas sends, and its knobs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+from tests.builders import missing
+from tests.notebooks.workbench.openbench import SAID
 from thermicon.circuit import Rig
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.icons import CueErrors, load_library, parse
@@ -16,6 +18,7 @@ from thermicon.notebooks import Workbench
 from thermicon.notebooks.files.document import Document
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.document_bar import document_of
+from thermicon.notebooks.workbench.knobs import knobs_of, turned
 
 DIP = """cue 1
 
@@ -32,6 +35,8 @@ icon glow {
   return at 2 °C/s
 }
 """
+CONTACT, AREA = "contact.resistance_m2K_per_W", "contact.area_cm2"
+REST, LIMIT = "skin.rest_C", "driver.current_limit_A"
 MOST_MS = 30.0
 """CPU time of a frame in the kernel, whatever else the machine does."""
 Send = Callable[..., dict[str, Any]]
@@ -59,11 +64,6 @@ def send(bench: Workbench) -> Send:
         return dict(meta)
 
     return message
-
-
-def turned(bench: Workbench, key: str, value: float | str) -> dict[str, Any]:
-    bench.design_view.sliders[key].value = value
-    return dict(bench.design_view.canvas._newest[0])
 
 
 def test_what_is_typed_is_drawn_and_keeps_its_text(bench: Workbench, send: Send) -> None:
@@ -137,9 +137,9 @@ def test_a_message_that_makes_no_sense_is_a_note_and_the_page_goes_on(send: Send
 
 
 def test_an_impossible_value_is_told_and_reset_brings_all_back(bench: Workbench, send: Send) -> None:
-    turned(bench, "skin.rest_C", 30.0)
-    answer = turned(bench, "driver.current_limit_A", 0.1)
-    assert answer["notes"]
+    for key, value in ((REST, 30.0), (LIMIT, 0.1)):
+        bench.design_view.sliders[key].value = value
+    assert bench.design_view.canvas._newest[0]["notes"]
     assert send(type="text", text=DIP.replace("4 °C", "3 °C"))["icon"] == "dip"
     bench.design_view.reset.click()
     assert bench.rig.driver.current_max_A == 1.5
@@ -173,16 +173,12 @@ def test_every_view_is_a_figure(bench: Workbench, view: Any) -> None:
 
 
 def test_figures_of_what_cannot_be_say_why() -> None:
-    wrong = Workbench("cue 1; icon dip { cool by 4 at 2 K/s }")
+    wrong, late = Workbench("cue 1; icon dip { cool by 4 at 2 K/s }"), Workbench(DIP)
+    late.text = wrong.text
     assert "missing unit" in wrong.figure().get_suptitle()
-    with pytest.raises(CueErrors, match="missing unit"):
-        wrong.figure("set")
-    with pytest.raises(CueErrors, match="missing unit"):
-        wrong.figure("export")
-    late = Workbench(DIP)
-    late.text = "cue 1; icon dip { cool by 4 at 2 K/s }"
-    with pytest.raises(CueErrors, match="missing unit"):
-        late.figure("export")
+    for bench, view in ((wrong, "set"), (wrong, "export"), (late, "export")):
+        with pytest.raises(CueErrors, match="missing unit"):
+            bench.figure(view)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="there is no view 'sets'; there are design, set, export"):
         wrong.figure("sets")  # type: ignore[arg-type]
 
@@ -212,3 +208,49 @@ def test_without_a_kernel_it_is_text_and_a_picture(bench: Workbench) -> None:
     shown = bench._repr_mimebundle_()
     assert shown["text/plain"] == repr(bench) == "Workbench('dip' of 2 on thenar, green)"
     assert shown["image/png"][1:4] == b"PNG"
+
+
+def test_every_knob_says_what_it_changes_and_where_its_range_is_from(rig: Rig) -> None:
+    for knob in knobs_of(rig):
+        assert knob.what
+        assert knob.source
+        assert knob.low <= knob.value <= knob.high
+        assert knob.step > 0
+    assert [(knob.key, knob.low, knob.high) for knob in knobs_of(rig)] == [
+        (CONTACT, 0.5, 5.5), (AREA, 1.5, 15.0), (REST, 30.0, 36.0), (LIMIT, 0.1, 2.5)
+    ]  # fmt: skip
+    odd = rig.with_(**{AREA: 40, LIMIT: 15, REST: 28})
+    by_key = {knob.key: knob for knob in knobs_of(odd)}
+    assert (by_key[AREA].high, by_key[LIMIT].high, by_key[REST].low) == (40, 15, 28)
+
+
+def test_each_knob_changes_its_own_part(rig: Rig) -> None:
+    made, notes = turned(rig, {CONTACT: 2, AREA: 4, REST: 34, LIMIT: 1})
+    assert made.contact.resistance_m2K_per_W == pytest.approx(2 * rig.contact.resistance_m2K_per_W)
+    assert made.contact.area_m2 == pytest.approx(4e-4)
+    assert made.skin.rest_C == 34
+    assert (made.driver.current_min_A, made.driver.current_max_A) == (-1, 1)
+    assert made.skin.layers == rig.skin.layers
+    assert notes == ()
+
+
+@pytest.mark.parametrize(("turn", "words"), SAID["knobs"].items())
+def test_an_impossible_value_leaves_the_rig_as_it_was_and_says_so(turn: str, words: list[str], rig: Rig) -> None:
+    key, value = turn.split(" = ")
+    made, (note,) = turned(rig, {key: float(value)})
+    assert made == rig
+    assert missing(words, note) == []
+
+
+def test_of_several_values_only_the_impossible_one_is_left_out(rig: Rig) -> None:
+    made, notes = turned(rig, {REST: 34.0, LIMIT: 0.01, CONTACT: 2.0})
+    assert made.skin.rest_C == 34.0
+    assert made.contact.resistance_m2K_per_W == pytest.approx(1.08e-3)
+    assert made.driver.current_max_A == 1.5
+    assert len(notes) == 1
+
+
+def test_an_unusual_value_is_told(rig: Rig) -> None:
+    made, notes = turned(rig, {REST: 28.0})
+    assert made.skin.rest_C == 28.0
+    assert notes == ("rest temperature of 28 °C is outside the usual 30–36 °C",)
