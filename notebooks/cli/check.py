@@ -14,19 +14,17 @@ from thermicon.icons.number_text import number, span
 
 from ..files.outputs import check_output
 from ..messages import Missing, fail, note, usage
-from .options import MOST_ICONS, RigOptions, flag, opt, warn_of_site
+from .options import flag, opt
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon, IconSet
+    from thermicon.icons import IconSet
 
 NoFiles = Annotated[list[str] | None, typer.Argument(metavar="FILE", help="Cue files, or shipped sets.")]
 START_C = 32.0
-"""Initial temperature without a baseline or a rig: the resting temperature of the default rig."""
+"""Initial temperature without a baseline: the resting temperature of the default rig."""
 
 
 def check_command(
-    rig: RigOptions,
     files: NoFiles = None,
     fix: Annotated[
         bool, flag("--fix", "Format files in canonical layout, in place; comments, numbers and units stay.")
@@ -37,11 +35,10 @@ def check_command(
 ) -> None:
     """Check cue files and report every error in them, or one line per file when there is none.
 
-    With --rig, levels, baselines and (under display control) rates are also checked against what the rig can do.
-    simulate reports whether the rig reaches the target in time. With --fix, files without an error are formatted.
+    simulate reports whether a rig reaches the target in time. With --fix, files without an error are formatted.
     """
     if explain is not None:
-        if files or fix or rig.given:
+        if files or fix:
             raise usage("stands alone: leave out FILE and the other options", "--explain")
         explain_error(explain)
         return
@@ -49,7 +46,7 @@ def check_command(
         raise Missing("argument 'FILE...'")
     if fix:
         format_files(files)
-    check(files, rig.load() if rig.given else None)
+    check(files)
 
 
 def explain_error(code: str) -> None:
@@ -95,8 +92,8 @@ def canonical(data: bytes, file: str) -> bytes:
     return (text.replace("\n", "\r\n") if newline and first.endswith(b"\r") else text).encode()
 
 
-def check(files: Sequence[str], rig: Rig | None = None) -> None:
-    """Print one line per file, or every error of every file and exit with 1; with a rig, check its limits too."""
+def check(files: Sequence[str]) -> None:
+    """Print one line per file, or every error of every file and exit with 1."""
     from thermicon.icons import CueErrors, read_cue
 
     problems: list[str] = []
@@ -105,39 +102,20 @@ def check(files: Sequence[str], rig: Rig | None = None) -> None:
         try:
             icons = read_cue(file)
             # Families expand lazily, so an icon's own errors may show only here.
-            lines.append(f"{Path(file).name}: {summary(icons, START_C if rig is None else rig.skin.rest_C)}")
+            lines.append(f"{Path(file).name}: {summary(icons)}")
         except CueErrors as errors:
             problems.append(str(errors))
-            continue
-        except ValueError as error:  # a rest that the language has no levels for
-            problems.append(f"{file}: {error}")
-            continue
-        if rig is not None:
-            problems += against_rig(icons, rig, file)
     if problems:
         fail("\n\n".join(problems))
     for line in lines:
         typer.echo(line)
 
 
-def against_rig(icons: IconSet, rig: Rig, file: str) -> list[str]:
-    """One message for everything in this set that the rig cannot do; another site is only a warning on stderr."""
-    from thermicon.circuit.solver.static import check_static
-
-    warn_of_site(file, icons, rig)
-    count = len(icons)
-    chosen: Sequence[Icon] = icons.icons
-    if count > MOST_ICONS:
-        chosen = [chosen[place * count // MOST_ICONS] for place in range(MOST_ICONS)]
-        note(f"{file}: {MOST_ICONS:,} of its {count:,} icons, evenly spaced, were checked against the rig")
-    return [f"{file}: {message}" for icon in chosen for message in check_static(icon, rig)]
-
-
-def summary(icons: IconSet, start_C: float) -> str:
+def summary(icons: IconSet) -> str:
     """Summarise number, durations, levels and steepest slope of the icons, as in ``2 icons, 8–10 s, …``."""
     current = icons.context.control == "current"
     unit, digits = ("A", 2) if current else ("°C", 1)
-    found = icons.summary(0.0 if current else start_C)
+    found = icons.summary(0.0 if current else START_C)
     parts = [
         f"{len(icons):,} icon{'' if len(icons) == 1 else 's'}",
         span(found.shortest_s, found.longest_s, "s"),

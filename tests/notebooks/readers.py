@@ -93,7 +93,7 @@ KINDS = {
         "check a.cue",
     ),
     "cue in an editor": Kind(CUES, 1, "a.cue", lambda path: parse(Document.open(path).text, "a.cue")),
-    "rig": Kind(shipped("circuit", "rigs", ".toml"), 3, "a.toml", Rig.load, "check six-icons --rig a.toml"),
+    "rig": Kind(shipped("circuit", "rigs", ".toml"), 3, "a.toml", Rig.load, "simulate six-icons --rig a.toml"),
     "device": Kind(
         shipped("circuit", "devices", ".toml"), 3, "a.toml", read_device,
         "export six-icons --to csv -o out --device a.toml",

@@ -9,7 +9,6 @@ import pytest
 from thermicon.circuit import Drive, Rig, design, netlist, simulate, simulate_current, simulate_many
 from thermicon.circuit.rig.rigfile import RigError, read_table
 from thermicon.circuit.safety.verdict import summarise
-from thermicon.circuit.solver.static import check_static
 from thermicon.circuit.solver.trace import write_trace
 from thermicon.icons import Icon, load_library, parse
 
@@ -107,15 +106,6 @@ def test_a_current_is_refused_in_words() -> None:
     words = r"rig tcs2 is a thermode: it takes temperatures, and ramp prescribes a current; use control display"
     with pytest.raises(RigError, match=words):
         simulate(icon, RIG)
-    assert "prescribes a current" in check_static(icon, RIG)[0]
-
-
-def test_static_checks_know_range_and_ramp_rate() -> None:
-    assert check_static(STEP, RIG) == ()
-    (cold,) = check_static(icon_of("cool by 35 °C at 1 °C/s"), RIG)
-    assert "-3 °C on the display needs a display of -3.0 °C, outside the 0.1 … 60 °C of thermode tcs2" in cold
-    fast, _ = check_static(STEP, RIG.with_(**{"thermode.slew_K_per_s": 2.0}))
-    assert "3 °C/s of cooling at 0 s is more than the 2 °C/s of thermode tcs2" in fast
 
 
 def test_a_baseline_out_of_range_is_refused() -> None:

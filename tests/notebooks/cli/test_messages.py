@@ -56,8 +56,8 @@ def test_a_command_line_alone_shows_how_it_is_used(cli: Cli) -> None:
     ("line", "code", "words"),
     [
         (("rank", "six-icons", "--seed", "9" * 5000), 2, "is not a whole number"),
-        (("check", "six-icons", "--set", "driver.update_Hz=" + "9" * 5000), 1, "must be a number in Hz"),
-        (("check", "six-icons", "--set", "contact.area_cm2=" + "[" * 3000), 1, "must be a number in cm²"),
+        (("simulate", "six-icons", "--set", "driver.update_Hz=" + "9" * 5000), 1, "must be a number in Hz"),
+        (("simulate", "six-icons", "--set", "contact.area_cm2=" + "[" * 3000), 1, "must be a number in cm²"),
     ],
     ids=["seed", "digits", "nested"],
 )

@@ -49,7 +49,7 @@ def device(path: Path, **given: object) -> Device:
     "words",
     [
         ("check", "{}"),
-        ("check", "six-icons", "--rig", "{}"),
+        ("simulate", "six-icons", "--rig", "{}"),
         ("simulate", "--current", "{}"),
         ("export", "six-icons", "--to", "csv", "-o", "out", "--device", "{}"),
         ("convert", "{}", "-o", "out.json"),
