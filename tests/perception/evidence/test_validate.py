@@ -65,7 +65,7 @@ def test_what_is_made_of_both_channels(report: ValidationReport) -> None:
     assert ratio.draws == pytest.approx(np.divide(cold.draws, warm.draws))
     assert (cold.baseline, warm.baseline, ratio.baseline) == (0.11, 0.20, pytest.approx(0.55))
     assert report.sections[1].lines[0].nearer_to_published == "model"
-    assert sum(report.nearer().values()) == 25
+    assert sum(report.nearer().values()) == 23
     events = report.sections[7].lines[0].judged[0].predicted
     raw = report.evidence.find(VARIABLES[0], "step and return near threshold", "report of the return", "cold")
     assert events.value == pytest.approx(1.0 + (raw.value or 0.0))
