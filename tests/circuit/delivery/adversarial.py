@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from tests.circuit.delivery.one_drive import Judge, prepare
+from tests.circuit.delivery.one_drive import Judge, icon_of, prepare
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.prepare import Prepared, prepare_set
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.icons import CueErrors, Icon, parse
+from thermicon.icons import CueErrors, Icon
 
 BASES = ("thenar", "shani2021", "fingertip", "forearm", "hand-dorsum")
 WAYS = (
@@ -103,7 +103,6 @@ def some_device(rng: np.random.Generator, name: str, folder: Path) -> Device:
         f'codes = "two\'s complement"\nstreams = true\nplayed = false\nnote = "made up"\n'
         + "".join(
             f'[[record]]\nquantity = "{what}"\nunit = "{unit}"\n{value}\nsource = "made up for a test"\n'
-            f'confidence = "low"\n'
             for what, unit, value in (
                 ("output range", "V", "low = -10.0\nhigh = 10.0"),
                 ("resolution", "bit", f"value = {bits}"),
@@ -122,9 +121,9 @@ def hold_s(rng: np.random.Generator) -> float:
 def some_cue(rng: np.random.Generator, device: str, name: str = "a") -> Icon:
     current = device not in LOOPS and rng.random() < 0.5
     if current:
-        return parse(f"cue 1\nset s {{ control current }}\nicon {name} {{ {currents(rng)} }}")[name]
+        return icon_of(currents(rng), "current", name=name)
     control = "display" if rng.random() < 0.6 else "skin"
-    base = f"{rng.uniform(29, 35):.1f} °C"
+    base = f"{rng.uniform(29, 35):.1f}"
     way = "cool" if rng.random() < 0.5 else "warm"
     size = rng.uniform(0.5, 12) if way == "cool" else rng.uniform(0.3, 8)
     rate = float(np.exp(rng.uniform(np.log(0.5), np.log(30))))
@@ -144,7 +143,7 @@ def some_cue(rng: np.random.Generator, device: str, name: str = "a") -> Icon:
         other = "warm" if way == "cool" else "cool"
         shape = f"step {way} by {size / 2:.2f} °C; hold for {hold_s(rng):.3g} s; "
         shape += f"{other} by {size / 3:.2f} °C at 2 °C/s; hold for {rng.uniform(0.1, 2):.2f} s"
-    return parse(f"cue 1\nset s {{ control {control}\n baseline {base} }}\nicon {name} {{ {shape} }}")[name]
+    return icon_of(shape, control, base, name)
 
 
 def currents(rng: np.random.Generator) -> str:

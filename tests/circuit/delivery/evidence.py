@@ -1,14 +1,8 @@
-"""A part of the evidence: drives by chance judged by the gate, and what is written replayed from its files.
-
-``python -m tests.circuit.delivery.evidence PART ...`` runs parts by themselves and writes what was counted.
-"""
+"""A part of the evidence: drives by chance judged by the gate, and what is written replayed from its files."""
 
 from __future__ import annotations
 
-import json
-import sys
 import tempfile
-import time
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -29,8 +23,6 @@ from thermicon.circuit.delivery.prepare import Prepared
 PER_PART = 100
 LOOKED_AT = 6
 """One in so many refused drives is replayed as well, to see how many were refused though they are safe."""
-FAR = 0.1
-"""A refused drive is safe by far when it keeps this from every limit: K, or a hundredth of a rate or dose."""
 LAGS_S = (0.12, 0.21, 0.32)
 
 
@@ -41,16 +33,12 @@ class Told:
     counts: Counter[str] = field(default_factory=Counter)
     unsafe: list[str] = field(default_factory=list)
     refused_margins: list[float] = field(default_factory=list)
-    refused_though_safe: list[str] = field(default_factory=list)
-    seconds: Counter[str] = field(default_factory=Counter)
 
     def add(self, other: Told) -> None:
         """Add another part."""
         self.counts += other.counts
-        self.seconds += other.seconds
         self.unsafe += other.unsafe
         self.refused_margins += other.refused_margins
-        self.refused_though_safe += other.refused_though_safe
 
 
 def replayed(files: Mapping[str, bytes], stems: list[str], rng: np.random.Generator) -> Worst:
@@ -102,7 +90,6 @@ def run_part(part: int, count: int = PER_PART, gate: Judge | None = None, look: 
     with tempfile.TemporaryDirectory() as folder:
         while found.counts["judged"] < count:
             rng = np.random.default_rng([21, part, number])
-            begun = time.process_time()
             case = some_case(rng, number, Path(folder), gate)
             number += 1
             if case is None:
@@ -111,7 +98,6 @@ def run_part(part: int, count: int = PER_PART, gate: Judge | None = None, look: 
             found.counts["judged"] += len(case.ready)
             form, device = load_format(case.form), case.ready[0].delivery.device
             kind = f"{device.name.split('-')[0]} {case.form}"
-            found.seconds["gate " + kind] += round(time.process_time() - begun, 3)
             found.counts["gated " + kind] += 1
             _follow(case, form, found, rng, part, look, kind)
     return found
@@ -119,7 +105,6 @@ def run_part(part: int, count: int = PER_PART, gate: Judge | None = None, look: 
 
 def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, part: int, look: int, kind: str) -> None:
     safe = [one for one in case.ready if all(each.forcible for each in one.refusals)]
-    begun = time.process_time()
     for one in case.ready:
         found.counts[one.verdict.colour] += 1
         if one not in safe:
@@ -130,10 +115,7 @@ def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, par
         if not safe:
             if rng.random() < 1 / look:
                 ready = [replace(one, refusals=()) for one in case.ready]
-                margin = _replay(ready, form, rng).margin
-                found.refused_margins.append(margin)
-                if margin > FAR:
-                    found.refused_though_safe.append(f"{margin:.2f}: {case!r}: {case.ready[0].verdict.reason}")
+                found.refused_margins.append(_replay(ready, form, rng).margin)
             return
         worst = _replay(safe, form, rng)
     except FormatError:
@@ -141,7 +123,6 @@ def _follow(case: Case, form: Format, found: Told, rng: np.random.Generator, par
         return
     found.counts["written"] += len(safe)
     found.counts["written " + kind] += len(safe)
-    found.seconds["replay " + kind] += round(time.process_time() - begun, 3)
     if worst.unsafe:
         where = {rule: worst.world[rule] for rule in worst.unsafe}
         found.unsafe.append(f"part {part}: {worst.unsafe} in {where}: {case!r}; {case.ready[0].verdict!r}")
@@ -151,19 +132,3 @@ def _replay(ready: list[Prepared], form: Format, rng: np.random.Generator) -> Wo
     files = pack(ready, form)
     stems = [form.stem(one.delivery.icon.name) for one in ready]
     return replayed(files, stems, rng)
-
-
-def main(parts: list[int], count: int) -> None:
-    """Run parts; a line of JSON for each."""
-    for part in parts:
-        begun = time.perf_counter()
-        found = run_part(part, count)
-        print(json.dumps({
-            "part": part, "seconds": round(time.perf_counter() - begun), "counts": found.counts, "unsafe": found.unsafe,
-            "refused_though_safe": found.refused_though_safe,
-            "refused_margins": [round(one, 3) for one in found.refused_margins], "cpu_s": found.seconds,
-        }), flush=True)  # fmt: skip
-
-
-if __name__ == "__main__":
-    main([int(word) for word in sys.argv[2:]], int(sys.argv[1]))

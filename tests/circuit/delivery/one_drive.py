@@ -1,17 +1,31 @@
-"""One icon prepared or judged by itself, by the gate or by what a test puts in its place."""
+"""One icon, prepared or judged by itself, by the gate or by what a test puts in its place; and changed devices."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from thermicon.circuit import Device, Gate, Rig
 from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import Format
 from thermicon.circuit.delivery.prepare import Prepared, prepare_set
 from thermicon.circuit.delivery.worstcase import worst_cases
-from thermicon.icons import Icon
+from thermicon.circuit.records import Record
+from thermicon.icons import Icon, parse
 
 Judge = Callable[[DeliveredDrive], Gate]
+
+
+def icon_of(shape: str, control: str = "display", baseline: str | float = 32, name: str = "a") -> Icon:
+    """An icon of this shape, in words of a cue file."""
+    rest = "" if control == "current" else f"\n baseline {baseline} °C"
+    return parse(f"cue 1\nset s {{ control {control}{rest} }}\nicon {name} {{ {shape} }}\n")[name]
+
+
+def changed(device: Device, quantity: str, unit: str, **numbers: float) -> Device:
+    """The device with one record changed, or added."""
+    kept = tuple(record for record in device.records if record.quantity != quantity)
+    return replace(device, records=(*kept, Record(quantity, unit, "test", **numbers)))
 
 
 def prepare(

@@ -15,14 +15,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import icon_of, prepare
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import FormatError, format_names, load_format
 from thermicon.circuit.rig.rig import rig_names
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.icons import Icon, parse
+from thermicon.icons import Icon
 
 TABLE = Path(__file__).with_name("everyday.csv")
 COMMENT, HEAD, *ROWS = TABLE.read_text("utf-8").splitlines()
@@ -37,12 +37,9 @@ QUICK = tuple(pytest.param(*pair, marks=() if pair[1] == "qst-tcs2" else pytest.
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One cue on one rig and device: its place in the tables, `yes` or the first cause, that in words, the forms."""
+    """One cue on one rig and device: its column in the table, `yes` or the first cause, that in words, the forms."""
 
-    rig: str
-    device: str
     column: str
-    cue: str
     mark: str
     why: str = ""
     forms: tuple[tuple[str, str], ...] = ()
@@ -50,21 +47,18 @@ class Case:
 
 def step_of(control: str, change: int) -> Icon:
     verb = "cool" if change < 0 else "warm"
-    return parse(
-        f"cue 1\nset s {{ control {control}\n baseline 32 °C }}\n"
-        f"icon step {{ {verb} by {abs(change)} °C at 3 °C/s\n hold for 4 s\n return at 3 °C/s }}\n"
-    )["step"]
+    return icon_of(f"{verb} by {abs(change)} °C at 3 °C/s; hold for 4 s; return at 3 °C/s", control, name="step")
 
 
-def case_of(icon: Icon, rig: Rig, device: Device, column: str, cue: str, forms: Sequence[str]) -> Case:
+def case_of(icon: Icon, rig: Rig, device: Device, column: str, forms: Sequence[str]) -> Case:
     plain = next(name for name in format_names() if device.driven_by in load_format(name).takes)
     try:
         ready = prepare(icon, rig, device, load_format(plain))
     except (DeviceError, RigError) as problem:
-        return Case(rig.name, device.name, column, cue, "cannot play", str(problem))
+        return Case(column, "cannot play", str(problem))
     if ready.refusals:
         first = ready.refusals[0]
-        return Case(rig.name, device.name, column, cue, MARKS[first.kind], str(first))
+        return Case(column, MARKS[first.kind], str(first))
     written = []
     for name in forms:
         form = load_format(name)
@@ -75,17 +69,13 @@ def case_of(icon: Icon, rig: Rig, device: Device, column: str, cue: str, forms: 
             written.append((name, ""))
         except FormatError as problem:
             written.append((name, str(problem)))
-    return Case(rig.name, device.name, column, cue, "yes", forms=tuple(written))
+    return Case(column, "yes", forms=tuple(written))
 
 
 @cache
 def steps_on(rig_name: str, device_name: str) -> list[Case]:
     rig, device = Rig.load(rig_name), Device.load(device_name)
-    return [case_of(step_of(*step), rig, device, column_of(*step), column_of(*step), format_names()) for step in STEPS]
-
-
-def everything_on(pair: tuple[str, str]) -> list[Case]:
-    return steps_on(*pair)
+    return [case_of(step_of(*step), rig, device, column_of(*step), format_names()) for step in STEPS]
 
 
 def column_of(control: str, change: int) -> str:
@@ -114,8 +104,8 @@ def test_every_everyday_step_is_exported_on_the_default_rig(rig: str, device: st
 
 
 def test_a_device_that_cannot_play_is_a_cause_like_any_other() -> None:
-    warm = parse("cue 1\nset s { control display\n baseline 42 °C }\nicon step { warm by 1 °C at 1 °C/s }\n")["step"]
-    case = case_of(warm, Rig.load("thenar"), Device.load("qst-tcs2"), "", "", ())
+    warm = icon_of("warm by 1 °C at 1 °C/s", baseline=42)
+    case = case_of(warm, Rig.load("thenar"), Device.load("qst-tcs2"), "", ())
     assert (case.mark, case.why[:46]) == ("cannot play", "qst-tcs2: a baseline of 42 °C is beyond 20 … 4")
 
 
@@ -128,7 +118,10 @@ def test_the_table_has_every_rig_with_every_device() -> None:
 def everything() -> list[str]:
     with ProcessPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
         pairs = list(product(rig_names(), DEVICES))
-        return [row_of(*pair, cases) for pair, cases in zip(pairs, pool.map(everything_on, pairs), strict=True)]
+        return [
+            row_of(*pair, cases)
+            for pair, cases in zip(pairs, pool.map(steps_on, *zip(*pairs, strict=True)), strict=True)
+        ]
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Nothing unsafe is written: adversarial drives judged by the gate, and their files replayed by an independent circuit.
 
 The ordinary suite has four; `-m slow` has a dozen more, and judges 10,000 in parts of 100, two at a time, or as many as
-THERMICON_EVIDENCE says. `python -m tests.circuit.delivery.evidence 100 PART ...` runs parts alone.
+THERMICON_EVIDENCE says.
 """
 
 from __future__ import annotations

@@ -5,52 +5,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.circuit.delivery.one_drive import prepare, worst_case
+from tests.builders import messages
+from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from thermicon.circuit import Device, Drive, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.prepare import Prepared
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
-from thermicon.icons import Icon, parse
+from thermicon.icons import Icon
 
 THENAR = Rig.load("thenar")
 FEWER = THENAR.with_(
     **{f"uncertainty.{name}_relative": 0 for name in ("seebeck", "conductance", "plates", "contact_resistance")},
     **{"uncertainty.reason": "a test in fewer corners"},
 )
-DISPLAY = "cue 1\nset s { control display\n baseline 32 °C }\n"
-AMP = """format = 1
-name = "amp"
-title = "current source"
-driven_by = "amperes"
-[[record]]
-quantity = "output range"
-unit = "A"
-low = -6
-high = 6
-source = "a made-up amplifier"
-[[record]]
-quantity = "resolution"
-unit = "bit"
-value = 16
-source = "a made-up amplifier"
-[[record]]
-quantity = "update rate"
-unit = "Hz"
-high = 1000
-source = "a made-up amplifier"
-"""
-TRAIN = "repeat 10 { pulse by 3 A for 40 ms; pulse by -3 A for 40 ms; hold for 20 ms }; hold for 2 s }"
-
-
-def icon_of(text: str, head: str = DISPLAY) -> Icon:
-    (icon,) = parse(head + text)
-    return icon
+AMP = messages(__file__)["device"].replace("2.0", "6.0").replace("value = 12", "value = 16").replace("500", "1000")
+"""A strong source of current."""
+TRAIN = "repeat 10 { pulse by 3 A for 40 ms; pulse by -3 A for 40 ms; hold for 20 ms }; hold for 2 s"
 
 
 def train(hold_s: float) -> Icon:
-    return icon_of(f"icon x {{ hold for {hold_s:g} s; {TRAIN}", "cue 1\nset s { control current }\n")
+    return icon_of(f"hold for {hold_s:g} s; {TRAIN}", "current")
 
 
 @pytest.fixture
@@ -64,13 +40,13 @@ def strong() -> Rig:
     return FEWER.with_(**{"driver.current_limit_A": 6.0, "driver.update_Hz": 1000, "driver.voltage_limit_V": 60.0})
 
 
-def ready(text: str, rig: Rig, device: str = "dac-16") -> Prepared:
-    return prepare(icon_of(text), rig, Device.load(device), load_format("csv"), pause_s=120.0)
+def ready(shape: str, rig: Rig) -> Prepared:
+    return prepare(icon_of(shape), rig, Device.load("dac-16"), load_format("csv"), pause_s=120.0)
 
 
 def test_a_step_back_at_the_very_end_is_judged_with_the_current_it_leaves_on() -> None:
-    delivery = deliver(icon_of("icon down { warm by 5 °C at 2 °C/s; hold for 1 s; step to 32 °C }"), FEWER,
-                       Device.load("dac-16"))  # fmt: skip
+    icon = icon_of("warm by 5 °C at 2 °C/s; hold for 1 s; step to 32 °C")
+    delivery = deliver(icon, FEWER, Device.load("dac-16"))
     current = delivery.delivered.current_A
     assert current[-1] == pytest.approx(current[0], abs=1e-3), "the drive ends with its rest"
     found = worst_case(delivery, 120.0)
@@ -80,20 +56,20 @@ def test_a_step_back_at_the_very_end_is_judged_with_the_current_it_leaves_on() -
 @pytest.mark.parametrize("kind", ["cool by 26 °C", "warm by 12 °C"])
 def test_pulses_between_slow_updates_are_missed_and_said_to_be(kind: str) -> None:
     """At one update a second every pulse falls between two: nothing is delivered, and the cue is not reached."""
-    text = f"icon a {{ rest for 250 ms; repeat 20 {{ pulse {kind} for 500 ms; rest for 500 ms }} }}"
-    one = ready(text, FEWER.with_(**{"driver.update_Hz": 1.0}))
+    shape = f"rest for 250 ms; repeat 20 {{ pulse {kind} for 500 ms; rest for 500 ms }}"
+    one = ready(shape, FEWER.with_(**{"driver.update_Hz": 1.0}))
     assert [refusal.kind for refusal in one.refusals] == ["unreachable"]
     assert "its step at 0.25 s does not arrive in time" in str(one.refusals[0])
 
 
 @pytest.mark.slow
 def test_what_is_unsafe_on_a_weak_driver_is_not_forced() -> None:
-    one = ready("icon x { cool to 8 °C at 2 °C/s; hold for 60 s; return at 2 °C/s }", FEWER)
+    one = ready("cool to 8 °C at 2 °C/s; hold for 60 s; return at 2 °C/s", FEWER)
     unsafe = [refusal for refusal in one.refusals if not refusal.forcible]
     assert [refusal.kind for refusal in unsafe] == ["unsafe"]
     assert "NOT SAFE: " in str(unsafe[0])
     assert "below the hard limit of 15 °C" in str(unsafe[0])
-    with pytest.raises(FormatError, match="x: NOT SAFE: "):
+    with pytest.raises(FormatError, match="a: NOT SAFE: "):
         pack([one], load_format("csv"))
 
 
@@ -117,8 +93,8 @@ def test_a_train_after_five_minutes_is_seen_as_one_after_ten_seconds(amp: Device
 @pytest.mark.parametrize("length_s", [1.0, 290.0, 310.0, 2000.0])
 def test_rows_are_never_coarser_than_the_updates_or_ten_milliseconds(length_s: float) -> None:
     slow = Drive([0, 1, length_s - 0.5, length_s], [0.08, 0.1, 0.1, 0.08]) if length_s > 2 else None
-    fast = Drive([0, length_s - 0.011, length_s - 0.009, length_s - 0.005, length_s], [0.08, 1.0, 0.08, 1.0, 0.08],
-                 held=True)  # fmt: skip
+    ends = (0, length_s - 0.011, length_s - 0.009, length_s - 0.005, length_s)
+    fast = Drive(ends, [0.08, 1.0, 0.08, 1.0, 0.08], held=True)
     few = Ensemble.of(THENAR).only([0])
     for drive, most in ((slow, 0.01), (fast, 0.002)):
         if drive is None:

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from tests.circuit.delivery.followed import Follower
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import icon_of, prepare
 from tests.circuit.delivery.replay import RATE_K_PER_S, Worst
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
-from thermicon.icons import parse
 
 SMALL = Rig.load("thenar").with_(**{
     "skin.elements": [1] * 5, "driver.update_Hz": 20.0, "module.hot_plate_J_per_K": 1.5,
@@ -47,7 +46,7 @@ def test_the_display_is_at_its_set_point_at_the_end_of_an_update() -> None:
 
 def test_a_relay_between_the_cut_offs_moves_skin_as_fast_as_the_gate_allows_any_loop() -> None:
     """At the demanded limits, in the independent circuit; without them, as its file says, much faster."""
-    icon = parse("cue 1\nset s { control display\n baseline 32 °C }\nicon a { warm by 2 °C at 1 °C/s }")["a"]
+    icon = icon_of("warm by 2 °C at 1 °C/s")
     rig = SMALL.with_(**{"driver.current_limit_A": 1.5, "driver.voltage_limit_V": 60.0})
     verdict = prepare(icon, rig, Device.load("closed-loop-controller"), load_format("setpoint-csv")).verdict
     assert verdict.colour != "red", verdict.reason

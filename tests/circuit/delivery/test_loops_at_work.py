@@ -16,11 +16,11 @@ import pytest
 from tests.circuit.delivery.adversarial import BASES, between
 from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
 from tests.circuit.delivery.loops_at_work import Controllers, at_work
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import icon_of, prepare
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.icons import Icon, load_library, parse
+from thermicon.icons import Icon, load_library
 
 EXPORTS = min(200, int(os.environ.get("THERMICON_EVIDENCE", "200")))
 SETS = ("six-icons", "wave-shapes", "pulse-sequences")
@@ -41,8 +41,7 @@ def some_icon(rng: np.random.Generator) -> Icon:
     elif kind < 0.7:
         shape += f"; return at {between(rng, 0.5, 4)} °C/s"
     control = "display" if rng.random() < 0.7 else "skin"
-    text = f"cue 1\nset s {{ control {control}\n baseline {rng.uniform(30, 34):.1f} °C }}\nicon a {{ {shape} }}"
-    return parse(text)["a"]
+    return icon_of(shape, control, f"{rng.uniform(30, 34):.1f}")
 
 
 def some_export(number: int, quick: bool = False) -> tuple[str, list[str], int]:
@@ -86,9 +85,9 @@ def test_a_few_controllers_stay_inside_every_limit() -> None:
 def test_beyond_the_demanded_current_the_same_controllers_pass_a_limit() -> None:
     form = load_format("setpoint-csv")
     rig = Rig.load("thenar").with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5})
-    icon = parse("cue 1\nset s { control display }\nicon w { warm by 6 °C at 2 °C/s; hold for 1 s }")["w"]
+    icon = icon_of("warm by 6 °C at 2 °C/s; hold for 1 s")
     files = pack([prepare(icon, rig, Device.load("closed-loop-controller"), form)], form)
-    told, course = sidecar_in(files, "w"), read_file(files, "w")
+    told, course = sidecar_in(files, "a"), read_file(files, "a")
     assert isinstance(course, Course)
     demands: dict[str, Any] = told["hardware_must_prevent"]
     rng = np.random.default_rng(1)

@@ -2,17 +2,14 @@
 
 import pytest
 
+from tests.circuit.delivery.one_drive import icon_of
 from thermicon.circuit import Rig, nearest_reachable, simulate
 from thermicon.circuit.delivery.nearest import changed
-from thermicon.icons import load_library, parse
+from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
 WEAK = THENAR.with_(**{"driver.current_limit_A": 1.0})
 STEP = load_library("cooling-step-skin").icons[0]
-
-
-def test_a_reached_cue_has_none() -> None:
-    assert nearest_reachable(STEP, THENAR) is None
 
 
 def test_the_nearest_is_reached_and_a_little_more_is_not() -> None:
@@ -24,8 +21,7 @@ def test_the_nearest_is_reached_and_a_little_more_is_not() -> None:
 
 
 def test_changes_keep_their_durations_and_levels() -> None:
-    text = "cue 1\nicon x { repeat 2 { cool to 28 °C at 2 °C/s; hold for 1 s; return over 3 s } }"
-    icon = parse(text).icons[0]
+    icon = icon_of("repeat 2 { cool to 28 °C at 2 °C/s; hold for 1 s; return over 3 s }")
     smaller = changed(icon, 32.0, smaller=0.5).corners(32.0)
     assert smaller.time_s == icon.corners(32.0).time_s
     assert smaller.value == pytest.approx([32, 30, 30, 32, 30, 30, 32])
@@ -34,12 +30,10 @@ def test_changes_keep_their_durations_and_levels() -> None:
     assert slower.value == icon.corners(32.0).value
 
 
-def test_nothing_is_reached_where_the_baseline_is_not() -> None:
+def test_what_is_reached_has_none_nor_what_cannot_begin_nor_a_current() -> None:
+    assert nearest_reachable(STEP, THENAR) is None
     assert nearest_reachable(STEP, THENAR.with_(**{"driver.current_limit_A": 0.01})) is None
-
-
-def test_a_current_is_not_changed() -> None:
-    icon = parse("cue 1\nset s { control current }\nicon pump { to 3 A at 1 A/s; return at 1 A/s }").icons[0]
+    icon = icon_of("to 3 A at 1 A/s; return at 1 A/s", "current")
     assert not simulate(icon, THENAR).reachable
     assert nearest_reachable(icon, THENAR) is None
 
@@ -53,8 +47,7 @@ def test_a_current_is_not_changed() -> None:
     ],
 )
 def test_the_number_as_printed_is_reached(body: str, control: str, changes: dict[str, float]) -> None:
-    rig = THENAR.with_(**changes)
-    icon = parse(f"cue 1\nset s {{ control {control} }}\nicon x {{ {body} }}").icons[0]
+    rig, icon = THENAR.with_(**changes), icon_of(body, control)
     nearest = nearest_reachable(icon, rig)
     printed = float(f"{nearest.smaller:.3g}")
     assert printed == pytest.approx(nearest.smaller, rel=1e-12)

@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import changed, icon_of, prepare
 from tests.circuit.verdicts import GreenVerdict
-from thermicon.circuit import Device, Rig, simulate_current
+from thermicon.circuit import Device, Drive, Rig, simulate_current
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.circuit.delivery.worstcase import open_loop_spread
-from thermicon.circuit.records import Record
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of
-from thermicon.icons import load_library, parse
+from thermicon.icons import load_library
 
 RIG = Rig.load("thenar")
 LOOP = Device.load("closed-loop-controller")
@@ -29,10 +27,7 @@ STEP = load_library("six-icons")["cooling-step"]
 SKIN = load_library("cooling-step-skin").icons[0]
 
 
-def with_records(*records: Record) -> Device:
-    names = {record.quantity for record in records}
-    kept = tuple(record for record in LOOP.records if record.quantity not in names)
-    return replace(LOOP, records=(*kept, *records))
+VOLTS = changed(LOOP, "set-point gain", "V/K", value=0.1)
 
 
 class TestDeliveredDrive:
@@ -73,16 +68,14 @@ class TestDeliveredDrive:
         assert 0.1 < np.abs(late).max() < 1.5
 
     def test_a_slower_controller_gets_every_nth_set_point(self) -> None:
-        slow = with_records(Record("update rate", "Hz", "test", value=10.0))
-        found = deliver(STEP, RIG, slow)
+        found = deliver(STEP, RIG, changed(LOOP, "update rate", "Hz", value=10.0))
         assert (found.rate_Hz, found.requested_Hz, found.lead_s) == (10.0, 100.0, 0.1)
         assert found.deviation.places[1].rms_K < 0.1
 
     def test_what_it_cannot_be_told(self) -> None:
-        icon = parse("cue 1\nset a { control current }\nicon ramp { to 0.6 A at 1 A/s\n return at 1 A/s }\n")["ramp"]
         with pytest.raises(DeviceError, match=r"controller takes temperatures, and ramp prescribes a current"):
-            deliver(icon, RIG, LOOP)
-        narrow = with_records(Record("set-point range", "°C", "test", low=28.0, high=40.0))
+            deliver(icon_of("to 0.6 A at 1 A/s; return at 1 A/s", "current", name="ramp"), RIG, LOOP)
+        narrow = changed(LOOP, "set-point range", "°C", low=28.0, high=40.0)
         with pytest.raises(DeviceError, match=r"a set-point of 26 °C is beyond 28 … 40 °C; change the icon"):
             deliver(STEP, RIG, narrow)
         with pytest.raises(RigError, match="rig tcs2 is a thermode: it has no driver"):
@@ -102,10 +95,7 @@ class TestFiles:
         assert rows[-1]["event"].endswith("end")
 
     def test_a_gain_puts_them_out_as_a_voltage(self) -> None:
-        device = with_records(
-            Record("set-point gain", "V/K", "test", value=0.1), Record("set-point offset", "V", "test", value=-2.0)
-        )
-        found = deliver(STEP, RIG, device)
+        found = deliver(STEP, RIG, changed(VOLTS, "set-point offset", "V", value=-2.0))
         rows = list(csv.DictReader(io.StringIO(load_format("setpoint-csv").write(found).decode())))
         for row in rows:
             assert float(row["command_V"]) == pytest.approx(0.1 * float(row["display_C"]) - 2.0, abs=1e-6)
@@ -113,8 +103,7 @@ class TestFiles:
     def test_tdms_has_a_channel_of_temperatures(self, tmp_path: Path) -> None:
         from nptdms import TdmsFile
 
-        device = with_records(Record("set-point gain", "V/K", "test", value=0.1))
-        found = deliver(STEP, RIG, device)
+        found = deliver(STEP, RIG, VOLTS)
         (tmp_path / "a.tdms").write_bytes(load_format("tdms").write(found))
         group = TdmsFile.read(tmp_path / "a.tdms")["thermicon"]
         assert group["display_C"][:] == pytest.approx(found.played.command)
@@ -131,10 +120,8 @@ class TestSpread:
         spread = open_loop_spread(found)
         rests, steps = [], []
         for corner in corners_of(RIG):
-            scaled = type(found.delivered)(
-                found.delivered.time_s, found.delivered.current_A * (1.0 + corner.gain_relative), held=True
-            )
-            display = simulate_current(scaled, corner.rig).display_C
+            amperes = found.delivered.current_A * (1.0 + corner.gain_relative)
+            display = simulate_current(Drive(found.delivered.time_s, amperes, held=True), corner.rig).display_C
             rests.append(display[0])
             steps.append((display - display[0]).min())
         assert spread.baseline_C == pytest.approx((min(rests), max(rests)), abs=1e-6)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.circuit.delivery.one_drive import prepare, worst_case
+from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
 from thermicon.circuit.delivery.controlled import samples_of
 from thermicon.circuit.delivery.deliver import deliver
@@ -28,7 +28,7 @@ from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.plant import Single
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.circuit.safety.words import more_and_cure
-from thermicon.icons import load_library, parse
+from thermicon.icons import load_library
 
 RIG = Rig.load("thenar")
 SIX = load_library("six-icons")
@@ -60,17 +60,11 @@ class TestWorstCase:
         corners = [replace(corners_of(RIG)[k], gain_relative=0.0) for k in (0, 5, 40)]
         time_s = np.arange(41) * 0.1
         amps = [0.08 + 0.3 * (k + 1) * np.sin(np.pi * time_s / 4.0) for k in range(3)]
-        together = checks_of_lanes(
-            Ensemble.on(RIG, tuple(corners), None), LaneDrives(time_s, np.array(amps)), RIG.limits
-        )
-        each = [
-            Single.of(
-                CurrentPlant.of(Ensemble.on(RIG, (corner,), None)),
-                CurrentPlay(Drive(time_s, own, held=True), float(own[0])),
-                RIG.limits,
-            ).checks
-            for corner, own in zip(corners, amps, strict=True)
-        ]
+        lanes = LaneDrives(time_s, np.array(amps))
+        together = checks_of_lanes(Ensemble.on(RIG, tuple(corners), None), lanes, RIG.limits)
+        plants = (CurrentPlant.of(Ensemble.on(RIG, (corner,), None)) for corner in corners)
+        plays = (CurrentPlay(Drive(time_s, own, held=True), float(own[0])) for own in amps)
+        each = [Single.of(plant, play, RIG.limits).checks for plant, play in zip(plants, plays, strict=True)]
         for one, other in zip(together, worst_of(each), strict=True):
             assert one.value == pytest.approx(other.value, rel=1e-9)
             assert replace(one, value=0.0) == replace(other, value=0.0)
@@ -89,21 +83,15 @@ class TestWorstCase:
         assert coldest.scenario.startswith("contact −30 %")
 
     def test_a_thermode_is_stronger_than_the_rig(self) -> None:
-        text = (
-            "cue 1\nset s { control display\n baseline 32 °C }\n"
-            "icon a { cool by 8 °C at 30 °C/s\n hold for 3 s\n return at 30 °C/s }\n"
-        )
-        found = deliver(parse(text)["a"], RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
+        icon = icon_of("cool by 8 °C at 30 °C/s; hold for 3 s; return at 30 °C/s")
+        found = deliver(icon, RIG.with_(**{"driver.current_limit_A": 0.4}), Device.load("qst-tcs2"))
         assert judge_safety(found.trace).colour == "red", "the thermode follows its set-points, whatever the rig can"
-        assert worst_case(found).reason is not None
         assert str(worst_case(found).reason).startswith("rate of skin temperature reaches ")
 
     def test_a_set_point_that_the_module_cannot_reach_is_judged_all_the_same(self) -> None:
-        text = (
-            "cue 1\nset s { control display\n baseline 32 °C }\nicon a { cool by 29 °C at 2 °C/s\n return at 2 °C/s }\n"
-        )
         rig = RIG.with_(**{"module.seebeck_V_per_K": 0.026})
-        found = worst_case(deliver(parse(text)["a"], rig, Device.load("qst-tcs2")))
+        icon = icon_of("cool by 29 °C at 2 °C/s; return at 2 °C/s")
+        found = worst_case(deliver(icon, rig, Device.load("qst-tcs2")))
         check = next(check for check in found.findings if check.quantity == "display")
         assert (check.value, check.scenario) == (pytest.approx(3.0), "the rig as given, followed at once")
 
@@ -112,8 +100,8 @@ class TestRefusals:
     """What a refusal names beside its first reason."""
 
     def test_every_hard_limit_and_a_cure(self) -> None:
-        icon = parse("cue 1\nset s { control display\n baseline 32 °C }\nicon bang { step by 12 °C\n hold for 8 s }\n")
-        refusal = str(prepare(icon["bang"], RIG, Device.load("dac-16"), CSV).refusals[0])
+        bang = icon_of("step by 12 °C; hold for 8 s", name="bang")
+        refusal = str(prepare(bang, RIG, Device.load("dac-16"), CSV).refusals[0])
         assert refusal.startswith("NOT SAFE: rate of skin temperature reaches ")
         assert refusal.count("rate of skin temperature") == 1
         assert "; also beyond hard limits: " in refusal
@@ -121,16 +109,14 @@ class TestRefusals:
         assert refusal.endswith("; use a slower change, a shorter hold, a smaller or shorter change")
 
     def test_an_unsafe_icon_is_not_told_to_use_more_current(self) -> None:
-        icon = parse(
-            "cue 1\nset s { control display\n baseline 33 °C }\nicon a { cool by 18 °C over 0.1 s\n hold for 6 s\n }\n"
-        )
-        refusals = prepare(icon["a"], RIG, Device.load("dac-16"), CSV).refusals
+        icon = icon_of("cool by 18 °C over 0.1 s; hold for 6 s", baseline=33)
+        refusals = prepare(icon, RIG, Device.load("dac-16"), CSV).refusals
         assert [refusal.kind for refusal in refusals] == ["unsafe", "unreachable"]
         assert str(refusals[1]).endswith("; use a slower or smaller change")
 
     def test_a_current_beyond_the_driver_names_the_driver(self) -> None:
-        icon = parse("cue 1\nset s { control current }\nicon amp { step by -2 A\n hold for 0.5 s\n step to 0 A }\n")
-        narrowed = deliver(icon["amp"], RIG, Device.load("dac-16")).narrowed
+        amp = icon_of("step by -2 A; hold for 0.5 s; step to 0 A", "current")
+        narrowed = deliver(amp, RIG, Device.load("dac-16")).narrowed
         assert "driver gives −1.5 … 1.5 A (driver.current_limit_A)" in narrowed.text
         assert "transconductance" not in narrowed.text
 
@@ -138,14 +124,9 @@ class TestRefusals:
 class TestFollowedSetPoints:
     """A module that a controller takes along set-points, which it cannot follow at once where they jump."""
 
-    @pytest.mark.parametrize(
-        "change",
-        [
-            *(pytest.param(f"{sign} by 6", marks=pytest.mark.slow) for sign in ("cool", "warm")),
-            "cool by 3",
-            "warm by 3",
-        ],
-    )
+    SIX_K = tuple(pytest.param(f"{sign} by 6", marks=pytest.mark.slow) for sign in ("cool", "warm"))
+
+    @pytest.mark.parametrize("change", [*SIX_K, "cool by 3", "warm by 3"])
     def test_steps_of_skin_are_not_refused_for_a_jump_that_no_module_makes(self, change: str) -> None:
         shape = f"{change} °C at 3 °C/s; hold for 4 s; return at 3 °C/s"
         found = worst_case(by_controller(shape, RIG, "skin"))
@@ -173,19 +154,19 @@ class TestFollowedSetPoints:
         assert -1.4 < least <= used.min() < used.max() <= most <= 1.5
 
     def test_a_baseline_beyond_a_limit_is_named_as_the_cause(self) -> None:
-        icon = parse("cue 1\nset s { control display\n baseline 47 °C }\nicon a { warm by 1 °C at 1 °C/s }")["a"]
+        icon = icon_of("warm by 1 °C at 1 °C/s", baseline=47)
         found = worst_case(deliver(icon, RIG, Device.load("closed-loop-controller")))
         assert more_and_cure(found.findings).endswith(
             "use a baseline nearer to resting skin, since it is beyond the limit from the start"
         )
 
     def test_in_a_set_what_is_refused_by_itself_is_not_played_with_the_rest(self) -> None:
-        shapes = (
+        hot, *safe = (
             "warm by 11 °C at 2 °C/s; hold for 9 s",
             "cool by 1 °C at 2 °C/s; hold for 1 s",
             "warm by 1 °C at 1 °C/s",
         )
-        first, *rest = worst_cases([by_controller(shape, RIG.with_(**SMALL)) for shape in shapes], 0.0)
+        first, *rest = worst_cases([by_controller(shape, RIG.with_(**SMALL)) for shape in (hot, *safe)], 0.0)
         assert not first.safe
         assert all(verdict.safe for verdict in rest)
         assert len({verdict.demands.current_limit_A for verdict in rest}) == 1, "one controller plays them all"
@@ -195,12 +176,8 @@ class TestFollowedSetPoints:
         played = "step warm by 1 °C; hold for 1 s; step cool by 1 °C; hold for 1 s"
         found = worst_case(by_controller(played, small))
         assert re.match(r"rate of skin temperature reaches .* K/s .*, gain \+10 %, ", str(found.reason)), found.reason
-        measured = small.with_(
-            **{
-                "uncertainty.gain_relative": 0.0,
-                "uncertainty.reason": "a test: its current source was measured",
-            }
-        )
+        why = {"uncertainty.reason": "a test: its current source was measured"}
+        measured = small.with_(**{"uncertainty.gain_relative": 0.0, **why})
         assert worst_case(by_controller(played, measured)).safe
 
     def test_a_loop_runs_to_the_limit_of_its_driver_where_a_set_point_cannot_be_reached(self) -> None:
@@ -228,23 +205,19 @@ SMALL = {"skin.elements": [1] * 5, "driver.update_Hz": 20.0, "module.hot_plate_J
 
 
 def by_controller(shape: str, rig: Rig, control: str = "display") -> DeliveredDrive:
-    text = f"cue 1\nset s {{ control {control}\n baseline 32 °C }}\nicon a {{ {shape} }}\n"
-    return deliver(parse(text)["a"], rig, Device.load("closed-loop-controller"))
+    return deliver(icon_of(shape, control), rig, Device.load("closed-loop-controller"))
 
 
 def rate_in(verdict: Gate) -> float:
     return max(abs(check.value) for check in verdict.checks if check.quantity == "rate of skin temperature")
 
 
-class TestStartWithoutPower:
-    """A controller starts from a display that had no power, and is there again after a stop."""
-
-    def test_the_cut_off_has_room_for_it_and_the_rest_is_held(self) -> None:
-        verdict = ready("cooling-step", "closed-loop-controller", "setpoint-csv").verdict
-        demands: dict[str, Any] = verdict.demanded
-        unpowered = simulate_current(Drive([0.0, 1.0], [0.0, 0.0]), RIG).display_C[0]
-        cut = demands["cut_off_display_C"]
-        assert unpowered > 38.0, "without power the heat sink of this rig warms the display"
-        assert cut["low"] < unpowered < cut["high"] < 43.0
-        assert 10.0 < demands["rest_before_first_play_s"] < 600.0
-        assert any("without power" in fault["fault"] for fault in demands["faults"])
+def test_the_cut_off_has_room_for_a_display_without_power_and_the_rest_is_held() -> None:
+    """A controller starts from such a display, and is there again after a stop."""
+    demands: dict[str, Any] = ready("cooling-step", "closed-loop-controller", "setpoint-csv").verdict.demanded
+    unpowered = simulate_current(Drive([0.0, 1.0], [0.0, 0.0]), RIG).display_C[0]
+    cut = demands["cut_off_display_C"]
+    assert unpowered > 38.0, "without power the heat sink of this rig warms the display"
+    assert cut["low"] < unpowered < cut["high"] < 43.0
+    assert 10.0 < demands["rest_before_first_play_s"] < 600.0
+    assert any("without power" in fault["fault"] for fault in demands["faults"])

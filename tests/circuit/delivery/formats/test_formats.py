@@ -32,11 +32,6 @@ def played(format_name: str, device: str | None = None) -> tuple[DeliveredDrive,
     return found, found.played
 
 
-def test_an_unknown_format_is_named_with_the_nearest() -> None:
-    with pytest.raises(FormatError, match=r"tcs2-serail: no such format; did you mean tcs2-serial"):
-        load_format("tcs2-serail")
-
-
 @pytest.mark.parametrize(
     ("name", "device"), [("tcs2-serial", "dac-16"), ("csv", "qst-tcs2"), ("wav", "pwm-h-bridge-10")]
 )
