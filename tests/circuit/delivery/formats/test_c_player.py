@@ -109,8 +109,7 @@ def test_set_points_are_centi_degrees(loop: Path) -> None:
 
 
 def test_steps_finer_than_centi_degrees_are_refused() -> None:
-    device = Device.load("closed-loop-controller")
+    form, device = load_format("c-array"), Device.load("closed-loop-controller")
     fine = replace(device, records=tuple(r for r in device.records if r.quantity != "set-point step"))
-    form = load_format("c-array")
     with pytest.raises(FormatError, match=r"hundredths of a degree; closed-loop-controller has steps of 0\.001 K"):
         pack([prepare(ICON, RIG, fine, form, gate=GreenVerdict)], form)

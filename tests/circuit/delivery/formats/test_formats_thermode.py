@@ -14,23 +14,21 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import icon_of, prepare
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.icons import Icon, load_library, parse
+from thermicon.icons import load_library
 
 RIG = Rig.load("thenar")
 THERMODE = Device.load("qst-tcs2")
 
 
-def icon_of(way: str, rates: tuple[float, float] = (3.0, 3.0), control: str = "display") -> Icon:
-    return parse(
-        f"cue 1\nset s {{ control {control}\n baseline 30 °C }}\n"
-        f"icon a {{ {way} by 6 °C at {rates[0]} °C/s\n hold for 2 s\n return at {rates[1]} °C/s }}\n"
-    )["a"]
+def written(way: str, rate: float) -> list[tuple[float, float]]:
+    icon = icon_of(f"{way} by 6 °C at {rate} °C/s; hold for 2 s; return at {rate} °C/s", baseline=30)
+    return read_profile(load_format("tcs2-serial").write(deliver(icon, RIG, THERMODE)).decode("ascii"))[1]
 
 
 def read_profile(text: str) -> tuple[float, list[tuple[float, float]]]:
@@ -38,8 +36,7 @@ def read_profile(text: str) -> tuple[float, list[tuple[float, float]]]:
     commands = text.split("\n")
     assert commands.pop() == ""
     neutral, most, profile, enabled, start = commands
-    assert re.fullmatch(r"N\d{3}", neutral)
-    assert re.fullmatch(r"Om\d{3}", most)
+    assert re.fullmatch(r"N\d{3} Om\d{3}", f"{neutral} {most}")
     assert (enabled, start) == ("Ue11111", "L")
     head = re.match(r"Uw11111(\d{3})", profile)
     body = profile[len(head[0]) :]
@@ -65,16 +62,9 @@ class TestSerial:
         assert np.abs(np.interp(grid, times, levels) - corners.at(grid)).max() <= 0.05 + 1e-9
         assert times[-1] == pytest.approx(corners.duration_s, abs=0.005)
 
-    def test_cooling_is_timed_as_warming_is(self) -> None:
-        write = load_format("tcs2-serial").write
-        cool, warm = (read_profile(write(deliver(icon_of(way), RIG, THERMODE)).decode()) for way in ("cool", "warm"))
-        assert [duration for duration, _ in cool[1]] == [duration for duration, _ in warm[1]] == [2.0, 2.0, 2.0]
-
-    def test_a_quarter_of_a_degree_a_second_is_no_fifth(self) -> None:
-        found = deliver(icon_of("warm", (0.25, 0.25)), RIG, THERMODE)
-        _, pairs = read_profile(load_format("tcs2-serial").write(found).decode())
-        ramp = sum(duration for duration, _ in pairs[:3])
-        assert ramp == pytest.approx(6 / 0.25)
+    def test_cooling_is_timed_as_warming_is_and_a_quarter_of_a_degree_a_second_is_no_fifth(self) -> None:
+        assert [duration for way in ("cool", "warm") for duration, _ in written(way, 3.0)] == [2.0] * 6
+        assert sum(duration for duration, _ in written("warm", 0.25)[:3]) == pytest.approx(6 / 0.25)
 
 
 class TestPsychopy:
@@ -105,26 +95,19 @@ class TestPsychopy:
     def test_every_event_of_the_sidecar_has_a_column(self, device: str) -> None:
         files = self.packed(device)
         rows = list(csv.DictReader(io.StringIO(files["conditions.csv"].decode())))
-        assert list(rows[0]) == [
-            "icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s",
-            "baseline_reached_s", "ramp_start_2_s", "target_reached_2_s", "return_start_2_s", "baseline_reached_2_s",
-            "safety", "recovery_s", "shortest_pause_s",
-        ]  # fmt: skip
+        events = ["ramp_start", "target_reached", "return_start", "baseline_reached"]
+        timed = ["duration_s", *(f"{event}_s" for event in events), *(f"{event}_2_s" for event in events)]
+        about = ["safety", "recovery_s", "shortest_pause_s"]
+        assert list(rows[0]) == ["icon", "drive_file", "sidecar_file", *timed, *about]
         warming, dips = rows
-        assert {warming[column] for column in rows[0] if "_2_" in column} == {""}
-        for row in (warming, dips):
-            events = json.loads(files[row["sidecar_file"]])["events"]
-            timed = [
-                column for column in row if column.endswith("_s") and not column.startswith(("recovery", "shortest"))
-            ]
+        assert {warming[column] for column in timed if "_2_" in column} == {""}
+        for row in rows:
+            happened = json.loads(files[row["sidecar_file"]])["events"]
             told = sorted(float(row[column]) for column in timed if row[column])
-            assert told == pytest.approx(sorted(event["time_s"] for event in events))
-        lead = float(dips["ramp_start_s"])
-        second = [
-            event["time_s"] for event in json.loads(files["double-dip.json"])["events"] if event["name"] == "ramp start"
-        ]
-        assert float(dips["ramp_start_2_s"]) == pytest.approx(second[1])
-        assert float(dips["ramp_start_2_s"]) > lead + 1
+            assert told == pytest.approx(sorted(event["time_s"] for event in happened))
+        _, second = (event["time_s"] for event in happened if event["name"] == "ramp start")
+        assert float(dips["ramp_start_2_s"]) == pytest.approx(second)
+        assert second > float(dips["ramp_start_s"]) + 1
 
     def test_players_need_nothing_to_be_imported(self) -> None:
         for device in ("ni-analogue-output", "qst-tcs2", "closed-loop-controller"):

@@ -4,23 +4,22 @@ from __future__ import annotations
 
 import csv
 import io
+import re
 import sys
 import types
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.circuit.daq import Daq
-from tests.circuit.delivery.one_drive import prepare
+from tests.circuit.delivery.one_drive import changed, prepare
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.formats.form import MustPrevent, Played, must_prevent
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.records import Record
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
@@ -64,6 +63,8 @@ class Bench:
         self.player["time"] = self.clock
         self.reading = 32.0
         self.noise = 0.001
+        self.sent: list[bytes] = []
+        self.port = types.SimpleNamespace(write=self.sent.append)
 
     def measured(self) -> float:
         """A live reading: its last digit moves."""
@@ -72,6 +73,23 @@ class Bench:
 
     def rows(self) -> list[dict[str, str]]:
         return list(csv.DictReader(io.StringIO(self.files[self.drive].decode())))
+
+    def play(self, *arguments: object) -> None:
+        self.player["play"](self.path, *arguments)
+
+    def stops(self, words: str, *arguments: object) -> None:
+        with pytest.raises(RuntimeError, match=words):
+            self.play(*arguments)
+
+    def at(self, time_s: float, strikes: Callable[[], None]) -> None:
+        """What happens once, later."""
+
+        def event() -> None:
+            if self.clock.now > time_s:
+                self.clock.events.clear()
+                strikes()
+
+        self.clock.events.append(event)
 
     def cools(self, sign: float = 1.0) -> None:
         """The display goes with the last voltage: above rest it cools."""
@@ -84,27 +102,40 @@ class Bench:
 
 
 @pytest.fixture
-def ni(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
-    return Bench(Device.load("ni-analogue-output"), tmp_path, monkeypatch)
+def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Device], Bench]:
+    return lambda device: Bench(device, tmp_path, monkeypatch)
+
+
+@pytest.fixture
+def ni(bench: Callable[[Device], Bench]) -> Bench:
+    return bench(Device.load("ni-analogue-output"))
+
+
+@pytest.fixture
+def tcs(bench: Callable[[Device], Bench]) -> Bench:
+    return bench(Device.load("qst-tcs2"))
+
+
+def interrupt() -> None:
+    raise KeyboardInterrupt
 
 
 class TestVolts:
     """The player on an NI analogue output."""
 
     def test_it_holds_the_rest_and_then_puts_out_every_command(self, ni: Bench) -> None:
-        ni.player["play"](ni.path)
+        ni.play()
         commands = [float(row["command_V"]) for row in ni.rows()]
         assert ni.daq.out == [commands[0], commands]
         assert (ni.daq.rate, ni.daq.count) == (pytest.approx(100.0), len(commands))
         assert ni.clock.now == pytest.approx(100.0 + 30.0 + 8.02, abs=0.1)
 
     def test_it_refuses_a_play_before_the_pause_is_over(self, ni: Bench) -> None:
-        ni.player["play"](ni.path)
+        ni.play()
         ni.clock.now += 5.0
-        with pytest.raises(RuntimeError, match=r"the pause of 20 s between plays is not over: wait 15\.0 s more"):
-            ni.player["play"](ni.path)
+        ni.stops(r"the pause of 20 s between plays is not over: wait 15\.0 s more")
         ni.clock.now += 15.5
-        ni.player["play"](ni.path)
+        ni.play()
         assert len(ni.daq.out) == 3, "the rest is held before the first play alone"
 
     def test_a_display_outside_the_cut_off_ends_with_zero(self, ni: Bench) -> None:
@@ -115,39 +146,33 @@ class TestVolts:
                 ni.reading += 0.3
 
         ni.clock.events.append(runs_away)
-        with pytest.raises(RuntimeError, match=r"the display is at 4\d\.\d\d degrees C, outside 20 to 40"):
-            ni.player["play"](ni.path, ni.measured)
+        ni.stops(r"the display is at 4\d\.\d\d degrees C, outside 20 to 40", ni.measured)
         assert (ni.daq.out[-1], ni.daq.stopped) == (0.0, 1)
-        with pytest.raises(RuntimeError, match=r"stopped before: find out why, then call reset\(\)"):
-            ni.player["play"](ni.path)
+        ni.stops(r"stopped before: find out why, then call reset\(\)")
 
     def test_abort_ends_with_zero(self, ni: Bench) -> None:
-        ni.clock.events.append(lambda: ni.player["abort"]() if ni.clock.now > 132.0 else None)
-        with pytest.raises(RuntimeError, match=r"abort\(\) was called"):
-            ni.player["play"](ni.path)
+        ni.at(132.0, ni.player["abort"])
+        ni.stops(r"abort\(\) was called")
         assert (ni.daq.out[-1], ni.daq.stopped) == (0.0, 1)
 
-    def test_swapped_wires_are_found_before_the_first_play(self, ni: Bench) -> None:
+    def test_swapped_wires_are_found_before_the_first_play_and_right_ones_pass(self, ni: Bench) -> None:
         ni.cools(sign=-1.0)
-        with pytest.raises(RuntimeError, match=r"fell by -\d\.\d\d K, not by 0\.15 K, under 2 V that must cool"):
-            ni.player["play"](ni.path, ni.measured)
+        ni.stops(r"fell by -\d\.\d\d K, not by 0\.15 K, under 2 V that must cool", ni.measured)
         assert ni.daq.out == [2.0, 0.0]  # 0.2 A through 0.1 A/V
+        ni.player["reset"]()
+        ni.clock.events.clear()
+        ni.cools()
+        ni.play(ni.measured)
+        assert ni.daq.out[2] == 2.0
 
     @pytest.mark.parametrize("at_s", [100.2, 110.0, 132.0], ids=["test of the wires", "rest", "play"])
     def test_an_interrupt_leaves_no_current(self, ni: Bench, at_s: float) -> None:
         ni.cools()
-
-        def interrupt() -> None:
-            if ni.clock.now > at_s:
-                ni.clock.events.clear()
-                raise KeyboardInterrupt
-
-        ni.clock.events.append(interrupt)
+        ni.at(at_s, interrupt)
         with pytest.raises(KeyboardInterrupt):
-            ni.player["play"](ni.path, ni.measured)
+            ni.play(ni.measured)
         assert ni.daq.out[-1] == 0.0
-        with pytest.raises(RuntimeError, match="stopped before"):
-            ni.player["play"](ni.path)
+        ni.stops("stopped before")
 
     @pytest.mark.parametrize("last", [float("nan"), None], ids=["no number", "no answer"])
     def test_a_sensor_lost_at_the_end_of_the_test_is_no_pass(self, ni: Bench, last: float | None) -> None:
@@ -158,15 +183,9 @@ class TestVolts:
                 return last if last is not None else 1 / 0
             return ni.measured()
 
-        with pytest.raises(RuntimeError, match="the sensor is lost"):
-            ni.player["play"](ni.path, reading)
+        ni.stops("the sensor is lost", reading)
         assert ni.daq.out == [2.0, *[0.0] * (len(ni.daq.out) - 1)]
         assert len(ni.daq.out) > 1
-
-    def test_right_wires_pass(self, ni: Bench) -> None:
-        ni.cools()
-        ni.player["play"](ni.path, ni.measured)
-        assert ni.daq.out[0] == 2.0
 
     @pytest.mark.parametrize(
         ("reading", "words"),
@@ -179,55 +198,39 @@ class TestVolts:
     )
     def test_a_sensor_that_fails_ends_with_zero(self, ni: Bench, reading: Callable[[], float], words: str) -> None:
         ni.player["TEST_POLARITY"] = False
-        with pytest.raises(RuntimeError, match=words):
-            ni.player["play"](ni.path, reading)
+        ni.stops(words, reading)
         assert ni.daq.out[-1] == 0.0
 
 
 class TestThermode:
     """The player of a thermode's commands."""
 
-    @pytest.fixture
-    def tcs(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
-        return Bench(Device.load("qst-tcs2"), tmp_path, monkeypatch)
-
     def test_it_sends_the_start_last_and_after_the_rest(self, tcs: Bench) -> None:
-        sent: list[bytes] = []
-        port = types.SimpleNamespace(write=sent.append)
-        tcs.player["prepare"](port, tcs.path)
-        assert b"L" not in sent
-        tcs.player["play"](port)
-        assert sent == tcs.files[tcs.drive].split()
-        assert tcs.clock.now == pytest.approx(130.0)
-        with pytest.raises(RuntimeError, match=r"wait 28\.0 s more"):  # 8 s of icon and 20 s of pause
-            tcs.player["play"](port)
-
-    def test_a_display_outside_the_cut_off_is_aborted(self, tcs: Bench) -> None:
-        sent: list[bytes] = []
-        port = types.SimpleNamespace(write=sent.append)
-        tcs.player["prepare"](port, tcs.path)
-        tcs.clock.events.append(lambda: setattr(tcs, "reading", 45.0 if b"L" in sent else 32.0))
-        with pytest.raises(RuntimeError, match=r"the display is at 45\.\d\d degrees C, outside 20 to 40"):
-            tcs.player["play"](port, tcs.measured)
-        assert sent[-2:] == [b"L", b"A"]
-
-    def test_an_interrupt_aborts(self, tcs: Bench) -> None:
-        sent: list[bytes] = []
-        port = types.SimpleNamespace(write=sent.append)
-        tcs.player["prepare"](port, tcs.path)
-
-        def interrupt() -> None:
-            if b"L" in sent:
-                raise KeyboardInterrupt
-
-        tcs.clock.events.append(interrupt)
-        with pytest.raises(KeyboardInterrupt):
-            tcs.player["play"](port, tcs.measured)
-        assert sent[-2:] == [b"L", b"A"]
-
-    def test_nothing_plays_that_was_not_prepared(self, tcs: Bench) -> None:
         with pytest.raises(RuntimeError, match="nothing was prepared"):
             tcs.player["play"](None)
+        tcs.player["prepare"](tcs.port, tcs.path)
+        assert b"L" not in tcs.sent
+        tcs.player["play"](tcs.port)
+        assert tcs.sent == tcs.files[tcs.drive].split()
+        assert tcs.clock.now == pytest.approx(130.0)
+        with pytest.raises(RuntimeError, match=r"wait 28\.0 s more"):  # 8 s of icon and 20 s of pause
+            tcs.player["play"](tcs.port)
+
+    @pytest.mark.parametrize("interrupted", [True, False], ids=["interrupt", "display outside the cut-off"])
+    def test_what_must_not_go_on_is_aborted(self, tcs: Bench, interrupted: bool) -> None:
+        def strikes() -> None:
+            if b"L" in tcs.sent:
+                tcs.reading = 45.0
+                if interrupted:
+                    raise KeyboardInterrupt
+
+        tcs.player["prepare"](tcs.port, tcs.path)
+        tcs.clock.events.append(strikes)
+        with pytest.raises((KeyboardInterrupt, RuntimeError)) as ended:
+            tcs.player["play"](tcs.port, tcs.measured)
+        assert interrupted or re.match(r"the display is at 45\.\d\d degrees C, outside 20 to 40", str(ended.value))
+        assert isinstance(ended.value, KeyboardInterrupt) == interrupted
+        assert tcs.sent[-2:] == [b"L", b"A"]
 
 
 class TestSetpoints:
@@ -235,36 +238,30 @@ class TestSetpoints:
 
     LOOP = Device.load("closed-loop-controller")
 
-    def test_rows_are_sent_at_their_times(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        bench = Bench(self.LOOP, tmp_path, monkeypatch)
+    def test_rows_are_sent_at_their_times(self, bench: Callable[[Device], Bench]) -> None:
+        loop = bench(self.LOOP)
         sent: list[tuple[float, float]] = []
-        bench.player["play"](bench.path, lambda level: sent.append((bench.clock.now, level)), lambda: None)
-        rows = bench.rows()
+        loop.play(lambda level: sent.append((loop.clock.now, level)), lambda: None)
+        rows = loop.rows()
         assert [level for _, level in sent[1:]] == [float(row["display_C"]) for row in rows]
         late = [at - 130.0 - float(row["time_s"]) for (at, _), row in zip(sent[1:], rows, strict=True)]
         assert max(map(abs, late)) < 1e-6
 
-    def test_the_output_is_off_after_a_cut_off(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        bench = Bench(self.LOOP, tmp_path, monkeypatch)
+    def test_the_output_is_off_after_a_cut_off(self, bench: Callable[[Device], Bench]) -> None:
+        loop = bench(self.LOOP)
         off: list[float] = []
-        bench.reading = 45.0
-        with pytest.raises(RuntimeError, match="outside 20 to 40"):
-            bench.player["play"](bench.path, lambda _: None, lambda: off.append(bench.clock.now), bench.measured)
+        loop.reading = 45.0
+        loop.stops("outside 20 to 40", lambda _: None, lambda: off.append(loop.clock.now), loop.measured)
         assert off
 
-    def test_as_a_voltage_off_is_the_rest(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-        records = (
-            *self.LOOP.records,
-            Record("set-point gain", "V/K", "test", value=0.1),
-            Record("set-point offset", "V", "test", value=-2.0),
-        )
-        bench = Bench(replace(self.LOOP, records=records), tmp_path, monkeypatch)
-        commands = [float(row["command_V"]) for row in bench.rows()]
+    def test_as_a_voltage_off_is_the_rest(self, bench: Callable[[Device], Bench]) -> None:
+        gain = changed(self.LOOP, "set-point gain", "V/K", value=0.1)
+        volts = bench(changed(gain, "set-point offset", "V", value=-2.0))
+        commands = [float(row["command_V"]) for row in volts.rows()]
         assert commands[0] == pytest.approx(0.1 * 32.0 - 2.0)
-        bench.clock.events.append(lambda: bench.player["abort"]() if bench.clock.now > 132.0 else None)
-        with pytest.raises(RuntimeError, match=r"abort\(\) was called"):
-            bench.player["play"](bench.path)
-        assert bench.daq.out[-1] == pytest.approx(commands[0])
+        volts.at(132.0, volts.player["abort"])
+        volts.stops(r"abort\(\) was called")
+        assert volts.daq.out[-1] == pytest.approx(commands[0])
 
 
 class TestMustPrevent:
