@@ -1,4 +1,4 @@
-"""Gap and landing: derived from simulation, and checked against a closed form and known cases."""
+"""Gap and landing, derived from simulation and checked against known cases; and the clock of a session."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library
+from thermicon.notebooks.study.schedule import Course, Pace, Trial, planned_plays
 from thermicon.notebooks.study.study_file import StudyError, Timing
 from thermicon.notebooks.study.timing import (
     GAPS_S,
@@ -30,6 +31,13 @@ def test_a_derived_gap_is_the_shortest_in_whole_seconds() -> None:
     assert gap.carry_over_d_prime == carried_over(ICONS, THENAR, gap.gap_s, True)[0]
     longer = find_gap(ICONS, THENAR, Timing(carry_over_d_prime=0.3), held=True)
     assert longer.gap_s > gap.gap_s
+
+
+def test_planned_times_have_landings_gaps_and_breaks() -> None:
+    """Practice goes over into the first block; the second begins with a break and a landing."""
+    trials = (Trial(1, 0, 0, "glow"), Trial(2, 1, 1, "dip"), Trial(3, 1, 2, "glow"), Trial(4, 2, 3, "dip"))
+    plays = planned_plays(Course("A", trials), {"dip": 3.0, "glow": 3.0}, Pace(30.0, 10.0, 40.0))
+    assert [play.onset_s for play in plays] == [30.0, 43.0, 56.0, 59.0 + 40.0 + 30.0]
 
 
 def test_a_given_gap_stays_and_its_carry_over_is_stated() -> None:
@@ -56,7 +64,8 @@ def test_a_landing_ends_where_the_skin_has_settled(held: bool) -> None:
 
 
 def test_nothing_that_corrects_makes_a_landing_longer() -> None:
-    held, alone = (find_landing(ICONS[0], THENAR, Timing(), each) for each in (True, False))
+    held, alone = (find_landing(ICONS[0], THENAR, Timing(), regulated(kind)) for kind in ("temperatures", "volts"))
+    assert (regulated("set-points"), regulated("amperes")) == (True, False)
     assert 60.0 < held.landing_s < 180.0 < alone.landing_s
     assert 0.5 < held.left_at_10_s_K < 1.2 < alone.left_at_10_s_K
 
@@ -68,16 +77,10 @@ def test_settling_is_linear_in_how_far_the_skin_arrives() -> None:
 
 
 def test_what_never_ends_is_an_error() -> None:
-    said = r"carry_over_d_prime = 1e-09: after 600 s .* allow more, or give timing\.gap_s"
-    with pytest.raises(StudyError, match=said):
+    with pytest.raises(
+        StudyError, match=r"carry_over_d_prime = 1e-09: after 600 s .* allow more, or give timing\.gap_s"
+    ):
         find_gap(ICONS, THENAR, Timing(carry_over_d_prime=1e-9), held=True)
     wanted = Timing(landing_from_K=10.0).model_copy(update={"landing_within_K": 1e-6})
-    with pytest.raises(
-        StudyError, match=r"landing_within_K = 1e-06 K: skin that arrives 10 K away is still .* K off after 1800 s"
-    ):
+    with pytest.raises(StudyError, match=r"landing_within_K = 1e-06 K: skin that arrives 10 K .* K off after 1800 s"):
         find_landing(ICONS[0], THENAR, wanted, held=False)
-
-
-def test_devices_that_correct_their_display() -> None:
-    kinds = ("volts", "amperes", "set-points", "temperatures")
-    assert [kind for kind in kinds if regulated(kind)] == ["set-points", "temperatures"]
