@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +17,6 @@ from .identify import NOISE_K, NOISE_V, expected_sd, half_width, is_identified, 
 from .keys import FitKey, free_keys
 from .log import Log
 from .problem import OFFSET_SD_K, Problem
-
-if TYPE_CHECKING:
-    pass
 
 COLUMNS = ("display_C", "voltage_V")
 CHOICES = (

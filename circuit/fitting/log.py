@@ -8,7 +8,6 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,9 +18,6 @@ from ..arrays import Array
 from ..inputs import LIKE_MILLISECONDS, quoted, read_bytes, table_fault, text_of
 from ..rig.module import ZERO_C_IN_K
 from .keys import FitError
-
-if TYPE_CHECKING:
-    pass
 
 DRIVES = ("current_A", "command_V")
 """What can drive a run, in the order of preference; a column behind the first that is there counts as measured."""
@@ -237,25 +233,10 @@ MISSPELT = 0.85
 
 
 def read_log(path: str | Path) -> Log:
-    r"""Read a measured log.
+    r"""Read a measured log: a table with a line of names, its cells separated by commas, semicolons or tabs.
 
-    Parameters
-    ----------
-    path
-        A table with a line of names, its cells separated by commas, semicolons or tabs.
+    Raises LogError for a file that is not a log, with its line or column and the cure.
 
-    Returns
-    -------
-    Log
-        Its columns over one clock.
-
-    Raises
-    ------
-    LogError
-        For a file that is not a log, with its line or column and the cure.
-
-    Examples
-    --------
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder) / "rig.csv"

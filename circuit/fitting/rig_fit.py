@@ -42,28 +42,13 @@ class ChannelFit(Beside):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RigFit:
-    """A rig fitted to logs.
+    """A rig fitted to logs, with the intervals in its uncertainty, and the layers of the skin that was logged.
 
-    Attributes
-    ----------
-    rig
-        The fitted rig, with the intervals in its uncertainty, and the layers of the skin that was logged, at the
-        thickness that they had. What was not identified stays as it was before.
-    parameters, correlation
-        The free keys in the order in which they were named, and the correlations (keys, keys) of the fitted numbers.
-    channels
-        Every measured column beside the simulation.
-    sources
-        Name and SHA-256 of every log.
-    notes
-        Sentences on columns, clocks, sensors and the fit itself.
-    converged
-        Whether the fit came to rest.
-    misfit
-        Whether residuals exceed the noise of the logs, or a sensor is off by more than 3 standard deviations; the
-        uncertainty of `rig` is then never narrower than before.
-    fitted_layers
-        Names of the layers of the skin that were fitted along.
+    Layers keep their thickness, and what was not identified stays as it was before. `parameters` are the free keys in
+    the order in which they were named, `correlation` (keys, keys) is that of the fitted numbers; `sources` are name and
+    SHA-256 of every log, `notes` sentences on columns, clocks, sensors and the fit. `converged`: it came to rest.
+    `misfit`: residuals exceed the noise of the logs, or a sensor is off by more than 3 standard deviations; the
+    uncertainty of `rig` is then never narrower than before. `fitted_layers` names the layers that were fitted along.
     """
 
     rig: Rig

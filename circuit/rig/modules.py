@@ -7,16 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import TYPE_CHECKING
 
 from thermicon.icons.near_words import did_you_mean
 
 from ..records import Record, RecordError, Table, load_records
 from .faults import PARAMETERS, sentence
 from .module import Datasheet, Extraction, Peltier, at_mean_C
-
-if TYPE_CHECKING:
-    from .rigfile import ModuleTable
+from .rigfile import ModuleTable
 
 COLUMNS = (
     "module",

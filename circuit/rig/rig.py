@@ -108,12 +108,8 @@ class Rig:
     def load(source: str | Path) -> Rig:
         """Return a shipped rig by name, or a rig from a `.toml` file.
 
-        A file with the name of a shipped rig is read in its place; a folder of that name is not.
-
-        Raises
-        ------
-        RigError
-            With every fault of the file on a line of its own, or the nearest name where there is no such rig.
+        A file with the name of a shipped rig is read in its place; a folder of that name is not. Raises RigError with
+        every fault of the file on a line of its own, or the nearest name where there is no such rig.
         """
         path, names = Path(source), rig_names()
         if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
@@ -129,19 +125,10 @@ class Rig:
         return toml_text(json.loads(self.document))
 
     def save(self, path: str | Path, name: str | None = None) -> None:
-        """Write the rig as a rig file, which `Rig.load` reads as an equal rig; an existing file is replaced.
+        """Write the rig as a `.toml` file, which `Rig.load` reads as an equal rig; an existing file is replaced.
 
-        Parameters
-        ----------
-        path
-            A file whose name ends in `.toml`.
-        name
-            Name of the saved rig, which exports bear; None: the rig's own.
-
-        Raises
-        ------
-        RigError
-            For another ending, a path that cannot be written, and a rig that no rig file may describe.
+        `name` is that of the saved rig, which exports bear; None: the rig's own. Raises RigError for another ending, a
+        path that cannot be written, and a rig that no rig file may describe.
         """
         where = Path(path)
         if where.suffix != ".toml":
@@ -211,19 +198,10 @@ class Rig:
     def with_(self, **changes: object) -> Rig:
         """Return a new rig with keys of the rig file changed, in the units of the file.
 
-        Parameters
-        ----------
-        **changes
-            Dotted keys, or tables as dictionaries, of which only the given keys change. A layer or probe is named by
-            its place or its name.
+        `changes` are dotted keys, or tables as dictionaries, of which only the given keys change. A layer or probe is
+        named by its place or its name. Raises RigError for an unknown key, with the nearest one, and for a value that
+        cannot be.
 
-        Raises
-        ------
-        RigError
-            For an unknown key, with the nearest one, and for a value that cannot be.
-
-        Examples
-        --------
         >>> rig = Rig.load("thenar")
         >>> rig.with_(**{"skin.layer.dermis.thickness_mm": 1.2}, contact={"area_cm2": 4}).changes
         ('skin.layer.dermis.thickness_mm=1.2', 'contact.area_cm2=4')

@@ -12,12 +12,12 @@ from thermicon.icons.number_text import signed
 
 from .faults import sentence
 from .modules import build_of, module_names
+from .rigfile import Thermode
 from .settings import changed
 from .uncertainty import tightened
 
 if TYPE_CHECKING:
     from .rig import Rig
-    from .rigfile import Thermode
 
 WIDTH = 118
 PLATE_KEYS = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")

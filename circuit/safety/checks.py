@@ -103,9 +103,7 @@ class Check:
     @property
     def note(self) -> str:
         """From where a relative limit counts, in words; empty for one that is absolute."""
-        from .words import note_text
-
-        return note_text(self)
+        return "" if self.from_start_K is None else f", {self.from_start_K:g} K from where it began,"
 
     @property
     def figures(self) -> tuple[str, str]:

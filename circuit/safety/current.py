@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
@@ -25,10 +25,8 @@ from .checks import Before, Check, Demands, Scenario
 from .ensemble import Ensemble, LaneDrives, row_of
 from .plant import ENDING_ROWS_S, LATE_S, LATER_S, Future, Plant, Single, Stretch
 from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle
+from .repeated import Repeating
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally, worst_of_lanes
-
-if TYPE_CHECKING:
-    from .repeated import Repeating
 
 ENDINGS = ("last value held", "zero current", "power off")
 IN_THE_END = "zero current in the end"

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import repeat
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,12 +17,10 @@ from ..solver.drive import Drive
 from .checks import CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
+from .plant import Single
 from .repeated import PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
 from .single_faults import Faulty, around_C
 from .tally import HOTTEST_C, WATCHED, Tally, cem43_min
-
-if TYPE_CHECKING:
-    from .plant import Single
 
 LONGEST_REST_S = 600.0
 TEST_A, TEST_S = 0.3, 2.0

@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,14 +19,11 @@ from ..rig.rules import Limits
 from ..solver.modes import FELT, SkinModes, modes_of
 from .checks import CutOff, Demands, SingleFault, worst_of
 from .corners import contact_corners
-from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, Future, Plant, Stretch, left_s
+from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, Future, Plant, Single, Stretch, left_s
 from .playmap import PlayMap, least_bound
+from .repeated import PRACTICAL_S, Repeating, lengthened_s
 from .single_faults import MARGIN, around_C
 from .tally import WATCHED, Tally
-
-if TYPE_CHECKING:
-    from .plant import Single
-    from .repeated import Repeating
 
 DISPLAY_ENDINGS = ("last set-point held", "control lost")
 
@@ -184,7 +180,6 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         shortest_s: float | None,
     ) -> tuple[float | None, list[Demands]]:
         """What prevents set-points that hang, and a loop that runs to the end of its range."""
-        from .repeated import PRACTICAL_S, lengthened_s
 
         def quickest(pause_s: float | None) -> list[tuple[float, float]]:
             return [each.quickest_s for each in self._faults(repeating, pause_s)]

@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -24,10 +23,8 @@ import numpy.typing as npt
 from ..arrays import Array
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
+from .ensemble import Ensemble, LaneDrives
 from .tally import COLDEST_C, HOTTEST_C
-
-if TYPE_CHECKING:
-    from .ensemble import Ensemble, LaneDrives
 
 MOST_STEPS = 20_000
 """A drive of more steps is simulated repeatedly instead: a map takes some 50 runs, a search for a cycle about ten."""

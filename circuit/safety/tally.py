@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from math import isnan
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -22,9 +21,7 @@ from ..arrays import Array, Index
 from ..records import load_records
 from ..rig.rules import Limits, Rule
 from .checks import AS_TOLD, LEVEL, Check, Scenario
-
-if TYPE_CHECKING:
-    from .corners import Corner
+from .corners import Corner
 
 _KEPT = ("CEM43 start", "CEM43 reference", "CEM43 base at or above 43 °C", "CEM43 base from 37 to 43 °C")
 

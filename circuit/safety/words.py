@@ -9,18 +9,14 @@ import tomllib
 from collections.abc import Sequence
 from functools import cache, lru_cache
 from importlib import resources
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from thermicon.icons.number_text import signed, significant
 
 from ..rig.uncertainty import WORDS
-from .checks import Before, Check, Cure, Scenario, cures_of, hard_of
+from .checks import Before, Check, Cure, Harm, Scenario, SingleFault, cures_of, hard_of
 from .plant import ENDING_S
-from .repeated import PRACTICAL_S
-
-if TYPE_CHECKING:
-    from .checks import Harm, SingleFault
-    from .repeated import Repeated
+from .repeated import PRACTICAL_S, Repeated
 
 WHAT_IT_IS_NOT = (
     "This is a calculation, not a medical or ethical clearance. Hardware that touches people needs a temperature "
@@ -76,18 +72,13 @@ def figures(check: Check) -> tuple[str, str]:
     return value.replace("-", "−"), limit.replace("-", "−")
 
 
-def note_text(check: Check) -> str:
-    """From where a relative limit counts; empty for one that is absolute."""
-    return "" if check.from_start_K is None else f", {check.from_start_K:g} K from where it began,"
-
-
 def check_text(check: Check) -> str:
     """A check in one sentence."""
     scenario = check.scenario
     where = f", with {scenario}" if scenario else ""
     value, limit = (f"{figure}{_unit(check)}" for figure in figures(check))
     reached = f"{check.quantity} reaches {value} at {check.time_s:.2f} s{where}"
-    of_limit = f"{'above' if check.upper else 'below'} the {check.severity} limit of {limit}{note_text(check)}"
+    of_limit = f"{'above' if check.upper else 'below'} the {check.severity} limit of {limit}{check.note}"
     if check.since_s is None:
         return f"{reached}, not {of_limit} ({check.source})"
     return f"{reached}, {of_limit} from {check.since_s:.2f} s on ({check.source})"
