@@ -116,10 +116,10 @@ def prepare_task(
     observer: Observer | None = None,
 ) -> tuple[Task, CarryOver | None]:
     """A task filled in for some icons, of which `counted` (none: all) will be played; and what is left behind."""
-    if task.plain:
+    if task.gap_s is None:
         return USUAL, None
     played = tuple(counted or range(len(icons)))
-    left = carry_over(icons, rig, end_s, task.gap_s or 0.0, observer, tracking=tracking)
+    left = carry_over(icons, rig, end_s, task.gap_s, observer, tracking=tracking)
     return Task(task.gap_s, _rows(left.over(played)), played), left
 
 

@@ -123,7 +123,9 @@ def confuse(
     if icons == 1:
         named = np.ones((people, 1, 1))
     elif icons == 2:
-        named = _two(distances[:, 0, 1])
+        # Exact for two: each is named where noise stays below d′/2.
+        right = np.array([0.5 * math.erfc(-0.5 * v / math.sqrt(2.0)) for v in distances[:, 0, 1].tolist()])
+        named = np.stack([np.stack([right, 1.0 - right], -1), np.stack([1.0 - right, right], -1)], -2)
     else:
         named = _sampled(embed(distances), distances, seed, samples, first)
     probability = normalised((1.0 - lapses) * named + lapses / icons)
@@ -153,12 +155,6 @@ def embed(distances: Array) -> Array:
 def normalised(rows: Array) -> Array:
     """Rows divided by their sums, so that they add to 1 to the last bit that counts."""
     return np.asarray(rows / rows.sum(axis=-1, keepdims=True))
-
-
-def _two(d_prime: Array) -> Array:
-    """Exact for two: each is named where noise stays below d′/2."""
-    right = np.array([0.5 * math.erfc(-0.5 * v / math.sqrt(2.0)) for v in d_prime.tolist()])
-    return np.stack([np.stack([right, 1.0 - right], -1), np.stack([1.0 - right, right], -1)], -2)
 
 
 def shared_among_identical(named: Array, distances: Array, identical: float = IDENTICAL) -> Array:

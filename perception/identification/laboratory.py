@@ -132,7 +132,10 @@ def new_laboratory(
         proportion_correct=_ends(correct),
         information_bits=_ends(bits),
         detected=tuple(_ends(detected[:, icon]) for icon in range(icons)),
-        onset_s=tuple(_ends_of_felt(onset[:, icon]) for icon in range(icons)),
+        # Over the draws in which an icon is felt, where these are the most.
+        onset_s=tuple(
+            _ends(each[np.isfinite(each)]) if 2 * np.isfinite(each).sum() > each.size else None for each in onset.T
+        ),
         d_prime=(low, high),
         each=replace(
             each,
@@ -150,9 +153,3 @@ def new_laboratory(
 def _ends(values: Array) -> Interval:
     low, high = np.percentile(values, COVER)
     return float(low), float(high)
-
-
-def _ends_of_felt(onset_s: Array) -> Interval | None:
-    """Interval over the draws in which an icon is felt; None where these are not the most."""
-    felt = onset_s[np.isfinite(onset_s)]
-    return _ends(felt) if 2 * felt.size > onset_s.size else None

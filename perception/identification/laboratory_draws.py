@@ -261,7 +261,7 @@ def scored(
     correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)
     found = felt.detected
     reported = found.reported_sum() if found.reported is None else found.reported[invited].sum(axis=0)
-    reports = pooled(felt.probability[invited], found.cold_share[invited], reported, found.dt_s)
+    reports = pooled(found.probability[invited], found.cold_share[invited], reported, found.dt_s)
     return (
         correct[invited].mean(),
         bits[invited].mean(),
@@ -270,7 +270,7 @@ def scored(
         reports.onset_s,
         correct[invited],
         bits[invited],
-        felt.probability[invited].min(axis=1),
+        found.probability[invited].min(axis=1),
     )
 
 

@@ -83,11 +83,6 @@ class PopulationResponse:
         return PopulationResponse(Episodes(self.episodes.features[:, places], self.episodes.counts[:, places]), None)
 
     @property
-    def probability(self) -> Array:
-        """Probability (people, icons) that a person reports an icon."""
-        return self.detected.probability
-
-    @property
     def detected(self) -> Detection:
         """Detection of every icon by every person; a ValueError where it was not asked for."""
         if self.detection is None:

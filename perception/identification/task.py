@@ -153,11 +153,6 @@ class Task:
         if self.gap_s is not None and not 0.0 <= self.gap_s <= LONGEST_GAP_S:
             raise ValueError(f"a gap of {self.gap_s:g} s between icons must lie in 0 to {LONGEST_GAP_S:g} s")
 
-    @property
-    def plain(self) -> bool:
-        """Whether nothing is left behind by the icon before."""
-        return self.gap_s is None
-
     def between(self, noise: Array, norm: Norm) -> Array:
         """Noise (people, icons, icons) between icons that also vary with what was felt before them."""
         own = np.array(self.carried[NORMS.index(norm)])

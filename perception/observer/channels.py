@@ -47,11 +47,6 @@ def check_variable(variable: str) -> Variable:
     raise ValueError(f"there is no sensory variable {variable!r}: choose one of {', '.join(VARIABLES)}")
 
 
-def drive_unit(variable: Variable) -> str:
-    """Unit of receptor drive: K or W/m²."""
-    return "K" if variable == "temperature" else "W/m²"
-
-
 def source_of(variable: Variable) -> str:
     """How the parameter file ends the name of a number that depends on the variant; nothing for the default."""
     return "" if variable == "temperature" else " from heat flow"

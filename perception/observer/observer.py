@@ -28,7 +28,6 @@ from .channels import (
     Variable,
     check_norm,
     check_variable,
-    drive_unit,
     source_of,
 )
 from .parts import BAR, MISSING, NOISE, OF_MEMORY, SHARE, EpisodeMemory, Ratings, Receptor, Transducer, conduction_s
@@ -203,7 +202,7 @@ class Observer:
     @property
     def drive_unit(self) -> str:
         """Unit of receptor drive and of `threshold_drive`: K or W/m²."""
-        return drive_unit(self.variable)
+        return "K" if self.variable == "temperature" else "W/m²"
 
     def receptor(self, channel: Channel) -> Receptor:
         """Constants of one channel."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from pathlib import Path
 from typing import Self
 
@@ -66,7 +65,8 @@ class ObserverModel:
         another version.
         """
         if path is None:
-            return cls(SHIPPED, _shipped_digest(), Observer.load(), None, variant_records(), PosteriorDraws.load())
+            digest = hashlib.sha256((DATA / "observer.toml").read_bytes()).hexdigest()
+            return cls(SHIPPED, digest, Observer.load(), None, variant_records(), PosteriorDraws.load())
         file, draws = Path(path), None
         try:
             if file.suffix.lower() == ".csv":
@@ -108,10 +108,6 @@ class ObserverModel:
             age_factor(age_years, channel)
         return replace(self, age_years=age_years)
 
-    def for_jobs(self) -> ObserverModel | None:
-        """What batches need of it, without the draws: None for the shipped one, which every worker has."""
-        return replace(self, posterior=None) if self.key else None
-
     @property
     def key(self) -> str:
         """What results depend on, for hashes; empty for the shipped model, whose data belong to the program."""
@@ -121,11 +117,6 @@ class ObserverModel:
     def __repr__(self) -> str:
         draws = "no posterior draws" if self.posterior is None else f"{len(self.posterior)} posterior draws"
         return f"ObserverModel({self.name}, {draws})"
-
-
-@lru_cache(maxsize=1)
-def _shipped_digest() -> str:
-    return hashlib.sha256((DATA / "observer.toml").read_bytes()).hexdigest()
 
 
 def _spreads(records: Table) -> dict[str, float]:

@@ -136,11 +136,6 @@ class Ratings:
             if not getattr(self, field.name) > 0.0:
                 raise ValueError(f"ratings need {field.name} above 0, not {getattr(self, field.name):g}")
 
-    @property
-    def log_scatter(self) -> float:
-        """Scatter of the drive that is rated, SD in log units."""
-        return self.scatter / (self.exponent * self.rated)
-
 
 @dataclass(frozen=True, slots=True)
 class EpisodeMemory:
@@ -169,7 +164,8 @@ class EpisodeMemory:
 
     def intensity(self, channel: Channel) -> float:
         """σ_I of a channel in log units of drive."""
-        return float(self.timing ** (1.0 - self.share) * self.ratings(channel).log_scatter ** self.share)
+        own = self.ratings(channel)
+        return float(self.timing ** (1.0 - self.share) * (own.scatter / (own.exponent * own.rated)) ** self.share)
 
 
 def objection_to(name: str, value: float) -> str | None:

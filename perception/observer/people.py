@@ -149,8 +149,10 @@ def draw_people(
         return np.exp(sd_cold * cold), np.exp(sd_warm * warm)
 
     def triangular(name: str) -> Array:
-        low, high = record[name].interval
-        return _triangular(column[name], low, record[name].central, high)
+        (low, high), mode, uniform = record[name].interval, record[name].central, column[name]
+        left = low + np.sqrt(uniform * (high - low) * (mode - low))
+        right = high - np.sqrt((1.0 - uniform) * (high - low) * (high - mode))
+        return np.where(uniform < (mode - low) / (high - low), left, right)
 
     aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
     threshold_cold, threshold_warm = both("threshold")
@@ -223,10 +225,3 @@ def age_factor(age_years: float, channel: Channel) -> float:
 def _normal(uniform: Array) -> Array:
     within = np.clip(uniform, 1e-12, 1.0 - 1e-12)
     return np.array([STANDARD.inv_cdf(p) for p in within.tolist()], dtype=np.float64)
-
-
-def _triangular(uniform: Array, low: float, mode: float, high: float) -> Array:
-    split = (mode - low) / (high - low)
-    left = low + np.sqrt(uniform * (high - low) * (mode - low))
-    right = high - np.sqrt((1.0 - uniform) * (high - low) * (high - mode))
-    return np.where(uniform < split, left, right)

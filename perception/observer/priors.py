@@ -136,7 +136,12 @@ def load_priors() -> Priors:
 def priors_of(variable: Variable) -> Priors:
     """Priors of a variant of the observer: the shipped ones, and an offset for each laboratory and channel."""
     log_scale = math.log(DRIVE_SCALE[variable])
-    shipped = tuple(_moved(prior, log_scale) for prior in load_priors().each)
+    shipped = tuple(
+        replace(prior, unit="own", middle=prior.middle + log_scale)
+        if log_scale and prior.name.endswith("threshold drive")
+        else prior
+        for prior in load_priors().each
+    )
     source = "the spread between laboratories"
     offsets = tuple(
         Prior(f"{place} {channel}", "SD", "linear", 0.0, 1.0, "laboratories", source)
@@ -144,12 +149,6 @@ def priors_of(variable: Variable) -> Priors:
         for channel in CHANNELS
     )
     return Priors((*shipped, *offsets))
-
-
-def _moved(prior: Prior, log_scale: float) -> Prior:
-    if not prior.name.endswith("threshold drive") or log_scale == 0.0:
-        return prior
-    return replace(prior, unit="own", middle=prior.middle + log_scale)
 
 
 def _prior(row: _Row) -> Prior:

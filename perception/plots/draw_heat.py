@@ -110,7 +110,9 @@ def heat(
     number = 9.0 if len(rows) <= 16 else 7.0
     for (i, j), value in np.ndenumerate(values):
         colour = "w" if (value / highest) ** bend > LIGHT_TEXT_FROM else "#222222"
-        axes.text(j, i, cell_text(float(value)), ha="center", va="center", fontsize=number, color=colour)
+        # Two digits at most, as in 100, 9.9 and 0.
+        said = f"{value:.0f}" if value >= 9.95 or value < 0.05 else f"{value:.1f}"
+        axes.text(j, i, said, ha="center", va="center", fontsize=number, color=colour)
     return axes
 
 
@@ -119,11 +121,6 @@ def light_map() -> Colormap:
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("thermicon light", LIGHT)
-
-
-def cell_text(value: float) -> str:
-    """Two digits at most, as in 100, 9.9 and 0."""
-    return f"{value:.0f}" if value >= 9.95 or value < 0.05 else f"{value:.1f}"
 
 
 def short(name: str, most: int = LONGEST_LABEL) -> str:

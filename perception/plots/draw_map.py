@@ -143,7 +143,11 @@ def label_offsets(dots: Array, names: Sequence[str], room: Array, size: float = 
             offset = towards * (np.array([wide, high]) / 2.0 + 5.0 + distance)
             x, y = dots[k] + offset
             box = (x - wide / 2, y - high / 2, x + wide / 2, y + high / 2)
-            covered = sum(_overlap(box, other) for other in boxes)
+            covered = sum(
+                max(0.0, min(box[2], other[2]) - max(box[0], other[0]))
+                * max(0.0, min(box[3], other[3]) - max(box[1], other[1]))
+                for other in boxes
+            )
             hidden = sum(box[0] - 3 < px < box[2] + 3 and box[1] - 3 < py < box[3] + 3 for px, py in dots)
             outside = max(0.0, -box[0]) + max(0.0, -box[1]) + max(0.0, box[2] - room[0]) + max(0.0, box[3] - room[1])
             cost = covered + 400.0 * hidden + 60.0 * outside + distance + 0.5 * (angle % 90 != 0)
@@ -160,8 +164,3 @@ def text_width(text: str, size: float) -> float:
     from matplotlib.textpath import TextPath
 
     return float(TextPath((0.0, 0.0), text, size=size).get_extents().width) if text.strip() else 0.0
-
-
-def _overlap(a: tuple[float, float, float, float], b: tuple[float, float, float, float]) -> float:
-    """Area in which two boxes (left, bottom, right, top) cover one another."""
-    return max(0.0, min(a[2], b[2]) - max(a[0], b[0])) * max(0.0, min(a[3], b[3]) - max(a[1], b[1]))

@@ -196,9 +196,17 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
     """
     from thermicon.circuit.solver.simulate import rows_until
 
+    each: Iterator[tuple[int, BatchResult]]
     parts: dict[int, BatchResult] = {}
     blur = 0.0
-    for number, found in _each_batch(job, workers):
+    if isinstance(workers, str):
+        from .cluster import on_cluster
+
+        each = on_cluster(job, workers)
+    else:
+        # At most two batches per thread are in memory.
+        each = enumerate(in_order(lambda number: run(job, number), range(job.batches), workers or cores()))
+    for number, found in each:
         blur = max(blur, _sampling_error(job, found.confusion))
         # Confusions are most of a batch, and are needed only as their sum.
         parts[number] = replace(found, confusion=found.confusion.sum(axis=0))
@@ -230,16 +238,6 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
             tuple(icon.name for icon in job.icons),
         ),
     )
-
-
-def _each_batch(job: Job, workers: int | str | None) -> Iterator[tuple[int, BatchResult]]:
-    if isinstance(workers, str):
-        from .cluster import on_cluster
-
-        return on_cluster(job, workers)
-    # At most two batches per thread are in memory.
-    each = in_order(lambda number: run(job, number), range(job.batches), workers or cores())
-    return enumerate(each)
 
 
 def _sampling_error(job: Job, confusion: Array, people: int = 1) -> float:

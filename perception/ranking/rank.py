@@ -114,9 +114,11 @@ def rank(
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
-    fine = [] if task.plain else [k for k, trace in enumerate(traces) if objection(trace) is None]
+    fine = [] if task.gap_s is None else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
-    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, model.for_jobs())
+    # Batches need no draws, and of the shipped model nothing, which every worker has.
+    other = replace(model, posterior=None) if model.key else None
+    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, other)
     report = step_counter(progress, 2 + job.batches + draws)
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
@@ -125,7 +127,7 @@ def rank(
     scored, pairs = assemble(members, traces, durations, percepts, felt, chosen, nominal)
     ranking = Ranking(
         version=own_version(),
-        content_hash=_hash(icons, rig, model),
+        content_hash=hashlib.sha256("\0".join([str(icons), rig.document, model.digest]).encode("utf-8")).hexdigest(),
         job=job,
         model=model,
         felt=felt,
@@ -150,9 +152,3 @@ def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None
         felt.thin, crowd, whole, job.norm, model=model, draws=draws, seed=job.seed, task=job.task, step=step
     )
     return replace(ranking, new_laboratory=found)
-
-
-def _hash(icons: IconSet, rig: Rig, model: ObserverModel) -> str:
-    """Hash of everything that was ranked: the icons' canonical text, the rig and the observer's file."""
-    held = "\0".join([str(icons), rig.document, model.digest])
-    return hashlib.sha256(held.encode("utf-8")).hexdigest()

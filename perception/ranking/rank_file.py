@@ -31,7 +31,7 @@ NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_labora
 
 def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
     """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
-    asked = ranking.new_laboratory
+    asked, left = ranking.new_laboratory, ranking.carry_over
     elsewhere: list[dict[str, Any]] = (
         asked.rows(ranking.labels) if asked else [dict.fromkeys(NEW_LABORATORY) for _ in ranking.icons]
     )
@@ -51,7 +51,11 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "content_hash": ranking.content_hash,
             "task": {"gap_s": ranking.task.gap_s},
             "icons": [
-                {**_icon(icon), **intervals, "carry_over": _carried(ranking, place)}
+                {
+                    **_icon(icon),
+                    **intervals,
+                    "carry_over": left and left.worst_of(place, ranking.norm, ranking.task.counted),
+                }
                 for place, (icon, intervals) in enumerate(zip(ranking.icons, elsewhere, strict=True))
             ],
             "pairs": _pairs(ranking),
@@ -140,13 +144,6 @@ def _icon(icon: IconScore) -> dict[str, Any]:
     held: dict[str, Any] = {key: getattr(icon, key) for key in ICON_KEYS}
     held |= {key: dict(zip(AT_RECEPTORS, held[key], strict=True)) for key in TWO_NUMBERS}
     return {**held, "rules": [rule.to_dict() for rule in icon.rules]}
-
-
-def _carried(ranking: Ranking, place: int) -> dict[str, Any] | None:
-    """After which icon this one feels least like itself; None where every icon comes after a long pause."""
-    if ranking.carry_over is None:
-        return None
-    return ranking.carry_over.worst_of(place, ranking.norm, ranking.task.counted)
 
 
 def _map(ranking: Ranking) -> dict[str, Any]:

@@ -150,16 +150,13 @@ def _carries(
     most = max(PARTS, key=lambda part: shares[part])
     size = f"d′ {math.sqrt(shares[most]):.1f} of {total:.1f} for a nominal person"
     if most == "direction":
-        felt = f"{names[0]} {_said(one)}, {names[1]} {_said(other)}"
+        said = (", then ".join(episode.channel for episode in felt) or "nothing" for felt in (one, other))
+        felt = ", ".join(f"{name} {words}" for name, words in zip(names, said, strict=True))
         return f"mostly distinguished by what is felt: {felt}: {size}"
     words, unit = FEATURES[most]
     first, second = (value or 0.0 for value in most_different(one, other, most))
     sizes = f"{names[0]} {_number(first)}, {names[1]} {_number(second)} {unit}"
     return f"mostly distinguished by {words}: {sizes}: {size}"
-
-
-def _said(episodes: Sequence[Episode]) -> str:
-    return ", then ".join(episode.channel for episode in episodes) or "nothing"
 
 
 def _number(value: float) -> str:

@@ -116,13 +116,13 @@ def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
     table = load_rules()
     moved_a, moved_b = directions(a), directions(b)
     shared = tuple(c for c in moved_a if c in moved_b)
-    record = table.one("direction")
-    felt_a, felt_b = _felt(table, a), _felt(table, b)
+    least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
+    felt_a, felt_b = ({c for c in directions(t) if abs(excursion_K(t, c)) >= least[c]} for t in (a, b))
     differ = felt_a != felt_b
     verdict = "differ" if differ else "are the same" if moved_a == moved_b else "differ below the threshold alone"
     words = ", ".join(f"{each.icon or 'the cue'} {direction_words(each)}" for each in (a, b))
     text = f"direction: {words}: directions {verdict}"
-    ours = [_result(record, None, differ, float(differ), float(differ) - 1.0, 1.0, text)]
+    ours = [_result(table.one("direction"), None, differ, float(differ), float(differ) - 1.0, 1.0, text)]
     theirs = []
     for channel in shared:
         gap = abs(excursion_K(a, channel) - excursion_K(b, channel))
@@ -132,7 +132,11 @@ def pair_rules(a: Trace, b: Trace) -> tuple[RuleResult, ...]:
         if rates[0] > 0.0:
             ours.append(_at_least(table.one("rate ratio"), channel, rates[1] / rates[0]))
     ours.append(_onset(table, a, b))
-    return (*theirs, *ours, _any(table.one(DISTINGUISHABLE), ours))
+    passed = [r.rule for r in ours if r.passed]
+    text = f"{DISTINGUISHABLE}: {'by ' + ', '.join(passed) if passed else 'no rule separates the two'}"
+    count = float(len(passed))
+    whole = _result(table.one(DISTINGUISHABLE), None, bool(passed), count, count - 1.0, 1.0, text)
+    return (*theirs, *ours, whole)
 
 
 def rig_rules(rig: Rig) -> tuple[RuleResult, ...]:
@@ -157,12 +161,6 @@ def first_passing(trace: Trace) -> tuple[float, Channel] | None:
     times = [(passing_s(trace, c, table.one("change at the receptor", channel=c).central), c) for c in CHANNELS]
     found = sorted((time, channel) for time, channel in times if time is not None)
     return found[0] if found else None
-
-
-def _felt(table: Table, trace: Trace) -> tuple[Channel, ...]:
-    """Directions in which an icon passes the threshold of the receptor."""
-    least = {channel: table.one("change at the receptor", channel=channel).central for channel in CHANNELS}
-    return tuple(channel for channel in directions(trace) if abs(excursion_K(trace, channel)) >= least[channel])
 
 
 def _latency(record: Record, channel: Channel, onset_s: float | None) -> RuleResult:
@@ -193,13 +191,6 @@ def _onset(table: Table, a: Trace, b: Trace) -> RuleResult:
         text = f"onset: {'only one of the two' if differ else 'neither'} passes the threshold of a receptor"
         return _result(record, channel, differ, None, None, record.central, text)
     return _at_least(record, channel, abs(first[0] - second[0]))
-
-
-def _any(record: Record, ours: list[RuleResult]) -> RuleResult:
-    passed = [r.rule for r in ours if r.passed]
-    text = f"{DISTINGUISHABLE}: {'by ' + ', '.join(passed) if passed else 'no rule separates the two'}"
-    count = float(len(passed))
-    return _result(record, None, bool(passed), count, count - 1.0, 1.0, text)
 
 
 def _at_least(record: Record, channel: Channel, value: float) -> RuleResult:

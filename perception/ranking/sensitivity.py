@@ -227,6 +227,13 @@ def sensitivity(
     names = (*(each.names[k] for k in acting), *(parameter.name for parameter in uncertain.parameters))
     values = np.hstack([each.values[:, acting], np.array(columns).T])
     low, middle, high = np.percentile(each.proportion_correct, [2.5, 50.0, 97.5]).tolist()
+    reductions = []
+    for measurement, constants in load_measurements().items():
+        places = [k for k, name in enumerate(names) if base_name(name) in constants]
+        if places:
+            scores = (each.proportion_correct, each.information_bits)
+            left = (explained_together(values[:, places], what) for what in scores)
+            reductions.append(Reduction(measurement, tuple(names[k] for k in places), *left))
     return Sensitivity(
         rig=rig.name,
         rig_changes=tuple(rig.changes),
@@ -239,7 +246,7 @@ def sensitivity(
         information_bits=float(np.median(each.information_bits)),
         proportion_correct_interval=(low, high),
         effects=_effects(names, values, each, model),
-        reductions=_reductions(names, values, each),
+        reductions=tuple(sorted(reductions, key=lambda r: (-r.proportion_correct, r.measurement))),
     )
 
 
@@ -257,15 +264,3 @@ def _effects(names: tuple[str, ...], values: Array, each: LaboratoryDraws, model
         unit = units.get(base_name(name).removeprefix("cold ").removeprefix("warm "), "")
         found.append(Effect(name, unit, low, high, float(correct[place]), float(bits[place]), *ends))
     return tuple(sorted(found, key=lambda e: (-e.proportion_correct, -e.information_bits, e.constant)))
-
-
-def _reductions(names: tuple[str, ...], values: Array, each: LaboratoryDraws) -> tuple[Reduction, ...]:
-    found = []
-    for measurement, constants in load_measurements().items():
-        places = [k for k, name in enumerate(names) if base_name(name) in constants]
-        if places:
-            shares = (
-                explained_together(values[:, places], what) for what in (each.proportion_correct, each.information_bits)
-            )
-            found.append(Reduction(measurement, tuple(names[k] for k in places), *shares))
-    return tuple(sorted(found, key=lambda r: (-r.proportion_correct, r.measurement)))

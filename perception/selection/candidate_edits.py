@@ -59,10 +59,6 @@ class Number:
         scaled = self.above + factor * (self.value - self.above)
         return float(round(scaled)) if self.field == "count" else scaled
 
-    def ratio_to(self, value: float) -> float:
-        """|log| of the ratio of a new value to the old one."""
-        return abs(math.log((value - self.above) / (self.value - self.above)))
-
 
 def numbers_of(icon: Icon, baseline_C: float) -> tuple[Number, ...]:
     """Every number that can be made larger or smaller, in the order of the text; totals only check and are left out."""
@@ -217,7 +213,8 @@ def _changed(of: Screening, way: Way, w: int, step: int, log: float, digits: int
         new = with_number(icon, number, value)
         return new, line_of(icon, number.path), line_of(new, number.path)
 
-    return _valid(of, place, made, number.ratio_to(value), w, step)
+    ratio = abs(math.log((value - number.above) / (number.value - number.above)))
+    return _valid(of, place, made, ratio, w, step)
 
 
 def _repeats(of: Screening, place: int) -> list[CandidateEdit]:

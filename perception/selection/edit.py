@@ -141,6 +141,8 @@ def cheapest_edits(ranking: Ranking, which: str = "worst") -> dict[tuple[str, st
 
 def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | NoEdit:
     """The cheapest offer that people confirm; each one that they do not confirm moves the target of the next."""
+    from thermicon.icons import parse
+
     (i, j), job, before, nominal = pair, ranking.job, ranking.d_prime, ranking.model.nominal
     kept = Pool.of(job.icons, job.rig, nominal)
     now = kept.dprimes(kept, job.norm, nominal)
@@ -164,7 +166,7 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         one = offered[0]
         end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], POOL_HZ))
         parted, harmed = _with_people(ranking, screening, one, crowd, rigs, end_s)
-        if parted >= wanted and not harmed and _reads_back(one.icon):
+        if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
             recounted = _recounted(ranking, one, crowd, rigs, end_s)
             return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
         vain.opposed |= harmed
@@ -193,8 +195,12 @@ def _with_people(
         return np.asarray(np.median(memory_dprime(felt, job.norm, crowd.memory, nominal, task), axis=0))
 
     i, j = screening.pair
-    if job.task.plain:
-        others = [j if one.place == i else i, *_near(screening, one)]
+    if job.task.gap_s is None:
+        # Icons that the edit brings nearer for the nominal person, those that end nearest.
+        row, now, most = one.apart, screening.now[one.place], NEAR * screening.wanted
+        nearer = [k for k in range(len(row)) if k not in screening.pair and row[k] < now[k] and row[k] < most]
+        near = sorted(nearer, key=lambda k: (float(row[k]), k))[:MOST_NEAR]
+        others = [j if one.place == i else i, *near]
         after = medians([one.icon, *(job.icons[k] for k in others)], USUAL)[0, 1:]
         return float(after[0]), bool(worse(before[one.place, others[1:]], after[1:], screening.wanted).any())
     # The range, and what is left behind, move every pair of the set.
@@ -204,13 +210,6 @@ def _with_people(
     rest = np.triu(np.ones_like(after, dtype=bool), 1)
     rest[min(i, j), max(i, j)] = False
     return float(after[i, j]), bool(worse(before[rest], after[rest], screening.wanted).any())
-
-
-def _near(screening: Screening, one: CandidateEdit) -> list[int]:
-    """Icons that an edit brings nearer for the nominal person, those that end nearest; people are asked of them."""
-    row, now, most = one.apart, screening.now[one.place], NEAR * screening.wanted
-    nearer = [k for k in range(len(row)) if k not in screening.pair and row[k] < now[k] and row[k] < most]
-    return sorted(nearer, key=lambda k: (float(row[k]), k))[:MOST_NEAR]
 
 
 def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, rigs: Sequence[Rig], end_s: float) -> float:
@@ -228,9 +227,3 @@ def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, rigs: Sequen
     )
     before, after = felt.episodes.counts.T
     return float((before != after).mean())
-
-
-def _reads_back(icon: Icon) -> bool:
-    from thermicon.icons import parse
-
-    return parse(str(icon))[icon.name].statements == icon.statements

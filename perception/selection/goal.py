@@ -173,13 +173,8 @@ class Goal:
 
     def check_draws(self, draws: int) -> None:
         """Raise a GoalError for a goal for a share of people without draws of the posterior to judge it by."""
-        if self.single_people and not draws:
+        if any(part.people is not None for part in self.parts) and not draws:
             raise GoalError(NEEDS_DRAWS)
-
-    @property
-    def single_people(self) -> bool:
-        """Whether a part is about a share of people, which takes draws of the posterior to judge."""
-        return any(part.people is not None for part in self.parts)
 
     @property
     def text(self) -> str:

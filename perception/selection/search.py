@@ -26,7 +26,7 @@ from .appraise import Appraisal, appraise
 from .candidates import at_ends, found_set, names_of
 from .goal import Goal, GoalPart
 from .request import OBJECTIVES, ChoiceError, Objective
-from .search_run import Evaluator, SearchRun
+from .search_run import PEOPLE, Evaluator, SearchRun
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -162,10 +162,14 @@ def search(
         count = int(wanted.of("count") or 0)
     run, model = SearchRun(icons, count), ObserverModel.of(observer)
     nominal = Evaluator(rig, objective, check_norm(norm), seed, model.nominal, tracking, wanted)
-    few = nominal.with_people(model)
-    draws, parts = model.draw_count(parameters, DRAWS), _judged_by(wanted)
+    first = model.people(PEOPLE, seed)
+    few = replace(nominal, rigs=tuple(first.rigs(rig)), crowd=first)
+    draws, parts = model.draw_count(parameters, DRAWS), list[GoalPart]()
     if wanted is not None:
         wanted.check_draws(draws)
+        # Those for a share of people first.
+        judged = [part for part in wanted.parts if part.quantity in JUDGED or part.people is not None]
+        parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
     how: dict[str, Any] = {"seed": seed, "tracking": tracking, "norm": norm}
     crowd = model.people(people, seed)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
@@ -206,13 +210,6 @@ def search(
         finalists=len(finalists),
         chosen_by=" and ".join(part.quantity + part.whose for part in parts) or objective,
     )
-
-
-def _judged_by(goal: Goal | None) -> tuple[GoalPart, ...]:
-    """Parts of a goal that sets are judged by, those for a share of people first."""
-    held = () if goal is None else goal.parts
-    some = [part for part in held if part.quantity in JUDGED or part.people is not None]
-    return tuple(sorted(some, key=lambda part: (part.people is None, -(part.people or 0.0))))
 
 
 def _merit(

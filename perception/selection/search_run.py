@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,6 @@ from ..arrays import Array
 from ..identification.population import ReceptorTemperatures, memory_dprime, respond
 from ..identification.task import USUAL
 from ..observer.observer import Norm, Observer
-from ..observer.observer_model import ObserverModel
 from ..observer.people import People
 from .candidates import Candidate, sample_candidates
 from .goal import Goal
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon, IconSet
 
 PEOPLE = 24
+"""Of the seed the first, who differ in contact, skin and thresholds."""
 SAMPLED = 400
 """Listed icons that a search starts from, at most; of more, so many are drawn."""
 SHRINK, FINEST = 0.85, 0.005
@@ -48,11 +48,6 @@ class Evaluator:
     goal: Goal | None = None
     rigs: tuple[Rig, ...] = ()
     crowd: People | None = None
-
-    def with_people(self, model: ObserverModel) -> Evaluator:
-        """The first 24 people of the seed, who differ in contact, skin and thresholds."""
-        crowd = model.people(PEOPLE, self.seed)
-        return replace(self, rigs=tuple(crowd.rigs(self.rig)), crowd=crowd)
 
     @property
     def totals(self) -> tuple[float | None, float | None]:
