@@ -14,8 +14,10 @@ SURE = (
     *("--set", f'uncertainty.reason="{WHY}"'),
 )
 """The same as options of a command."""
+CERTAIN: dict[str, object] = {**{f"uncertainty.{key}": 0 for key in KEYS}, "uncertainty.reason": WHY}
+"""The same as changes of a rig."""
 
 
 def sure_rig(name: str = "thenar") -> Rig:
     """The rig of that name without any uncertainty."""
-    return Rig.load(name).with_(**{f"uncertainty.{key}": 0 for key in KEYS}, **{"uncertainty.reason": WHY})
+    return Rig.load(name).with_(**CERTAIN)

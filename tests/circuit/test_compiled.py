@@ -21,8 +21,7 @@ import pytest
 from thermicon.circuit import compiled
 from thermicon.icons.atomic import NotPrivate, private_folder
 
-POSIX = sys.platform != "win32"
-
+ONLY_POSIX = pytest.mark.skipif(sys.platform == "win32", reason="owners and modes are those of POSIX")
 
 STARTER = """
 import os, signal, sys
@@ -120,27 +119,27 @@ def test_machine_code_is_kept_and_read_again(run: Run, sources: Path, cache: Pat
     names = {path.name.partition("-")[0] for path in kept_of(cache).rglob("*.nb?")}
     assert names == {"inner.part", "outer.total"}
     assert not list(sources.rglob("*.nb?"))
+    (cache / "file").write_text("")  # without a place it is compiled in memory, which is said once
+    value, hits, said = run(sources, cache / "file" / "cache")
+    assert (value, hits, len(said.splitlines())) == (7.0, 0, 1)
+    assert said.startswith("compiled code cannot be stored, so that every run compiles it again: ")
 
 
-def test_other_sources_or_versions_have_a_folder_of_their_own(tmp_path: Path) -> None:
-    here = [tmp_path / name for name in ("a.py", "b.py")]
-    for path in here:
-        path.write_text("X = 1\n")
-    digest = compiled.digest_of(here)
-    assert digest == compiled.digest_of(reversed(here))
-    here[1].write_text("X = 2\n")
-    assert digest != compiled.digest_of(here)
-
-
-def test_the_digest_covers_all_that_is_compiled_and_its_constants() -> None:
+def test_the_digest_covers_all_that_is_compiled_and_its_constants(tmp_path: Path) -> None:
     root = Path(compiled.__file__).parents[1]
     covered = {path for one in compiled.SOURCES for path in root.glob(one)}
     assert all(any(root.glob(one)) for one in compiled.SOURCES)
+    one, other = Path(__file__), tmp_path / "b.py"
+    other.write_text("X = 1\n")
+    digest = compiled.digest_of([one, other])
+    assert digest == compiled.digest_of([other, one])
+    other.write_text("X = 2\n")
+    assert digest != compiled.digest_of([one, other])
     compiling = 0
     for path in (path for package in ("circuit", "perception") for path in (root / package).rglob("*.py")):
         text = path.read_text(encoding="utf-8")
-        own = path.name == "compiled.py" or ("njit" not in text and "cache=True" not in text)
-        assert own, f"{path}: use thermicon.circuit.compiled.kernel"
+        foreign = path.name != "compiled.py" and ("njit" in text or "cache=True" in text)
+        assert not foreign, f"{path}: use thermicon.circuit.compiled.kernel"
         if "compiled" not in text and "vectorised" not in text:
             continue
         imports = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.ImportFrom)]
@@ -165,7 +164,7 @@ class Evil:
         return os.mkdir, (str(self.mark),)
 
 
-@pytest.mark.skipif(not POSIX, reason="owners and modes are those of POSIX")
+@ONLY_POSIX
 @pytest.mark.parametrize("how", ["written", "entered", "planted"])
 def test_what_others_can_write_is_never_read(run: Run, sources: Path, cache: Path, tmp_path: Path, how: str) -> None:
     mark, folder = tmp_path / "mark", kept_of(cache)
@@ -217,15 +216,7 @@ def test_other_users_of_numba_keep_their_folder(monkeypatch: pytest.MonkeyPatch,
     assert not (tmp_path / "theirs").exists()
 
 
-def test_without_a_place_it_is_compiled_in_memory_and_said_once(run: Run, sources: Path, tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    value, hits, said = run(sources, tmp_path / "file" / "cache")
-    assert (value, hits) == (7.0, 0)
-    assert said.startswith("compiled code cannot be stored, so that every run compiles it again: ")
-    assert len(said.splitlines()) == 1
-
-
-@pytest.mark.skipif(not POSIX, reason="owners and modes are those of POSIX")
+@ONLY_POSIX
 def test_a_private_folder_has_private_folders_above(tmp_path: Path) -> None:
     open_ = tmp_path / "open"
     open_.mkdir()

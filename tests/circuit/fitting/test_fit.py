@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -47,9 +46,6 @@ def test_contact_and_module_are_found_from_display_and_voltage(fitted: RigFit, l
     assert voltage.rms == pytest.approx(0.005, rel=0.1)
     assert abs(display.largest) > 2 * display.rms and display.run == log.name
     assert fitted.notes == ()
-
-
-def test_the_fit_is_a_table(fitted: RigFit) -> None:
     frame = fitted.to_frame()
     assert list(frame["key"]) == KEYS
     assert (frame["low"] < frame["value"]).all() and (frame["value"] < frame["high"]).all()
@@ -73,13 +69,8 @@ def test_the_measurement_that_would_help_is_named_with_its_gain(true_rig: Rig) -
     log = synthetic_log(true_rig, seed=5, rate_Hz=20.0, columns=["display_C"])
     hot = "module.hot_plate_J_per_K"
     plates = [hot, "module.cold_plate_J_per_K"]
-    free = [
-        *KEYS,
-        "module.thermal_resistance_K_per_W",
-        *plates,
-        "heat_sink.resistance_K_per_W",
-        "heat_sink.temperature_C",
-    ]
+    sink = ["heat_sink.resistance_K_per_W", "heat_sink.temperature_C"]
+    free = [*KEYS, "module.thermal_resistance_K_per_W", *plates, *sink]
     found = fit(log, true_rig, free=free, fixed_skin=True)
     assert hot in {item.key for item in found.unidentified}
     assert "log hot_plate_C as well: it would then be known to about ±" in found[hot].cure
@@ -92,9 +83,8 @@ def test_the_measurement_that_would_help_is_named_with_its_gain(true_rig: Rig) -
 @pytest.mark.slow
 def test_two_clocks_one_shifted_and_one_that_drifts(true_rig: Rig, thenar: Rig, log: Log) -> None:
     columns = dict(log.columns)
-    drive = Log.of(
-        "daq.csv", {"time_s": log.time_s, "current_A": columns["current_A"], "voltage_V": columns["voltage_V"]}
-    )
+    electric = {name: columns[name] for name in ("current_A", "voltage_V")}
+    drive = Log.of("daq.csv", {"time_s": log.time_s, **electric})
     time = (log.time_s[40:] + 812.3) / (1 + 1e-4)
     meter = Log.of("thermometer.csv", {"time_s": time, "display_C": columns["display_C"][40:]})
     found = fit([drive, meter], thenar, free=KEYS)
@@ -139,12 +129,9 @@ def test_a_command_can_drive_in_place_of_the_current(true_rig: Rig, log: Log) ->
     columns = {"time_s": log.time_s, **dict(log.columns)}
     command = {**columns, "command_V": columns["current_A"] / 0.15}
     del command["current_A"]
-    gained = fit(
-        Log.of("command.csv", command),
-        true_rig.with_(**{"driver.transconductance_A_per_V": 0.14}),
-        free=["driver.transconductance_A_per_V"],
-    )
-    holds(gained, {"driver.transconductance_A_per_V": 0.15}, slack=3.0)
+    gain = "driver.transconductance_A_per_V"
+    gained = fit(Log.of("command.csv", command), true_rig.with_(**{gain: 0.14}), free=[gain])
+    holds(gained, {gain: 0.15}, slack=3.0)
     assert gained.rig.uncertainty.gain_relative == 0.05
 
 
@@ -191,13 +178,6 @@ def test_residuals_that_are_alike_widen_the_intervals(true_rig: Rig, thenar: Rig
     assert any("neighbouring residuals are alike" in note for note in found.notes)
 
 
-def test_the_same_seed_gives_the_same_log(true_rig: Rig) -> None:
-    first, second = (synthetic_log(true_rig, seed=1, rate_Hz=5.0) for _ in range(2))
-    assert all(np.array_equal(a[1], b[1]) for a, b in zip(first.columns, second.columns, strict=True))
-    assert calibration_icon().corners(32.0).duration_s == pytest.approx(60.0, abs=1e-3)
-    assert replace(first, name="b").name == "b"
-
-
 @pytest.fixture(scope="module")
 def trace(true_rig: Rig) -> Trace:
     return simulate(calibration_icon(), true_rig, rate_Hz=20.0)
@@ -209,11 +189,8 @@ def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> 
     found = overlay(trace, late)
     assert found.shift_s == pytest.approx(shift, abs=0.01)
     display = next(each for each in found.columns if each.column == "display_C")
-    assert display.rms == pytest.approx(
-        float(np.std(display.difference) ** 2 + np.mean(display.difference) ** 2) ** 0.5
-    )
+    assert display.rms == pytest.approx(float(np.mean(display.difference**2)) ** 0.5)
     assert abs(display.largest) == pytest.approx(float(np.abs(display.difference).max()))
-    assert "late.csv" in repr(found)
 
 
 def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:

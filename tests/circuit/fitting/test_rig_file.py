@@ -74,8 +74,8 @@ def test_a_fit_that_misses_the_log_never_narrows_what_the_gate_varies(log: Log, 
 
 def test_a_log_of_another_site_leaves_what_it_cannot_say(log: Log, thenar: Rig) -> None:
     fingertip = Rig.load("fingertip").with_(**{"driver.update_Hz": 20})
-    found = fit(log, fingertip, free=["contact.resistance_m2K_per_W", "module.seebeck_V_per_K"],
-                fixed_skin=True)  # fmt: skip
+    free = ["contact.resistance_m2K_per_W", "module.seebeck_V_per_K"]
+    found = fit(log, fingertip, free=free, fixed_skin=True)
     assert "contact.resistance_m2K_per_W" in {item.key for item in found.unidentified}
     assert found.rig.contact == fingertip.contact
     assert found.misfit
@@ -98,18 +98,15 @@ def test_a_second_fit_replaces_the_note_of_the_first(fitted: RigFit, thenar: Rig
     again.save(tmp_path / "again.toml")
     notes = [note for note in Rig.load(tmp_path / "again.toml").notes if note.startswith("fitted:")]
     assert len(notes) == 1 and notes[0].startswith("fitted: contact.resistance_m2K_per_W;")
+    with pytest.raises(FitError, match=r"mine.txt: the name of a rig file ends in .toml; call it mine.txt.toml"):
+        fitted.save(tmp_path / "mine.txt")
 
 
 def test_a_voltage_alone_leaves_the_uncertainty_as_it_was(log: Log, thenar: Rig, tmp_path: Path) -> None:
-    drive = {"current_A": log.column("current_A"), "voltage_V": log.column("voltage_V")}
-    frame = pd.DataFrame({"time_s": log.time_s, **drive})
-    frame.to_csv(tmp_path / "volts.csv", index=False)
-    found = fit(
-        str(tmp_path / "volts.csv"),
-        thenar,
-        free=["contact.resistance_m2K_per_W", "module.resistance_ohm"],
-        fixed_skin=True,
-    )
+    columns = {name: log.column(name) for name in ("current_A", "voltage_V")}
+    pd.DataFrame({"time_s": log.time_s, **columns}).to_csv(tmp_path / "volts.csv", index=False)
+    free = ["contact.resistance_m2K_per_W", "module.resistance_ohm"]
+    found = fit(str(tmp_path / "volts.csv"), thenar, free=free, fixed_skin=True)
     assert found.rig.uncertainty == thenar.uncertainty
     assert any("no temperature was logged" in note for note in found.notes)
 
@@ -119,8 +116,3 @@ def test_both_plates_must_be_fitted_to_claim_less(log: Log, thenar: Rig, true_ri
     both = fit(log, true_rig, free=["module.cold_plate_J_per_K", "module.hot_plate_J_per_K"], fixed_skin=True)
     assert one.rig.uncertainty.plates_relative == thenar.uncertainty.plates_relative
     assert both.rig.uncertainty.plates_relative < thenar.uncertainty.plates_relative
-
-
-def test_a_rig_file_ends_in_toml(fitted: RigFit, tmp_path: Path) -> None:
-    with pytest.raises(FitError, match=r"mine.txt: the name of a rig file ends in .toml; call it mine.txt.toml"):
-        fitted.save(tmp_path / "mine.txt")

@@ -1,13 +1,19 @@
-"""The Peltier module against its closed forms, and its parameters from data sheets against published extractions."""
+"""The Peltier module against its closed forms, its parameters from data sheets against published extractions, and
+three ways of giving it in a rig: by parameters, by data sheets or by name, never two at once.
+"""
 
 from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders import missing
 from tests.peltier import coldest_C, greatest_difference_A, heat_rejected_W
+from thermicon.circuit import Rig
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Datasheet, Extraction, Peltier, at_mean_C
-from thermicon.circuit.rig.modules import load_module, module_names, module_table
+from thermicon.circuit.rig.modules import build_of, load_module, module_names, module_table
+from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.solver.network import current_for_heat_A, greatest_cooling_A, hot_plate_C
 
 MODULE = Peltier(0.0521, 6.35, 1 / 0.1524, 2.6, 2.6)
@@ -19,7 +25,8 @@ def sheet_of(current: float, voltage: float, span: float, hot: float, heat: floa
 
 
 def made(found: Extraction) -> Peltier:
-    return Peltier(found.seebeck_V_per_K, found.resistance_ohm, found.thermal_resistance_K_per_W, 1.0, 1.0)
+    """The module of an extraction with the plates of the thenar rig."""
+    return Peltier(found.seebeck_V_per_K, found.resistance_ohm, found.thermal_resistance_K_per_W, 2.6, 2.6)
 
 
 def greatest_W(module: Peltier, cold_C: float, hot_C: float) -> float:
@@ -39,15 +46,10 @@ def test_most_heat_is_the_closed_form() -> None:
 def test_best_coefficient_of_performance_is_the_closed_form() -> None:
     currents = np.linspace(0.05, 1.0, 200_001)
     power = MODULE.voltage_V(currents, TC, TH) * currents
+    assert power == pytest.approx(heat_rejected_W(MODULE, currents, TC, TH) - MODULE.heat_absorbed_W(currents, TC, TH))
     ratio = MODULE.heat_absorbed_W(currents, TC, TH) / power
     assert ratio.max() == pytest.approx(3.08797, abs=1e-5)
     assert currents[ratio.argmax()] == pytest.approx(0.29658, abs=1e-5)
-
-
-def test_electrical_power_is_the_difference_of_the_heats() -> None:
-    current = 0.7
-    power = MODULE.voltage_V(current, TC, TH) * current
-    assert power == pytest.approx(heat_rejected_W(MODULE, current, TC, TH) - MODULE.heat_absorbed_W(current, TC, TH))
 
 
 @pytest.mark.parametrize("field", [field.name for field in fields(Peltier)])
@@ -76,11 +78,8 @@ def test_current_for_heat_absorbs_that_heat_at_the_low_root(heat: float) -> None
     current = current_for_heat_A(heat, TC, base, total, 0.0521, 6.35, 0.1524, greatest, 0.0, 1e-13)
     assert current < greatest
     assert MODULE.heat_absorbed_W(current, TC, hot_plate_C(current, base, total, 0.0521, 6.35)) == pytest.approx(heat)
-
-
-def test_more_heat_than_the_module_can_absorb_gives_the_current_of_greatest_cooling() -> None:
-    base, total = _plates(TC, 5.0)
-    assert current_for_heat_A(50.0, TC, base, total, 0.0521, 6.35, 0.1524, 2.2, 0.0, 1e-13) == 2.2
+    too_much = current_for_heat_A(50.0, TC, base, total, 0.0521, 6.35, 0.1524, greatest, 0.0, 1e-13)
+    assert too_much == greatest
 
 
 def test_greatest_difference_is_where_no_heat_is_absorbed_any_more() -> None:
@@ -167,3 +166,116 @@ def test_every_shipped_module_has_its_source_and_one_is_no_data_sheet() -> None:
     (record,) = (record for record in module_table() if record.get("module") == "TE-127-1.0-2.5")
     assert "no datasheet was seen" in record.source
     assert record.confidence == "low"
+
+
+THENAR = Rig.load("thenar")
+TEC = {"i_max_A": 6.4, "v_max_V": 14.4, "dt_max_K": 66, "t_hot_C": 25, "q_max_W": 50}
+TEC_WARM = {"i_max_A": 6.4, "v_max_V": 16.4, "dt_max_K": 75, "t_hot_C": 50, "q_max_W": 57}
+GIVEN = "seebeck_V_per_K = 0.0521\nresistance_ohm = 6.35\nthermal_resistance_K_per_W = 6.56\n"
+
+
+def _parameters(rig: Rig) -> tuple[float, float, float]:
+    return (rig.module.seebeck_V_per_K, rig.module.resistance_ohm, rig.module.thermal_resistance_K_per_W)
+
+
+def _file(tmp_path: Path, module: str) -> Path:
+    text = (Path(__file__).parents[3] / "circuit/rigs/thenar.toml").read_text("utf-8")
+    path = tmp_path / "mine.toml"
+    path.write_text(text.replace(GIVEN, module), "utf-8")
+    return path
+
+
+def test_a_whole_list_of_sheets_replaces_the_parameters() -> None:
+    rig = THENAR.with_(**{"module.datasheet": [TEC]})
+    assert rig.module == made(Datasheet(**TEC).four_figures())
+    with pytest.raises(RigError, match=r"no such data sheet; there are 0 \(hot side at 25 °C\)"):
+        rig.with_(**{"module.datasheet.1.i_max_A": 3})
+    assert rig.module_source.startswith("data sheet given in the rig (no source stated): four figures with the hot")
+    weaker = Datasheet(**{**TEC, "q_max_W": 48}).four_figures()
+    assert rig.with_(**{"module.datasheet.0.q_max_W": 48}).module == made(weaker)
+    assert rig.with_(**{"module.hot_plate_J_per_K": 9}).module.hot_plate_J_per_K == 9
+    assert THENAR.module_source.startswith("parameters given: TE-127-1.0-2.5, derived from its leg geometry")
+    changed = THENAR.with_(**{"module.resistance_ohm": 6.0})
+    assert (changed.module.resistance_ohm, changed.module_source) == (6.0, "parameters given: no source stated")
+    assert THENAR.with_(**{"module.resistance_ohm": 6.35}) == THENAR
+
+
+def test_without_qmax_three_figures() -> None:
+    sheet = {key: value for key, value in TEC.items() if key != "q_max_W"}
+    silent = THENAR.with_(**{"module.datasheet": [sheet]})
+    assert silent.module == made(Datasheet(**TEC).three_figures())
+    assert silent.module_source.endswith("three figures with the hot side at 25 °C, no Qmax to check them against.")
+    assert silent.warnings == ()
+    mixed = THENAR.with_(**{"module.datasheet": [sheet, TEC_WARM]})
+    assert "three figures with the hot side at 25 and 50 °C" in mixed.module_source
+
+
+def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:
+    found = [Datasheet(**sheet).four_figures() for sheet in (TEC, TEC_WARM)]
+    rig = THENAR.with_(**{"module.datasheet": [TEC, TEC_WARM], "heat_sink.temperature_C": 25})
+    assert _parameters(rig) == pytest.approx(at_mean_C(found, 28.5))
+    assert found[0].seebeck_V_per_K < rig.module.seebeck_V_per_K < found[1].seebeck_V_per_K
+    assert rig.module_source.endswith("Qmax reproduced, taken at a mean module temperature of 28.5 °C.")
+    assert rig.warnings == ()
+    warm = rig.with_(**{"heat_sink.temperature_C": 40})
+    assert _parameters(warm) == pytest.approx(at_mean_C(found[1:], 0.0))
+    (said,) = warm.warnings
+    words = ["36.0 °C, lies above the 8.5 … 31.2 °C", "by up to 2.3 %", "[[module.datasheet]] of a hotter"]
+    assert not missing(words, said)
+    named = THENAR.with_(**{"module.name": "TEC1-12706"}).warnings[0]
+    assert "by up to 2.3 %: where that matters, fit the module to a log" in named
+    assert "lies below the 8.5" in rig.with_(**{"heat_sink.temperature_C": -20}).warnings[0]
+
+
+@pytest.mark.parametrize("name", module_names())
+def test_every_shipped_module_serves_a_rig_by_name(name: str) -> None:
+    rig = THENAR.with_(**{"module.name": name})
+    found = [sheet.four_figures() for sheet in load_module(name)]
+    assert _parameters(rig) == pytest.approx(at_mean_C(found, 36.0))
+    assert rig.module_source.startswith(f"{name}, ")
+    assert "Qmax reproduced" in rig.module_source
+    derived = [text for text in rig.warnings if "no datasheet was seen" in text]
+    assert bool(derived) == (name == "TE-127-1.0-2.5")
+
+
+def test_a_module_by_name_brings_its_plates_unless_others_are_set_with_it() -> None:
+    named = THENAR.with_(**{"module.name": "TEC1-12706"})
+    assert (named.module.hot_plate_J_per_K, named.module.cold_plate_J_per_K) == (4.6, 4.6)
+    assert "plates of 4.6 J/K a side (assumed from its footprint)" in named.module_source
+    own = THENAR.with_(**{"module.name": "TEC1-12706", "module.cold_plate_J_per_K": 5.5})
+    assert (own.module.hot_plate_J_per_K, own.module.cold_plate_J_per_K) == (4.6, 5.5)
+    assert "plates of" not in own.module_source
+    assert named.with_(**{"module.datasheet": [TEC]}).module.hot_plate_J_per_K == 4.6
+
+
+def test_plates_on_record_are_alumina_over_the_footprint_with_half_the_legs() -> None:
+    alumina = 3.9 * 0.88 * 0.065  # J/(K·cm²) of a plate of 0.65 mm
+    legs = 2 * 127 * 0.1 * 0.1 * 0.25 * 7.7 * 0.154 / 2 / 9.0  # Bi2Te3 of the shipped rigs' module, half of it a side
+    for name in module_names():
+        build = build_of(name)
+        if build.face_cm2 is None:
+            assert build.plate_J_per_K is None
+            continue
+        assert build.plate_J_per_K == pytest.approx(0.29 * build.face_cm2, rel=0.02)
+        assert alumina + legs < build.plate_J_per_K / build.face_cm2 < 1.2 * (alumina + legs)  # the rest is copper
+
+
+def test_a_file_that_names_no_module_or_one_twice(tmp_path: Path) -> None:
+    with pytest.raises(RigError, match=r"module: no module is stated; give seebeck_V_per_K, .* shipped module"):
+        Rig.load(_file(tmp_path, ""))
+    with pytest.raises(RigError, match=r"seebeck_V_per_K and name are two ways of giving it; keep one"):
+        Rig.load(_file(tmp_path, GIVEN + 'name = "CP60340"\n'))
+    with pytest.raises(RigError) as caught:
+        Rig.load(_file(tmp_path, "seebeck_V_per_K = 0.0521\n"))
+    assert [line.partition(": ")[2] for line in str(caught.value).splitlines()] == [
+        "module.resistance_ohm is missing; add it, in Ω",
+        "module.thermal_resistance_K_per_W is missing; add it, in K/W",
+    ]
+
+
+def test_more_contact_than_the_face_of_a_module_that_stays_is_warned_of(tmp_path: Path) -> None:
+    THENAR.with_(module={"name": "TEC1-12706"}, contact={"area_cm2": 16.0}).save(tmp_path / "hand.toml")
+    own = Rig.load(tmp_path / "hand.toml")
+    larger = own.with_(**{"contact.area_cm2": 18.0})
+    assert any("contact.area_cm2 = 18 cm² is more than its face of 16 cm²" in text for text in larger.warnings)
+    assert not any("more than its face" in text for text in own.warnings)

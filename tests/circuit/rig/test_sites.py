@@ -56,12 +56,9 @@ def test_two_perfused_layers_rest_where_the_closed_form_says() -> None:
 def test_layers_of_the_sites() -> None:
     horny = {name: Rig.load(name).skin.layers[0].thickness_m * 1e3 for name in SITES}
     assert horny == pytest.approx({"thenar": 0.17, "fingertip": 0.30, "forearm": 0.022, "hand-dorsum": 0.029})
-    forearm = Rig.load("forearm").skin.layers
-    assert forearm[1].thickness_m == pytest.approx(0.08e-3)
-    assert 1.2e-3 <= forearm[2].thickness_m <= 2e-3
-    assert forearm[2].perfusion_per_s == pytest.approx(1.1e-3)
-    for name in SITES:
-        assert Rig.load(name).skin.layers[3:] == THENAR.skin.layers[3:]
+    assert Rig.load("forearm").skin.layers[2].perfusion_per_s == pytest.approx(1.1e-3)
+    # A limb colder than the sun-warmed skin over it: no error, since such a rig can be built and simulated.
+    assert "taken up by bare skin" in THENAR.with_(**{"skin.deep_C": 30.0}).about()
 
 
 @pytest.mark.parametrize("name", [*SITES, "from the base"])
@@ -82,13 +79,6 @@ def test_receptor_depths_in_both_conventions() -> None:
     assert SHANI.skin.receptor_words() == "cold 0.15 mm, warm 0.3 mm below the surface"
 
 
-def test_rest_warmer_than_blood_is_possible_and_warned_of() -> None:
-    # A limb colder than the sun-warmed skin over it: no error, since such a rig can be built and simulated.
-    rig = THENAR.with_(**{"skin.deep_C": 30.0})
-    assert rig.resting_flux_W_per_m2 > 0
-    assert "taken up by bare skin" in rig.about()
-
-
 def test_what_shani2021_says_of_itself_is_so() -> None:
     said = " ".join(SHANI.notes)
     cue = load_library("cooling-step-skin")["cooling-step"]
@@ -106,8 +96,7 @@ def test_what_shani2021_says_of_itself_is_so() -> None:
             cue, SHANI.with_(**{"driver.current_limit_A": limit, "driver.voltage_limit_V": 1000.0}), rate_Hz=10
         ).reachable
     )
-    assert cools is not None
-    assert both is not None
+    assert cools is not None and both is not None
     for words in (
         f"lets {-SHANI.resting_flux_W_per_m2:.0f} W/m² flow",
         f"(film 12 to 8 W/m²K) it would rest at {low:.1f} to {high:.1f} °C",

@@ -9,10 +9,9 @@ import numpy as np
 from thermicon.circuit.arrays import Array
 from thermicon.circuit.rig.rig import Rig
 from thermicon.circuit.safety.corners import Corner
-from thermicon.circuit.safety.current import ENDINGS, without_power
+from thermicon.circuit.safety.current import without_power
 from thermicon.circuit.safety.ensemble import Ensemble
 from thermicon.circuit.safety.plant import ENDING_ROWS_S, ENDING_S
-from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.drive import Drive
 
 
@@ -28,26 +27,8 @@ class Futures:
     time_s: Array
     values: Array
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """A few words for every scenario, in the order of `columns`."""
-        return tuple(f"{corner}, then {ending}" for ending in ENDINGS for corner in self.corners)
 
-    @property
-    def columns(self) -> dict[str, Array]:
-        """Each of WATCHED as (endings · corners, rows)."""
-        flat = self.values.reshape(len(WATCHED), -1, len(self.time_s))
-        return dict(zip(WATCHED, flat, strict=True))
-
-
-def play_out(
-    drive: Drive,
-    rig: Rig,
-    *,
-    rest_A: float | None = None,
-    bridge_A: float | None = None,
-    ending_s: float = ENDING_S,
-) -> Futures:
+def play_out(drive: Drive, rig: Rig, *, rest_A: float | None = None, bridge_A: float | None = None) -> Futures:
     """Play a drive in every corner and follow it through every ending.
 
     `rest_A` holds the steady state before; None: the drive's first current. `bridge_A` says that the current comes from
@@ -63,7 +44,7 @@ def play_out(
         skip = 1 if times else 0
         times.append(rows[skip:])
         parts.append(values[:, :, skip:])
-    after = np.append(ENDING_ROWS_S[ending_s - 1e-9 > ENDING_ROWS_S], ending_s)
+    after = np.append(ENDING_ROWS_S[ENDING_S - 1e-9 > ENDING_ROWS_S], ENDING_S)
     cue, end = np.concatenate(parts, axis=2), float(drive.time_s[-1])
     endings = [ensemble.hold(float(drive.current_A[-1]), state, after)[0], ensemble.hold(0.0, state, after)[0]]
     endings.append(endings[1] if ensemble.ideal else without_power(ensemble, state, after)[0])

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.circuit.delivery.one_drive import worst_case
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Limits, Rig, gate
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.rig.uncertainty import Uncertainty
 from thermicon.circuit.safety import playmap
 from thermicon.circuit.safety.checks import Before
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
@@ -20,10 +20,6 @@ from thermicon.circuit.solver.batch_inputs import State
 from thermicon.icons import parse
 
 THENAR = Rig.load("thenar")
-SURE: dict[str, object] = {
-    **{f"uncertainty.{key}": 0 for key in Uncertainty.model_fields if key != "reason"},
-    "uncertainty.reason": "a test that needs the rig as given",
-}
 CONTROLLED = THENAR.with_(
     **{"heat_sink.capacity_J_per_K": 60.0, "heat_sink.kp_W_per_K": 8.0, "heat_sink.ki_W_per_Ks": 1.0,
        "heat_sink.power_limit_W": 9.0}
@@ -110,10 +106,12 @@ def test_recovery_is_when_display_and_skin_are_back() -> None:
     ensemble = few()
     start = ensemble.at_rest(REST)
     end = ensemble.end_of(COOL, start)
-    found = recovery_s(CurrentPlant.of(ensemble), PLAYS[0], start, end)
+    plant = CurrentPlant.of(ensemble)
+    found = recovery_s(plant, PLAYS[0], start, end)
     times = np.arange(0.0, 2 * found, 0.02)
     values = ensemble.hold(REST, end, times)[0]
     began = ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][:, :, :1]
+    assert plant.now(PLAYS[0], start) == pytest.approx(began[:, :, 0])
     which = [WATCHED.index("display_C"), WATCHED.index("skin_C")]
     away = (np.abs(values - began)[which] > 0.1).any(axis=(0, 1))
     last = times[np.flatnonzero(away)[-1]]
@@ -131,7 +129,7 @@ def played_thirty_times(drive: Drive, ensemble: Ensemble, pause_s: float) -> flo
 
 
 def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
-    rig = THENAR.with_(**SURE)
+    rig = sure_rig()
     drive = Drive([0, 2.0, 10.0, 12.0], [REST, -0.2, -0.2, REST])
     ensemble = Ensemble.of(rig)
     once = played_thirty_times(drive, ensemble, 600.0)
@@ -169,7 +167,7 @@ def test_what_glows_again_after_five_seconds_is_refused_and_after_its_recovery_i
 
 
 def test_one_drive_of_a_set_counts_for_the_others_and_a_red_one_does_not() -> None:
-    rig = THENAR.with_(**SURE)
+    rig = sure_rig()
     alone = gate(BOTH, rig, rest_A=REST, pause_s=10.0)
     strong = Drive([0, 1.0, 3.0, 4.0], [REST, 6.0, 6.0, REST])
     beside, _ = gate_set([(BOTH, REST), (WARM, REST)], rig, pause_s=10.0)
@@ -181,13 +179,6 @@ def test_one_drive_of_a_set_counts_for_the_others_and_a_red_one_does_not() -> No
     assert beside.repeated.checks != alone.repeated.checks
     assert (without.checks, red.colour) == (alone.checks, "red")
     assert warmest(beside) > warmest(alone)
-
-
-def test_temperatures_are_read_off_states() -> None:
-    ensemble = few()
-    start = ensemble.at_rest(REST)
-    begun = CurrentPlant.of(ensemble).now(PLAYS[0], start)
-    assert begun == pytest.approx(ensemble.hold(REST, start, np.array([0.0, 1.0]))[0][:, :, 0])
 
 
 def test_a_bound_that_starts_where_it_ends_is_found_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -252,7 +243,6 @@ def test_a_second_play_without_a_pause_is_too_fast_where_the_first_and_the_thirt
 
 
 def test_the_pause_that_is_judged_safe_is_no_shorter_than_the_shortest() -> None:
-    verdict = gate(WARM, THENAR)
-    again = verdict.repeated
+    again = gate(WARM, THENAR).repeated
     assert again.reason is None
     assert again.shortest_pause_s is not None and again.shortest_pause_s <= again.pause_s

@@ -7,9 +7,10 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from tests.circuit.safety.futures import play_out
-from thermicon.circuit import Drive, Rig, design, gate, simulate_current
+from tests.circuit.solver.watching import watch
+from tests.circuit.surerig import CERTAIN, sure_rig
+from thermicon.circuit import Drive, Rig, gate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError
-from thermicon.circuit.rig.uncertainty import Uncertainty
 from thermicon.circuit.safety.corners import corners_of, passes_most_cooling
 from thermicon.circuit.safety.current import ENDINGS
 from thermicon.circuit.safety.ensemble import Ensemble, row_of
@@ -17,7 +18,6 @@ from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.drive import DriveError, switched
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import state_under_current, steady_of
-from thermicon.icons import load_library
 
 THENAR = Rig.load("thenar")
 WEAK = Rig.load("fingertip").with_(
@@ -27,12 +27,6 @@ WEAK = Rig.load("fingertip").with_(
         "contact.resistance_m2K_per_W": 0.00172, "driver.current_limit_A": 1.704, "skin.elements": [1, 1, 1, 1, 1],
     }
 )  # fmt: skip
-
-
-def test_a_shipped_driver_stays_below_the_current_of_most_cooling() -> None:
-    assert not passes_most_cooling(THENAR)
-    assert {corner.gain_relative for corner in corners_of(THENAR)} == {-0.1, 0.0, 0.1}
-    assert len(corners_of(THENAR)) == 65
 
 
 def test_where_more_current_cools_less_gains_in_between_are_corners() -> None:
@@ -52,10 +46,6 @@ def test_rows_are_in_step_with_the_updates(update_s: float, row_s: float) -> Non
     assert row_of(Drive(times, np.zeros(20), held=True)) == pytest.approx(row_s)
 
 
-WHY = {"uncertainty.reason": "a test that needs the rig as given"}
-SURE: dict[str, object] = {
-    **{f"uncertainty.{key}": 0 for key in Uncertainty.model_fields if key != "reason"}, **WHY,
-}  # fmt: skip
 OWN = {"capacity_J_per_K": 60.0, "kp_W_per_K": 8.0, "ki_W_per_Ks": 1.0, "power_limit_W": 9.0}
 CUE = Drive([0, 1, 1.5, 4, 5], [0.1, 0.5, 1.2, -0.4, 0.2], held=True)
 WITHIN_K = 1e-3
@@ -64,7 +54,8 @@ WITHIN_K = 1e-3
 
 def test_corners_are_those_of_the_box() -> None:
     corners = corners_of(THENAR)
-    assert len(corners) == 65
+    assert len(corners) == 65 and not passes_most_cooling(THENAR)
+    assert {corner.gain_relative for corner in corners} == {-0.1, 0.0, 0.1}
     assert str(corners[-1]) == (
         "contact +30 %, ambient −3 K, gain +10 %, heat sink +1 K, Seebeck +5 %, conductance +10 %, plates +20 %"
     )
@@ -75,8 +66,8 @@ def test_corners_are_those_of_the_box() -> None:
     assert last.module.seebeck_V_per_K == pytest.approx(1.05 * 0.0521)
     assert last.module.thermal_resistance_K_per_W == pytest.approx(6.56 / 1.1)
     assert last.module.cold_plate_J_per_K == pytest.approx(1.2 * 2.6)
-    assert [str(corner) for corner in corners_of(THENAR.with_(**SURE))] == ["the rig as given"]
-    one = THENAR.with_(**SURE | {"uncertainty.gain_relative": 0.1})
+    assert [str(corner) for corner in corners_of(sure_rig())] == ["the rig as given"]
+    one = THENAR.with_(**CERTAIN | {"uncertainty.gain_relative": 0.1})
     assert [str(corner) for corner in corners_of(one)] == ["the rig as given", "gain −10 %", "gain +10 %"]
 
 
@@ -97,20 +88,10 @@ def test_every_lane_is_the_run_of_its_rig(held: bool) -> None:
                 assert np.abs(found.values[w, e, c] - theirs).max() < 3e-3, (name, str(corner), ENDINGS[e])
 
 
-def test_zero_current_is_not_the_baseline() -> None:
-    plan = design(load_library("six-icons")["cooling-step"], THENAR, 8.0)
-    found = play_out(plan.drive, THENAR, rest_A=plan.rest_A, ending_s=1200.0)
-    skin = found.columns["skin_C"][len(found.corners)]
-    assert skin[0] == pytest.approx(32.0, abs=0.1)
-    assert skin[-1] == pytest.approx(39.0, abs=0.1)
-    a_minute_later = skin[np.searchsorted(found.time_s, 68.0)]
-    assert 36.0 < a_minute_later < 37.5, "the drift has not ended when the gate stops looking"
-
-
 def test_power_off_is_zero_current_on_an_ideal_sink_and_not_on_its_own() -> None:
     ideal = play_out(CUE, THENAR)
     assert (ideal.values[:, 2] == ideal.values[:, 1]).all()
-    own = play_out(CUE, THENAR.with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **SURE))
+    own = play_out(CUE, THENAR.with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **CERTAIN))
     apart = own.values[WATCHED.index("hot_plate_C"), 2] - own.values[WATCHED.index("hot_plate_C"), 1]
     assert np.abs(apart[:, -1]).min() > 0.3
     assert (apart[:, own.time_s <= own.end_s] == 0).all()
@@ -138,7 +119,7 @@ def sink_at_end_C(rig: Rig, time_s: np.ndarray, hot_C: np.ndarray) -> float:
 
 
 def test_power_off_by_an_independent_solver() -> None:
-    rig = Rig.load("shani2021").with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **SURE)
+    rig = Rig.load("shani2021").with_(**{f"heat_sink.{key}": value for key, value in OWN.items()}, **CERTAIN)
     found = play_out(CUE, rig)
     at = int(np.searchsorted(found.time_s, found.end_s - 1e-9))
     net, module = network_of(rig), rig.module
@@ -175,8 +156,6 @@ def test_power_off_by_an_independent_solver() -> None:
 
 def run_to_the_end(rig: Rig, start: np.ndarray) -> np.ndarray:
     """State at the end of CUE, read through all states one by one."""
-    from tests.circuit.solver.watching import watch
-
     starts = np.minimum(np.arange(len(start)), len(start) - 3)  # three weights a reading: near the end they look back
     weights = np.zeros((len(start), 3))
     weights[np.arange(len(start)), np.arange(len(start)) - starts] = 1.0

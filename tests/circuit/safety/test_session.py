@@ -1,41 +1,31 @@
-"""A session against what can be checked by hand: single runs, sums, and every rate that the run shows."""
+"""A session and a summary against what can be checked by hand: single runs, sums, every rate that the run shows."""
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from thermicon.circuit import Limits, Rig, SessionPlan, play_session, simulate, simulate_current
+from thermicon.circuit import Drive, Limits, Rig, SessionPlan, play_session, simulate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.session import LONGEST_S, MOST_PLAYS, SessionError, order_text, read_order
 from thermicon.circuit.safety.sessionplay import drive_of
 from thermicon.circuit.safety.tally import cem43_min, henriques
-from thermicon.circuit.safety.verdict import judge_safety, summarise
+from thermicon.circuit.safety.verdict import energy_J, judge_safety, summarise
 from thermicon.circuit.solver.simulate import duration_s
-from thermicon.icons import Icon, IconSet, parse, read_cue
+from thermicon.icons import IconSet, load_library, parse, read_cue
 
 WARM = """cue 1
 set hot {{ control display; baseline 32 °C }}
 icon hot {{ warm by {amount} °C at 3 °C/s; hold for 20 s; return at 3 °C/s }}
 icon cool {{ cool by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s }}
 """
-
+RIG, SIX = Rig.load("thenar"), read_cue("six-icons")
+STEP = SIX["cooling-step"]
 SINK = ("capacity_J_per_K=200", "kp_W_per_K=5", "ki_W_per_Ks=0.5", "power_limit_W=40")
 """A hot plate under its own loop."""
-
-
-@pytest.fixture(scope="module")
-def rig() -> Rig:
-    return Rig.load("thenar")
-
-
-@pytest.fixture(scope="module")
-def six() -> IconSet:
-    return read_cue("six-icons")
 
 
 def hot_set(amount: float) -> IconSet:
@@ -64,21 +54,21 @@ def test_a_session_of_one_icon_is_its_single_run(icons: str, name: str, tracking
 
 
 @pytest.mark.parametrize("tracking", ["replay", "display"])
-def test_two_icons_far_apart_are_two_single_runs(six: IconSet, rig: Rig, tracking: str) -> None:
+def test_two_icons_far_apart_are_two_single_runs(tracking: str) -> None:
     plan = SessionPlan(("cooling-step", "double-dip"), gap_s=1200.0)
-    played = drive_of(plan, {icon.name: icon for icon in six}, rig, tracking)
+    played = drive_of(plan, {icon.name: icon for icon in SIX}, RIG, tracking)
     assert played.starts_s == (0.0, 1208.0)
-    run = simulate_current(played.drive, rig, start_C=played.start_C)
+    run = simulate_current(played.drive, RIG, start_C=played.start_C)
     for name, start in zip(plan.order, played.starts_s, strict=True):
-        alone, begin = simulate(six[name], rig), round(start * 100)
+        alone, begin = simulate(SIX[name], RIG), round(start * 100)
         for column in ("display_C", "skin_C", "cold_receptor_C", "warm_receptor_C"):
             part = getattr(run, column)[begin : begin + len(alone.time_s)]
             assert np.abs(part - getattr(alone, column)).max() < 2e-3, (name, column)
 
 
-def test_plays_begin_a_gap_after_the_end_of_the_one_before_on_an_update(rig: Rig) -> None:
+def test_plays_begin_a_gap_after_the_end_of_the_one_before_on_an_update() -> None:
     icons = parse("cue 1\nset s { control display; baseline 32 °C }\nicon odd { cool by 1 °C over 1.234 s }\n")
-    slow = rig.with_(**{"driver.update_Hz": 10.0})
+    slow = RIG.with_(**{"driver.update_Hz": 10.0})
     session = play_session(icons, SessionPlan(("odd",) * 3, gap_s=0.5), slow)
     # 1.234 + 0.5 = 1.734 → 1.8 s; 1.8 + 1.734 = 3.534 → 3.6 s
     assert [play.start_s for play in session.plays] == pytest.approx([0.0, 1.8, 3.6])
@@ -86,9 +76,9 @@ def test_plays_begin_a_gap_after_the_end_of_the_one_before_on_an_update(rig: Rig
     assert np.diff(session.trace.time_s).max() == pytest.approx(0.01)  # 100 rows a second with any slower driver
 
 
-def test_energy_and_dose_add_up(rig: Rig) -> None:
+def test_energy_and_dose_add_up() -> None:
     icons = hot_set(9.5)
-    session = play_session(icons, SessionPlan(("hot", "cool", "hot", "hot"), gap_s=5.0), rig)
+    session = play_session(icons, SessionPlan(("hot", "cool", "hot", "hot"), gap_s=5.0), RIG)
     trace = session.trace
     assert sum(play.energy_J for play in session.plays) == pytest.approx(session.energy_J, rel=1e-9)
     power = trace.voltage_V[:-1] * trace.current_A[:-1]
@@ -101,34 +91,38 @@ def test_energy_and_dose_add_up(rig: Rig) -> None:
     assert worst.value > session.dose_cem43_min
 
 
-def test_what_is_safe_once_is_not_safe_in_a_session(rig: Rig) -> None:
+def test_what_is_safe_once_is_not_safe_in_a_session() -> None:
     icons = hot_set(8.0)
-    once = play_session(icons, SessionPlan(("hot",)), rig)
-    often = play_session(icons, SessionPlan(("hot",) * 4, gap_s=2.0), rig)
+    once = play_session(icons, SessionPlan(("hot",)), RIG)
+    often = play_session(icons, SessionPlan(("hot",) * 4, gap_s=2.0), RIG)
     assert (once.verdict, often.verdict) == ("amber", "red")
     assert "skin surface" in str(often.reason)
     verdicts = [play.verdict for play in often.plays]
     assert verdicts == sorted(verdicts, key=("green", "amber", "red").index)
 
 
-def test_replayed_drives_move_the_baseline_and_a_tracked_display_hardly(six: IconSet, rig: Rig) -> None:
+def test_replayed_drives_move_the_baseline_and_a_tracked_display_hardly() -> None:
     plan = SessionPlan(("cooling-step",) * 5)
-    replayed, tracked = (play_session(six, plan, rig, tracking=way) for way in ("replay", "display"))
+    replayed, tracked = (play_session(SIX, plan, RIG, tracking=way) for way in ("replay", "display"))
     drifts = [play.drift_K for play in replayed.plays]
     assert drifts == pytest.approx([0.0, -0.80, -1.33, -1.69, -1.95], abs=0.02)
     assert replayed.baseline_drift_K == drifts[-1]
+    assert replayed.duration_s == 4 * 10.0 + 5 * duration_s(STEP, RIG)
+    frame = replayed.to_frame()
+    assert list(frame.columns[:4]) == ["icon", "start_s", "end_s", "verdict"] and len(frame) == 5
+    assert replayed.plot().get_xlabel() and "<svg" in replayed._repr_html_()
     assert abs(tracked.baseline_drift_K) < 0.25
     assert replayed.recovery_s > tracked.recovery_s > 0
 
 
-def test_a_rate_is_not_averaged_away_in_a_long_session(rig: Rig) -> None:
+def test_a_rate_is_not_averaged_away_in_a_long_session() -> None:
     icons = parse(
         "cue 1\nset s { control display; baseline 32 °C }\n"
         "icon jolt { step to 22 °C; hold for 1 s; step to 32 °C; hold for 1 s }\n"
     )
     plan = SessionPlan(("jolt",) * 24, gap_s=12.0)  # over 5 min, from where on the gate has 10 rows a second
     limits = Limits.of({"skin_rate_K_per_s": 9.4})
-    session = play_session(icons, plan, rig, limits=limits)
+    session = play_session(icons, plan, RIG, limits=limits)
     assert session.duration_s > 300
     assert session.verdict == "red"
     rate = session.worst("rate of skin temperature")
@@ -139,24 +133,24 @@ def test_a_rate_is_not_averaged_away_in_a_long_session(rig: Rig) -> None:
     assert fine <= rate.value + 1e-9
 
 
-def test_icons_that_prescribe_current_are_played_by_their_means(rig: Rig) -> None:
+def test_icons_that_prescribe_current_are_played_by_their_means() -> None:
     icons = parse("cue 1\nset s { control current }\nicon push { to 0.4 A over 2 s; hold for 1 s; return over 1 s }\n")
-    session = play_session(icons, SessionPlan(("push",)), rig)
-    alone = simulate(icons["push"], rig)
+    session = play_session(icons, SessionPlan(("push",)), RIG)
+    alone = simulate(icons["push"], RIG)
     assert np.abs(session.trace.skin_C - alone.skin_C).max() < 5e-3
     with pytest.raises(SessionError, match=r"push prescribes the current.*use tracking replay"):
-        play_session(icons, SessionPlan(("push",)), rig, tracking="display")
+        play_session(icons, SessionPlan(("push",)), RIG, tracking="display")
 
 
-def test_a_loop_and_a_sink_of_its_own_are_played(six: IconSet, rig: Rig) -> None:
-    loop = rig.with_(controller={"kp_A_per_K": 0.4, "ki_A_per_Ks": 0.3, "kd_As_per_K": 0.0, "lag_s": 0.05})
-    sink = rig.with_set([f"heat_sink.{each}" for each in SINK])
+def test_a_loop_and_a_sink_of_its_own_are_played() -> None:
+    loop = RIG.with_(controller={"kp_A_per_K": 0.4, "ki_A_per_Ks": 0.3, "kd_As_per_K": 0.0, "lag_s": 0.05})
+    sink = RIG.with_set([f"heat_sink.{each}" for each in SINK])
     for other in (loop, sink):
-        session = play_session(six, SessionPlan(("cooling-step", "warming-step")), other)
-        alone = simulate(six["cooling-step"], other)
+        session = play_session(SIX, SessionPlan(("cooling-step", "warming-step")), other)
+        alone = simulate(STEP, other)
         assert np.abs(session.trace.skin_C[:801] - alone.skin_C).max() < 1e-6
-    tracked = play_session(six, SessionPlan(("cooling-step", "warming-step")), loop, tracking="display")
-    assert abs(tracked.trace.display_C[:801] - simulate(six["cooling-step"], loop).display_C).max() < 1e-6
+    tracked = play_session(SIX, SessionPlan(("cooling-step", "warming-step")), loop, tracking="display")
+    assert abs(tracked.trace.display_C[:801] - simulate(STEP, loop).display_C).max() < 1e-6
 
 
 def test_shuffled_plans_are_balanced_and_seeded() -> None:
@@ -168,13 +162,13 @@ def test_shuffled_plans_are_balanced_and_seeded() -> None:
     assert plan.order != tuple(names * 8)
 
 
-def test_an_order_file_names_icons_by_line_or_comma(six: IconSet, tmp_path: Path) -> None:
+def test_an_order_file_names_icons_by_line_or_comma(tmp_path: Path) -> None:
     path = tmp_path / "order.txt"
     path.write_text("# block 1\ncooling-step, double-dip\n\nwarming-step # the last\n", encoding="utf-8")
-    order = read_order(path, six)
+    order = read_order(path, SIX)
     assert order == ("cooling-step", "double-dip", "warming-step")
     path.write_text(order_text(SessionPlan(order)), encoding="utf-8")
-    assert read_order(path, six) == order
+    assert read_order(path, SIX) == order
 
 
 @pytest.mark.parametrize(
@@ -182,18 +176,17 @@ def test_an_order_file_names_icons_by_line_or_comma(six: IconSet, tmp_path: Path
     [
         ("cooling-step\n\ncoolingstep\n", r":3: no icon is called 'coolingstep'; did you mean cooling-step"),
         ("# nothing\n,\n", "no icon in this order"),
-        ("", "the file is empty; a file of an order was expected"),
         ("cooling-step\n" * (MOST_PLAYS + 1), "5,001 plays are too many; a session has at most 5,000"),
     ],
 )
-def test_a_wrong_order_is_told_with_its_line(six: IconSet, tmp_path: Path, text: str, message: str) -> None:
+def test_a_wrong_order_is_told_with_its_line(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "order.txt"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(SessionError, match=message):
-        read_order(path, six)
+        read_order(path, SIX)
 
 
-def test_impossible_plans_are_refused_before_any_work(six: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_impossible_plans_are_refused_before_any_work(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(SessionError, match="at least one play"):
         SessionPlan(())
     for gap in (-1.0, math.nan, math.inf, 3601.0):
@@ -203,32 +196,51 @@ def test_impossible_plans_are_refused_before_any_work(six: IconSet, rig: Rig, mo
         SessionPlan.shuffled(["a"], 0)
     with pytest.raises(SessionError, match="1,000,000 repeats of 2 icons: 2,000,000 plays are too many"):
         SessionPlan.shuffled(["a", "b"], 1_000_000)
+    with pytest.raises(SessionError, match="the plan names warming-step, which is not among the icons"):
+        play_session([STEP], SessionPlan(("warming-step",)), RIG)
+    with pytest.raises(RigError, match="cannot be held"):
+        play_session(SIX, SessionPlan(("cooling-step",)), RIG.with_(**{"driver.current_limit_A": 0.01}))
     monkeypatch.setattr("thermicon.circuit.safety.sessionplay.design", None)  # nothing may be designed
     with pytest.raises(SessionError, match=rf"last \d+ s; the limit is {LONGEST_S:g} s: play fewer, shorten the gap"):
-        play_session(six, SessionPlan(("cooling-step",) * 100, gap_s=120.0), rig)
-    fast = rig.with_(**{"driver.update_Hz": 10_000.0})
+        play_session(SIX, SessionPlan(("cooling-step",) * 100, gap_s=120.0), RIG)
+    fast = RIG.with_(**{"driver.update_Hz": 10_000.0})
     with pytest.raises(SessionError, match=r"driver's 10000 Hz are \d+ rows; the limit is 1,500,000"):
-        play_session(six, SessionPlan(("cooling-step",) * 60), fast)
+        play_session(SIX, SessionPlan(("cooling-step",) * 60), fast)
     with pytest.raises(SessionError, match="tracking 'ideal' is not known"):
-        play_session(six, SessionPlan(("cooling-step",)), rig, tracking="ideal")
+        play_session(SIX, SessionPlan(("cooling-step",)), RIG, tracking="ideal")
 
 
-def test_a_plan_needs_its_icons_and_a_rig_that_holds_them(six: IconSet, rig: Rig) -> None:
-    only: list[Icon] = [six["cooling-step"]]
-    with pytest.raises(SessionError, match="the plan names warming-step, which is not among the icons"):
-        play_session(only, SessionPlan(("warming-step",)), rig)
-    with pytest.raises(RigError, match="cannot be held"):
-        play_session(six, SessionPlan(("cooling-step",)), rig.with_(**{"driver.current_limit_A": 0.01}))
+def test_every_extreme_is_that_of_its_column() -> None:
+    trace = simulate(STEP, RIG)
+    found = summarise(trace).to_dict()
+    assert found["skin_min_C"] == trace.skin_C.min()
+    assert found["skin_max_C"] == trace.skin_C.max()
+    assert found["heat_flow_cold_receptor_min_W_per_m2"] == trace.heat_flow_cold_receptor_W_per_m2.min()
+    assert found["voltage_max_V"] == trace.voltage_V.max()
+    assert found["duration_s"] == 8.0
+    assert (found["reached"], found["safe"], found["safety"], found["reason"]) == (True, True, "green", None)
+    assert list(found)[:5] == ["duration_s", "reached", "largest_miss_K", "largest_miss_s", "rms_miss_K"]
+    assert list(found)[-3:] == ["safe", "safety", "reason"]
+    assert all(np.isfinite(value) for value in found.values() if isinstance(value, float))
 
 
-def test_a_session_is_frozen_and_tabular(six: IconSet, rig: Rig) -> None:
-    session = play_session(six, SessionPlan(("cooling-step", "warming-step")), rig)
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        session.energy_J = 0.0  # type: ignore[misc]
-    frame = session.to_frame()
-    assert list(frame["icon"]) == ["cooling-step", "warming-step"]
-    assert list(frame.columns[:4]) == ["icon", "start_s", "end_s", "verdict"]
-    assert "Session(green: 2 plays in 26 s on thenar" in repr(session)
-    assert session._repr_html_().startswith("<svg") or "<svg" in session._repr_html_()
-    assert session.plot().get_xlabel()
-    assert session.duration_s == 10.0 + 2 * duration_s(six["cooling-step"], rig)
+def test_energy_is_power_times_time_whatever_the_rows() -> None:
+    trace = simulate_current(Drive([0, 10], [0.5, 0.5]), Rig.load("shani2021"))
+    hot, cold = float(trace.hot_plate_C[0]), float(trace.display_C[0])
+    power = 0.5 * (0.0521 * (hot - cold) + 0.5 * 6.35)  # V·I with V = α(Th − Tc) + IR, written out
+    assert summarise(trace).energy_J == pytest.approx(10 * power, rel=1e-9)
+    for icon in (STEP, load_library("cooling-step-skin").icons[0]):
+        coarse, fine = (energy_J(simulate(icon, RIG, rate_Hz=rate)) for rate in (100.0, 2000.0))
+        assert coarse == pytest.approx(fine, rel=2e-3)
+    held = simulate(STEP, RIG)  # each row's power counts until the next
+    assert energy_J(held) == pytest.approx(float((held.voltage_V * held.current_A)[:-1].sum()) * 0.01, rel=1e-9)
+
+
+def test_a_miss_and_a_hazard_say_why_and_without_a_target_there_is_no_miss() -> None:
+    weak = summarise(simulate(STEP, RIG.with_(**{"driver.current_limit_A": 0.6})))
+    assert weak.reached is False
+    assert weak.reason is not None and weak.reason.startswith("misses its target by")
+    burns = summarise(simulate_current(Drive([0, 1, 30], [0, -1.5, -1.5]), RIG))
+    assert (burns.safe, burns.safety) == (False, "red")
+    assert burns.reason is not None and "above the hard limit of" in burns.reason
+    assert (burns.reached, burns.largest_miss_K, burns.largest_miss_s, burns.rms_miss_K) == (None,) * 4

@@ -1,9 +1,8 @@
-"""Every path that simulates takes every key of the rig that changes the circuit, or refuses it: none ignores one."""
+"""Every path that simulates takes a passive heat sink: none ignores it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,15 +16,10 @@ from thermicon.circuit.solver.simulate import simulate_all
 from thermicon.circuit.solver.steady import state_under_current, steady_state
 from thermicon.icons import Icon, load_library, parse
 
-CIRCUIT = Path(__file__).resolve().parents[3] / "circuit"
 THENAR = Rig.load("thenar")
-KEYS: dict[str, dict[str, object]] = {
-    "passive sink": {
-        "heat_sink.temperature_C": 28.0,
-        "heat_sink.capacity_J_per_K": 40.0,
-        "heat_sink.air_resistance_K_per_W": 1.5,
-    },
-}
+PASSIVE = THENAR.with_(
+    heat_sink={"temperature_C": 28.0, "capacity_J_per_K": 40.0, "air_resistance_K_per_W": 1.5},
+)
 PID = {"kp_A_per_K": 0.5, "ki_A_per_Ks": 0.2, "lag_s": 0.1}
 PROBES = ("hot_plate_C", "skin_C")
 END_S = 8.0
@@ -74,21 +68,19 @@ PATHS: dict[str, Callable[[Rig, Icon], np.ndarray]] = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("control", ["display", "skin", "current"])
-@pytest.mark.parametrize("key", KEYS)
-def test_paths_agree_with_a_single_run_which_the_key_changes(key: str, control: str) -> None:
-    rig, icon = THENAR.with_(**KEYS[key]), cue(control)
-    reference, plain = alone(rig, icon), alone(THENAR, icon)
+def test_paths_agree_with_a_single_run_which_a_passive_sink_changes(control: str) -> None:
+    icon = cue(control)
+    reference, plain = alone(PASSIVE, icon), alone(THENAR, icon)
     assert np.abs(reference[:, :100] - plain[:, :100]).max() > 5e-4
     for name, path in PATHS.items():
         if control == "skin" and name.startswith("display"):
             continue  # tracks the display of the nominal rig by its own control: another current
-        assert np.abs(path(rig, icon)[:, :801] - reference).max() < 2e-4, name
+        assert np.abs(path(PASSIVE, icon)[:, :801] - reference).max() < 2e-4, name
 
 
-@pytest.mark.parametrize("key", KEYS)
-def test_the_loop_of_a_pid_controller_takes_the_key(key: str) -> None:
+def test_the_loop_of_a_pid_controller_takes_the_key() -> None:
     icon = cue("display")
-    rig, plain = THENAR.with_(**KEYS[key], controller=PID), THENAR.with_(controller=PID)
+    rig, plain = PASSIVE.with_(controller=PID), THENAR.with_(controller=PID)
     reference = alone(rig, icon)
     assert np.abs(reference - alone(plain, icon)).max() > 0.004
     for name in ("replay", "all of a set", "display, one lane", "display, block"):
@@ -96,16 +88,15 @@ def test_the_loop_of_a_pid_controller_takes_the_key(key: str) -> None:
 
 
 def test_the_gate_plays_holds_and_repeats_with_a_passive_sink() -> None:
-    rig = THENAR.with_(**KEYS["passive sink"])
     drive = Drive([0, 1, 3], [0.3, 0.9, 0.9], held=True)
-    every = Ensemble.of(rig)
+    every = Ensemble.of(PASSIVE)
     start = every.at_rest(0.3)
     (rows, played), then = next(every.play(drive, start))
-    trace = simulate_current(drive, rig)
+    trace = simulate_current(drive, PASSIVE)
     skin = WATCHED.index("skin_C")
     assert np.abs(played[skin, 0] - np.interp(rows, trace.time_s, trace.skin_C)).max() < 1e-4
     held, after = every.hold(0.9, then, np.array([0.0, 5.0]))
-    longer = simulate_current(Drive([0, 1, 8], [0.3, 0.9, 0.9], held=True), rig)
+    longer = simulate_current(Drive([0, 1, 8], [0.3, 0.9, 0.9], held=True), PASSIVE)
     assert held[skin, 0, -1] == pytest.approx(longer.skin_C[-1], abs=1e-3)
     assert after.nodes_C.shape == start.nodes_C.shape
     moved = every.rest(0.9, then, 5.0)
@@ -113,25 +104,23 @@ def test_the_gate_plays_holds_and_repeats_with_a_passive_sink() -> None:
 
 
 def test_corners_keep_a_passive_sink() -> None:
-    sinks = [corner.rig.heat_sink for corner in corners_of(THENAR.with_(**KEYS["passive sink"]))]
+    sinks = [corner.rig.heat_sink for corner in corners_of(PASSIVE)]
     assert {sink.passive.air_C for sink in sinks} == {23.0, 24.0, 25.0}
     assert {sink.temperature_C for sink in sinks} == {27.0, 28.0, 29.0}
 
 
 @pytest.mark.slow
 def test_a_verdict_takes_a_passive_sink() -> None:
-    rig, icon = THENAR.with_(**KEYS["passive sink"]), cue("display")
-    plan = design(icon, rig, END_S)
+    plan = design(cue("display"), PASSIVE, END_S)
     ended = Drive(plan.drive.time_s, [*plan.drive.current_A[:-1], plan.rest_A], held=True)
-    verdict = gate(ended, rig, rest_A=plan.rest_A)
-    network_end = state_under_current(Ensemble.of(rig).networks[0], 0.0, in_the_end=True)
-    assert verdict.drift_C == pytest.approx(Ensemble.of(rig).networks[0].read(network_end, "skin_C"))
+    verdict, network = gate(ended, PASSIVE, rest_A=plan.rest_A), Ensemble.of(PASSIVE).networks[0]
+    end = state_under_current(network, 0.0, in_the_end=True)
+    assert verdict.drift_C == pytest.approx(network.read(end, "skin_C"))
 
 
 def test_steady_states_take_the_key() -> None:
-    current, state = steady_state(THENAR.with_(**KEYS["passive sink"]), "skin", 32.0)
-    assert state[-2] == pytest.approx(28.0)
-    steady = THENAR.with_(**{**KEYS["passive sink"], "heat_sink.temperature_C": None})
+    assert steady_state(PASSIVE, "skin", 32.0)[1][-2] == pytest.approx(28.0)
+    steady = PASSIVE.with_(**{"heat_sink.temperature_C": None})
     current, state = steady_state(steady, "skin", 32.0)
     rejected = heat_rejected_W(steady.module, current, float(state[1]), float(state[0]))
     assert state[-2] == pytest.approx(24.0 + 1.5 * rejected, abs=1e-9)

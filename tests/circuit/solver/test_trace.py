@@ -11,7 +11,6 @@ import pandas as pd
 import pytest
 
 from tests.builders import messages
-from tests.peltier import heat_rejected_W
 from thermicon.circuit import Drive, Rig, Trace, read_drive, simulate, simulate_current
 from thermicon.circuit.inputs import InputError
 from thermicon.circuit.rig.rigfile import RigError
@@ -19,6 +18,14 @@ from thermicon.circuit.solver.draw import plot_current
 from thermicon.circuit.solver.drive import DriveError
 from thermicon.circuit.solver.trace import judge, write_trace
 from thermicon.icons import load_library
+
+THENAR = Rig.load("thenar")
+STEP = load_library("six-icons")["cooling-step"]
+COLUMNS = [
+    "icon", "time_s", "current_A", "voltage_V", "target_C", "hot_plate_C", "display_C", "skin_C", "cold_receptor_C",
+    "warm_receptor_C", "heat_flow_skin_W_per_m2", "heat_flow_cold_receptor_W_per_m2",
+    "heat_flow_warm_receptor_W_per_m2",
+]  # fmt: skip
 
 
 def test_a_drive_reads_between_its_rows() -> None:
@@ -30,12 +37,13 @@ def test_a_drive_reads_between_its_rows() -> None:
 def test_a_drive_file(tmp_path: Path) -> None:
     path = tmp_path / "drive.csv"
     path.write_text("note,time_s,current_A\nstart,0,0.1\n\nend,4,0.5\n")
-    assert repr(read_drive(path)) == "Drive(2 rows, 4 s, 0.1 … 0.5 A, linear)"
+    drive = read_drive(path)
+    assert (drive.time_s.tolist(), drive.current_A.tolist(), drive.held) == ([0, 4], [0.1, 0.5], False)
     assert read_drive(path, hold=True).held
 
 
 def test_a_drive_past_the_driver_only_warns() -> None:
-    trace = simulate_current(Drive([0, 1, 2, 3], [0, 0, 3, 3]), Rig.load("thenar"))
+    trace = simulate_current(Drive([0, 1, 2, 3], [0, 0, 3, 3]), THENAR)
     asks, needs = trace.beyond
     assert asks == "the drive needs 3 A at 2.00 s; this driver gives -1.5 … 1.5 A (passed from 1.51 s)"
     assert needs.startswith("the drive needs 20.")
@@ -43,40 +51,24 @@ def test_a_drive_past_the_driver_only_warns() -> None:
     assert not trace.reachable
     assert trace.reason == f"{asks}; {needs}"
     assert trace.current_A.max() == 3.0
-
-
-def test_a_drive_just_past_the_driver_reads_as_more_than_it_gives() -> None:
-    trace = simulate_current(Drive([0, 1, 2], [0, 1.5004, 1.5004]), Rig.load("thenar"))
-    assert trace.beyond[0].startswith("the drive needs 1.5004 A at")
+    (just,) = simulate_current(Drive([0, 1, 2], [0, 1.5004, 1.5004]), THENAR).beyond
+    assert just.startswith("the drive needs 1.5004 A at"), "more than it gives"
 
 
 def test_a_run_that_is_not_physical_is_refused() -> None:
     with pytest.raises(
         RigError, match=r"leaves the physical range .* under 1e\+05 A; use less current, or check the rig"
     ):
-        simulate_current(Drive([0, 1, 2], [0, 1e5, 1e5], held=True), Rig.load("thenar"))
-
-
-def test_a_first_current_without_a_steady_state_is_refused() -> None:
+        simulate_current(Drive([0, 1, 2], [0, 1e5, 1e5], held=True), THENAR)
     with pytest.raises(RigError, match=r"-5 A has no steady state on this rig.*begin the drive with"):
-        simulate_current(Drive([0, 1], [-5, 0]), Rig.load("thenar"))
+        simulate_current(Drive([0, 1], [-5, 0]), THENAR)
 
 
 def test_a_jump_falls_on_its_own_instant_whatever_the_rows() -> None:
-    rig = Rig.load("thenar")
     drive = Drive([0, 0.1234, 1], [0.1, 0.9, 0.9], held=True)
-    fine, coarse = (simulate_current(drive, rig, rate_Hz=rate) for rate in (1000, 10))
+    fine, coarse = (simulate_current(drive, THENAR, rate_Hz=rate) for rate in (1000, 10))
     assert coarse.display_C == pytest.approx(fine.display_C[::100], abs=2e-5)
     assert coarse.current_A.tolist() == [0.1, 0.1] + [0.9] * 9
-
-
-THENAR = Rig.load("thenar")
-STEP = load_library("six-icons")["cooling-step"]
-COLUMNS = [
-    "icon", "time_s", "current_A", "voltage_V", "target_C", "hot_plate_C", "display_C", "skin_C", "cold_receptor_C",
-    "warm_receptor_C", "heat_flow_skin_W_per_m2", "heat_flow_cold_receptor_W_per_m2",
-    "heat_flow_warm_receptor_W_per_m2",
-]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -91,19 +83,12 @@ def test_columns_and_rows(trace: Trace) -> None:
     assert frame["time_s"].iloc[-1] == 8.0
     assert set(frame["icon"]) == {"cooling-step"}
     assert trace.heat_flow_skin_W_per_m2[0] == pytest.approx(-78.7, abs=0.1)
-
-
-def test_power_is_what_the_module_turns_into_heat(trace: Trace) -> None:
-    rig = Rig.load("thenar")
-    assert "power_W" not in trace.to_frame()
-    frame = trace.to_frame(power=True)
-    assert list(frame.columns) == [*COLUMNS, "power_W"]
-    for row in (0, 150, 700):
-        plates = float(trace.current_A[row]), float(trace.display_C[row]), float(trace.hot_plate_C[row])
-        heat = heat_rejected_W(rig.module, *plates) - rig.module.heat_absorbed_W(*plates)
-        assert frame["power_W"][row] == pytest.approx(heat, abs=1e-9)
-    thermode = simulate(load_library("six-icons").icons[0], Rig.load("tcs2"))
-    assert thermode.to_frame(power=True)["power_W"].isna().all()
+    power = trace.to_frame(power=True)
+    assert list(power.columns) == [*COLUMNS, "power_W"]
+    assert power["power_W"].to_numpy() == pytest.approx(trace.voltage_V * trace.current_A, abs=1e-9)
+    assert simulate(STEP, Rig.load("tcs2")).to_frame(power=True)["power_W"].isna().all()
+    off_the_grid = simulate_current(Drive([0, 0.255], [0.1, 0.1]), THENAR)
+    assert off_the_grid.time_s[-2:].tolist() == [0.25, 0.255]
 
 
 def test_a_tail_at_baseline_and_another_rate(trace: Trace) -> None:
@@ -111,11 +96,6 @@ def test_a_tail_at_baseline_and_another_rate(trace: Trace) -> None:
     assert (len(longer.time_s), longer.time_s[-1]) == (721, 18.0)
     assert longer.display_C[-1] == pytest.approx(32.0, abs=1e-3)
     assert longer.display_C[:321:2] == pytest.approx(trace.display_C[::5], abs=2e-4)
-
-
-def test_the_last_row_is_the_end_even_off_the_grid() -> None:
-    run = simulate_current(Drive([0, 0.255], [0.1, 0.1]), THENAR)
-    assert run.time_s[-2:].tolist() == [0.25, 0.255]
 
 
 def test_icon_and_target_are_empty_for_a_drive(tmp_path: Path) -> None:
@@ -144,18 +124,13 @@ def test_parquet_without_pyarrow_names_the_cure(trace: Trace, tmp_path: Path, mo
     assert not list(tmp_path.iterdir())
 
 
-def test_repr_and_picture(trace: Trace) -> None:
-    assert repr(trace) == ("Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)")
-    assert trace._repr_html_().startswith("<svg")
-
-
 def test_plots_return_axes_with_units(trace: Trace) -> None:
     axes = trace.plot()
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s)", "temperature (°C)")
     assert [text.get_text() for text in axes.get_legend().get_texts()] == [  # type: ignore[union-attr]
         "target (display)", "display", "skin surface", "cold receptors", "warm receptors",
     ]  # fmt: skip
-    assert trace.plot(axes) is axes
+    assert trace.plot(axes) is axes and trace._repr_html_().startswith("<svg")
     assert "(A)" in plot_current(trace).get_ylabel()
 
 
