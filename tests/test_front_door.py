@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 DOORS = ("thermicon", "thermicon.icons", "thermicon.circuit", "thermicon.perception", "thermicon.notebooks")
-HEAVY = ("lark", "numpy", "pandas", "numba", "matplotlib", "IPython")
+HEAVY = ("lark", "numpy", "pandas", "numba", "scipy", "matplotlib", "IPython")
 
 
 def listed(package: str) -> dict[str, str]:
@@ -45,7 +45,8 @@ def test_an_unknown_name_is_an_error_of_its_own(package: str) -> None:
 @pytest.mark.parametrize("start", [".", ".."], ids=["the checkout", "elsewhere"])
 def test_the_short_names_are_there_wherever_python_starts_and_load_nothing_heavy(start: str) -> None:
     code = (
-        f"import sys, thermicon, thermicon.icons\nprint([name for name in {HEAVY} if name in sys.modules])\n"
+        "import sys, thermicon, thermicon.icons, thermicon.perception\n"
+        f"print([name for name in {HEAVY} if name in sys.modules])\n"
         "from thermicon import circuit, parse\n"
         "print(parse is thermicon.icons.parse, circuit.Rig is thermicon.Rig)"
     )

@@ -10,12 +10,13 @@ from thermicon.perception.sensation.percept import on_one_clock, uniform_clock
 
 def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:
     percept = perceive(cue(change=-4.0, name="dip"), observer)
-    assert (percept.channel, percept.icon) == ("cold", "dip")
+    assert (percept.channel, percept.icon, percept.outside_data) == ("cold", "dip", ())
     assert percept.detected_probability == pytest.approx(1.0)
     assert 0.55 < percept.onset_s < 0.8
     assert repr(percept).startswith("Percept(dip, nominal person: felt at 0.")
-    assert " d′, 18 s, receptor clock)" in repr(percept)
     assert not percept.psi_cold.flags.writeable
+    far = perceive(cue(change=-19.0), observer)
+    assert "13" in far.outside_data[0] and repr(far).endswith("receptor clock, outside the data)")
 
 
 def test_the_words_follow_from_the_probability(cue: Any, observer: Observer) -> None:
@@ -34,13 +35,23 @@ def test_the_words_follow_from_the_probability(cue: Any, observer: Observer) -> 
     assert nothing.detected_probability == pytest.approx(0.0, abs=1e-6)
 
 
-def test_a_percept_cannot_contradict_its_probability() -> None:
-    with pytest.raises(ValueError, match=r"an onset and a channel belong to an icon that is felt .*p 0\.961"):
-        Percept(np.zeros(3), np.zeros(3), 0.01, None, None, 0.961)
-    with pytest.raises(ValueError, match=r"onset_s = 1\.0, channel = cold, p 0\.4"):
-        Percept(np.zeros(3), np.zeros(3), 0.01, 1.0, "cold", 0.4)
-    with pytest.raises(ValueError, match=r"detected_probability = 1\.2 must lie in 0 to 1"):
-        Percept(np.zeros(3), np.zeros(3), 0.01, 1.0, "cold", 1.2)
+FLAT = np.zeros(3)
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        ((FLAT, FLAT, 0.01, None, None, 0.961), r"an onset and a channel belong to an icon that is felt .*p 0\.961"),
+        ((FLAT, FLAT, 0.01, 1.0, "cold", 0.4), r"onset_s = 1\.0, channel = cold, p 0\.4"),
+        ((FLAT, FLAT, 0.01, 1.0, "cold", 1.2), r"detected_probability = 1\.2 must lie in 0 to 1"),
+        ((FLAT, np.zeros(4), 0.01, None, None, 0.0), "psi_cold has 3 samples and psi_warm 4"),
+        ((FLAT, np.full(3, np.nan), 0.01, None, None, 0.0), "psi_warm must be one trace of finite numbers"),
+        ((FLAT, FLAT, 0.0, None, None, 0.0), "dt_s = 0 s must be above 0"),
+    ],
+)
+def test_a_percept_is_two_finite_traces_and_cannot_contradict_its_probability(made: Any, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Percept(*made)
 
 
 def test_a_larger_area_and_a_shorter_path_are_felt_sooner(cue: Any, observer: Observer) -> None:
@@ -68,55 +79,27 @@ def test_a_peak_lies_between_samples_and_may_lie_at_the_end() -> None:
     assert percept.peak_s("warm") == pytest.approx(5.9)
 
 
-def test_a_percept_says_that_it_is_outside_the_data(cue: Any, observer: Observer) -> None:
-    assert perceive(cue(change=-4.0), observer).outside_data == ()
-    far = perceive(cue(change=-19.0), observer)
-    assert "13" in far.outside_data[0]
-    assert repr(far).endswith("receptor clock, outside the data)")
-
-
 def test_the_onset_says_that_it_is_on_another_clock(cue: Any, observer: Observer) -> None:
-    percept = perceive(cue(change=-4.0, name="dip"), observer)
+    percept, unfelt = perceive(cue(change=-4.0, name="dip"), observer), perceive(cue(change=0.0), observer)
     axes = percept.plot()
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("time (s), receptor clock", "sensation (d′)")
-    assert axes.get_title() == "dip" and percept._repr_html_().startswith("<svg")
-    labels = [text.get_text() for text in axes.get_legend().get_texts()]
-    said = f"reported as cold at {percept.onset_s:.2f} s by the nominal person\n"
-    said += "(response clock: with conduction and decision)"
-    assert labels == ["cold", "warm", said]
-    unfelt = perceive(cue(change=0.0), observer).plot()
-    assert [text.get_text() for text in unfelt.get_legend().get_texts()] == [
-        *("cold", "warm", "not felt by the nominal person (p 0.00)")
-    ]
+    assert (axes.get_title(), axes.get_xlabel()) == ("dip", "time (s), receptor clock")
+    assert axes.get_ylabel() == "sensation (d′)" and percept._repr_html_().startswith("<svg")
+    said = f"reported as cold at {percept.onset_s:.2f} s by the nominal person\n(response clock"
+    for shown, last in ((axes, said), (unfelt.plot(), "not felt by the nominal person (p 0.00)")):
+        labels = [text.get_text() for text in shown.get_legend().get_texts()]
+        assert labels[:2] == ["cold", "warm"] and labels[2].startswith(last)
 
 
-@pytest.mark.parametrize(
-    ("cold", "warm", "dt_s", "said"),
-    [
-        (np.zeros(3), np.zeros(4), 0.01, "psi_cold has 3 samples and psi_warm 4"),
-        (np.zeros(3), np.full(3, np.nan), 0.01, "psi_warm must be one trace of finite numbers"),
-        (np.zeros(3), np.zeros(3), 0.0, "dt_s = 0 s must be above 0"),
-    ],
-)
-def test_a_percept_is_two_finite_traces(cold: Any, warm: Any, dt_s: float, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
-        Percept(cold, warm, dt_s, None, None, 0.0)
-
-
-def test_clocks() -> None:
-    assert uniform_clock([0.0, 0.5, 1.0, 1.2]) == (0.5, 3)
-    for clock, said in (([0.0, 0.1, 0.3, 0.4], "needs a uniform clock: simulate at one"), ([0.0], "at least two rows")):
-        with pytest.raises(ValueError, match=said):
-            uniform_clock(clock)
-
-
-def test_a_shorter_percept_is_held_at_its_end() -> None:
+def test_clocks_agree_and_a_shorter_percept_is_held_at_its_end() -> None:
     def percept(cold: float, samples: int, dt_s: float = 0.01) -> Percept:
-        psi = np.full(samples, cold)
-        return Percept(psi, np.zeros_like(psi), dt_s, None, None, 0.0)
+        return Percept(np.full(samples, cold), np.zeros(samples), dt_s, None, None, 0.0)
 
     cold, warm, dt = on_one_clock([percept(7.0, 2000), percept(6.0, 500)])
     assert (cold.shape, warm.shape, dt) == ((2, 2000), (2, 2000), 0.01)
     assert np.array_equal(cold[1], np.full(2000, 6.0))
     with pytest.raises(ValueError, match=r"on clocks of 0.01 s and 0.02 s: simulate all at one rate"):
         on_one_clock([percept(7.0, 20), percept(0.0, 9, 0.02)])
+    assert uniform_clock([0.0, 0.5, 1.0, 1.2]) == (0.5, 3)
+    for clock, said in (([0.0, 0.1, 0.3, 0.4], "needs a uniform clock: simulate at one"), ([0.0], "at least two rows")):
+        with pytest.raises(ValueError, match=said):
+            uniform_clock(clock)

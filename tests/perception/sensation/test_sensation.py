@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer
-from thermicon.perception.observer.observer import Channel
+from thermicon.perception.observer.channels import Channel, Variable
 from thermicon.perception.sensation.sensation import area_factor, receptor_drive, sensation
 
 
@@ -37,13 +37,19 @@ def test_filters_agree_with_scipy_on_noise(observer: Observer) -> None:
     assert warm == pytest.approx(np.maximum(expected, 0.0), abs=1e-9)
 
 
-def test_adaptation_is_complete_inside_the_neutral_zone_only(observer: Observer) -> None:
-    t = np.arange(0.0, 300.0, 0.05)
-    inside = receptor_drive(np.where(t > 1.0, 31.0, 32.0), 0.05, "cold", observer)
-    outside = receptor_drive(np.where(t > 1.0, 27.0, 32.0), 0.05, "cold", observer)
-    assert inside.max() > 0.7
-    assert inside[-1] == pytest.approx(0.0, abs=1e-6)
-    assert outside[-1] == pytest.approx(3.0, abs=1e-4)
+@pytest.mark.parametrize(
+    ("variable", "before", "inside", "outside", "left"),
+    [("temperature", 32.0, 31.0, 27.0, 3.0), ("heat flow", -80.0, -120.0, -200.0, 60.0)],
+)
+def test_adaptation_is_complete_inside_the_neutral_zone_only(
+    observer: Observer, variable: Variable, before: float, inside: float, outside: float, left: float
+) -> None:
+    cold, warm = (replace(each, neutral_flux=(-140.0, 40.0)) for each in (observer.cold, observer.warm))
+    person, t = replace(observer, variable=variable, cold=cold, warm=warm), np.arange(0.0, 300.0, 0.05)
+    near, far = (receptor_drive(np.where(t > 1.0, x, before), 0.05, "cold", person) for x in (inside, outside))
+    assert near.max() > 0.7 * (before - inside)
+    assert near[-1] == pytest.approx(0.0, abs=1e-5 * left)
+    assert far[-1] == pytest.approx(left, abs=4e-5 * left)
 
 
 def test_a_baseline_outside_the_zone_starts_with_its_residue(observer: Observer) -> None:
@@ -65,41 +71,18 @@ def test_there_is_no_cold_above_its_limit_and_no_warmth_below(observer: Observer
     assert receptor_drive(rise, 0.01, "warm", limited(observer)).max() < 0.01
     assert receptor_drive(rise + 4.0, 0.01, "warm", limited(observer)).max() > 2.0
     far = np.interp(t, [0.0, 2.0], [30.0, 27.0])  # far beyond its limit a channel is as without
+    near = np.interp(t, [0.0, 0.5], [33.4, 33.0])
+    hard, soft = (receptor_drive(near, 0.01, "cold", limited(observer, s)).max() for s in (0.01, 1.0))
+    assert soft > 5.0 * hard, "softness lets a channel set in gradually"
     with_limit = receptor_drive(far, 0.01, "cold", limited(observer, 0.05))
     assert with_limit == pytest.approx(receptor_drive(far, 0.01, "cold", observer), abs=1e-9)
 
 
-def test_softness_lets_a_channel_set_in_gradually(observer: Observer) -> None:
-    t = np.arange(0.0, 6.0, 0.01)
-    near = np.interp(t, [0.0, 0.5], [33.4, 33.0])
-    hard, soft = (receptor_drive(near, 0.01, "cold", limited(observer, s)).max() for s in (0.01, 1.0))
-    assert soft > 5.0 * hard
-
-
 def test_rows_are_independent_and_keep_their_shape(observer: Observer) -> None:
-    rng = np.random.default_rng(0)
-    many = 32.0 + np.cumsum(rng.normal(0, 0.05, (3, 40, 2000)), axis=-1)
+    many = 32.0 + np.cumsum(np.random.default_rng(0).normal(0, 0.05, (3, 40, 2000)), axis=-1)
     together = receptor_drive(many, 0.01, "cold", observer)
     assert together.shape == many.shape
     assert np.array_equal(together[1, 7], receptor_drive(many[1, 7], 0.01, "cold", observer))
-
-
-def test_heat_flow_is_filtered_alike_within_its_own_zone(observer: Observer) -> None:
-    flux = replace(
-        observer,
-        variable="heat flow",
-        cold=replace(observer.cold, neutral_flux=(-140.0, 40.0), threshold_drive=70.0),
-        warm=replace(observer.warm, neutral_flux=(-140.0, 40.0), threshold_drive=80.0),
-    )
-    t = np.arange(0.0, 300.0, 0.05)
-    inside = receptor_drive(np.where(t > 1.0, -120.0, -80.0), 0.05, "cold", flux)
-    outside = receptor_drive(np.where(t > 1.0, -200.0, -80.0), 0.05, "cold", flux)
-    assert inside.max() > 30.0
-    assert inside[-1] == pytest.approx(0.0, abs=1e-4)
-    assert outside[-1] == pytest.approx(60.0, abs=1e-3)
-
-
-def test_messages(observer: Observer) -> None:
     with pytest.raises(ValueError, match=r"at least two samples on its last axis, not shape \(3, 1\)"):
         receptor_drive(np.zeros((3, 1)), 0.01, "cold", observer)
 
