@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import pickle
 import shutil
 import sys
 from collections.abc import Callable, Iterator
+from functools import wraps
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import hypothesis
 import pytest
-
-from tests.remembered import remember_verdicts
 
 if TYPE_CHECKING:
     from thermicon.perception.evidence.validate import ValidationReport
@@ -70,11 +70,33 @@ def shared_folder(factory: pytest.TempPathFactory) -> Path:
     return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
 
 
+def remembered(judge: Callable[..., Any], folder: Path) -> Callable[..., Any]:
+    """Keep what a function returns in a folder, under a hash of all arguments; errors are not kept."""
+    folder.mkdir(parents=True, exist_ok=True)
+
+    @wraps(judge)
+    def asked(*arguments: Any, **named: Any) -> Any:
+        kept = folder / hashlib.sha256(pickle.dumps((arguments, sorted(named.items())))).hexdigest()
+        if kept.exists():
+            return pickle.loads(kept.read_bytes())
+        verdicts = judge(*arguments, **named)
+        draft = kept.with_suffix(f".{id(verdicts)}")
+        draft.write_bytes(pickle.dumps(verdicts))
+        draft.replace(kept)
+        return verdicts
+
+    return asked
+
+
 @pytest.fixture(scope="session", autouse=True)
 def verdicts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What exports ask of the safety gate is computed once in a run; tests of the gate itself ask it directly."""
+    from thermicon.circuit.delivery import worstcase
+
+    folder = shared_folder(tmp_path_factory) / "verdicts"
     with pytest.MonkeyPatch.context() as patch:
-        remember_verdicts(patch, shared_folder(tmp_path_factory) / "verdicts")
+        for name in ("gate_set", "gate_shown", "gate_controlled"):
+            patch.setattr(worstcase, name, remembered(getattr(worstcase, name), folder / name))
         yield
 
 

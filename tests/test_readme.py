@@ -132,25 +132,23 @@ def test_a_page_shows_what_happens(page: Path) -> None:
     assert masked(regenerated(text)) == masked(text), "if it is right: python tests/test_readme.py"
 
 
-def test_the_readme_begins_with_the_two_commands() -> None:
-    readme = README.read_text(encoding="utf-8")
-    assert "python3 -m venv .venv && .venv/bin/pip install -e . && .venv/bin/thermicon rank six-icons\n" in readme
-    assert 'python3 -m venv .venv && .venv/bin/pip install -e ".[test]" && .venv/bin/pytest\n' in readme
-
-
-def test_the_readme_is_a_front_door() -> None:
+def test_the_readme_is_a_front_door_of_two_commands() -> None:
     """At most two hundred lines: what is longer belongs in docs/."""
-    assert len(README.read_text(encoding="utf-8").splitlines()) <= 200
+    readme, install = README.read_text(encoding="utf-8"), "python3 -m venv .venv && .venv/bin/pip install -e"
+    assert f"{install} . && .venv/bin/thermicon rank six-icons\n" in readme
+    assert f'{install} ".[test]" && .venv/bin/pytest\n' in readme
+    assert len(readme.splitlines()) <= 200
+
+
 
 
 @pytest.mark.parametrize("page", LINKING, ids=[page.relative_to(ROOT).as_posix() for page in LINKING])
 def test_every_link_leads_to_a_file_and_a_heading(page: Path) -> None:
     assert broken_links(page.read_text(encoding="utf-8"), page) == []
+    wrong = "[file](docs/nothing.md) [heading](LICENSE#nothing) [right](docs/README.md) [web](https://example.org)"
+    assert broken_links(wrong, README) == ["docs/nothing.md", "LICENSE#nothing"]
 
 
-def test_a_broken_link_is_reported() -> None:
-    text = "[file](docs/nothing.md) [heading](LICENSE#nothing) [right](docs/README.md) [web](https://example.org)"
-    assert broken_links(text, README) == ["docs/nothing.md", "LICENSE#nothing"]
 
 
 def test_the_index_lists_every_page() -> None:

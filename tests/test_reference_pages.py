@@ -48,17 +48,11 @@ def keys_of(document: object, names: tuple[str, ...]) -> set[str]:
     return set(document).union(*inner)
 
 
-def test_the_page_lists_every_key_of_a_ranking() -> None:
-    icons, rig = load_library("wave-shapes"), Rig.load("thenar")
-    ranking = rank(icons, rig, people=3, parameters=0, workers=1).to_dict()
-    listed = code_words("files.md")
+def test_the_page_lists_every_key_of_a_ranking_and_of_a_sidecar() -> None:
+    rig, listed, form = Rig.load("thenar"), code_words("files.md"), load_format("csv")
+    ranking = rank(load_library("wave-shapes"), rig, people=3, parameters=0, workers=1).to_dict()
     assert keys_of(ranking, ("icons", "pairs", "set", "task", "confusion")) - listed == set()
     assert "proportion_correct" in listed
-
-
-def test_the_page_lists_every_key_of_a_sidecar() -> None:
-    form = load_format("csv")
-    icon = load_library("six-icons")["double-dip"]
-    ready = prepare(icon, Rig.load("thenar"), Device.load("dac-16"), form, gate=GreenVerdict)
+    ready = prepare(load_library("six-icons")["double-dip"], rig, Device.load("dac-16"), form, gate=GreenVerdict)
     sidecar = json.loads(pack([ready], form)["double-dip.json"])
-    assert keys_of(sidecar, ("columns", "events", "safety", "hardware_must_prevent")) - code_words("files.md") == set()
+    assert keys_of(sidecar, ("columns", "events", "safety", "hardware_must_prevent")) - listed == set()

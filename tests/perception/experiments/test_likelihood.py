@@ -25,13 +25,8 @@ from thermicon.perception.sensation.detection import detect, time_of
 from thermicon.perception.sensation.sensation import receptor_drive, sensitivity
 
 NOBODY_DIFFERS = (
-    "cold sensitivity between people",
-    "warm sensitivity between people",
-    "criterion between people",
-    "decision time between people",
-    "sensitivity between laboratories",
-    "cold sensitivity lost per decade",
-    "warm sensitivity lost per decade",
+    *(f"{channel} sensitivity {among}" for channel in CHANNELS for among in ("between people", "lost per decade")),
+    *("criterion between people", "decision time between people", "sensitivity between laboratories"),
 )
 VALUES = {each.name: each.value for each in load_constants()}
 

@@ -1,20 +1,23 @@
-"""Observers in place of the shipped one, from draws or from records, and what of a file cannot be used."""
+"""Variants of the observer, observers from draws or from records, and what of a file cannot be used."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig
+from thermicon.circuit import Rig, simulate
 from thermicon.circuit.records import RecordError, Table, load_records
 from thermicon.icons import load_library, parse
-from thermicon.perception import Observer, draw_people, frontier, rank, search
-from thermicon.perception.observer.channels import VARIABLES, Variable
-from thermicon.perception.observer.observer import DATA
+from thermicon.perception import Observer, draw_people, frontier, perceive, rank, search
+from thermicon.perception.observer.channels import VARIABLES, Variable, check_variable
+from thermicon.perception.observer.observer import DATA, Receptor
 from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.sensation.bench import Bench, ramp
 
 SHIPPED = DATA / "observer.toml"
 SIX, RIG = load_library("six-icons"), Rig.load("thenar")
@@ -112,3 +115,61 @@ def test_a_search_and_a_frontier_follow_another_observer(draws_file: Path) -> No
     assert searched[1].before.d_prime < searched[0].before.d_prime
     chosen = [frontier(SIX, RIG, people=8, most=2, objective="worst", observer=each) for each in (None, draws_file)]
     assert chosen[1].points[0].at_own_range.d_prime < chosen[0].points[0].at_own_range.d_prime
+
+
+@pytest.mark.parametrize("variable", VARIABLES)
+def test_every_variant_loads_and_is_near_the_thresholds_it_was_inferred_from(variable: Variable) -> None:
+    """Published for 0.11 and 0.20 K on the thenar; laboratories differ by 20 to 40 %."""
+    person = Observer.load(variable=variable)
+    assert person.variable == variable
+    felt = [perceive(simulate(SIX[name], RIG, tail_s=2.0), person) for name in ("cooling-step", "warming-step")]
+    assert [percept.channel for percept in felt] == ["cold", "warm"]
+    bench = Bench(RIG)
+    for channel, published in (("cold", 0.11), ("warm", 0.20)):
+        half, twice = (bench.play([ramp(channel, share * published, 1.0)], 4.0) for share in (0.5, 2.0))
+        assert max(psi.max() for psi in half.felt(person)) < 1.0 < max(psi.max() for psi in twice.felt(person))
+
+
+@pytest.mark.parametrize("variable", ["temperature", "heat flow"])
+def test_both_ways_to_count_depth_reach_the_percept(variable: Variable) -> None:
+    """From the base of the stratum corneum (0.17 mm on the thenar) receptors are deeper, felt later and less."""
+    person, icon = Observer.load(variable=variable), SIX["warming-step"]
+    surface = RIG.with_(**{"skin.depth_from": "surface"})
+    assert surface.skin.warm_receptor_m == pytest.approx(0.21e-3)
+    assert RIG.skin.warm_receptor_m == pytest.approx(0.38e-3)
+    traces = [simulate(icon, rig, tail_s=3.0) for rig in (surface, RIG)]
+    same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.27, "skin.warm_receptor_mm": 0.38}), tail_s=3.0)
+    felt = [perceive(trace, person) for trace in (*traces, same)]
+    assert felt[1].psi_warm == pytest.approx(felt[2].psi_warm, abs=1e-6)
+    assert felt[1].onset_s > felt[0].onset_s + 0.05
+    assert felt[1].psi_warm.max() < felt[0].psi_warm.max()
+
+
+def test_heat_flow_fades_in_a_hold_where_temperature_does_not() -> None:
+    played = Bench(RIG).play([ramp("cold", 1.0, 1.0, 5.0)], 6.0)
+    left = []
+    for variable in ("temperature", "heat flow"):
+        cold = played.felt(Observer.load(variable=variable))[0][0]  # type: ignore[arg-type]
+        left.append(cold[-1] / cold.max())
+    assert left[1] < 0.7 * left[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"adaptation_s": 0.0}, r"adaptation_s = 0 must be above 0"),
+        ({"softness_K": 0.0}, r"softness_K = 0 must be above 0"),
+        ({"forearm_factor": 0.0}, r"forearm_factor = 0 must be above 0"),
+        ({"neutral_flux": (3.0, 3.0)}, r"neutral heat flow 3 to 3 W/m² is empty"),
+    ],
+)
+def test_a_receptor_proves_itself(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        replace(Receptor(20.0, 0.1, 2.0, 0.5), **change)
+
+
+def test_messages(observer: Observer) -> None:
+    with pytest.raises(ValueError, match=r"no sensory variable 'flux': choose one of temperature, heat flow"):
+        check_variable("flux")
+    with pytest.raises(ValueError, match=r"observer of heat flow needs the neutral heat flow of both channels"):
+        replace(observer, variable="heat flow")

@@ -15,7 +15,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.measurement_likelihood import measuring
 from thermicon.perception.pilot.measurements_file import Measurements
 from thermicon.perception.pilot.playing import Confusions, stage
-from thermicon.perception.pilot.states import OFFSETS, SEEDS, Laboratories, LaboratoryPrior
+from thermicon.perception.pilot.states import SEEDS, Laboratories, LaboratoryPrior
 from thermicon.perception.pilot.trials import Trials
 
 CROWD = 256
@@ -68,13 +68,10 @@ def synthetic_measurements(
     trials: int = 10,
     seed: int = 0,
     conditions: Sequence[Condition] = USUAL,
-    numb: float = 1.0,
 ) -> Measurements:
-    """Measurements in a made-up laboratory; `numb` is a factor of all its thresholds."""
+    """Measurements in a made-up laboratory."""
     prior = LaboratoryPrior(PosteriorDraws.load(), "episodes")
     row = prior.values(made_up_laboratory(prior, seed))[0]
-    for offset in OFFSETS:
-        row[prior.names.index(offset)] -= np.log(numb)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 33]))
     return measurements_of(prior, row, Setting.of(rig), conditions, participants, trials, rng)
 

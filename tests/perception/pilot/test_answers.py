@@ -13,30 +13,10 @@ from thermicon.perception.pilot.trials import Trials, plugin_information, score,
 CHANCES = np.array([[0.7, 0.2, 0.1], [0.2, 0.7, 0.1], [0.1, 0.2, 0.7]])
 
 
-def drawn(rng: np.random.Generator, participants: int, times: int) -> Trials:
-    counts = rng.multinomial(times, CHANCES, size=(participants, 3)).astype(float)
-    return Trials(("a", "b", "c"), tuple(f"P{k}" for k in range(participants)), counts)
-
-
 def test_plugin_bits_are_those_of_the_matrix_with_rows_alike() -> None:
     bits, bias = plugin_information(CHANCES * 1000)
     assert bits == pytest.approx(float(information_bits(CHANCES)), abs=1e-12)
     assert bias == pytest.approx((9 - 3 - 3 + 1) / (2 * 3000 * math.log(2)))
-
-
-def test_the_correction_takes_much_of_the_bias_away() -> None:
-    rng, truth = np.random.default_rng(0), float(information_bits(CHANCES))
-    scores = [score("all", drawn(rng, 1, 16).counts) for _ in range(300)]
-    plugin = np.mean([each.information_bits_plugin for each in scores]) - truth
-    corrected = np.mean([each.information_bits_plugin - each.information_bits_bias for each in scores]) - truth
-    assert plugin > 0.05
-    assert abs(corrected) < 0.5 * plugin
-
-
-def test_intervals_over_participants_cover() -> None:
-    rng = np.random.default_rng(1)
-    ends = [score("all", drawn(rng, 8, 12).counts).proportion_correct_interval for _ in range(200)]
-    assert 0.9 <= np.mean([low <= 0.7 <= high for low, high in ends]) <= 0.99
 
 
 def test_half_widths_are_wilsons_and_the_jackknifes() -> None:

@@ -24,7 +24,7 @@ from thermicon.perception.pilot.measurement_likelihood import (
     shared_covariance,
 )
 from thermicon.perception.pilot.observed import observed
-from thermicon.perception.pilot.states import OFFSETS, LaboratoryPrior
+from thermicon.perception.pilot.states import LaboratoryPrior
 
 RIG = Rig.load("thenar")
 CHOICE = Condition("threshold", "forced_choice", "cold", 32.0, None, 1.0, 3.0)
@@ -76,29 +76,6 @@ def test_limits_and_times_lie_where_the_evidence_has_them(prior: LaboratoryPrior
     middle = np.exp(np.median(each.mean, axis=0))
     assert 1.4 < middle[0] < 2.5  # E3: 1.86 K
     assert 0.5 < middle[1] < 1.2  # E1, five strips
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("factor", "sign"), [(2.5, 1.0), (0.4, -1.0)])
-def test_a_numb_laboratory_moves_the_thresholds_up_and_a_keen_one_down(
-    prior: LaboratoryPrior, factor: float, sign: float
-) -> None:
-    conditions = SHARP
-    usual = synthetic_measurements(RIG, participants=6, seed=3, conditions=conditions)
-    before = prior.first(500, 1)
-    each = predicted(prior, before, Setting.of(RIG), conditions)
-    thresholds = [
-        np.log(prior.values(before)[:, prior.names.index(f"{channel} threshold drive")])
-        - prior.values(before)[:, prior.names.index(offset)]
-        for channel, offset in zip(("cold", "warm"), OFFSETS, strict=True)
-    ]
-    shifted = synthetic_measurements(RIG, participants=6, seed=3, numb=factor, conditions=conditions)
-    means = []
-    for some in (usual, shifted):
-        weights = normalised_weights(log_likelihood(some, each))
-        means.append([float(weights @ own) for own in thresholds])
-    for low, high in zip(*means, strict=True):
-        assert sign * (high - low) > 0.08
 
 
 @pytest.mark.slow

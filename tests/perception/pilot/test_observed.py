@@ -58,7 +58,6 @@ def test_first_laboratories_are_the_draws_and_coordinates_lead_back() -> None:
     assert abs(offset.std() - 1.0) < 0.1
 
 
-@pytest.mark.slow
 def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers: Trials) -> None:
     own = found.to_dict()
     assert own["trials"] == answers.total == 54
