@@ -6,8 +6,6 @@ can run code as the user who reads it.
 
 # mypy: disable-error-code="attr-defined,import-untyped"
 # numba names its settings only when it is imported, and llvmlite has no types.
-from __future__ import annotations
-
 import hashlib
 import logging
 import multiprocessing

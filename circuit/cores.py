@@ -1,7 +1,5 @@
 """How many cores a computation may use, and one thread for its linear algebra; results do not depend on it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager

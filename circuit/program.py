@@ -1,7 +1,5 @@
 """Which program computed a result: its version, and a digest of the files that determine the numbers."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator
 from functools import lru_cache

@@ -4,8 +4,6 @@ A table is a TOML file with one `[[record]]` block for each number, which states
 or an interval, and the conditions under which it holds.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, fields

@@ -6,8 +6,6 @@ tangent for the logarithm: both are within 5 units in the last place, which test
 
 # mypy: disable-error-code="no-untyped-call,misc,no-any-return,import-untyped,untyped-decorator"
 # numba's decorators have no types.
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Arrays that objects hold, and arrays of any shape seen as rows of time, which is how every kernel takes them."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

@@ -1,6 +1,4 @@
-"""What tests of several rooms build or wait for: words of messages, steps, a laboratory, quantiles, a server's answer."""
-
-from __future__ import annotations
+"""What tests of several rooms build or wait for: messages, steps, a laboratory, quantiles, answers of a server."""
 
 import socket
 import time

@@ -1,7 +1,5 @@
 """Closed forms of a Peltier module, by which tests judge what is computed."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 from thermicon.circuit.rig.module import ZERO_C_IN_K, Peltier

@@ -1,7 +1,5 @@
 """Properties that hold for any input: few examples in the ordinary suite, all of them in the slow one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -4,8 +4,6 @@
 must shrink, or another room must give what it takes: the sum never rises.
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections import Counter

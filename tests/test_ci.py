@@ -1,7 +1,5 @@
 """The scripts of ``.ci``, what stays ordinary of the browser tests, and the paths that CONTRIBUTING names."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

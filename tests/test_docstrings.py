@@ -1,7 +1,5 @@
 """Every public name of the four packages has a numpydoc docstring that agrees with its signature and names units."""
 
-from __future__ import annotations
-
 import importlib
 import inspect
 import re

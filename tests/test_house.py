@@ -1,7 +1,5 @@
 """The house rules that a machine can check, so that nobody has to remember them in a review."""
 
-from __future__ import annotations
-
 import doctest
 import importlib
 import io
@@ -68,8 +66,6 @@ def test_walking_the_packages_finds_every_file_and_imports_none_by_its_bare_name
     assert not set(FLOW) & set(sys.modules), "a folder was imported a second time under its bare name"
 
 
-
-
 @pytest.mark.parametrize("name", module_names())
 def test_examples_in_docstrings_run(name: str) -> None:
     module = importlib.import_module(name)
@@ -81,7 +77,9 @@ def test_examples_in_docstrings_run(name: str) -> None:
 
 
 def test_no_module_is_too_long() -> None:
-    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in project_files() if path.suffix == ".py"}
+    lengths = {
+        path: len(path.read_text(encoding="utf-8").splitlines()) for path in project_files() if path.suffix == ".py"
+    }
     long = {str(path): n for path, n in lengths.items() if n > LINES_AT_MOST}
     assert not long, f"over {LINES_AT_MOST} lines, split where the idea splits: {long}"
 

@@ -3,8 +3,6 @@
 A module is entered where one of its functions runs; what only defines names, as on import, is not counted.
 """
 
-from __future__ import annotations
-
 import subprocess
 import sys
 import tomllib

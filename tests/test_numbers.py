@@ -4,8 +4,6 @@ A number that decides something is changed in both places, on purpose; ``python 
 table.
 """
 
-from __future__ import annotations
-
 import ast
 import tomllib
 from collections.abc import Iterator

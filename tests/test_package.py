@@ -1,7 +1,5 @@
 """The package as a stranger gets it: source archive and wheel, installed elsewhere, run from a folder of their own."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -4,8 +4,6 @@
 between machines; words, names and order are. A command that several pages show runs once (`RUNS`).
 """
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import io
@@ -140,15 +138,11 @@ def test_the_readme_is_a_front_door_of_two_commands() -> None:
     assert len(readme.splitlines()) <= 200
 
 
-
-
 @pytest.mark.parametrize("page", LINKING, ids=[page.relative_to(ROOT).as_posix() for page in LINKING])
 def test_every_link_leads_to_a_file_and_a_heading(page: Path) -> None:
     assert broken_links(page.read_text(encoding="utf-8"), page) == []
     wrong = "[file](docs/nothing.md) [heading](LICENSE#nothing) [right](docs/README.md) [web](https://example.org)"
     assert broken_links(wrong, README) == ["docs/nothing.md", "LICENSE#nothing"]
-
-
 
 
 def test_the_index_lists_every_page() -> None:

@@ -6,8 +6,6 @@ loops play the set-points without swinging, in the fastest and slowest corners, 
 shows how a play ends.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

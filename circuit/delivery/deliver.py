@@ -4,8 +4,6 @@ The file of a device that plays samples begins at rest: for one update (`lead_s`
 the baseline, from the steady state. It ends at rest again, in a row that marks the end.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The schema of a device file: its keys, and what its records may state."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator
 from functools import cache

@@ -1,7 +1,5 @@
 """Export in one call: icons, a rig, a device and a format give the files that play them, or the reasons against it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -4,8 +4,6 @@ An export owns its folder NAME. The next one is built as `.NAME.thermicon-part` 
 renamed to NAME.before and the new folder to NAME.
 """
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

@@ -1,7 +1,5 @@
 """The nearest cue that a rig can reach, for one that it cannot: the same shape slower, or smaller."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -3,8 +3,6 @@
 After Fig. 2b of Shani & Lineykin 2021: electrical side in V and A; thermal side 1 V is 1 °C and 1 A is 1 W.
 """
 
-from __future__ import annotations
-
 import re
 import string
 import textwrap

@@ -1,7 +1,5 @@
 """Prepared cues packed into files: a drive and a sidecar for each, and the files of the set; nothing is written."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import math

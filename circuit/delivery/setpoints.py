@@ -3,8 +3,6 @@
 The rig is not involved: a thermode measures its own surface and corrects it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

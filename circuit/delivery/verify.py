@@ -1,7 +1,5 @@
 """Whether the files of an export are as they were exported: drives, set files, sidecars, rig, device and program."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal

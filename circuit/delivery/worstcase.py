@@ -6,8 +6,6 @@ stand, with its lag and without, and neither module nor driver nor heat sink of 
 the rig's module is judged in `controlled.py`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

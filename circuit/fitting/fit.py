@@ -1,7 +1,5 @@
 """Fit rig parameters to measured logs."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """What a log identifies, what it does not, and which further measurement would."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

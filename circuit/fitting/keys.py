@@ -1,7 +1,5 @@
 """The keys of a rig that a log can be fitted for: scale, bounds, and how well each must be known to be of use."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

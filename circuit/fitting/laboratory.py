@@ -1,7 +1,5 @@
 """A synthetic laboratory: logs that a rig would give, with the noise of instruments, and what logs would identify."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

@@ -4,8 +4,6 @@ Of several causes of one misfit the first is named: a fit that did not come to r
 column that is late, and only then keys that are held fixed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

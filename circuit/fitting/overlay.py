@@ -1,7 +1,5 @@
 """A measured log laid beside a simulated trace, on the trace's clock."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

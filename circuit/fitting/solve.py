@@ -1,7 +1,5 @@
 """The fit itself: robust least squares, whose standard deviations come from the residuals of each channel."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal

@@ -1,7 +1,5 @@
 """Parts of a rig from its file, in SI: module with heat sink and driver, skin, and probes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """A rig at one corner of its uncertainty, which may exceed the limits of a rig file."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

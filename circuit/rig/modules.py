@@ -1,7 +1,5 @@
 """Shipped modules by name, and the module of a rig, given by parameters, data sheets or a name."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

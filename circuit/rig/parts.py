@@ -1,7 +1,5 @@
 """The parts of a rig besides module and skin: heat sink and driver, contact and probes."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The schema of a rig file: its keys, their units and their limits."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import Annotated, Any, Literal, get_args

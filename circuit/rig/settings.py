@@ -1,7 +1,5 @@
 """The document of a rig: changes by dotted keys or texts of the form `key=value`, and its text as a rig file."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterable, Iterator, Mapping

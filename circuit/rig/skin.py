@@ -1,7 +1,5 @@
 """Skin as layers, and as a column of lumps: capacities, perfusion and the resistances between them."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass, field

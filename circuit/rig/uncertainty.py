@@ -4,8 +4,6 @@ A smaller uncertainty makes the worst case milder and so loosens the gate of saf
 written reason, which is reported with every verdict.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from functools import cache
 from importlib import resources

@@ -4,8 +4,6 @@ near they come, when and in which scenario; and what software cannot make safe, 
 `words` turns them into sentences.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal

@@ -7,8 +7,6 @@ temperature of bare skin, a warmer room means cooler blood. A Peltier module coo
 heat grows with the square: where the driver can pass that current, gains in between are corners too.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """What hardware must prevent so that currents stay safe with a single fault, in any play after the shortest pause."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -2,8 +2,6 @@
 and over how often it is played.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Repeated plays: verdict, and the shortest pause that is safe."""
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence

@@ -8,8 +8,6 @@ every temperature and every rate is affine in the state that a play begins from,
 between the block within one run without breaks and the block from rest: both are judged.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ lane, its time, and since when the limit is exceeded.
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.
-from __future__ import annotations
-
 import math
 
 import numpy as np

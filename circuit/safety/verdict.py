@@ -3,8 +3,6 @@
 This is not a medical or ethical clearance, and a hardware cut-off is required.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from math import isnan

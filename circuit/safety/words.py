@@ -3,8 +3,6 @@
 Nothing is decided here and nothing that decides imports this module: it is loaded when somebody reads.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Sequence
 from functools import cache, lru_cache

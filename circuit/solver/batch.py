@@ -1,7 +1,5 @@
 """Many cues on many rigs at once: the skin of each virtual person."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

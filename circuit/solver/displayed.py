@@ -5,8 +5,6 @@ delay and not a miss, so the outcome is judged without it; the trace includes it
 display is the same and the skins are not.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ At duty D and current Ip a bridge pumps α·T·D·Ip, but its resistance heats w
 same mean heats with (D·Ip)². A slow cycle also ripples the plate.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

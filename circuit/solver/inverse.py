@@ -1,7 +1,5 @@
 """From the temperature that a cue prescribes to the current that produces it, held over each driver period."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -16,8 +16,6 @@ a chain of operations, and many lanes fill the processor's vectors. Temperatures
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ Both find the current that is held over each period of the driver; the state mov
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -11,8 +11,6 @@ the current that such a display needs, and says whether driver and module allow 
 
 # mypy: disable-error-code="no-untyped-def,misc"
 # numba infers the types here, and its decorators have none.
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -9,8 +9,6 @@ the steady state runs uncompiled. The hot plate enters through `base` (W), the h
 where δ is the time step (C_h/δ = 0 at rest) and T_s the temperature of the heat sink.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -4,8 +4,6 @@
 tissue at a depth, linear in thermal resistance between lumps.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Simulation of the circuit: a cue or a drive on a rig gives a Trace."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Steady states: the state under a constant current, and the current that holds a baseline."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import lru_cache
 

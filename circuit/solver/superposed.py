@@ -5,8 +5,6 @@ target to within a fraction of a millikelvin, and the skin under it is linear. L
 the full solution, which is also what the tests compare with (0.5 mK at the receptors of every shipped set).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

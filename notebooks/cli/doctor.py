@@ -1,7 +1,5 @@
 """``thermicon doctor``: whether the installation is sound, each check on its own, and what cures it where it is not."""
 
-from __future__ import annotations
-
 import json as json_text
 import platform
 import sys

@@ -1,7 +1,5 @@
 """``thermicon fit``: rig parameters from measured logs, and what a log would identify before it is measured."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """``thermicon lab``: the notebooks copied to a folder and opened in JupyterLab."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """``thermicon list``: what is shipped, how it is cited, and copies of it to start from."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Literal
 

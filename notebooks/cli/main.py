@@ -4,8 +4,6 @@ A command imports what it needs when it runs, so that ``check`` answers at once.
 of this package.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import sys

@@ -4,8 +4,6 @@ TCP holds small packets back until earlier ones are confirmed (Nagle), and pages
 follows the short message that the kernel is busy, so that each would wait.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from jupyter_server.services.kernels.connection.channels import ZMQChannelsWebsocketConnection

@@ -1,7 +1,5 @@
 """``thermicon validate``: predicted and published results side by side, as a table or as JSON."""
 
-from __future__ import annotations
-
 from json import dumps
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """Names of files that a command or a page will write: looked at before long work starts."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from pathlib import Path

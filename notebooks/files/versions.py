@@ -1,7 +1,5 @@
 """Versions of a text in one hidden file beside it: those that were kept by hand, and what editors have not saved."""
 
-from __future__ import annotations
-
 import os
 import secrets
 import time

@@ -1,7 +1,5 @@
 """The text of a goal, and of the choice of the best few icons of a set."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

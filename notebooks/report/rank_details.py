@@ -1,7 +1,5 @@
 """What stands behind a ranking: notes, its numbers with intervals, the worst pair with its reasons, and assumptions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 

@@ -3,8 +3,6 @@
 Python's own generator is used, whose sequences are the same in every version; those of numpy are not promised to be.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 from itertools import pairwise

@@ -3,8 +3,6 @@
 Limits on their number are checked before anything is simulated.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 import json

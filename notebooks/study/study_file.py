@@ -3,8 +3,6 @@
 A study is identified by the hash of everything that decides it.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections import Counter

@@ -1,7 +1,5 @@
 """The usual unknowns as knobs: what is rarely known of contact, skin and driver, each with its range."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

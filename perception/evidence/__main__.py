@@ -6,8 +6,6 @@ writes the parameter file of the observer. On one computer the same seed gives t
 there are.
 """
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Sequence

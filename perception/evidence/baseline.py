@@ -6,8 +6,6 @@ the nearest point, as by the model. The noise is set by the rate task, exactly a
 temperature has no delay and no scale of strength, so that it predicts no reaction times, lags and ratings.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import combinations

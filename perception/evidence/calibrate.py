@@ -4,8 +4,6 @@ Constants are those of the maximum of the posterior (`inference`), so that they 
 no draw is near the middle of them all. Intervals cover 95 % of the draws. Records marked `predict` are never read.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

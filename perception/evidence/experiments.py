@@ -5,8 +5,6 @@ not stated where an experiment was found is stated here, as a condition. Constan
 reaction times on the forearm, and from none of the others.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache, partial

@@ -8,8 +8,6 @@ evidence is
 for a vector in SDs of normal priors; what is left out is the same for every model of the same rows.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Intervals come from laboratories that the evidence leaves possible, as `rank` dr
 was simulated for ask one person of each.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -4,8 +4,6 @@ The skin is the column of a rig without its display, still air above it; the flu
 the surface, from t = 0 on. Changes from rest are stepped exactly for a flux that is constant.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache, partial
 

@@ -4,8 +4,6 @@ Constants and predictions are written by `python -m thermicon.perception.evidenc
 to the shipped evidence and priors. The ablation is a finished comparison: its first line says which version made it.
 """
 
-from __future__ import annotations
-
 import csv
 import hashlib
 import math

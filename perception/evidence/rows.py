@@ -3,8 +3,6 @@
 `data/evidence.csv` has one row a statistic and `data/evidence.toml` one table an experiment; no trial data.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import tomllib

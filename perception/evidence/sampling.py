@@ -4,8 +4,6 @@ Chains do not know of each other, so that R-hat compares independent runs, and t
 not on the number of processes.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor

@@ -1,7 +1,5 @@
 """Every published experiment, run on every variant of the observer: what a validation report is made of."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -4,8 +4,6 @@ A row names the prediction of an experiment, the published record it is compared
 by which it is judged. Published numbers themselves come from the table of thresholds alone.
 """
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass
 from functools import lru_cache

@@ -1,7 +1,5 @@
 """A validation report as plain data, for `validation.json`: what does not exist is None, never NaN."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict
 from typing import Any

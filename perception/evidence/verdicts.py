@@ -1,7 +1,5 @@
 """How a prediction stands to a published number: holds, or misses and by how much."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ quasi-random numbers for every set of constants: a change of a constant then cha
 search for a maximum needs.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

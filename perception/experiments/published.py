@@ -4,8 +4,6 @@ A prediction has the key of its row (see `rows`): experiment, statistic and chan
 logarithms. Each function takes a laboratory's view of the constants and nothing else.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 

@@ -6,8 +6,6 @@ from the symmetric matrix C^(−1/2)·K·C^(−1/2). Ramps are the integral of s
 that a stimulus with corners costs one look-up a corner.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache

@@ -10,8 +10,6 @@ Noise belongs to what was felt, so that a presented icon can lose an episode in 
 are then asymmetric without a constant for it.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from functools import lru_cache

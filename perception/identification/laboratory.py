@@ -4,8 +4,6 @@ Each draw invites a random sample of the same few people. Draws are laid about t
 draw adds is its difference from the nominal observer with the same people and noise.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, replace

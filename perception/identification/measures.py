@@ -4,8 +4,6 @@ Published information is the plug-in estimate of a few dozen trials, which is bi
 `plugin_bits` computes what such an experiment would report, `information_bits` the exact value.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 

@@ -5,8 +5,6 @@ fraction, whatever the rate and nearly whatever the span. Simulated through this
 sets memory noise.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Sequence

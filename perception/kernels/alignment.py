@@ -7,8 +7,6 @@ with intensity I, rate R, length W, pause P of an episode, the noise s of its se
 Δg² a faint episode could be missed and then taken for a strong one, for less than a strong one is missed.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -5,8 +5,6 @@ through c/2, and closes where ψ_q falls below c/2 or below the other quality. T
 nothing of the other between them are one; one with a valley of ψ that lies c or more below both its peaks is two.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

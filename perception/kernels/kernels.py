@@ -14,8 +14,6 @@ For a channel with sign s (−1 cold, +1 warm), receptor temperature T, limit L 
 Integration and adaptation are exact for q that is linear between samples.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Work spread over the machine's cores, whose number does not change the result, and its steps counted."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context

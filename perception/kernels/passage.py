@@ -8,8 +8,6 @@ that has not been passed yet is passed, per unit of time, at Rice's rate over th
 Psychometric functions are read here too: sizes at which each person reports given shares, guesses taken out.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

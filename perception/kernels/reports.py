@@ -6,8 +6,6 @@ L is the log probability of not having passed the criterion yet, at the rate tha
 of a channel. A drive that is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

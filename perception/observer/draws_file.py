@@ -3,8 +3,6 @@
 It is written by `python -m thermicon.perception.evidence`. Reading refuses a table of other evidence or another form.
 """
 
-from __future__ import annotations
-
 import csv
 import hashlib
 from collections.abc import Mapping, Sequence

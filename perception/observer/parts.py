@@ -19,8 +19,6 @@ No thermal source says that features of episodes and not traces are remembered. 
 memory, but draws of one laboratory may: they stand in columns of these names.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields

@@ -9,8 +9,6 @@ Either way the result is a sample of laboratories with people who did not take p
 what is simulated of them and in how likely they are there, and in nothing else.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from functools import cached_property

@@ -10,8 +10,6 @@ predict something else. The simulated score of a laboratory scatters by some 2 p
 people are, so that the few nearest ones are asked again with other people.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

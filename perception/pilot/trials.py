@@ -8,8 +8,6 @@ A few participants may happen to be alike, or right throughout: the interval of 
 than Wilson's, which their number alone leaves.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The door for answers: a CSV file of trials, or what is wrong with it, where, and what helps."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Collection, Sequence
 from pathlib import Path

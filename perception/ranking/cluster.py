@@ -3,8 +3,6 @@
 Batches of a worker that dies are computed again by others; the result does not depend on which worker computed it.
 """
 
-from __future__ import annotations
-
 import logging
 import re
 from collections.abc import Iterator

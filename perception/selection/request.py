@@ -1,7 +1,5 @@
 """The request for a choice, and why it cannot be met."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

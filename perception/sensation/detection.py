@@ -9,8 +9,6 @@ channel and by decision. The rule is compiled, in `kernels.passage`; how often n
 in a report, its onset is the median response time of those trials, its channel the one that most of them go by.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from statistics import NormalDist

@@ -15,8 +15,6 @@ units respond to spots under 5 mm); above about 200 cm² a larger one adds nothi
 of radiant heat differ, 225 and 400 do not). Areas that do not touch add like one.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

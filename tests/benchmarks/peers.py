@@ -1,7 +1,5 @@
 """The same circuit by other programs: ngspice, one process for a cue or one for many, and solve_ivp of scipy."""
 
-from __future__ import annotations
-
 import subprocess
 import time
 from collections.abc import Callable, Sequence

@@ -1,7 +1,5 @@
 """Driving JupyterLab in a real browser: servers of our own, and what a person does with a notebook."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

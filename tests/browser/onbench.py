@@ -1,7 +1,5 @@
 """What a person does with the workbench in a browser."""
 
-from __future__ import annotations
-
 from playwright.sync_api import Locator, Page, expect
 
 SETTLES_MS = 30_000

@@ -1,7 +1,5 @@
 """The canvas module in a static page: a model that sends nowhere and answers as the test says, no Jupyter."""
 
-from __future__ import annotations
-
 import base64
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What axe, an independent checker, finds in the views of the workbench and in a report: nothing serious."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

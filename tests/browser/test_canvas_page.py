@@ -1,7 +1,5 @@
 """The design view of the canvas module alone: a static page, and frames as the kernel would send them."""
 
-from __future__ import annotations
-
 import pytest
 
 from tests.browser.staticpage import INKED, TEXT, TROUBLE, Bench, design

@@ -1,7 +1,5 @@
 """The canvas module alone, in a static page: heat maps, themes, several views, screen readers, unsaved text."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

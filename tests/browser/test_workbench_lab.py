@@ -1,7 +1,5 @@
 """The workbench in JupyterLab: text and curve, set, export, going on after an interruption; how fast a drag is."""
 
-from __future__ import annotations
-
 import re
 import time
 

@@ -1,7 +1,5 @@
 """A rig that is known exactly, so that its gate judges one corner, not 65, where the corners are not the point."""
 
-from __future__ import annotations
-
 from thermicon.circuit import Rig
 
 KEYS = (

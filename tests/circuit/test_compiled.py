@@ -1,7 +1,5 @@
 """Compiled code that is kept: never read when foreign or made from other sources."""
 
-from __future__ import annotations
-
 import ast
 import os
 import pickle

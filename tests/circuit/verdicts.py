@@ -1,7 +1,5 @@
 """A made-up verdict, for tests of what is written after a gate has passed a drive."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 from typing import Any
 

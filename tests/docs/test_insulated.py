@@ -1,7 +1,5 @@
 """A probe on insulated skin against a finer field in depth and radius, assembled and stepped apart from the solver."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.sparse import coo_matrix, diags

@@ -1,7 +1,5 @@
 """The docs site: what it is built from, what the program adds, and that it builds without a warning."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The source paper beside ours: what it prints is in a table of records, ours is computed; its notebook runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import nbformat

@@ -1,7 +1,5 @@
 """The command line in this process (quick) and in one of its own (true)."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from collections.abc import Callable

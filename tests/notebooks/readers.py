@@ -1,7 +1,5 @@
 """What reads each kind of input, with sound texts of it: for tests of line ends and of damage."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """The tutorials: thin, without outputs, every cell runs, pictures are there, and a saved copy stays small."""
 
-from __future__ import annotations
-
 import time
 from itertools import pairwise
 from pathlib import Path

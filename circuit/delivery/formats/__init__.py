@@ -1,7 +1,5 @@
 """thermicon.circuit.delivery.formats: a delivered drive → the bytes of a file; writers are loaded when asked for."""
 
-from __future__ import annotations
-
 from importlib import import_module
 
 from thermicon.icons.near_words import did_you_mean

@@ -3,8 +3,6 @@
 The player is a header too, with cut-off, watchdog, abort and pauses.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from importlib import resources

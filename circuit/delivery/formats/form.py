@@ -1,7 +1,5 @@
 """The description of a drive file format, the input of its writer, and the events of a cue that files may mark."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise

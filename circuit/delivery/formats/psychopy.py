@@ -1,7 +1,5 @@
 """PsychoPy: a conditions file with one row per icon, the drives, and a player that supervises them."""
 
-from __future__ import annotations
-
 import csv
 import io
 from collections import Counter

@@ -4,8 +4,6 @@
 play any profile on all five zones.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Iterable, Sequence

@@ -4,8 +4,6 @@ WAV is 16-bit PCM at a rate that sound interfaces play; outputs that are not DC-
 has far fewer updates than a sound has frames: each is repeated a whole number of times. Nothing is resampled.
 """
 
-from __future__ import annotations
-
 import io
 import wave
 

@@ -1,7 +1,5 @@
 """Drives that try to slip past the gate: rigs, devices, cues and pauses by chance, near limits and far beyond them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

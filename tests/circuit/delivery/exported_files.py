@@ -1,7 +1,5 @@
 """Readers of exported files, written from what each format is documented to be, not from its writer."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Single faults in later plays of exported files, prevented as the sidecar demands, on the independent circuit."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field

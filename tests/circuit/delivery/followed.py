@@ -6,8 +6,6 @@ computed exactly beforehand; as a function of the current it is a parabola to wi
 by an implicit step of second order: C·dx/dt = −K(I)·x + b(I), where the current is only in two elements of K.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

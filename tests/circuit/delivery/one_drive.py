@@ -1,7 +1,5 @@
 """One icon, prepared or judged by itself, by the gate or by what a test puts in its place; and changed devices."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """One world of the independent circuit as a netlist of its own, played by ngspice from a file's currents."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path

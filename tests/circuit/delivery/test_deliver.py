@@ -1,7 +1,5 @@
 """What devices make of cues: quantised, held, slewed, switched, in segments; and simulated again."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 ``python tests/circuit/delivery/test_everyday_cues.py`` writes the table anew, in half an hour of two cores.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor

@@ -1,7 +1,5 @@
 """Export without a disk: what is refused and why, what goes into files, and what a sidecar tells."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import re

@@ -4,8 +4,6 @@ The ordinary suite has four; `-m slow` has a dozen more, and judges 10,000 in pa
 THERMICON_EVIDENCE says.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor

@@ -4,8 +4,6 @@
 rigs (from 200 on all rigs with all icons, but for a family of which 12 are chosen).
 """
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Callable

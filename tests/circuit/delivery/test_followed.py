@@ -1,7 +1,5 @@
 """The controller and the module that replay set-points: against exact steps, and against what the gate says."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -4,8 +4,6 @@ The ordinary suite has one export; `-m slow` has 200 of shipped and made-up cues
 each, or as many as THERMICON_EVIDENCE says.
 """
 
-from __future__ import annotations
-
 import os
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any

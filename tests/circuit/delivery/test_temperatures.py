@@ -1,7 +1,5 @@
 """Temperatures against time, for a controller around the rig's module; and what an open loop leaves open."""
 
-from __future__ import annotations
-
 import csv
 import io
 from pathlib import Path

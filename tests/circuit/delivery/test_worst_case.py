@@ -1,7 +1,5 @@
 """The gate on what every kind of device delivers."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from functools import cache

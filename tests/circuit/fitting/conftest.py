@@ -1,7 +1,5 @@
 """A rig with known truth, and logs of it."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Fits of synthetic logs: the truth is found, and what a log cannot say is named."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

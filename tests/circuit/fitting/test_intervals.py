@@ -1,7 +1,5 @@
 """What a log knows: said before measuring, of skin that is not the rig's, and of the truth in 200 logs."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What no log may be: every message names the file, the place and the cure."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path

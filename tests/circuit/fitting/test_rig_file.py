@@ -1,7 +1,5 @@
 """The rig file of a fit: equal to the fitted rig, with logs, program and intervals, and the gate uses these."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pandas as pd

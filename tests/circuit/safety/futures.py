@@ -1,7 +1,5 @@
 """Every scenario of a drive row by row: its corners and endings, as the gate checks them in stretches."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Corners of a rig, and what follows a cue: against the single-lane kernel, an independent solver and closed forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

@@ -1,7 +1,5 @@
 """A session and a summary against what can be checked by hand: single runs, sums, every rate that the run shows."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The same circuit in ngspice, from the exported netlist: an independent solver for the same physics."""
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Every path that simulates takes a passive heat sink: none ignores it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

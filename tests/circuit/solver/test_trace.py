@@ -1,7 +1,5 @@
 """Drives and traces: rows, columns, files, pictures and tolerances, and what rigs and drives refuse."""
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path

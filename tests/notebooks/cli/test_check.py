@@ -1,7 +1,5 @@
 """``thermicon check``: one line a file, and quick; with ``--fix``, files in canonical layout, whole or untouched."""
 
-from __future__ import annotations
-
 import stat
 import subprocess
 import sys

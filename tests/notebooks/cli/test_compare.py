@@ -1,7 +1,5 @@
 """``thermicon compare``: rigs, icons, sets, traces and logs; one table of differences, one figure."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """``thermicon export``: files, words, exit codes, pauses and hardware; what is refused leaves nothing."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

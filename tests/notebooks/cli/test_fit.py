@@ -1,7 +1,5 @@
 """``thermicon fit``: what it prints, what it writes, and what it refuses."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

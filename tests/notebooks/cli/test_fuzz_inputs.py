@@ -4,8 +4,6 @@
 THERMICON_FUZZ=2000 fewer. Mutations are seeded, so that a failure comes again.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import os
 import random

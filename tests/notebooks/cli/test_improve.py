@@ -1,7 +1,5 @@
 """``thermicon improve``: what scripts read, what people read, and what is found."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``thermicon lab``: which notebooks are written and which are kept, and how the servers start and end."""
 
-from __future__ import annotations
-
 import os
 import signal
 import socket

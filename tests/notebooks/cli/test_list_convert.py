@@ -1,7 +1,5 @@
 """``thermicon list`` and ``convert``: what is shipped, copies to start from, and icons in other forms."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

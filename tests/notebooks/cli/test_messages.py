@@ -1,7 +1,5 @@
 """What the commands say is data: one message for everything that can be wrong, no traceback, nothing half-written."""
 
-from __future__ import annotations
-
 import shlex
 from pathlib import Path
 

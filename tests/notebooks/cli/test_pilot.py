@@ -1,7 +1,5 @@
 """``thermicon pilot``, as a plan and with answers: tables for people and files for scripts."""
 
-from __future__ import annotations
-
 import json
 import shlex
 from pathlib import Path

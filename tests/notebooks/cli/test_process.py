@@ -1,7 +1,5 @@
 """How the program starts, is interrupted and loses its reader; and what ``thermicon doctor`` finds wrong with it."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """``thermicon rank``: the JSON that scripts read, the table that people read, the next command, and other observers."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

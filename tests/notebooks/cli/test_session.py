@@ -1,7 +1,5 @@
 """A session by ``thermicon simulate``: the report, its files and its figure."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

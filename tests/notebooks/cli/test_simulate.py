@@ -1,7 +1,5 @@
 """``thermicon simulate``: the trace file and the netlist as scripts expect them, the summary as people do."""
 
-from __future__ import annotations
-
 import subprocess
 from collections.abc import Callable
 from pathlib import Path

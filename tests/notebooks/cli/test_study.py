@@ -1,7 +1,5 @@
 """``thermicon study``: the folder, the verdicts, and every way in which a study is refused."""
 
-from __future__ import annotations
-
 import csv
 import json
 import shutil

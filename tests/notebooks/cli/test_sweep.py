@@ -1,7 +1,5 @@
 """``thermicon sweep``: the table as scripts read it, the summary lines and figures as people do."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

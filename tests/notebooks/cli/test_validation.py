@@ -1,7 +1,5 @@
 """``thermicon validate``: the table and the JSON; and the notebook that shows the same numbers."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """``export --verify``: whatever does not belong together is reported, with the file and the cure."""
 
-from __future__ import annotations
-
 import json
 import random
 import re

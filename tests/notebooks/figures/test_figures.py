@@ -1,7 +1,5 @@
 """Figures for people: one colour and one style of labels everywhere, clocks and what-ifs told."""
 
-from __future__ import annotations
-
 import pandas as pd
 import pytest
 from matplotlib.collections import PathCollection

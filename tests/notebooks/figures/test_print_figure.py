@@ -1,7 +1,5 @@
 """Figures in print: width, letters, keys, embedded fonts, and bytes without dates."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

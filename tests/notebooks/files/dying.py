@@ -4,8 +4,6 @@ Arguments: folder, case, way (kill, interrupt, full), first event, step. Prints 
 folder and the one before held then, what else stood beside them, and what stood there after the next export.
 """
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import hashlib

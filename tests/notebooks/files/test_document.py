@@ -1,7 +1,5 @@
 """Documents: cue files that are edited, undo and redo, and versions and unsaved text beside them."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

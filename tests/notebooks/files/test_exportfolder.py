@@ -1,7 +1,5 @@
 """An export folder: all files of an export or none, whenever it ends, and nobody's work is lost."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Files made to harm: endless, steering the terminal, or wrapping a number; each ends with one clear message."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

@@ -1,7 +1,5 @@
 """Where files go: looked at early, complete or absent."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``rank --report``: one page that stands alone, escapes what people wrote, and is the same bytes every time."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

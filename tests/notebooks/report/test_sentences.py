@@ -1,7 +1,5 @@
 """Sentences of reports: counts in the singular, goals, choices, and how far few participants reach."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from thermicon.notebooks.report.choices import choice_lines, goal_lines

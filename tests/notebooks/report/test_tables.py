@@ -1,7 +1,5 @@
 """Tables on narrow terminals: wrapped or folded, but with every letter."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 

@@ -1,7 +1,5 @@
 """A small study on a rig that is known exactly, made once for the tests of a file."""
 
-from __future__ import annotations
-
 import csv
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Breaks of a session: a block after one lies between the run without breaks and the block from rest."""
 
-from __future__ import annotations
-
 from typing import cast
 
 import numpy as np

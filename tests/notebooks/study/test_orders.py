@@ -1,7 +1,5 @@
 """Orders of play: designs against their definition, and what no order may have."""
 
-from __future__ import annotations
-
 from collections import Counter
 from itertools import pairwise
 

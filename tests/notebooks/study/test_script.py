@@ -1,7 +1,5 @@
 """The script of a study, run in a process of its own without thermicon, PsychoPy or hardware."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The display of a study's script: it plays without blocking, guards and stops, on stand-ins for the hardware."""
 
-from __future__ import annotations
-
 import importlib
 import sys
 import time

@@ -1,7 +1,5 @@
 """A study file at the door: every fault in words, all at once, before anything is simulated."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """A threshold run: judged levels alone are played, and QUEST+ recovers the threshold of a virtual observer."""
 
-from __future__ import annotations
-
 import importlib
 import json
 import math

@@ -1,7 +1,5 @@
 """Gap and landing, derived from simulation and checked against known cases; and the clock of a session."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Corners dragged: the right numbers change, nothing else in the text, and what cannot be is refused in a sentence."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """The scene of a text on a rig, and its frame: what is drawn and said, what the canvas is promised, what cannot be."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A cue file for the tests of projects."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A workbench of a cue file with its bar, and what the bar says."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 What a document does by itself is tested in `tests/notebooks/files/test_document.py`.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """The export view without a browser: what is prepared, what is refused, and what is written."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

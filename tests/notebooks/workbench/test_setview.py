@@ -1,7 +1,5 @@
 """The set view without a browser: what it ranks, what it says, and what a click and a button do."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from threading import Event

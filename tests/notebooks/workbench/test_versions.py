@@ -1,7 +1,5 @@
 """The list of versions without a browser: what is kept, compared, brought back and dropped."""
 
-from __future__ import annotations
-
 import re
 from html import unescape
 

@@ -1,7 +1,5 @@
 """The workbench without a browser: what its handlers answer to what the canvas sends, and its knobs."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from pathlib import Path

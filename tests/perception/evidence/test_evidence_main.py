@@ -1,7 +1,5 @@
 """``python -m thermicon.perception.evidence``: what it refuses, and what it writes from finished chains and parts."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """First passage and mechanisms of the likelihood one by one, against closed forms, courses and drawn noise."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

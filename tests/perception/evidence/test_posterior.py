@@ -1,7 +1,5 @@
 """The search for the maximum: a known optimum, the shipped one found again, and constants that are known (slow)."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """The evidence loads, says where it is from, and refuses what is wrong with its place."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

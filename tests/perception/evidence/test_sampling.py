@@ -1,7 +1,5 @@
 """Chains, surrogate and diagnostics on posteriors that can be written down."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any

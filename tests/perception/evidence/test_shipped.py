@@ -1,7 +1,5 @@
 """The shipped results: of the shipped inputs, at a maximum of the posterior, sampled, and as good as the pages say."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Skin as a sum of modes against the circuit's own stepping, and against what must hold of any skin."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

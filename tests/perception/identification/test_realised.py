@@ -1,7 +1,5 @@
 """Designed against delivered, as people feel it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Variants of the observer, observers from draws or from records, and what of a file cannot be used."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """People drawn at random, and the priors of the constants: every number has a source or says that it has none."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from typing import Any
 

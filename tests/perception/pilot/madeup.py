@@ -1,7 +1,5 @@
 """Answers and measurements of made-up laboratories, whose truth is known."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scores of observed answers: closed forms, bias, and an interval that covers."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

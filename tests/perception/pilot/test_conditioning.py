@@ -1,7 +1,5 @@
 """Conditioning against mathematics: laboratories whose likelihood is known in one dimension."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Thresholds, reaction times and ratings condition the prediction: what they move, and by how much."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

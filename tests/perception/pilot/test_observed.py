@@ -1,7 +1,5 @@
 """The whole of `observed` on a made-up laboratory: answers, predictions, files that other commands read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

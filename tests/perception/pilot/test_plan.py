@@ -1,7 +1,5 @@
 """Planning: what sizes of experiments give."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

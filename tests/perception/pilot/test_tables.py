@@ -1,7 +1,5 @@
 """Tables of answers and of measurements: what is read, and what each bad table is refused with."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a ranking depends on most: named where it moves something, silent where it does not."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """One definition of felt: a percept, a ranking and an export show the same probability for the same people."""
 
-from __future__ import annotations
-
 import pytest
 
 from thermicon.circuit import Device, Rig, simulate

@@ -1,7 +1,5 @@
 """The player for microcontrollers, compiled by the system's C compiler and run against a simulated plate."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from collections.abc import Callable

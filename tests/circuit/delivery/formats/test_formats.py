@@ -1,7 +1,5 @@
 """Files of samples, each read back by a reader that is not our writer."""
 
-from __future__ import annotations
-
 import csv
 import io
 import shutil

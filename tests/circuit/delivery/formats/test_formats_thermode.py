@@ -1,7 +1,5 @@
 """Files for a thermode, and PsychoPy's: read back by parsers written from what the public sources say."""
 
-from __future__ import annotations
-
 import ast
 import csv
 import io

@@ -1,7 +1,5 @@
 """Players that come with PsychoPy drives, run with a clock, an NI device and a serial line that are stand-ins."""
 
-from __future__ import annotations
-
 import csv
 import io
 import re
