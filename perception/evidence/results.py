@@ -161,4 +161,4 @@ def read_rows(name: str, kind: Any) -> Iterable[Any]:
         file.readline()
         types = {field.name: field.type for field in fields(kind)}
         for row in csv.DictReader(file):
-            yield kind(**{k: float(v) if types[k] is float else v for k, v in row.items()})
+            yield kind(**{k: float(v) if types[k] in (float, "float") else v for k, v in row.items()})
