@@ -12,7 +12,7 @@ FOLDER = Path(__file__).parents[2] / "notebooks"
 PICTURES = {
     "01_first_icon": 2,
     "02_a_rig_of_your_own": 3,
-    "03_six_icons_ranked": 4,
+    "03_six_icons_ranked": 2,
     "04_search_a_better_set": 2,
     "05_export_for_an_experiment": 2,
 }
@@ -91,7 +91,6 @@ def test_figures_are_small_pictures() -> None:
 @pytest.mark.slow
 def test_the_interval_of_the_pilot_holds_the_truth_it_is_shown_with(tmp_path: Path) -> None:
     outputs = executed(read("09_your_pilot_sharpens_the_prediction"), tmp_path)
-    assert sum("image/png" in output.get("data", {}) for output in outputs) == 1
     said = "".join(output.get("text", "") for output in outputs)
     assert "participant,trial,presented,responded\nP1,1," in said
     assert "# written by thermicon observed from inputs " in said and "# participants: 4" in said
