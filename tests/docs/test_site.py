@@ -165,7 +165,7 @@ def test_tutorials_and_predictions_are_made_once(tmp_path: Path) -> None:
     build(tmp_path)
     first = {path: path.stat().st_mtime_ns for path in (tmp_path / "predicted").rglob("*.png")}
     page = (tmp_path / "html" / "start" / "03_six_icons_ranked.html").read_text(encoding="utf-8")
-    assert page.count("<img") > 3
+    assert page.count("<img") >= 2
     assert "d′" in page
     gallery = (tmp_path / "html" / "gallery.html").read_text(encoding="utf-8")
     assert gallery.count("-confusions.png") >= 6
