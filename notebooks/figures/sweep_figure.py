@@ -70,7 +70,7 @@ def sweep_figure(
             _draw(ax, frame[frame["icon"] == name], key, columns, style, handles)
         ax.set_title(label, fontsize=8, loc="right")  # where a letter of the panel may stand at the left
         if columns[0].startswith(SHARES):
-            ax.set_ylim(top=103.0)
+            ax.set_ylim(top=100.5)
         elif what or columns == ("largest_miss_K",):
             ax.set_ylim(bottom=0.0)
         if log:
