@@ -1,3 +1,6 @@
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -124,10 +127,14 @@ def test_numbers_are_found_and_changed_within_repeats(six: IconSet) -> None:
         assert sum(a != b for a, b in zip(str(icon).split(), str(new).split(), strict=True)) == 1
 
 
-def test_a_temperature_counts_from_the_baseline(rig: Rig) -> None:
-    icons = parse("cue 1\nset { baseline 32 °C }\nicon to-it { cool to 28 °C at 2 °C/s; return at 2 °C/s }")
-    number = next(n for n in numbers_of(icons["to-it"], 32.0) if n.field == "to_C")
+def test_a_temperature_counts_from_the_baseline(monkeypatch: pytest.MonkeyPatch) -> None:
+    icon = parse("cue 1\nset { baseline 32 °C }\nicon to-it { cool to 28 °C at 2 °C/s; return at 2 °C/s }")["to-it"]
+    number = next(n for n in numbers_of(icon, 32.0) if n.field == "to_C")
     assert number.times(1.5) == 26.0
+    monkeypatch.setattr(candidate_edits, "_valid", lambda of, place, make, ratio, way, step: [ratio])
+    of: Any = SimpleNamespace(kept=SimpleNamespace(icons=[icon]))
+    (ratio,) = candidate_edits._changed(of, (0, number, True), 0, 0, np.log(1.5))
+    assert ratio == pytest.approx(np.log(1.5))  # what the change costs
 
 
 def test_icons_too_weak_to_feel_are_made_strong_enough(rig: Rig) -> None:
