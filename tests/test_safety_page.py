@@ -10,7 +10,8 @@ from thermicon.circuit.safety.current import ENDINGS
 from thermicon.circuit.safety.demanded import TEST_A, TEST_S
 from thermicon.circuit.safety.plant import ENDING_S, LATER_S, RECOVERED_K
 from thermicon.circuit.safety.repeated import LONGEST_PAUSE_S
-from thermicon.circuit.safety.single_faults import BEYOND_K, INSTANTS, MARGIN, REACTIONS_S
+from thermicon.circuit.safety.held import BEYOND_K
+from thermicon.circuit.safety.single_faults import INSTANTS, MARGIN, REACTIONS_S
 from thermicon.icons import load_library
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -21,8 +21,8 @@ from ..safety.checks import Check, CutOff, Demands, Loop, Scenario, SingleFault,
 from ..safety.demanded import polarity_check
 from ..safety.display import DisplayCourse, DisplayPlant
 from ..safety.gate import Gate, gate_shown
+from ..safety.held import BEYOND_K
 from ..safety.plant import recovery_s
-from ..safety.single_faults import BEYOND_K
 from ..solver.batch_inputs import Bank, run_regulate
 from ..solver.kernel_follow import DELAY_S, KD, KI, KP, LAG_S
 from ..solver.network import ALPHA, COLD_J_PER_K, HIGHEST_A, LOWEST_A, RESISTANCE
@@ -124,7 +124,7 @@ def _demands(
         polarity_check=replace(polarity, needed=True),
         rest_before_first_play_s=rest_s,
         pause_at_least_s=verdict.repeated.shortest_pause_s,
-        faults=(*verdict.demands.faults[:1], start, lost),
+        faults=(verdict.demands.faults[0], start, lost),
         current_limit_A=limits_A,
         loop=loop,
     )

@@ -9,7 +9,7 @@ to rest sooner than the skin.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import ClassVar
 
@@ -23,9 +23,10 @@ from ..solver.network import unpowered
 from ..solver.steady import state_under_current
 from .checks import Before, Check, Demands, Scenario
 from .ensemble import Ensemble, LaneDrives, row_of
-from .plant import ENDING_ROWS_S, LATE_S, LATER_S, Future, Plant, Single, Stretch
+from .plant import ENDING_ROWS_S, LATE_S, LATER_S, OFF_ROWS_S, Future, Plant, Single, Stretch
 from .playmap import MOST_STEPS, PlayMap, bound, least_bound, steady_cycle
 from .repeated import Repeating
+from .single_faults import instants
 from .tally import COLDEST_C, HOTTEST_C, WATCHED, Tally, worst_of_lanes
 
 ENDINGS = ("last value held", "zero current", "power off")
@@ -154,6 +155,32 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         free = least_bound(maps, [state.nodes_C[:, :-1] for state in known], 1.0 if warm else -1.0)
         return _at(known[0], np.nan_to_num(free, nan=HOTTEST_C if warm else COLDEST_C))
 
+    def rested(self, play: CurrentPlay, state: State, rest_s: float) -> State:
+        """The resting current held."""
+        return state if rest_s <= 0 else self.ensemble.rest(play.rest_A, state, rest_s)
+
+    def unpowered(self, play: CurrentPlay) -> State:
+        """Zero current held without limit of time."""
+        return self.ensemble.at_rest(0.0)
+
+    def stopped(self, plays: Sequence[CurrentPlay], bounds: tuple[State, State]) -> tuple[State, State]:
+        """Node by node: no power, instants of plays, zero current since, and the test of the polarity then."""
+        from .demanded import TEST_S, testing_A
+
+        off, test_A = self.ensemble.at_rest(0.0), testing_A(self.ensemble)
+        found = []
+        for begun, most in zip(bounds, (np.maximum, np.minimum), strict=True):
+            nodes = most(off.nodes_C, begun.nodes_C)
+            for play in plays:
+                assert isinstance(play.drive, Drive)
+                for state, _ in instants(self.ensemble, play.drive, float(play.rest_A), begun, self.ensemble.lanes):
+                    nodes = most(nodes, state.nodes_C)
+            zero = [self.ensemble.rest(0.0, replace(off, nodes_C=nodes), time_s).nodes_C for time_s in OFF_ROWS_S]
+            nodes = most.reduce([nodes, *zero])
+            tested = self.ensemble.rest(test_A, replace(off, nodes_C=nodes), TEST_S)
+            found.append(replace(off, nodes_C=most(nodes, tested.nodes_C)))
+        return found[0], found[1]
+
     def alone(self, limits: Limits, end_s: float, begun_C: Array) -> list[Tally]:
         """The steady state under zero current, checked against the limits of temperature."""
         tally = Tally(limits, self.corners, Scenario(ending=IN_THE_END), begun_C=begun_C)
@@ -200,7 +227,7 @@ class CurrentPlant(Plant[CurrentPlay, State]):
         repeating: Repeating[CurrentPlay, State],
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
-    ) -> tuple[float | None, list[Demands]]:
+    ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
         """What prevents a host that stops, a driver that is stuck, and faults of a first play."""
         from .demanded import demanded
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import repeat
 
@@ -12,19 +12,22 @@ from ..arrays import Array
 from ..rig.rules import Limits
 from ..solver.batch_inputs import State
 from ..solver.drive import Drive
-from .checks import CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
+from .checks import Check, CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
+from .held import held_C, stays
 from .plant import Single
-from .repeated import PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
-from .single_faults import Faulty, around_C
+from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
+from .single_faults import STUCK_SHARES, Faulty
+from .starts import Beginning
 from .tally import HOTTEST_C, WATCHED, Tally, cem43_min
 
-LONGEST_REST_S = 600.0
 TEST_A, TEST_S = 0.3, 2.0
 """A current small enough for any module and skin, for long enough to be seen by any thermistor."""
 
 Span = tuple[float, float]
+Found = tuple[Demands, tuple[Check, ...]]
+"""What the hardware must prevent, and checks that fail where it cannot."""
 
 
 def demanded(
@@ -33,69 +36,98 @@ def demanded(
     recovered_s: Sequence[float],
     repeating: Repeating[CurrentPlay, State],
     shortest_s: float | None,
-) -> tuple[float | None, list[Demands]]:
+) -> tuple[float | None, list[Found]]:
     """The shortest pause after which faults can be prevented in practice, and what prevents them in any play after it.
 
     Shorter pauses need a quicker watchdog and a quicker cut-off. Where these would be quicker than PRACTICAL_S, and are
-    not with a pause in which display and skin recover, the pause is lengthened instead. A set that no pause makes safe
-    is judged in its first plays.
+    not with a pause in which display and skin recover, the pause is lengthened instead; so it is where a cut-off would
+    act on plays. A set that no pause makes safe is judged with the longest.
     """
     display = [check.value for single in singles for check in single.checks if check.quantity == "display"]
     reach_C, faults = (min(display), max(display)), [_faulty(plant, single, repeating.limits) for single in singles]
-    if shortest_s is None:
-        worst = [one.hardest(reach_C, PRACTICAL_S) for one in faults]
-        return None, [_demands(*row, reach_C, None) for row in zip(faults, singles, worst, strict=True)]
-    bounds_of = cache(lambda pause_s: repeating.bounds(pause_s)[1:])
+    held = held_C(plant.rig, repeating.limits)
+    begin_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
+    beginning = Beginning.of(repeating, begin_s)
+    starts_of = cache(beginning.after)
 
     def after(pause_s: float) -> list[Faulty]:
-        return [replace(one, bounds=bounds_of(pause_s)) for one in faults]
+        return [replace(one, bounds=starts_of(pause_s).bounds) for one in faults]
 
     reach_of = cache(lambda pause_s: _joined([reach_C, *(one.shown_C for one in after(pause_s))]))
-    hardest = [one.hardest(reach_C, PRACTICAL_S) for one in after(shortest_s)]
+    hardest = [one.hardest(reach_C, PRACTICAL_S) for one in after(begin_s)]
 
     def holds(number: int, pause_s: float, within_s: Span) -> bool:
+        if stays(reach_of(pause_s), held):
+            return False
         if not any(within_s):
             return True
         faulty = after(pause_s)[number].at(hardest[number])
-        cut = CutOff(*around_C(repeating.limits, reach_of(pause_s)), within_s[1])
+        cut = CutOff(*faulty.around_C(reach_of(pause_s)), within_s[1])
         return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
 
-    longest_s, numbers, practical = max(shortest_s, *recovered_s), range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
+    numbers, practical = range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
+
+    def found(pause_s: float, needed: Sequence[Span] | None = None) -> list[_InPlays] | None:
+        """What each drive needs; None as soon as one needs something quicker than in `needed`."""
+        reach, faulty, demands = reach_of(pause_s), after(pause_s), {}
+        for number in sorted(numbers, key=lambda number: not (needed and any(needed[number]))):  # may not suffice first
+            one = demands[number] = _in_plays(faulty[number], hardest[number], reach)
+            if needed and np.less(one.within_s, needed[number]).any():
+                return None
+        return [demands[number] for number in numbers]
+
+    def completed(in_plays: Sequence[_InPlays], pause_s: float) -> list[Found]:
+        starts = starts_of(pause_s)
+        rest_s = None if shortest_s is None else beginning.kept_s(starts, pause_s)
+        failed = stays(reach_of(pause_s), held)
+        said_s = None if shortest_s is None else pause_s
+        resting = _resting(after(pause_s)[0], reach_of(pause_s))
+        rows = zip(faults, singles, in_plays, numbers, strict=True)
+        return [
+            (_demands(faulty, single, found, resting, (rest_s, beginning.unpowered(k, 0.0)), said_s), failed)
+            for faulty, single, found, k in rows
+        ]
+
+    if shortest_s is None:
+        return None, completed(found(begin_s) or [], begin_s)
+    longest_s = max(shortest_s, *recovered_s)
     needed = [(0.0, 0.0) if holds(k, shortest_s, practical) else practical for k in numbers]
-    for number, one in enumerate(after(longest_s)):
-        if not holds(number, longest_s, needed[number]):
-            few = hardest[number]
-            found = _demands(one, singles[number], few, reach_of(longest_s), None).within_s
-            needed[number] = min(PRACTICAL_S, found[0]), min(PRACTICAL_S, found[1])
+    if not all(holds(k, longest_s, needed[k]) for k in numbers) and not stays(reach_of(longest_s), held):
+        at_best = found(longest_s) or []
+        needed = [
+            (min(most[0], one.within_s[0]), min(most[1], one.within_s[1]))
+            for most, one in zip(needed, at_best, strict=True)
+        ]
     pause_s = lengthened_s(shortest_s, longest_s, lambda longer_s: all(map(holds, numbers, repeat(longer_s), needed)))
     added_s = max(PAUSE_STEP_S, 0.02 * pause_s)
-    while True:
-        there, reach, demands = after(pause_s), reach_of(pause_s), {}
-        for number in sorted(numbers, key=lambda number: not any(needed[number])):  # what may not suffice first
-            demand = _demands(there[number], singles[number], hardest[number], reach, pause_s)
-            if pause_s < longest_s and np.less(demand.within_s, needed[number]).any():
-                break
-            demands[number] = demand
-        else:
-            return pause_s, [demands[number] for number in numbers]
+    while (in_plays := found(pause_s, needed if pause_s < longest_s else None)) is None:
         pause_s, added_s = min(longest_s, math.ceil((pause_s + added_s) / PAUSE_STEP_S) * PAUSE_STEP_S), 2.0 * added_s
+    return pause_s, completed(in_plays, pause_s)
 
 
-def _demands(
-    faulty: Faulty,
-    single: Single[CurrentPlay, State],
-    hardest: list[int],
-    reach_C: Span,
-    pause_s: float | None,
-) -> Demands:
-    """What the hardware must prevent in a drive, in all corners and between bounds; `reach_C` are extremes of displays.
+@dataclass(frozen=True, slots=True)
+class _InPlays:
+    """What prevents a host that hangs and a driver stuck at its limit in plays, with both faults."""
+
+    watchdog_s: float
+    cut_off: CutOff
+    hangs: SingleFault
+    stuck: SingleFault
+
+    @property
+    def within_s(self) -> Span:
+        """How quickly watchdog and cut-off must act, in s."""
+        return self.watchdog_s, self.cut_off.react_within_s
+
+
+def _in_plays(faulty: Faulty, hardest: list[int], reach_C: Span) -> _InPlays:
+    """What prevents faults in plays of a drive between bounds; `reach_C` are extremes of displays.
 
     Watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that decided, and found again
-    where they are too slow. What concerns a first play is found in all corners.
+    where they are too slow.
     """
-    ensemble, limits = faulty.ensemble, faulty.limits
-    for current_A in faulty.ends_A if ensemble.ideal else ():
-        ensemble.modes(current_A)  # once for all corners and icons
+    for current_A in faulty.ends_A if faulty.ensemble.ideal else ():
+        faulty.ensemble.modes(current_A)  # once for all corners and icons
     few = faulty.at(hardest)
     moments = few.moments()
     watchdog_s, hangs = few.watchdog_s(moments)
@@ -114,15 +146,40 @@ def _demands(
             there.cut_off(reach_C, moments, hangs=not watchdog_s),
             key=lambda found: found[0].react_within_s,
         )
-    first = replace(faulty, bounds=())
-    rest, begins = rest_before(first)
-    polarity, swapped = polarity_check(first)
+    return _InPlays(watchdog_s, cut_off, hangs, stuck)
+
+
+def _resting(faulty: Faulty, reach_C: Span) -> tuple[CutOff, SingleFault]:
+    """What prevents harm, in all corners, where the driver gets stuck before a play: between the bounds, or without
+    power before, with the polarity tested or not.
+    """
+    ensemble, off = faulty.ensemble, faulty.ensemble.at_rest(0.0)
+    test_A = testing_A(ensemble)
+    unpowered = (off, faulty.rest_A), (ensemble.rest(test_A, off, TEST_S), test_A)
+    return faulty.cut_off(reach_C, faulty.resting(unpowered), shares=STUCK_SHARES)
+
+
+def _demands(
+    faulty: Faulty,
+    single: Single[CurrentPlay, State],
+    found: _InPlays,
+    resting: tuple[CutOff, SingleFault],
+    first: tuple[float | None, Sequence[Check]],
+    pause_s: float | None,
+) -> Demands:
+    """What the hardware must prevent in a drive; `first`: the rest before a first play, and what that does without."""
+    ensemble, limits = faulty.ensemble, faulty.limits
+    cut_off, stuck = min((found.cut_off, found.stuck), resting, key=lambda each: each[0].react_within_s)
+    polarity, swapped = polarity_check(faulty)
+    rest_s, findings = first
+    begins = SingleFault("unpowered", colour_of(findings), {"finding": next(iter(findings), None), "rest_s": rest_s})
     zero = None
     if ensemble.ideal:
         dose = single.tallies[0].summed("thermal dose")
         zero = dose_time_s(ensemble, limits, single.end, dose, limits.session_s)
-        zero = None if zero >= limits.session_s else round(zero, 0)
-    return Demands(watchdog_s, cut_off, polarity, rest, pause_s, zero, (hangs, begins, swapped, stuck))
+        zero = None if zero >= limits.session_s else float(math.floor(zero))
+    faults = found.hangs, begins, swapped, stuck
+    return Demands(found.watchdog_s, cut_off, polarity, rest_s, pause_s, zero, faults)
 
 
 def _faulty(plant: CurrentPlant, single: Single[CurrentPlay, State], limits: Limits) -> Faulty:
@@ -135,32 +192,6 @@ def _joined(spans: Sequence[Span]) -> Span:
     return min(low for low, _ in spans), max(high for _, high in spans)
 
 
-def rest_before(faulty: Faulty) -> tuple[float | None, SingleFault]:
-    """For how long in s rest must be held on a display that was without power, before the first play."""
-    cold = faulty.ensemble.at_rest(0.0)
-
-    def tally_after(rest_s: float) -> Tally:
-        state = cold
-        if rest_s > 0:
-            state = faulty.ensemble.rest(faulty.rest_A, cold, rest_s)
-        tally = Tally(faulty.limits, faulty.ensemble.corners)
-        for (rows, values), _ in faulty.ensemble.play(faulty.drive, state):
-            tally.add(rows, values)
-        return tally
-
-    at_once = tally_after(0.0)
-    findings = findings_of(at_once.checks())
-    rest: float | None = 0.0
-    if not at_once.passes():
-        low, high = 0, int(LONGEST_REST_S)
-        while high - low > 1:
-            middle = (low + high) // 2
-            low, high = (low, middle) if tally_after(float(middle)).passes() else (middle, high)
-        rest = float(high) if tally_after(float(high)).passes() else None
-    told = {"finding": next(iter(findings), None), "rest_s": rest}
-    return rest, SingleFault("unpowered", colour_of(findings), told)
-
-
 def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:
     """The effect of swapped poles, and the wiring check that detects them."""
     swapped = Drive(faulty.drive.time_s, -faulty.drive.current_A, faulty.drive.held)
@@ -170,13 +201,19 @@ def polarity_check(faulty: Faulty) -> tuple[PolarityCheck, SingleFault]:
         tally.add(rows, values)
         skin = np.nan_to_num(values[WATCHED.index("skin_C")], nan=999.0)
         low, high = min(low, float(skin.min())), max(high, float(skin.max()))
-    test_A = min(TEST_A, faulty.ensemble.rig.driver.current_max_A)
+    test_A = testing_A(faulty.ensemble)
     values, _ = faulty.ensemble.hold(test_A, faulty.ensemble.at_rest(0.0), np.array([0.0, TEST_S]))
     display = values[WATCHED.index("display_C")]
     fall = float((display[:, 0] - display[:, -1]).min())
     needed = not tally.passes()
-    check = PolarityCheck(needed, round(test_A, 3), TEST_S, round(0.5 * fall, 2), (round(low, 1), round(high, 1)))
+    least_K = math.floor(50.0 * fall) / 100.0
+    check = PolarityCheck(needed, test_A, TEST_S, least_K, (round(low, 1), round(high, 1)))
     return check, SingleFault("swapped", colour_of(findings_of(tally.checks())), {"check": check})
+
+
+def testing_A(ensemble: Ensemble) -> float:
+    """The current in A by which the polarity is checked: in whole milliamperes, within the driver's."""
+    return math.floor(1e3 * min(TEST_A, ensemble.rig.driver.current_max_A) + 1e-9) / 1e3
 
 
 def dose_time_s(ensemble: Ensemble, limits: Limits, state: State, dose_before: Array, session_s: float) -> float:

@@ -8,8 +8,10 @@ last set-point held or with control lost, when the display conducts no heat.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -17,12 +19,14 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rules import Limits
 from ..solver.modes import FELT, SkinModes, modes_of
-from .checks import CutOff, Demands, SingleFault, worst_of
+from .checks import Check, CutOff, Demands, SingleFault, colour_of, worst_of
 from .corners import contact_corners
-from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, Future, Plant, Single, Stretch, left_s
+from .held import Span, around_C, held_C, stays
+from .plant import ENDING_ROWS_S, ENDING_S, LATE_S, OFF_ROWS_S, Future, Plant, Single, Stretch, left_s
 from .playmap import PlayMap, least_bound
-from .repeated import PRACTICAL_S, Repeating, lengthened_s
-from .single_faults import MARGIN, around_C
+from .repeated import LONGEST_PAUSE_S, PRACTICAL_S, Repeating, lengthened_s
+from .single_faults import MARGIN
+from .starts import Beginning, Starts
 from .tally import WATCHED, Tally
 
 DISPLAY_ENDINGS = ("last set-point held", "control lost")
@@ -160,6 +164,30 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         decays = [(modes.lumps * np.exp(-modes.rate_per_s * length)) @ modes.unlumps for modes in self.modes]
         return PlayMap(np.array(decays), self._lumps(forced))
 
+    def rested(self, play: DisplayCourse, state: Sequence[Array], rest_s: float) -> list[Array]:
+        """The first temperature held."""
+        return [modes.after(rest_s, play.first_C, begun) for modes, begun in zip(self.modes, state, strict=True)]
+
+    def unpowered(self, play: DisplayCourse) -> list[Array]:
+        """Skin as warm as deep tissue, under a display that conducts no heat."""
+        return self._none()
+
+    def stopped(
+        self, plays: Sequence[DisplayCourse], bounds: tuple[list[Array], list[Array]]
+    ) -> tuple[list[Array], list[Array]]:
+        """Lump by lump: no power, instants of plays, and control lost since."""
+        found = []
+        for bound, warm in zip(bounds, (True, False), strict=True):
+            most = np.maximum if warm else np.minimum
+            lumps = most(self._lumps(self.farthest(plays, bound, warm)), self._lumps(self._none()))
+            lost = [
+                [modes.lumps @ (np.exp(-modes.rate_per_s * time_s) * (modes.unlumps @ each))
+                 for modes, each in zip(self.insulated, lumps, strict=True)]
+                for time_s in OFF_ROWS_S
+            ]  # fmt: skip
+            found.append(self._modes(most.reduce([lumps, *map(np.array, lost)])))
+        return found[0], found[1]
+
     def farthest(self, plays: Sequence[DisplayCourse], state: Sequence[Array], warm: bool) -> list[Array]:
         """States warmer (or colder), lump by lump, than at instants of plays from states, and before them."""
         side, found = 1.0 if warm else -1.0, self._lumps(state)
@@ -178,13 +206,15 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         repeating: Repeating[DisplayCourse, list[Array]],
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
-    ) -> tuple[float | None, list[Demands]]:
-        """What prevents set-points that hang, and a loop that runs to the end of its range."""
+    ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
+        """What prevents set-points that hang, and a loop that runs to the end of its range or stays anywhere in it."""
+        pause_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
+        beginning = Beginning.of(repeating, pause_s)
+        starts = cache(beginning.after)
 
-        def quickest(pause_s: float | None) -> list[tuple[float, float]]:
-            return [each.quickest_s for each in self._faults(repeating, pause_s)]
+        def quickest(pause_s: float) -> list[tuple[float, float]]:
+            return [each.quickest_s for each in self._faults(repeating, starts(pause_s))]
 
-        pause_s = shortest_s
         if shortest_s is not None:
             longest_s = max(shortest_s, *recovered_s)
             needed = np.minimum(PRACTICAL_S, quickest(longest_s))
@@ -192,17 +222,24 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         groups = [*(single.checks for ways in singles for single in ways)]
         groups += [worst_of(tally.checks() for tally in own) for own in tallies]
         shown = [check.value for checks in groups for check in checks if check.quantity == "display"]
-        around = min(shown), max(shown)
-        return pause_s, [each.demands(around, repeating.limits, pause_s) for each in self._faults(repeating, pause_s)]
+        around, held = (min(shown), max(shown)), (-np.inf, np.inf)
+        if self.rates:  # a controller around the module is judged for itself
+            held = held_C(self.rig, repeating.limits)
+        cut, failed = around_C(repeating.limits, around, held), stays(around, held)
+        demanded_s, first = None if shortest_s is None else pause_s, starts(pause_s)
+        rest_s = None if shortest_s is None else beginning.kept_s(first, pause_s)
+        return demanded_s, [
+            (each.demands(cut, demanded_s, rest_s, beginning.unpowered(number, 0.0)), failed)
+            for number, each in enumerate(self._faults(repeating, first))
+        ]
 
-    def _faults(self, repeating: Repeating[DisplayCourse, list[Array]], pause_s: float | None) -> list[_Faults]:
-        """Faults of each drive in any play after a pause; without one, in drives that are not safe, from rest."""
-        bounds = None if pause_s is None else repeating.bounds(pause_s)
+    def _faults(self, repeating: Repeating[DisplayCourse, list[Array]], starts: Starts[list[Array]]) -> list[_Faults]:
+        """Faults of each drive in any play that may begin."""
         found = []
         for ways in repeating.drives:
-            cold = warm = self.rest(ways[0])
-            if bounds is not None:
-                warm, cold = self.farthest(ways, bounds[1], True), self.farthest(ways, bounds[2], False)
+            warm, cold = (
+                self.farthest(ways, bound, side) for bound, side in zip(starts.bounds, (True, False), strict=True)
+            )
             levels = [float(level) for play in ways for level in (play.display_C.min(), play.display_C.max())]
             ends = (min(levels), max(levels)), self.stuck_C
             hangs, stuck = (
@@ -243,19 +280,21 @@ class _Faults:
         hang, stuck = (MARGIN * min(time for _, time in each) for each in (self.hangs, self.stuck))
         return hang, stuck
 
-    def demands(self, shown_C: tuple[float, float], limits: Limits, pause_s: float | None) -> Demands:
-        """What the device itself must prevent, where its display is between two temperatures without a fault."""
+    def demands(self, ends_C: Span, pause_s: float | None, rest_s: float | None, at_once: Sequence[Check]) -> Demands:
+        """What the device itself must prevent, with a cut-off at two temperatures."""
         watchdog, react = (min(time for _, time in each) for each in (self.hangs, self.stuck))
-        watchdog = watchdog if watchdog >= ENDING_S else round(MARGIN * watchdog, 2)
-        cut = CutOff(*around_C(limits, shown_C), round(MARGIN * react, 3))
+        watchdog = watchdog if watchdog >= ENDING_S else math.floor(100.0 * MARGIN * watchdog) / 100.0
+        cut = CutOff(*ends_C, math.floor(1000.0 * MARGIN * react) / 1000.0)
         levels, ends = ([level for level, _ in each] for each in (self.hangs, self.stuck))
         hang = {"levels_C": levels, "watchdog_s": watchdog}
         stuck = {"levels_C": ends, "passed_s": react, "cut_off": cut}
+        begins = {"finding": next(iter(at_once), None), "rest_s": rest_s}
         faults = (
             SingleFault("set-point hang", "red" if watchdog < ENDING_S else "green", hang),
+            SingleFault("unpowered", colour_of(at_once), begins),
             SingleFault("loop stuck", "red" if react < ENDING_S else "green", stuck),
         )
-        return Demands(watchdog, cut, None, 0.0, pause_s, None, faults)
+        return Demands(watchdog, cut, None, rest_s, pause_s, None, faults)
 
 
 def watched(felt: Sequence[Array]) -> Array:

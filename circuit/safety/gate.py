@@ -83,9 +83,14 @@ class Gate(Judged):
         return hard_reason(findings_of(self.once)) or self.repeated.reason
 
     @property
+    def safe_once(self) -> bool:
+        """Whether a single play passes no hard limit, and nothing fails that must prevent its single faults."""
+        return not hard_of(findings_of(self.once))
+
+    @property
     def mended_by_pause(self) -> bool:
         """Whether a longer pause between plays is all that is missing."""
-        return not hard_of(findings_of(self.once)) and self.repeated.shortest_pause_s is not None
+        return self.safe_once and self.repeated.shortest_pause_s is not None
 
     @property
     def demanded(self) -> dict[str, object]:
@@ -240,9 +245,20 @@ def _gated(
     together = [number for number, each in enumerate(safe) if each]
     alone = [[number] for number, each in enumerate(safe) if not each]  # never written, so never part of a sequence
     gates: dict[int, Gate] = {}
-    for group in ([together] if together else []) + alone:
-        judged = _gated_together(plant, [singles[number] for number in group], limits, pause_s, group is together)
-        gates |= zip(group, judged, strict=True)
+
+    def judge(group: list[int], safe: bool) -> None:
+        judged = _gated_together(plant, [singles[number] for number in group], limits, pause_s, safe)
+        gates.update(zip(group, judged, strict=True))
+
+    for group in alone:
+        judge(group, False)
+    if together:
+        judge(together, True)
+    if len(together) > 1 and not all(gates[number].safe_once for number in together):
+        for number in together:  # whose faults nothing prevents by itself is refused, and the others are judged anew
+            judge([number], True)
+        if rest := [number for number in together if gates[number].safe_once]:
+            judge(rest, True)
     return tuple(gates[number] for number in range(len(drives)))
 
 
@@ -264,7 +280,7 @@ def _gated_together(
     if shortest is not None and shortest > pause and repeating.safe(pause):  # the search is exact to 2 % only
         shortest = pause
     with_faults, demands = plant.demanded(singles, recovered_s, repeating, tallies, shortest)
-    for ways, recovery, own, demand in zip(singles, recoveries, tallies, demands, strict=True):
+    for ways, recovery, own, (demand, failed) in zip(singles, recoveries, tallies, demands, strict=True):
         first, last = ways[0], ways[-1]
         once, again = worst_of(single.checks for single in ways), worst_of(tally.checks() for tally in own)
         plays = plays_in(first.play, pause, limits.session_s)
@@ -274,8 +290,8 @@ def _gated_together(
             plant.rig.uncertainty,
             limits,
             len(plant.corners) * len(ways) * len(plant.endings),
-            worst_of([once, again]),
-            once,
+            (*worst_of([once, again]), *failed),
+            (*once, *failed),
             {ending: float(skin_C[0]) for ending, skin_C in last.after_C.items()},
             plant.drift_C,
             Repeated(pause, recovery, with_faults, plays, limits.session_s, again, shortest),

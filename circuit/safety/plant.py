@@ -117,6 +117,21 @@ class Plant(ABC, Generic[Played, States]):
         """States that are warmer (or colder) than those before any play in any order; `steady` is before each cycle."""
 
     @abstractmethod
+    def rested(self, play: Played, state: States, rest_s: float) -> States:
+        """States after the rest before a play has been held for a time in s."""
+
+    @abstractmethod
+    def unpowered(self, play: Played) -> States:
+        """Steady states of a display without power."""
+
+    @abstractmethod
+    def stopped(self, plays: Sequence[Played], bounds: tuple[States, States]) -> tuple[States, States]:
+        """States warmer, and colder, than any in which the rest before a first play may begin.
+
+        The display was without power, or a play between the bounds (warm, cold) of all was stopped at any instant.
+        """
+
+    @abstractmethod
     def demanded(
         self,
         singles: Sequence[Sequence[Single[Played, States]]],
@@ -124,8 +139,10 @@ class Plant(ABC, Generic[Played, States]):
         repeating: Repeating[Played, States],
         tallies: Sequence[list[Tally]],
         shortest_s: float | None,
-    ) -> tuple[float | None, list[Demands]]:
-        """The shortest pause after which single faults can be prevented in practice, and what prevents them."""
+    ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
+        """The shortest pause after which single faults can be prevented in practice, what prevents them, and what fails
+        where nothing does.
+        """
 
     def only(self, corners: list[int]) -> Plant[Played, States]:
         """The same in some of the corners, or in all where that takes next to no time."""
@@ -174,6 +191,9 @@ def follow(
 
 RECOVERED_K = 0.1
 """Display and skin have recovered within 0.1 K of rest."""
+
+OFF_ROWS_S = (0.5, 2.0, 8.0, 30.0)
+"""Times after a stop at which a display without current is compared with others: heat of the hot plate comes back."""
 
 RECOVERY_ROWS_S = np.concatenate([np.arange(1200) * 0.1, 120.0 + np.arange(481) * 1.0])
 """Times at which recovery is checked, up to the longest pause."""

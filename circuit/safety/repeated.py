@@ -124,10 +124,10 @@ class Repeating(Generic[Played, States]):
             tallies: list[Tally] = []
             for play in ways:
                 cycle = Before("cycle", pause_s)
-                tallies += self._judged(play, cycle, steady[number], begun[number], plant.quick)
+                tallies += self.judged(play, cycle, steady[number], begun[number], plant.quick)
                 tallies += plant.following(plays, pause_s, steady, begun[number], self.limits, number)
                 for before, state in bounds:
-                    tallies += self._judged(play, before, state, begun[number], endings or plant.quick)
+                    tallies += self.judged(play, before, state, begun[number], endings or plant.quick)
                 number += 1
             yield tallies
 
@@ -136,7 +136,9 @@ class Repeating(Generic[Played, States]):
         known = self._known.get((pause_s, endings)) or self._tallies(pause_s, endings)
         return all(tally.passes() for drive_tallies in known for tally in drive_tallies)
 
-    def _judged(self, play: Played, before: Before, state: States, begun_C: Array, endings: bool) -> Iterator[Tally]:
+    def judged(
+        self, play: Played, before: Before, state: States, begun_C: Array | None, endings: bool
+    ) -> Iterator[Tally]:
         """Tallies of a play from a state with its pause, of which a bound gives no rates, and of its endings."""
         plant, run = self.plant, Scenario(way=play.way, before=before)
         plays = plays_in(play, before.pause_s, self.limits.session_s)

@@ -2,12 +2,14 @@
 
 They do not make a drive unsafe by themselves, since hardware prevents them. Simulating them in the worst corners gives
 what the hardware must do. With a given current a play that begins warmer stays warmer at every node, so a hang in any
-play lies between hangs from the warm and from the cold bound of all plays.
+play lies between hangs from the warm and from the cold bound of all plays. A driver may be stuck at any current up to
+its limits; where the display then stays inside the cut-off is in `held.py`.
 """
 
 from __future__ import annotations
 
 from bisect import bisect_left
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +20,7 @@ from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import CutOff, Harm, SingleFault
 from .ensemble import Ensemble, between
+from .held import around_C, held_C
 from .tally import WATCHED
 
 HANG_S, INSTANTS = 60.0, 8
@@ -36,8 +39,8 @@ AFTER_ROWS_S = np.concatenate([np.arange(40) * 0.025, 1.0 + np.arange(30)])
 """Rows of a driver at its limit, of a stuck current, and of 30 s without any after it was cut."""
 LIMITS_TRIED = 6
 """Current limits between the driver's own and the peak of the drive."""
-BEYOND_K = 1.0
-"""Cut-offs are this far beyond what the display reaches in any corner, so that they act only on a fault."""
+STUCK_SHARES = (1.0, 0.5, 0.25)
+"""Shares of the driver's limits at which it may be stuck: beyond what holds the display at the cut-off."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +65,7 @@ class Moments:
 class Faulty:
     """A drive in its worst corners, ready for its single faults; `start` is the state of rest there.
 
-    `bounds` are the states between which every play begins; without any, only the first play counts. `instants` are
+    `bounds` are the states between which every play begins; without any, only one from rest counts. `instants` are
     those of `moments` that count; None: all.
     """
 
@@ -76,7 +79,8 @@ class Faulty:
 
     def at(self, corners: list[int]) -> Faulty:
         """The same in some of the corners."""
-        start, *bounds = (state.take(np.array(corners)) for state in (self.start, *self.bounds))
+        which = np.array(corners)
+        start, *bounds = (state.take(which) for state in (self.start, *self.bounds))
         few = self.ensemble if len(corners) == len(self.ensemble.corners) else self.ensemble.only(corners)
         return replace(self, ensemble=few, start=start, bounds=tuple(bounds))
 
@@ -91,46 +95,32 @@ class Faulty:
         return float(min(np.nanmin(one) for one in shown)), float(max(np.nanmax(one) for one in shown))
 
     def moments(self) -> Moments:
-        """When the current may get stuck: in each stretch of a drive at its end, and at the ends of its extremes."""
+        """When the current may get stuck: at instants of a play and after it."""
         starts, count = self.bounds or (self.start,), len(self.ensemble.corners)
-        state = State(*(np.concatenate([getattr(one, part) for one in starts]) for part in ("nodes_C", "sink")))
         rigs = np.tile(np.arange(count, dtype=np.int64), len(starts))
-        states, commands, before = [], [], 0.0
-        for instant, command in self._stuck_at():
-            state = self.ensemble.end_of(between(self.drive, before, instant), state, rigs)
-            before = instant
-            states.append(state)
-            commands.append(command)
-        for waited_s in WAITED_S:
-            states.append(self.ensemble.hold(self.rest_A, state, np.array([0.0, waited_s]), rigs)[1])
-            commands.append(self.rest_A)
-        which = tuple(range(len(states))) if self.instants is None else self.instants
-        chosen = [states[k] for k in which]
+        found = list(instants(self.ensemble, self.drive, self.rest_A, side_by_side(starts), rigs))
+        which = tuple(range(len(found))) if self.instants is None else self.instants
+        states, commands = zip(*(found[k] for k in which), strict=True)
+        return Moments(side_by_side(states), np.repeat(commands, len(rigs)), np.tile(rigs, len(which)), which)
+
+    def resting(self, unpowered: Sequence[tuple[State, float]]) -> Moments:
+        """Before a play: between the bounds, and without power, each state with the current in A that flows then."""
+        states = [*((state, self.rest_A) for state in self.bounds), *unpowered]
+        count = len(self.ensemble.corners)
         return Moments(
-            State(*(np.concatenate([getattr(one, part) for one in chosen]) for part in ("nodes_C", "sink"))),
-            np.repeat([commands[k] for k in which], len(rigs)),
-            np.tile(rigs, len(which)),
-            which,
+            side_by_side([state for state, _ in states]),
+            np.repeat([current_A for _, current_A in states], count),
+            np.tile(np.arange(count, dtype=np.int64), len(states)),
+            (0,),
         )
 
     def hardest(self, reach_C: tuple[float, float], within_s: float) -> list[int]:
         """Corners that are worst in some fault at a few instants, if a watchdog and a cut-off act within a time."""
-        few = np.linspace(1, len(self._stuck_at()) - 1, 4).astype(int)
+        few = np.linspace(1, len(stuck_at(self.drive)) - 1, 4).astype(int)
         moments = replace(self, instants=tuple(few.tolist())).moments()
-        far_K = self.beyond_K(moments, within_s, CutOff(*around_C(self.limits, reach_C), within_s))
+        far_K = self.beyond_K(moments, within_s, CutOff(*self.around_C(reach_C), within_s))
         lanes = far_K.reshape(len(far_K), len(few), -1).argmax(axis=2)
         return [int(corner) for corner in np.unique(moments.rigs[lanes])]
-
-    def _stuck_at(self) -> list[tuple[float, float]]:
-        """Instants in s with the command that is stuck there: the one before a change."""
-        times = self.drive.time_s[1:]
-        if len(times) < INSTANTS:
-            times = np.union1d(times, np.linspace(0.0, times[-1], INSTANTS + 1)[1:])
-        times = times[np.diff(times, prepend=0.0) > 1e-9]  # equal but for rounding
-        commands, chosen = self.drive.at(times - 1e-6), set()
-        for part in np.array_split(np.arange(len(times))[::-1], INSTANTS):  # the last of equals comes first
-            chosen |= {int(part[0]), int(part[commands[part].argmin()]), int(part[commands[part].argmax()])}
-        return [(float(times[k]), float(commands[k])) for k in sorted(chosen)]
 
     def watchdog_s(self, moments: Moments | None = None) -> tuple[float, SingleFault]:
         """How long a stuck current may last before it is cut, and the effect of a little longer."""
@@ -174,20 +164,25 @@ class Faulty:
         return self._cut_K(stuck, _late_s(stuck, display, cut.low, cut.high, cut.react_within_s))[1]
 
     def cut_off(
-        self, display_C: tuple[float, float], moments: Moments | None = None, *, hangs: bool = False
+        self,
+        display_C: tuple[float, float],
+        moments: Moments | None = None,
+        *,
+        hangs: bool = False,
+        shares: tuple[float, ...] = (1.0,),
     ) -> tuple[CutOff, SingleFault]:
         """The cut-off around the display temperatures reached without a fault, and its reaction time with the driver
-        at its limit; with `hangs` also with a current that hangs.
+        at `shares` of its limit; with `hangs` also with a current that hangs.
         """
-        low, high = around_C(self.limits, display_C)
+        low, high = self.around_C(display_C)
         moments, harms, slowest = moments or self.moments(), [], REACTIONS_S[-1]
-        for full_A in self.ends_A:
-            stuck = moments.stuck_at(full_A)
-            values = self.ensemble.watch(full_A, moments.state, STUCK_ROWS_S, moments.rigs)
+        for current_A in (share * full_A for full_A in self.ends_A for share in shares):
+            stuck = moments.stuck_at(current_A)
+            values = self.ensemble.watch(current_A, moments.state, STUCK_ROWS_S, moments.rigs)
             slowest = min(slowest, self._reaction_s(stuck, values, low, high))
             harm, _ = _passed(self.limits, values)
-            if harm is not None:
-                harms.append((harm, full_A))
+            if harm is not None and current_A in self.ends_A:
+                harms.append((harm, current_A))
         if hangs:
             commands = np.broadcast_to(moments.command_A, (len(STUCK_ROWS_S) - 1, len(moments.rigs)))
             values = self.ensemble.step(commands, moments.state, STUCK_ROWS_S, moments.rigs)[0]
@@ -203,6 +198,10 @@ class Faulty:
         """The least and the greatest current in A of the driver, or of the bridge."""
         driver, bridge_A = self.ensemble.rig.driver, self.ensemble.bridge_A
         return (driver.current_min_A, driver.current_max_A) if bridge_A is None else (-bridge_A, bridge_A)
+
+    def around_C(self, display_C: tuple[float, float]) -> tuple[float, float]:
+        """Where the cut-off acts, around the display temperatures reached without a fault."""
+        return around_C(self.limits, display_C, held_C(self.ensemble.rig, self.limits))
 
     def _limit_A(self, moments: Moments, low: float, high: float, full: float) -> float | None:
         """A current limit that prevents harm where no cut-off is quick enough, and still plays the drive."""
@@ -224,12 +223,37 @@ class Faulty:
         return (0.0, *REACTIONS_S)[safe]
 
 
-def around_C(limits: Limits, display_C: tuple[float, float]) -> tuple[float, float]:
-    """Where a cut-off acts that lets the display pass between two temperatures in °C."""
-    hard = [rule for rule in limits.rules if rule.quantity == "display" and rule.severity == "hard"]
-    limit = {rule.upper: rule.limit for rule in hard if rule.above_C is None}
-    low, high = max(limit[False], display_C[0] - BEYOND_K), min(limit[True], display_C[1] + BEYOND_K)
-    return round(low, 1), round(high, 1)
+def instants(
+    ensemble: Ensemble, drive: Drive, rest_A: float, state: State, rigs: Index
+) -> Iterator[tuple[State, float]]:
+    """States, each with the command in A, when a play from states may be stopped, or its current get stuck."""
+    before = 0.0
+    for instant, command in stuck_at(drive):
+        state = ensemble.end_of(between(drive, before, instant), state, rigs)
+        before = instant
+        yield state, command
+    for waited_s in WAITED_S:
+        state = ensemble.hold(rest_A, state, np.array([0.0, waited_s]), rigs)[1]
+        yield state, rest_A
+
+
+def stuck_at(drive: Drive) -> list[tuple[float, float]]:
+    """Instants in s with the command that is stuck there, the one before a change: in each stretch of a drive at its
+    end, and at the ends of its extremes.
+    """
+    times = drive.time_s[1:]
+    if len(times) < INSTANTS:
+        times = np.union1d(times, np.linspace(0.0, times[-1], INSTANTS + 1)[1:])
+    times = times[np.diff(times, prepend=0.0) > 1e-9]  # equal but for rounding
+    commands, chosen = drive.at(times - 1e-6), set()
+    for part in np.array_split(np.arange(len(times))[::-1], INSTANTS):  # the last of equals comes first
+        chosen |= {int(part[0]), int(part[commands[part].argmin()]), int(part[commands[part].argmax()])}
+    return [(float(times[k]), float(commands[k])) for k in sorted(chosen)]
+
+
+def side_by_side(states: Sequence[State]) -> State:
+    """States of lanes next to each other."""
+    return State(*(np.concatenate([getattr(one, part) for one in states]) for part in ("nodes_C", "sink")))
 
 
 def _late_s(moments: Moments, display: Array, low: float, high: float, reaction_s: float) -> Array:

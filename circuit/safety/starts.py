@@ -1,0 +1,103 @@
+"""Where plays begin, and with them their single faults: at rest, first after no power or a stop, later in any order.
+
+A later play begins between the warm and the cold bound of all plays after the shortest pause. A first one begins after
+a rest, which is held on a display that was without power, or whose play was stopped at any instant and that gave no
+current since, with the polarity check or without. What is warmer than all of these in every node stays warmer while
+the rest is held, since the circuit preserves order. The rest lasts until what it leaves is as near to those bounds as
+a display counts as recovered; what remains is joined to them, so that no play begins outside.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from dataclasses import dataclass
+from typing import Generic
+
+import numpy as np
+
+from .checks import Before, Check, Scenario, findings_of, hard_of, worst_of
+from .plant import RECOVERED_K, Played, States
+from .repeated import Repeating
+from .tally import Tally
+
+LONGEST_REST_S = 600.0
+"""A rest that is not long enough by then is none."""
+LONGER = 1.5
+"""Factor between rests that are tried where one leaves too much."""
+
+BEGINNINGS = ("rest", "no power", "polarity check", "stop", "later play")
+"""Where plays begin, as the page on safety names them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Starts(Generic[States]):
+    """The states (warm, cold) between which every play begins, where `rest_s` or more of rest precede a first one."""
+
+    rest_s: float
+    bounds: tuple[States, States]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beginning(Generic[Played, States]):
+    """How drives may begin, with any pause: `left` are states (warm, cold) beyond all in which a rest may begin."""
+
+    repeating: Repeating[Played, States]
+    left: tuple[States, States]
+
+    @staticmethod
+    def of(repeating: Repeating[Played, States], pause_s: float) -> Beginning[Played, States]:
+        """For pauses from one in s on: after a shorter one plays would go farther."""
+        _, warm, cold = repeating.bounds(pause_s)
+        return Beginning(repeating, repeating.plant.stopped(repeating.plays, (warm, cold)))
+
+    def after(self, pause_s: float) -> Starts[States]:
+        """The starts with a pause between plays, after the shortest rest that leaves next to nothing to be joined."""
+        plant, plays = self.repeating.plant, self.repeating.plays
+        steady, *later = self.repeating.bounds(pause_s)
+
+        def recovered(rest_s: int) -> bool:
+            """Whether display, skin, receptors and hot plate are as near to the bounds of later plays."""
+            away_K = [
+                side * (plant.now(play, plant.rested(play, begun, rest_s)) - plant.now(play, bound))
+                for side, begun, bound in zip((1.0, -1.0), self.left, later, strict=True)
+                for play in plays
+            ]
+            return bool(np.max(away_K) <= RECOVERED_K)
+
+        rest_s = float(bisect_left(range(int(LONGEST_REST_S)), 1, key=lambda rest_s: int(recovered(rest_s))))
+        warm, cold = ([plant.rested(play, state, rest_s) for play in plays] for state in self.left)
+        joined = (
+            plant.bound(plays, pause_s, [*steady, *states], side) for states, side in ((warm, True), (cold, False))
+        )
+        return Starts(rest_s, (next(joined), next(joined)))
+
+    def kept_s(self, starts: Starts[States], pause_s: float) -> float | None:
+        """The rest in s after which no play passes a hard limit that begins between the starts, or right after the rest
+        on a display without power; None where even the longest is too short.
+        """
+        drives, rest_s = self.repeating.drives, starts.rest_s
+        ends = zip((Before("warm", pause_s), Before("cold", pause_s)), starts.bounds, strict=True)
+        between = (
+            tally
+            for before, state in ends
+            for play in self.repeating.plays
+            for tally in self.repeating.judged(play, before, state, None, endings=False)
+        )
+        if not all(tally.passes() for tally in between):
+            return None
+        while any(hard_of(self.unpowered(number, rest_s)) for number in range(len(drives))):
+            if rest_s >= LONGEST_REST_S:
+                return None
+            rest_s = min(LONGEST_REST_S, float(np.ceil(LONGER * max(1.0, rest_s))))
+        return rest_s
+
+    def unpowered(self, number: int, rest_s: float) -> tuple[Check, ...]:
+        """What a drive passes after a rest on a display that was without power, at worst of its ways."""
+        plant, checks = self.repeating.plant, []
+        for play in self.repeating.drives[number]:
+            tally = Tally(self.repeating.limits, plant.corners, Scenario(way=play.way))
+            state = plant.rested(play, plant.unpowered(play), rest_s)
+            for (rows, values), _ in plant.play(play, state):
+                tally.add(rows, values, rates=plant.rates)
+            checks.append(tally.checks())
+        return findings_of(worst_of(checks))
