@@ -11,6 +11,7 @@ import pytest
 from tests.circuit.delivery.one_drive import icon_of
 from thermicon.circuit import Drive, Rig, Trace, netlist, simulate, simulate_current, simulate_many
 from thermicon.circuit.rig.rigfile import RigError
+from thermicon.circuit.solver.batch_inputs import bank_of, run_regulate
 from thermicon.circuit.solver.steady import steady_state
 from thermicon.icons import Icon
 
@@ -79,6 +80,39 @@ def test_its_power_limit_binds() -> None:
     drive = Drive([0, 1, 1.1, 20], [0.1, 0.1, 1.2, 1.2])
     weak = simulate_current(drive, HEAVY.with_(**{"heat_sink.power_limit_W": 3.0}))
     assert weak.hot_plate_C[-1] > simulate_current(drive, HEAVY).hot_plate_C[-1] + 1.5
+
+
+@pytest.mark.parametrize(("strong_A", "share"), [(0.5, 0.3), (-0.8, 0.8)])
+def test_the_integral_of_a_sink_does_not_wind_up_in_a_minute_at_its_power_limit(strong_A: float, share: float) -> None:
+    """Wound up, it takes the plate beyond its rest by 0.6 and by 1.1 of how far that was away."""
+    slow = HEAVY.with_(**{"heat_sink.power_limit_W": 3.0, "heat_sink.ki_W_per_Ks": 0.1})
+    hot = simulate_current(Drive([0, 1, 61, 200], [0.1, strong_A, 0.1, 0.1], held=True), slow).hot_plate_C
+    away = np.sign(strong_A) * (hot - hot[0])
+    assert away.max() > 2.5, "the limit is hit"
+    assert away.min() > -share * away.max()
+    assert abs(away[-1]) < 0.05
+
+
+@pytest.mark.parametrize(("periods", "late"), [(0.0, 0), (0.5, 1), (1.0, 1), (1.5, 2)])
+def test_a_loop_whose_output_is_late_acts_on_what_its_sensor_showed_whole_periods_before(
+    periods: float, late: int
+) -> None:
+    rig, period, gains = Rig.load("shani2021"), 0.05, (0.3, 0.8, 0.01)
+    bias, rest = steady_state(rig, "display", 32.0)
+    goal, lane, bank = np.where(np.arange(60) < 5, 32.0, 31.0), np.zeros(1, dtype=np.int64), bank_of(rig)
+    told = np.array([[0.0, *gains, periods * period]])
+    current, display, why = run_regulate(
+        bank, lane, lane, period, goal[np.newaxis], told, np.array([bias]), bank.states([rest])
+    )
+    assert not why.any(), "no limit is met"
+    shown, total, before = [32.0] * (1 + late) + display[0].tolist(), 0.0, 32.0
+    for k in range(60):
+        seen = shown[k]  # the display of `late` periods ago
+        error = seen - goal[k]
+        asked = bias + gains[0] * error + gains[1] * total + gains[2] * (seen - before) / period
+        assert current[0, k] == pytest.approx(asked, abs=1e-9)
+        total, before = total + error * period, seen
+    assert np.ptp(display) > 0.9
 
 
 Tool = Callable[[str], str]
@@ -177,3 +211,8 @@ def test_a_hot_plate_without_the_power_to_rest_is_refused() -> None:
         simulate_current(Drive([0, 5], [1.0, 1.0]), weak)
     with pytest.raises(RigError, match=r"raise heat_sink\.power_limit_W, or begin nearer to rest"):
         steady_state(HEAVY.with_(**{"heat_sink.power_limit_W": 0.1}), "display", 32.0)
+    cold = Rig.load("shani2021").with_set([f"heat_sink.{setting}" for setting in (*SINK[:3], "power_limit_W=0.2")])
+    with pytest.raises(
+        RigError, match=r"at rest the hot plate has 0\.\d+ W to add, its controller gives 0\.2 W; raise"
+    ):
+        steady_state(cold.with_(**{"heat_sink.temperature_C": 28.0}), "display", 42.0)

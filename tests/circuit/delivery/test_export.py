@@ -160,6 +160,15 @@ class TestSidecar:
         assert told["seed"] is None
         assert told["what_it_is_not"] == NO_CLEARANCE
 
+    def test_a_device_slower_than_the_rig_is_asked_for_one_rate_and_plays_at_another(self) -> None:
+        slow = changed(DAC, "update rate", "Hz", high=40.0)
+        files = pack([prepare(SIX["cooling-step"], RIG, slow, CSV, gate=GreenVerdict)], CSV)
+        told = json.loads(files["cooling-step.json"])
+        times = [float(row.split(",")[0]) for row in files["cooling-step.csv"].decode().splitlines()[1:]]
+        assert told["update_rate_Hz"]["requested"] == told["rig"]["document"]["driver"]["update_Hz"] == 100.0
+        assert told["update_rate_Hz"]["realised"] == pytest.approx(1.0 / (times[1] - times[0]), rel=1e-6)
+        assert told["update_rate_Hz"]["realised"] == pytest.approx(100.0 / 3.0), "every third update"
+
     def test_it_is_bound_to_its_drive_rig_device_and_program(self) -> None:
         one = ready(device="ni-analogue-output", form="psychopy", rig=sure_rig())
         files = pack([one], load_format("psychopy"))

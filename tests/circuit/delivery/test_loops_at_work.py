@@ -4,6 +4,7 @@ The ordinary suite has one export; `-m slow` has 200 of shipped and made-up cues
 each, or as many as THERMICON_EVIDENCE says.
 """
 
+import json
 import os
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any
@@ -13,11 +14,15 @@ import pytest
 
 from tests.circuit.delivery.adversarial import BASES, between
 from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
+from tests.circuit.delivery.followed import Follower
 from tests.circuit.delivery.loops_at_work import Controllers, at_work
-from tests.circuit.delivery.one_drive import icon_of, prepare
+from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
+from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
+from thermicon.circuit.safety.checks import Demands
 from thermicon.icons import Icon, load_library
 
 EXPORTS = min(200, int(os.environ.get("THERMICON_EVIDENCE", "200")))
@@ -98,6 +103,36 @@ def test_beyond_the_demanded_current_the_same_controllers_pass_a_limit() -> None
     which.offset_K[:] = -8.0
     hot = at_work(told["rig"]["document"], blind, course, which, rng, 1, 0.0, doses=False)
     assert "skin high" in hot.unsafe, "a sensor that is wrong needs the second one"
+
+
+def hottest_of_a_stuck_loop(rig: Rig, demands: Demands, wrong_K: float) -> float:
+    """Skin in °C at worst: display at the cut-off as a wrong sensor shows it, for good, then full heat, then none."""
+    follower, cut = Follower(json.loads(rig.document), np.random.default_rng(0), extra=0), demands.cut_off_display_C
+    assert demands.current_limit_A is not None
+    state, hottest = follower.rest(cut.high + wrong_K)[:, :, None], -np.inf
+    for amperes, length_s in ((demands.current_limit_A[0], cut.react_within_s), (0.0, 5.0)):
+        move, add = follower.modes(amperes * follower.circuit.gain).step(0.005)
+        for _ in range(round(length_s / 0.005)):
+            state = move @ state + add
+            hottest = max(hottest, float(follower.circuit.read(state)[:, 0].max()))
+    return hottest
+
+
+def test_a_cut_off_keeps_the_limit_with_a_sensor_wrong_by_0_3_K_and_asks_for_no_more() -> None:
+    rig = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5})
+    icon, controller = icon_of("warm by 6 °C at 2 °C/s; hold for 1 s"), Device.load("closed-loop-controller")
+
+    def demanded(highest_C: float) -> Demands:
+        found = worst_case(deliver(icon, rig.with_(**{"safety.skin_highest_C": highest_C}), controller))
+        assert found.safe, found.reason
+        return found.demands
+
+    usual = demanded(42.0)
+    wrong_C, right_C = (hottest_of_a_stuck_loop(rig, usual, wrong_K) for wrong_K in (0.3, 0.0))
+    assert right_C + 0.1 < wrong_C < 41.9
+    kept, near = demanded(wrong_C + 0.04), demanded(wrong_C - 0.04)
+    assert (kept.cut_off_display_C, kept.current_limit_A) == (usual.cut_off_display_C, usual.current_limit_A)
+    assert hottest_of_a_stuck_loop(rig, near, 0.3) < wrong_C - 0.04, "tighter, though a right sensor needs it not"
 
 
 @pytest.mark.slow

@@ -1,5 +1,6 @@
 """The gate on what every kind of device delivers."""
 
+import json
 import re
 from dataclasses import replace
 from functools import cache
@@ -7,8 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
+from tests.circuit.delivery.replay import Skin
 from thermicon.circuit import Device, Drive, Rig, gate, simulate_current
 from thermicon.circuit.delivery.controlled import samples_of
 from thermicon.circuit.delivery.deliver import deliver
@@ -16,7 +19,7 @@ from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.prepare import Prepared
 from thermicon.circuit.delivery.temperatures import FollowingModule, follow_samples
-from thermicon.circuit.delivery.worstcase import worst_cases
+from thermicon.circuit.delivery.worstcase import ways_of, worst_cases
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.checks import worst_of
 from thermicon.circuit.safety.corners import corners_of
@@ -79,6 +82,23 @@ class TestWorstCase:
         given = deliver(SIX["cooling-step"], RIG, Device.load("qst-tcs2")).trace.skin_C.min()
         assert coldest.value < given - 0.1
         assert coldest.scenario.startswith("contact −30 %")
+
+    def test_a_thermode_is_followed_until_it_has_arrived_and_no_longer(self) -> None:
+        """A display cut short jumps to its last level: a rate that is none; one that is waited for delays recovery."""
+        thermode = Device.load("qst-tcs2")
+        jump = deliver(icon_of("cool by 6 °C at 3 °C/s; hold for 1 s; step by 6 °C"), RIG, thermode)
+        lagged = ways_of(jump)[-1]
+        assert abs(lagged.display_C[-1] - lagged.display_C[-2]) / lagged.step_s < 0.01, "a thousandth of the limit"
+        delivery = deliver(icon_of("warm by 2 °C at 3 °C/s; hold for 2 s; return at 3 °C/s"), RIG, thermode)
+        step, lag = 0.002, 0.21
+        ends, keep = delivery.played.time_s[-1], np.exp(-step / lag)  # type: ignore[union-attr]
+        times = np.arange(0.0, ends + 6.0, step)
+        asked = np.interp(times, delivery.played.time_s, delivery.played.level_C) - 32.0  # type: ignore[union-attr]
+        skin = Skin(json.loads(RIG.document), np.random.default_rng(0), extra=0)
+        rows, _ = skin.run(32.0 + lfilter([1.0 - keep], [1.0, -keep], asked), step, skin.steady(32.0))
+        away = (np.abs(rows - rows[0])[:, :, [0, 2]] > 0.1).any(axis=(1, 2))
+        back = times[np.flatnonzero(away)[-1]] - ends
+        assert back - 0.01 <= worst_case(delivery).repeated.recovery_s <= back + 0.11
 
     def test_a_thermode_is_stronger_than_the_rig(self) -> None:
         icon = icon_of("cool by 8 °C at 30 °C/s; hold for 3 s; return at 30 °C/s")

@@ -1,9 +1,13 @@
 """Played again and again: cycles, bounds, recovery and pauses against brute force, play after play."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from tests.circuit.delivery.one_drive import worst_case
+from tests.circuit.delivery.replay import Held, Player
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Drive, Limits, Rig, gate
 from thermicon.circuit.delivery.deliver import deliver
@@ -100,6 +104,24 @@ def test_bounds_enclose_thirty_plays_in_any_order(pause_s: float, most_steps: in
     for play in PLAYS:  # what no order can pass, since no play leads out
         assert (plain.after(play, pause_s, State(warm, start.sink)).nodes_C <= warm + 1e-5).all()
         assert (plain.after(play, pause_s, State(cold, start.sink)).nodes_C >= cold - 1e-5).all()
+
+
+def test_bounds_of_a_set_hold_where_one_drive_warms_the_sink_and_another_the_display() -> None:
+    """A passive sink that coolings have warmed makes the next warming warmer than any number of warmings."""
+    sink = {"temperature_C": 28.0, "capacity_J_per_K": 40.0, "air_resistance_K_per_W": 0.5}
+    plant = CurrentPlant.of(few(THENAR.with_(**{"skin.elements": [1] * 5}, heat_sink=sink)).only([0, 3]), 0)
+    cool, warm = (CurrentPlay(Drive([0, 0.5, 2.0, 4.0], [REST, amps, REST, REST], held=True), REST) for amps in (1, -1))
+    steady = [plant.cycle(play, 20.0) for play in (cool, warm)]
+    most, least = (plant.bound([cool, warm], 20.0, steady, side).nodes_C for side in (True, False))
+    rng, beyond = np.random.default_rng(3), 0.0
+    for order in ([0] * 29 + [1], [1] * 29 + [0], *rng.integers(0, 2, (3, 30))):
+        state = plant.rest(cool)
+        for k in order:
+            state = plant.after((cool, warm)[k], 20.0, state)
+            assert (state.nodes_C <= most + 1e-6).all()
+            assert (state.nodes_C >= least - 1e-6).all()
+            beyond = max(beyond, float((state.nodes_C - np.max([one.nodes_C for one in steady], axis=0)).max()))
+    assert beyond > 0.1, "the bounds are no mere steady cycles"
 
 
 def test_recovery_is_when_display_and_skin_are_back() -> None:
@@ -246,3 +268,25 @@ def test_the_pause_that_is_judged_safe_is_no_shorter_than_the_shortest() -> None
     again = gate(WARM, THENAR).repeated
     assert again.reason is None
     assert again.shortest_pause_s is not None and again.shortest_pause_s <= again.pause_s
+
+
+def test_a_rate_that_is_worst_after_a_longer_pause_lengthens_the_shortest() -> None:
+    """A plate that warms back towards rest is fastest a second after the end: the play that begins then is, too."""
+    rig = sure_rig("shani2021").with_(**{"heat_sink.resistance_K_per_W": 2.0})
+    drive = Drive([0, 0.2, 0.4, 4.4, 5.4], [-0.6, 0.8, 0.1, 0.5, 0.15], held=True)
+    player = Player(json.loads(rig.document), np.random.default_rng(0), extra=0)
+    held = replace(Held.of(drive.time_s, drive.current_A, drive.current_A**2), rest=(0.15, 0.15**2))
+
+    def fastest(state: np.ndarray) -> float:
+        rows, steps, _ = player.play(held, state)
+        return float(np.abs(np.diff(rows[:, 0, 0, 0]) / steps).max())
+
+    def after(pause_s: float) -> float:
+        return fastest(player.through(held, player.rest(held), pause_s))
+
+    limit = 2.53
+    assert max(fastest(player.rest(held)), after(0.0)) < limit - 0.03 < limit + 0.03 < after(1.0)
+    found = gate(drive, rig, pause_s=0.0, rest_A=0.15, limits=Limits.of({"skin_rate_K_per_s": limit})).repeated
+    assert "second play after 1 s of pause" in str(found.reason)
+    shortest = found.shortest_pause_s or 0.0
+    assert all(after(shortest + more) <= limit for more in (0.0, 0.3, 1.0, 2.0, 4.0, 8.0, 15.0, 60.0))

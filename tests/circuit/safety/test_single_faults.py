@@ -1,8 +1,12 @@
 """Single faults: what the hardware must do is simulated, and keeps every hard limit of temperature."""
 
+import json
+
 import numpy as np
 import pytest
 
+from tests.circuit.delivery.replay import Held, Player, exposure
+from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Limits, Rig, gate
 from thermicon.circuit.safety.demanded import dose_time_s, polarity_check, rest_before
 from thermicon.circuit.safety.ensemble import Ensemble, between
@@ -93,6 +97,18 @@ def test_swapped_poles_are_found_by_a_small_current() -> None:
     assert not check.needed and fault.colour in ("green", "amber"), "a gentle cue needs none"
 
 
+def test_right_wiring_passes_the_check_of_poles_in_every_corner_of_a_module_that_is_hardly_known() -> None:
+    unsure = {"plates_relative": 0.6, "conductance_relative": 0.4, "gain_relative": 0.3}
+    rig = Rig.load("shani2021").with_(**{f"uncertainty.{key}": share for key, share in unsure.items()})
+    every = Ensemble.of(rig)
+    check, _ = polarity_check(Faulty(every, COOL, REST, every.at_rest(REST), LIMITS))
+    shown = every.hold(check.test_current_A, every.at_rest(0.0), np.array([0.0, check.test_s]))[0]
+    fall = -np.diff(shown[WATCHED.index("display_C")])[:, 0]
+    assert len(fall) == 65
+    assert fall.max() > 3.0 * fall.min(), "one corner is not like another"
+    assert fall.min() > 1.5 * check.display_change_at_least_K > 0.3, "with room for a sensor that lags"
+
+
 def test_the_rest_before_the_first_play_is_needed_and_enough() -> None:
     """A plate without power is warm: what warms from there passes a limit that it would not pass from rest."""
     warm = Drive([0, 1.0, 4.0, 5.0], [REST, -0.22, -0.22, REST])
@@ -136,6 +152,21 @@ def test_the_dose_of_zero_current_ends_contact_in_time() -> None:
     assert dose[np.searchsorted(times, most)] <= 1.0
     assert dose[np.searchsorted(times, 1.1 * most)] > 1.0
     assert dose_time_s(few, LIMITS, start, np.full(5, 0.9), 1800.0) < most
+
+
+def test_ten_minutes_of_zero_current_count_towards_the_dose_of_a_play_and_no_more() -> None:
+    """On the circuit written out: a limit just above that dose is kept, and one just below is passed."""
+    rig = sure_rig("shani2021").with_(**{"heat_sink.temperature_C": 42.0})
+    drive = Drive([0, 1, 2], [0.2, 0.3, 0.2], held=True)
+    player = Player(json.loads(rig.document), np.random.default_rng(0), extra=0)
+    held = Held.of(drive.time_s, drive.current_A, drive.current_A**2)
+    parts = ((0.01, 100), (0.1, 90), (1.0, 590))
+    left = player.follow(player.play(held, player.rest(held))[2], (0.0, 0.0), parts)
+    dose = float(exposure(left, np.concatenate([np.full(count, step_s) for step_s, count in parts]))[0].max())
+    for share, colours in ((1.03, ("green", "amber")), (0.97, ("red",))):
+        found = gate(drive, rig, pause_s=600.0, limits=Limits.of({"thermal_dose_min_CEM43": share * dose}))
+        assert found.colour in colours, found.reason
+    assert "then zero current" in str(found.reason)
 
 
 @pytest.mark.parametrize(("sink_C", "resistance"), [(48.0, 2.0), (45.0, 0.2)])
