@@ -116,7 +116,7 @@ def _demands(
     start = SingleFault("unpowered loop", "green", {"display_C": unpowered_C, "rest_s": rest_s})
     faulty = module.faulty(samples_of(delivery))
     polarity, _ = polarity_check(faulty)
-    _, stuck = faulty.cut_off((cut.low + BEYOND_K, cut.high - BEYOND_K))
+    _, stuck = faulty.cut_off((cut.low, cut.high))
     lost = SingleFault("loop lost", stuck.colour, {"harms": stuck.values["harms"], "cut_off": cut})
     return replace(
         verdict.demands,

@@ -15,7 +15,7 @@ from ..solver.drive import Drive
 from .checks import Check, CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
-from .held import held_C, stays
+from .held import BEYOND_K, NEARER_K, around_C, held_C, stays
 from .plant import Single
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
 from .single_faults import STUCK_SHARES, Faulty
@@ -47,14 +47,21 @@ def demanded(
     reach_C, faults = (min(display), max(display)), [_faulty(plant, single, repeating.limits) for single in singles]
     held = held_C(plant.rig, repeating.limits)
     begin_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
-    beginning = Beginning.of(repeating, begin_s)
+    beginning = Beginning.of(repeating, begin_s, max(recovered_s))
     starts_of = cache(beginning.after)
 
     def after(pause_s: float) -> list[Faulty]:
         return [replace(one, bounds=starts_of(pause_s).bounds) for one in faults]
 
     reach_of = cache(lambda pause_s: _joined([reach_C, *(one.shown_C for one in after(pause_s))]))
-    hardest = [one.hardest(reach_C, PRACTICAL_S) for one in after(begin_s)]
+
+    def ends(pause_s: float, beyond_K: float) -> Span:
+        return around_C(repeating.limits, reach_of(pause_s), held, beyond_K)
+
+    longest_s = max(begin_s, *recovered_s)
+    practical = _resting(after(longest_s)[0], ends(longest_s, BEYOND_K))[0].react_within_s >= PRACTICAL_S
+    beyond_K = BEYOND_K if practical else NEARER_K
+    hardest = [one.hardest(ends(begin_s, beyond_K), PRACTICAL_S) for one in after(begin_s)]
 
     def holds(number: int, pause_s: float, within_s: Span) -> bool:
         if stays(reach_of(pause_s), held):
@@ -62,16 +69,16 @@ def demanded(
         if not any(within_s):
             return True
         faulty = after(pause_s)[number].at(hardest[number])
-        cut = CutOff(*faulty.around_C(reach_of(pause_s)), within_s[1])
+        cut = CutOff(*ends(pause_s, beyond_K), within_s[1])
         return bool(faulty.beyond_K(faulty.moments(), within_s[0], cut).max() <= 0.0)
 
-    numbers, practical = range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
+    numbers, within = range(len(singles)), (PRACTICAL_S, PRACTICAL_S)
 
     def found(pause_s: float, needed: Sequence[Span] | None = None) -> list[_InPlays] | None:
         """What each drive needs; None as soon as one needs something quicker than in `needed`."""
-        reach, faulty, demands = reach_of(pause_s), after(pause_s), {}
+        at_C, faulty, demands = ends(pause_s, beyond_K), after(pause_s), {}
         for number in sorted(numbers, key=lambda number: not (needed and any(needed[number]))):  # may not suffice first
-            one = demands[number] = _in_plays(faulty[number], hardest[number], reach)
+            one = demands[number] = _in_plays(faulty[number], hardest[number], at_C)
             if needed and np.less(one.within_s, needed[number]).any():
                 return None
         return [demands[number] for number in numbers]
@@ -81,7 +88,7 @@ def demanded(
         rest_s = None if shortest_s is None else beginning.kept_s(starts, pause_s)
         failed = stays(reach_of(pause_s), held)
         said_s = None if shortest_s is None else pause_s
-        resting = _resting(after(pause_s)[0], reach_of(pause_s))
+        resting = _resting(after(pause_s)[0], ends(pause_s, beyond_K))
         rows = zip(faults, singles, in_plays, numbers, strict=True)
         return [
             (_demands(faulty, single, found, resting, (rest_s, beginning.unpowered(k, 0.0)), said_s), failed)
@@ -90,8 +97,7 @@ def demanded(
 
     if shortest_s is None:
         return None, completed(found(begin_s) or [], begin_s)
-    longest_s = max(shortest_s, *recovered_s)
-    needed = [(0.0, 0.0) if holds(k, shortest_s, practical) else practical for k in numbers]
+    needed = [(0.0, 0.0) if holds(k, shortest_s, within) else within for k in numbers]
     if not all(holds(k, longest_s, needed[k]) for k in numbers) and not stays(reach_of(longest_s), held):
         at_best = found(longest_s) or []
         needed = [
@@ -120,8 +126,8 @@ class _InPlays:
         return self.watchdog_s, self.cut_off.react_within_s
 
 
-def _in_plays(faulty: Faulty, hardest: list[int], reach_C: Span) -> _InPlays:
-    """What prevents faults in plays of a drive between bounds; `reach_C` are extremes of displays.
+def _in_plays(faulty: Faulty, hardest: list[int], ends_C: Span) -> _InPlays:
+    """What prevents faults in plays of a drive between bounds, with a cut-off at both `ends_C`.
 
     Watchdog and cut-off are found in the `hardest` corners, tried in all at the instants that decided, and found again
     where they are too slow.
@@ -131,7 +137,7 @@ def _in_plays(faulty: Faulty, hardest: list[int], reach_C: Span) -> _InPlays:
     few = faulty.at(hardest)
     moments = few.moments()
     watchdog_s, hangs = few.watchdog_s(moments)
-    cut_off, stuck = few.cut_off(reach_C, moments, hangs=not watchdog_s)
+    cut_off, stuck = few.cut_off(ends_C, moments, hangs=not watchdog_s)
     far_K = few.beyond_K(moments, watchdog_s, cut_off)
     worst = far_K.reshape(len(far_K), len(moments.instants), -1).max(axis=2).argmax(axis=1)
     everywhere = replace(faulty, instants=tuple(np.unique(worst).tolist()))
@@ -143,20 +149,20 @@ def _in_plays(faulty: Faulty, hardest: list[int], reach_C: Span) -> _InPlays:
         watchdog_s, hangs = min((watchdog_s, hangs), there.watchdog_s(moments), key=lambda found: found[0])
         cut_off, stuck = min(
             (cut_off, stuck),
-            there.cut_off(reach_C, moments, hangs=not watchdog_s),
+            there.cut_off(ends_C, moments, hangs=not watchdog_s),
             key=lambda found: found[0].react_within_s,
         )
     return _InPlays(watchdog_s, cut_off, hangs, stuck)
 
 
-def _resting(faulty: Faulty, reach_C: Span) -> tuple[CutOff, SingleFault]:
+def _resting(faulty: Faulty, ends_C: Span) -> tuple[CutOff, SingleFault]:
     """What prevents harm, in all corners, where the driver gets stuck before a play: between the bounds, or without
     power before, with the polarity tested or not.
     """
     ensemble, off = faulty.ensemble, faulty.ensemble.at_rest(0.0)
     test_A = testing_A(ensemble)
     unpowered = (off, faulty.rest_A), (ensemble.rest(test_A, off, TEST_S), test_A)
-    return faulty.cut_off(reach_C, faulty.resting(unpowered), shares=STUCK_SHARES)
+    return faulty.cut_off(ends_C, faulty.resting(unpowered), shares=STUCK_SHARES)
 
 
 def _demands(

@@ -209,7 +209,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
     ) -> tuple[float | None, list[tuple[Demands, tuple[Check, ...]]]]:
         """What prevents set-points that hang, and a loop that runs to the end of its range or stays anywhere in it."""
         pause_s = LONGEST_PAUSE_S if shortest_s is None else shortest_s
-        beginning = Beginning.of(repeating, pause_s)
+        beginning = Beginning.of(repeating, pause_s, max(recovered_s))
         starts = cache(beginning.after)
 
         def quickest(pause_s: float) -> list[tuple[float, float]]:

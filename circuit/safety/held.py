@@ -18,8 +18,9 @@ from ..solver.modes import FELT, modes_of
 from .checks import Check
 from .corners import contact_corners
 
-BEYOND_K = 1.0
-"""Cut-offs are this far beyond what the display reaches in any corner, so that they act only on a fault."""
+BEYOND_K, NEARER_K = 1.0, 0.5
+"""Cut-offs are this far beyond what the display reaches in any corner, so that they act only on a fault; the nearer one
+where a driver that gets stuck without power before would need a cut-off quicker than is practical."""
 LEAST_BEYOND_K = 0.2
 """They may come so near to it where a display may not stay farther out: what a thermistor may be wrong by."""
 INSIDE_K = 0.1
@@ -54,12 +55,12 @@ def held_C(rig: Rig, limits: Limits) -> Span:
     return low, high
 
 
-def around_C(limits: Limits, display_C: Span, held: Span = (-math.inf, math.inf)) -> Span:
+def around_C(limits: Limits, display_C: Span, held: Span = (-math.inf, math.inf), beyond_K: float = BEYOND_K) -> Span:
     """Where a cut-off acts that lets the display pass between temperatures in °C, and stay at none outside `held`."""
     hard = [rule for rule in limits.rules if rule.quantity == "display" and rule.severity == "hard"]
     limit = {rule.upper: rule.limit for rule in hard if rule.above_C is None}
-    low = max(limit[False], display_C[0] - BEYOND_K, held[0])
-    high = min(limit[True], display_C[1] + BEYOND_K, held[1])
+    low = max(limit[False], display_C[0] - beyond_K, held[0])
+    high = min(limit[True], display_C[1] + beyond_K, held[1])
     return round(STEP_K * math.ceil(low / STEP_K - 1e-6), 1), round(STEP_K * math.floor(high / STEP_K + 1e-6), 1)
 
 

@@ -20,7 +20,6 @@ from ..solver.batch_inputs import State
 from ..solver.drive import Drive
 from .checks import CutOff, Harm, SingleFault
 from .ensemble import Ensemble, between
-from .held import around_C, held_C
 from .tally import WATCHED
 
 HANG_S, INSTANTS = 60.0, 8
@@ -114,11 +113,11 @@ class Faulty:
             (0,),
         )
 
-    def hardest(self, reach_C: tuple[float, float], within_s: float) -> list[int]:
+    def hardest(self, ends_C: tuple[float, float], within_s: float) -> list[int]:
         """Corners that are worst in some fault at a few instants, if a watchdog and a cut-off act within a time."""
         few = np.linspace(1, len(stuck_at(self.drive)) - 1, 4).astype(int)
         moments = replace(self, instants=tuple(few.tolist())).moments()
-        far_K = self.beyond_K(moments, within_s, CutOff(*self.around_C(reach_C), within_s))
+        far_K = self.beyond_K(moments, within_s, CutOff(*ends_C, within_s))
         lanes = far_K.reshape(len(far_K), len(few), -1).argmax(axis=2)
         return [int(corner) for corner in np.unique(moments.rigs[lanes])]
 
@@ -165,16 +164,16 @@ class Faulty:
 
     def cut_off(
         self,
-        display_C: tuple[float, float],
+        ends_C: tuple[float, float],
         moments: Moments | None = None,
         *,
         hangs: bool = False,
         shares: tuple[float, ...] = (1.0,),
     ) -> tuple[CutOff, SingleFault]:
-        """The cut-off around the display temperatures reached without a fault, and its reaction time with the driver
-        at `shares` of its limit; with `hangs` also with a current that hangs.
+        """A cut-off at both ends, with its reaction time for a driver at `shares` of its limit, and the effect of that;
+        with `hangs` also for a current that hangs.
         """
-        low, high = self.around_C(display_C)
+        low, high = ends_C
         moments, harms, slowest = moments or self.moments(), [], REACTIONS_S[-1]
         for current_A in (share * full_A for full_A in self.ends_A for share in shares):
             stuck = moments.stuck_at(current_A)
@@ -198,10 +197,6 @@ class Faulty:
         """The least and the greatest current in A of the driver, or of the bridge."""
         driver, bridge_A = self.ensemble.rig.driver, self.ensemble.bridge_A
         return (driver.current_min_A, driver.current_max_A) if bridge_A is None else (-bridge_A, bridge_A)
-
-    def around_C(self, display_C: tuple[float, float]) -> tuple[float, float]:
-        """Where the cut-off acts, around the display temperatures reached without a fault."""
-        return around_C(self.limits, display_C, held_C(self.ensemble.rig, self.limits))
 
     def _limit_A(self, moments: Moments, low: float, high: float, full: float) -> float | None:
         """A current limit that prevents harm where no cut-off is quick enough, and still plays the drive."""

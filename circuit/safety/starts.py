@@ -9,6 +9,7 @@ a display counts as recovered; what remains is joined to them, so that no play b
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left
 from dataclasses import dataclass
 from typing import Generic
@@ -39,16 +40,20 @@ class Starts(Generic[States]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Beginning(Generic[Played, States]):
-    """How drives may begin, with any pause: `left` are states (warm, cold) beyond all in which a rest may begin."""
+    """How drives may begin, with any pause: `left` are states (warm, cold) beyond all in which a rest may begin.
+
+    `recovery_s` is how long a rest is held at most so that a first play's faults are no worse than a later one's.
+    """
 
     repeating: Repeating[Played, States]
     left: tuple[States, States]
+    recovery_s: float
 
     @staticmethod
-    def of(repeating: Repeating[Played, States], pause_s: float) -> Beginning[Played, States]:
+    def of(repeating: Repeating[Played, States], pause_s: float, recovery_s: float) -> Beginning[Played, States]:
         """For pauses from one in s on: after a shorter one plays would go farther."""
         _, warm, cold = repeating.bounds(pause_s)
-        return Beginning(repeating, repeating.plant.stopped(repeating.plays, (warm, cold)))
+        return Beginning(repeating, repeating.plant.stopped(repeating.plays, (warm, cold)), recovery_s)
 
     def after(self, pause_s: float) -> Starts[States]:
         """The starts with a pause between plays, after the shortest rest that leaves next to nothing to be joined."""
@@ -64,7 +69,7 @@ class Beginning(Generic[Played, States]):
             ]
             return bool(np.max(away_K) <= RECOVERED_K)
 
-        rest_s = float(bisect_left(range(int(LONGEST_REST_S)), 1, key=lambda rest_s: int(recovered(rest_s))))
+        rest_s = float(bisect_left(range(math.ceil(self.recovery_s)), 1, key=lambda rest_s: int(recovered(rest_s))))
         warm, cold = ([plant.rested(play, state, rest_s) for play in plays] for state in self.left)
         joined = (
             plant.bound(plays, pause_s, [*steady, *states], side) for states, side in ((warm, True), (cold, False))
