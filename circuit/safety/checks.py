@@ -67,8 +67,9 @@ class Check:
     """One rule checked against runs: the extreme, its time and scenario, and the source of the limit.
 
     `value` is the extreme on the side that the rule limits, first reached at `time_s`; `since_s` is when the limit is
-    first exceeded, None where it never is. `from_start_K` is how far the limit is from where the run began, None for
-    one that is absolute. `run` is the scenario, of which `scenario` tells in words.
+    first exceeded, None where it never is. Both are NaN where it is in some play of any. `from_start_K` is how far the
+    limit is from where the run began, None for one that is absolute. `run` is the scenario, of which `scenario` tells
+    in words.
     """
 
     quantity: str

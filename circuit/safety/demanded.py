@@ -86,7 +86,7 @@ def demanded(
     def completed(in_plays: Sequence[_InPlays], pause_s: float) -> list[Found]:
         starts = starts_of(pause_s)
         rest_s = None if shortest_s is None else beginning.kept_s(starts, pause_s)
-        failed = stays(reach_of(pause_s), held)
+        failed = () if shortest_s is None else stays(reach_of(pause_s), held)
         said_s = None if shortest_s is None else pause_s
         resting = _resting(after(pause_s)[0], ends(pause_s, beyond_K))
         rows = zip(faults, singles, in_plays, numbers, strict=True)

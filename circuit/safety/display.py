@@ -225,7 +225,7 @@ class DisplayPlant(Plant[DisplayCourse, list[Array]]):
         around, held = (min(shown), max(shown)), (-np.inf, np.inf)
         if self.rates:  # a controller around the module is judged for itself
             held = held_C(self.rig, repeating.limits)
-        cut, failed = around_C(repeating.limits, around, held), stays(around, held)
+        cut, failed = around_C(repeating.limits, around, held), () if shortest_s is None else stays(around, held)
         demanded_s, first = None if shortest_s is None else pause_s, starts(pause_s)
         rest_s = None if shortest_s is None else beginning.kept_s(first, pause_s)
         return demanded_s, [

@@ -67,7 +67,7 @@ def around_C(limits: Limits, display_C: Span, held: Span = (-math.inf, math.inf)
 def stays(display_C: Span, held: Span) -> tuple[Check, ...]:
     """A check that fails for each side on which no cut-off passes what the display reaches and stops what is held."""
     return tuple(
-        Check("display without a fault", "hard", reach, limit, "°C", 0.0, 0.0, STAYS, upper=upper)
+        Check("display without a fault", "hard", reach, limit, "°C", math.nan, math.nan, STAYS, upper=upper)
         for upper, reach, limit in ((False, display_C[0], held[0]), (True, display_C[1], held[1]))
         if (limit - reach if upper else reach - limit) < LEAST_BEYOND_K
     )

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Sequence
 from functools import cache, lru_cache
 from importlib import resources
+from math import isnan
 from typing import Any
 
 from thermicon.icons.number_text import signed, significant
@@ -75,11 +76,13 @@ def check_text(check: Check) -> str:
     scenario = check.scenario
     where = f", with {scenario}" if scenario else ""
     value, limit = (f"{figure}{_unit(check)}" for figure in figures(check))
-    reached = f"{check.quantity} reaches {value} at {check.time_s:.2f} s{where}"
+    at = "" if isnan(check.time_s) else f" at {check.time_s:.2f} s"
+    reached = f"{check.quantity} reaches {value}{at}{where}"
     of_limit = f"{'above' if check.upper else 'below'} the {check.severity} limit of {limit}{check.note}"
     if check.since_s is None:
         return f"{reached}, not {of_limit} ({check.source})"
-    return f"{reached}, {of_limit} from {check.since_s:.2f} s on ({check.source})"
+    since = "" if isnan(check.since_s) else f" from {check.since_s:.2f} s on"
+    return f"{reached}, {of_limit}{since} ({check.source})"
 
 
 def hard_reason(findings: Sequence[Check]) -> str | None:

@@ -1,6 +1,7 @@
 """Single faults: what the hardware must do is simulated, and keeps every hard limit of temperature."""
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -8,9 +9,15 @@ import pytest
 from tests.circuit.delivery.replay import Held, Player, exposure
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Limits, Rig, gate
-from thermicon.circuit.safety.demanded import dose_time_s, polarity_check, rest_before
+from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
+from thermicon.circuit.safety.demanded import TEST_A, TEST_S, dose_time_s, polarity_check
+from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, between
+from thermicon.circuit.safety.gate import Gate
+from thermicon.circuit.safety.held import around_C, held_C
+from thermicon.circuit.safety.repeated import Repeating
 from thermicon.circuit.safety.single_faults import Faulty
+from thermicon.circuit.safety.starts import BEGINNINGS, Beginning, Starts
 from thermicon.circuit.safety.tally import WATCHED, Tally, cem43_min
 from thermicon.circuit.solver.batch_inputs import State
 
@@ -55,8 +62,7 @@ def test_a_current_that_hangs_until_the_watchdog_cuts_it_passes_no_limit_and_muc
 
 def test_a_cut_off_that_reacts_in_time_keeps_the_limits_with_the_driver_at_its_own() -> None:
     one = faulty()
-    cut, fault = one.cut_off((26.0, 38.0))
-    assert (cut.low, cut.high) == (25.0, 39.0)
+    cut, fault = one.cut_off((25.0, 39.0))
     assert cut.react_within_s > 0.0
     heats, cools = str(fault.to_dict()["text"]).split(" and ")
     assert heats.endswith(" °C at −1.5 A"), "both directions of the current are named"
@@ -77,8 +83,8 @@ def test_a_cut_off_that_reacts_in_time_keeps_the_limits_with_the_driver_at_its_o
 
 
 def test_limits_of_the_display_bound_the_cut_off() -> None:
-    cut, _ = faulty().cut_off((5.5, 44.8))
-    assert (cut.low, cut.high) == (5.0, 45.0)
+    assert around_C(LIMITS, (5.5, 44.8)) == (5.0, 45.0)
+    assert around_C(LIMITS, (24.43, 36.77)) == (23.5, 37.7), "rounded inwards"
 
 
 def test_swapped_poles_are_found_by_a_small_current() -> None:
@@ -109,34 +115,124 @@ def test_right_wiring_passes_the_check_of_poles_in_every_corner_of_a_module_that
     assert fall.min() > 1.5 * check.display_change_at_least_K > 0.3, "with room for a sensor that lags"
 
 
-def test_the_rest_before_the_first_play_is_needed_and_enough() -> None:
-    """A plate without power is warm: what warms from there passes a limit that it would not pass from rest."""
-    warm = Drive([0, 1.0, 4.0, 5.0], [REST, -0.22, -0.22, REST])
-    one = faulty(warm)
-    needed, fault = rest_before(one)
-    assert 0.0 < needed < 600.0
-    assert str(fault.to_dict()["prevented_by"]).startswith(f"holding the rest for {needed:g} s before the first play")
-    cold = one.ensemble.at_rest(0.0)
-
-    def passes(rest_s: float) -> bool:
-        state = one.ensemble.rest(REST, cold, rest_s)
-        tally = Tally(LIMITS, [str(corner) for corner in one.ensemble.corners])
-        for (rows, values), _ in one.ensemble.play(warm, state):
-            tally.add(rows, values)
-        return tally.passes()
-
-    assert passes(needed)
-    assert not passes(needed - 1.5)
+WARM = Drive([0, 1.0, 4.0, 5.0], [REST, -0.22, -0.22, REST])
+PAUSE = 60.0
 
 
-def test_what_a_first_play_demands_is_that_of_all_corners() -> None:
-    """On a wide contact the corners that decide on the play itself are others than those that decide on its start."""
-    rig, warm = Rig.load("forearm"), Drive([0, 0.1, 1.5, 4.0, 5.0], [0.1, -0.2, -0.3, -0.2, 0.1], held=True)
-    demanded = gate(warm, rig, pause_s=140.0).demands
-    every = Ensemble.of(rig)
-    one = Faulty(every, warm, float(warm.current_A[0]), every.at_rest(float(warm.current_A[0])), Limits.shipped())
-    assert demanded.rest_before_first_play_s == rest_before(one)[0] > rest_before(one.at([0, 1, 2, 3, 22, 64]))[0]
-    assert demanded.polarity_check == polarity_check(one)[0]
+@cache
+def beginning() -> tuple[CurrentPlant, Beginning[CurrentPlay, State], Starts[State]]:
+    """A warming and a cooling drive in a few corners, and where their plays may begin."""
+    plant = CurrentPlant.of(Ensemble.of(THENAR).only(CORNERS))
+    drives = [[CurrentPlay(drive, REST)] for drive in (WARM, COOL)]
+    known = Beginning.of(Repeating(plant, drives, LIMITS), PAUSE, 300.0)
+    return plant, known, known.after(PAUSE)
+
+
+def begun(how: str, rng: np.random.Generator, rest_s: float) -> State:
+    """A state before a play that begins in one of the ways of BEGINNINGS, drawn by chance."""
+    ensemble = beginning()[0].ensemble
+    state = ensemble.at_rest(REST)
+    if how in ("later play", "stop"):
+        for _ in range(rng.integers(1, 6)):
+            state = ensemble.rest(REST, ensemble.end_of((WARM, COOL)[rng.integers(2)], state), PAUSE)
+    if how == "later play":
+        return state
+    if how == "stop":
+        drive = (WARM, COOL)[rng.integers(2)]
+        state = ensemble.end_of(between(drive, 0.0, rng.uniform(0.1, float(drive.time_s[-1]))), state)
+        state = ensemble.rest(0.0, state, rng.choice([0.1, 1.0, 10.0, 100.0]))
+    if how in ("no power", "polarity check"):
+        state = ensemble.at_rest(0.0)
+    if how == "polarity check" or (how == "stop" and rng.integers(2)):
+        state = ensemble.rest(TEST_A, state, TEST_S)
+    return state if how == "rest" else ensemble.rest(REST, state, rest_s * rng.choice([1.0, 1.3, 3.0]))
+
+
+@pytest.mark.parametrize("how", BEGINNINGS)
+def test_every_play_that_is_allowed_begins_between_the_bounds_from_which_faults_start(how: str) -> None:
+    """And not after a fifth of the rest: it is no longer than it need be, within what display and skin show."""
+    rng, (_, _, starts) = np.random.default_rng(BEGINNINGS.index(how)), beginning()
+    warm, cold = (bound.nodes_C for bound in starts.bounds)
+    assert 5.0 < starts.rest_s < 300.0
+    for _ in range(20):
+        nodes = begun(how, rng, starts.rest_s).nodes_C
+        assert (nodes <= warm + 1e-3).all() and (nodes >= cold - 1e-3).all()
+    if how in ("no power", "polarity check", "stop"):
+        early = np.array([begun(how, rng, 0.2 * starts.rest_s / 3.0).nodes_C for _ in range(20)])
+        assert ((early > warm + 0.05) | (early < cold - 0.05)).any()
+
+
+@cache
+def warmed() -> Gate:
+    """A warming drive on the thenar, judged for pauses from the shortest on."""
+    return gate(WARM, THENAR, pause_s=60.0)
+
+
+def test_a_first_play_after_no_power_survives_a_hang_until_the_watchdog_and_a_driver_stuck_at_any_current() -> None:
+    """In all corners: what is demanded suffices, and without the rest it does not."""
+    demands, every = warmed().demands, Ensemble.of(THENAR)
+    assert demands.rest_before_first_play_s is not None
+    off, cut = every.at_rest(0.0), demands.cut_off_display_C
+
+    def harmed(rest_s: float) -> bool:
+        before = every.rest(REST, off, rest_s)
+        instants = [every.end_of(between(WARM, 0.0, at_s), before) for at_s in (1.0, 4.0)]
+        hung = [every.rest(-0.22, state, demands.watchdog_s) for state in instants]
+        return not all(temperatures_pass(every, 0.0, state, TIMES[:1000])[0] for state in hung)
+
+    assert not harmed(demands.rest_before_first_play_s)
+    assert harmed(1.0), "the rest is needed"
+    display = WATCHED.index("display_C")
+    for current in (-1.5, -0.5, -0.33, -0.3):
+        shown, _ = every.hold(current, off, TIMES)
+        over = (shown[display] >= cut.high) | (shown[display] <= cut.low)
+        for lane in np.flatnonzero(over.any(axis=1)).tolist():
+            alone, start = every.only([lane]), off.take(np.array([lane]))
+            until = TIMES[int(over[lane].argmax())] + cut.react_within_s
+            within, then = temperatures_pass(alone, current, start, np.linspace(0.0, until, 200))
+            assert within and temperatures_pass(alone, 0.0, then, TIMES[:1000])[0], (current, lane)
+        stays = np.flatnonzero(~over.any(axis=1))
+        if len(stays):
+            kept = every.only(stays.tolist())
+            assert temperatures_pass(kept, current, off.take(stays), np.linspace(0.0, 600.0, 601))[0], current
+
+
+def test_the_cut_off_lets_a_second_play_after_no_power_pass_in_every_corner() -> None:
+    demands, every = warmed().demands, Ensemble.of(THENAR)
+    cut, pause_s = demands.cut_off_display_C, demands.pause_at_least_s
+    assert demands.rest_before_first_play_s is not None and pause_s is not None
+    state = every.rest(REST, every.at_rest(0.0), demands.rest_before_first_play_s)
+    for _ in range(3):
+        for (_, values), then in every.play(WARM, state):
+            shown, state = values[WATCHED.index("display_C")], then
+            assert shown.max() < cut.high and shown.min() > cut.low
+        state = every.rest(REST, state, pause_s)
+
+
+def test_a_driver_that_holds_the_display_at_the_cut_off_is_safe_and_farther_out_it_is_not() -> None:
+    low, high = held_C(THENAR, LIMITS)
+    plant = DisplayPlant.of(THENAR, (0.0, 60.0))
+    skin = WATCHED.index("skin_C")
+    for level, farther, limit in ((low, low - 0.5, 15.0), (high, high + 0.5, 42.0)):
+        held, beyond = (plant.held(at, plant.steady(at), np.zeros(1))[skin, :, 0] for at in (level, farther))
+        assert abs(held - limit).min() > 0.05 and ((held - limit) * (beyond - limit)).min() < 0.0
+
+
+def test_a_play_that_goes_where_a_display_may_not_stay_is_refused_with_that_sentence() -> None:
+    """A dip too short to cool the skin as much: with a cut-off that lets it pass, nobody stops a driver on the way."""
+    rig = sure_rig("thenar").with_(**{"driver.current_limit_A": 2.5})
+
+    def dipped(for_s: float) -> Gate:
+        dip = Drive([0, 0.1, 0.1 + for_s, 0.6 + for_s, 12], [REST, 2.4, -0.8, REST, REST], held=True)
+        return gate(dip, rig, pause_s=300.0)
+
+    passed, refused = dipped(4.2), dipped(4.4)
+    assert passed.safe and passed.demands.cut_off_display_C.low == 14.8
+    assert refused.colour == "red" and not refused.mended_by_pause
+    assert str(refused.reason).startswith("display without a fault reaches 14."), refused.reason
+    assert "no cut-off lets this play pass" in str(refused.reason)
+    hard = {check.quantity for check in refused.checks if check.severity == "hard" and not check.passed}
+    assert hard == {"display without a fault"}, "the play itself is safe"
 
 
 def test_the_dose_of_zero_current_ends_contact_in_time() -> None:
