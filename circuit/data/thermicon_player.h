@@ -186,6 +186,7 @@ static inline void thermicon_feed(thermicon_player *player) { player->fed_us = p
 /* Begin at zero output: the polarity is tested, then the rest of the icon is held. */
 static inline thermicon_answer thermicon_begin(thermicon_player *player, const thermicon_board *board,
                                                thermicon_icon icon) {
+    const thermicon_sensor unread = {0.0f, 0.0f, 0, 0};
     int needs_sensor = THERMICON_CLOSED_LOOP || !(THERMICON_WATCHDOG_S > 0.0f);
     player->board = board;
     player->icon = icon;
@@ -194,7 +195,7 @@ static inline thermicon_answer thermicon_begin(thermicon_player *player, const t
     player->clock_us = player->place = 0;
     player->stands = 0;
     player->before_C = player->test_from_C = player->goal = player->integral = 0.0f;
-    player->first.reading_C = player->second.reading_C = 0.0f;
+    player->first = player->second = unread;
     player->has_stepped = player->has_played = 0;
     thermicon_enter(player, THERMICON_TEST_POLARITY && board->measure ? THERMICON_TESTING : THERMICON_RESTING);
     board->put_out(board->context, 0.0f);

@@ -171,7 +171,7 @@ def command_for(delivery: DeliveredDrive, current_A: float) -> float:
 
 
 def c_float(value: float, toward: float | None = None) -> str:
-    """A number as a C float literal; with `toward`, what 32 bits make of it is no farther from there than the number."""
+    """A number as a C float literal; in 32 bits it is no farther from `toward` than the number itself."""
     if toward is None:
         return f"{float(value)!r}f"
     short = np.float32(value)
