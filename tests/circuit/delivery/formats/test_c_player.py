@@ -167,7 +167,7 @@ def test_after_a_restart_the_pause_is_held_too(tmp_path: Path, tool: Callable[[s
 
 
 def test_without_any_safe_hang_the_cut_off_protects(tmp_path: Path, tool: Callable[[str], str]) -> None:
-    """A watchdog of 0: a player without sensor would guard nothing, and one that stops at its first step never plays."""
+    """A watchdog of 0: without a sensor nothing would be guarded, and with it the player still plays."""
     none = build(tmp_path, "dac-12", tool("cc"), watchdog_s=0.0)
     assert run(none, sensors=0)["begun"] == NO_SENSOR
     assert (run(none)["plays"], run(none)["fault"]) == (2, NO_FAULT)

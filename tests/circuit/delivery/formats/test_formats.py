@@ -105,6 +105,7 @@ def test_without_nptdms_the_cure_is_told(monkeypatch: pytest.MonkeyPatch) -> Non
         ("wav", {"dc_coupled": False}, {}, r"wav: dc-coupled-audio is not said to be DC-coupled .* every held level"),
         ("wav", {"levels": "waveform"}, {}, "wav has no levels of its own; dc-coupled-audio sets its levels by the"),
         ("c-array", {}, {"lowest": -32769}, r"c-array holds int16_t; dac-12 has codes of -32769 … 2047"),
+        ("c-array", {}, {"lowest": 0, "highest": 65535}, r"c-array holds int16_t; dac-12 has codes of 0 … 65535"),
         ("tdms", {}, {"highest": 2**31}, r"tdms: codes are written in 32 bits, up to 2,147,483,647; ni-analogue-out"),
     ],
 )
