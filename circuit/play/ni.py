@@ -12,7 +12,8 @@ class NiLine:
 
     def __init__(self, channel: str, off_V: float = 0.0, measured_C: Callable[[], float] | None = None) -> None:
         self._channel, self._off_V, self._measured_C = channel, off_V, measured_C
-        self._block, self._daq = ExitStack(), None
+        self._block = ExitStack()
+        self._daq: Any = None
 
     def open(self) -> None:
         """Load the driver."""

@@ -171,7 +171,8 @@ def course_C(delivery: DeliveredDrive, every_s: float) -> Array:
     """The predicted display in °C at regular times in s of the file, and once after its end."""
     trace = delivery.trace
     times = every_s * np.arange(2 + int(delivery.end_s / every_s))
-    return np.interp(times, trace.time_s, trace.display_C)
+    course: Array = np.interp(times, trace.time_s, trace.display_C)
+    return course
 
 
 def setpoints_in(delivery: DeliveredDrive) -> Setpoints:
@@ -246,7 +247,7 @@ def must_prevent(demands: Sequence[Demands]) -> MustPrevent:
     )
     if tests:  # one test as a whole: what falls by so much was found for its current and its time
         test = min(tests, key=lambda each: each.test_current_A * each.test_s)
-        numbers = {"test_current_A": test.test_current_A, "test_s": test.test_s}
-        found = replace(found, **numbers, test_fall_K=test.display_change_at_least_K)
+        found = replace(found, test_current_A=test.test_current_A, test_s=test.test_s)
+        found = replace(found, test_fall_K=test.display_change_at_least_K)
     gains = (loop.kp_A_per_K[1], loop.ki_A_per_Ks[1], loop.kd_As_per_K) if loop else plain.gains
     return replace(found, gains=gains)
