@@ -1,6 +1,5 @@
 """Players that come with PsychoPy drives, run with a clock, an NI device and a serial line that are stand-ins."""
 
-import ast
 import csv
 import io
 import re
@@ -9,28 +8,23 @@ import types
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
-from tests.circuit.verdicts import MADE_UP, POLARITY, GreenVerdict
+from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import FormatError, load_format
-from thermicon.circuit.delivery.formats.form import MustPrevent, Played, must_prevent
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.safety.checks import CutOff, Loop
+from thermicon.circuit.safety.checks import Loop
 from thermicon.icons import Icon, load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
 ICON = load_library("six-icons")["double-dip"]
-MUST = must_prevent([MADE_UP])
 
 
 class Clock:
@@ -214,7 +208,6 @@ class TestVolts:
     def test_above_10_000_updates_a_second_the_judged_drive_is_put_out(
         self, bench: Callable[..., Bench], name: str, rate: float
     ) -> None:
-        """A table with a row for each change alone would be stretched here and squeezed there."""
         quick = changed(Device.load(name), "update rate", "Hz", value=rate)
         shape = "rest for 50 ms; to 0.2 A over 30 ms; hold for 100 ms; to 0 A over 30 ms; hold for 50 ms"
         fast = bench(quick, icon_of(shape, "current"))
@@ -260,7 +253,6 @@ class TestVolts:
     def test_what_may_have_played_before_is_followed_by_the_longer_of_rest_and_pause(
         self, bench: Callable[..., Bench]
     ) -> None:
-        """In a new process, and after a stop."""
         ni = bench(Device.load("ni-analogue-output"), rest_before_first_play_s=2.0, pause_at_least_s=20.5)
         ni.play()
         assert ni.daq.ends - 8.02 == pytest.approx(100.0 + 20.5, abs=0.01)
@@ -278,7 +270,6 @@ class TestVolts:
             (lambda now: now - 5.0, "clock of this computer is wrong: it reads 12"),
             (lambda now: 132.0, r"clock of this computer stands still at 132\.0 s"),
         ],
-        ids=["no number", "back", "stands"],
     )
     def test_a_clock_that_is_wrong_ends_with_zero(self, ni: Bench, reads: Callable[[float], float], words: str) -> None:
         true = ni.clock.monotonic
@@ -289,7 +280,6 @@ class TestVolts:
 
     @pytest.mark.parametrize("step_K", [0.05, 0.1])
     def test_a_live_sensor_of_tenths_is_not_frozen_in_rest_and_pause(self, ni: Bench, step_K: float) -> None:
-        """Fault of before: it reads after the pause what it read at the end of the play."""
         ni.player["TEST_POLARITY"] = False
         display = ni.ready.delivery.trace
 
@@ -382,7 +372,6 @@ class TestSetpoints:
         assert off
 
     def test_a_computer_that_hangs_for_longer_than_may_be_ends_it(self, bench: Callable[..., Bench]) -> None:
-        """It would send what it has missed at once, faster than the gate has judged."""
         loop = bench(self.LOOP)
         sent: list[float] = []
 
@@ -410,83 +399,3 @@ class TestSetpoints:
         volts.at(132.0, volts.player["abort"])
         volts.stops(r"abort\(\) was called")
         assert volts.daq.out[-1] == pytest.approx(commands[0])
-
-
-class TestMustPrevent:
-    """Numbers of the gate as players get them."""
-
-    def test_the_strictest_of_a_set_counts(self) -> None:
-        gentle = replace(
-            MADE_UP, watchdog_s=1.0, pause_at_least_s=90.0, polarity_check=replace(POLARITY, needed=False),
-            cut_off_display_C=CutOff(24.0, 44.0, 0.5), current_limit_A=(-1.0, 0.5),
-        )  # fmt: skip
-        found = must_prevent([replace(MADE_UP, current_limit_A=(-0.8, 0.9)), gentle])
-        assert found == MustPrevent(0.4, 24.0, 40.0, 0.1, True, 0.2, 0.5, 0.15, 30.0, 90.0, limits_A=(-0.8, 0.5))
-
-    def test_the_numbers_of_a_polarity_test_belong_together(self) -> None:
-        """What the right wiring is sure to reach in 2 s, it need not reach in 0.5 s."""
-        longer = replace(POLARITY, test_current_A=0.1, test_s=2.0, display_change_at_least_K=0.25)
-        found = must_prevent([replace(MADE_UP, polarity_check=longer), MADE_UP])
-        assert (found.test_current_A, found.test_s, found.test_fall_K) in [(0.1, 2.0, 0.25), (0.2, 0.5, 0.15)]
-
-    def test_what_the_gate_does_not_find_is_assumed(self) -> None:
-        unknown = replace(MADE_UP, polarity_check=None, rest_before_first_play_s=None, pause_at_least_s=None)
-        found = must_prevent([unknown])
-        assert (found.test_polarity, found.rest_s, found.pause_s) == (False, 1800.0, 60.0)
-
-    def test_a_set_has_one_player(self) -> None:
-        form = load_format("c-array")
-        ready = prepare(ICON, RIG, Device.load("dac-12"), form, gate=GreenVerdict)
-        assert set(form.player([Played(ready.delivery, "a.h", "a.json")], MUST)) == set(form.set_files)
-
-    @given(
-        st.builds(
-            MustPrevent, watchdog_s=st.floats(0.02, 60), low_C=st.floats(5, 31), high_C=st.floats(33, 50),
-            react_within_s=st.floats(0.02, 2), test_current_A=st.floats(0.01, 2), test_s=st.floats(0.1, 5),
-            test_fall_K=st.floats(0.01, 3), rest_s=st.floats(0.1, 1800), pause_s=st.floats(0.1, 600),
-            gains=st.tuples(*[st.floats(0, 5)] * 3), limits_A=st.tuples(st.floats(-9, -0.01), st.floats(0.01, 9)),
-        )
-    )  # fmt: skip
-    @settings(max_examples=50)
-    def test_rounding_goes_to_the_safe_side(self, must: MustPrevent) -> None:
-        """In the 32 bits of a microcontroller, and as the script reads its numbers; by less than a millionth."""
-        header = load_format("c-array").player([drive("c-array", "dac-12")], must)["thermicon_player.h"].decode()
-        told = {
-            name: float(np.float32(value))
-            for name, value in re.findall(r"#define THERMICON_(\w+) (-?[\d.e-]+)f", header)
-        }
-        shorter = {"WATCHDOG_S": must.watchdog_s, "REACT_S": must.react_within_s, "HIGH_C": must.high_C}
-        shorter |= {"TEST_FALL_K": must.test_fall_K, "TEST_COMMAND": must.test_current_A / 0.1}
-        shorter |= dict(zip(("KP", "KI", "KD"), must.gains, strict=True)) | {"HIGHEST_A": must.limits_A[1]}
-        longer = {"REST_S": must.rest_s, "PAUSE_S": must.pause_s, "LOW_C": must.low_C, "TEST_S": must.test_s}
-        longer |= {"LOWEST_A": must.limits_A[0]}
-        assert all(told[name] <= value for name, value in shorter.items())
-        assert all(told[name] >= value for name, value in longer.items())
-        assert all(told[name] == pytest.approx(value, rel=1e-6) for name, value in {**shorter, **longer}.items())
-        script = drive("psychopy", "ni-analogue-output")
-        play_icons = load_format("psychopy").player([script], must)["play_icons.py"].decode()
-        values = {
-            name.id: value
-            for node in ast.parse(play_icons).body if isinstance(node, ast.Assign)
-            for name, value in zip(
-                getattr(node.targets[0], "elts", node.targets), _values(node.value), strict=False
-            )
-        }  # fmt: skip
-        assert (values["LOW_C"], values["HIGH_C"]) == (must.low_C, must.high_C)
-        assert (values["REST_S"], values["PAUSE_S"], values["TEST_S"]) == (must.rest_s, must.pause_s, must.test_s)
-        assert 2.0 * values["LOOK_EVERY_S"] <= must.react_within_s
-        assert values["LATE_S"] <= min(must.react_within_s, must.watchdog_s)
-
-
-@cache
-def drive(form: str, device: str) -> Played:
-    ready = prepare(ICON, RIG, Device.load(device), load_format(form), gate=GreenVerdict)
-    return Played(ready.delivery, "a.h", "a.json")
-
-
-def _values(node: ast.expr) -> list[Any]:
-    try:
-        value = ast.literal_eval(node)
-    except ValueError:
-        return []
-    return list(value) if isinstance(value, tuple) else [value]
