@@ -16,7 +16,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 LADDER = {
     "icons": ("model", "language", "files", "recordings", "pictures"),
-    "circuit": ("rig", "solver", "safety", "delivery", "fitting"),
+    "circuit": ("rig", "solver", "safety", "play", "delivery", "fitting"),
     "perception": (
         *("kernels", "observer", "sensation", "experiments", "identification"),
         *("ranking", "selection", "pilot", "evidence", "plots"),

@@ -59,7 +59,7 @@ def pack(
             judged, repeated = cue.verdict.colour, cue.verdict.repeated
             times = repeated.recovery_s, repeated.shortest_pause_s
             played.append(Played(cue.delivery, drive, sidecar_name(name, form), judged, *times))
-        shared = form.player(played, must_prevent([cue.verdict.demanded for cue in ready]))
+        shared = form.player(played, must_prevent([cue.verdict.demands for cue in ready]))
     files: dict[str, bytes] = {}
     for cue, name, (drive, content) in zip(ready, names, drives, strict=True):
         over = [str(refusal) for refusal in cue.refusals]

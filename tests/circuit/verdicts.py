@@ -1,15 +1,14 @@
 """A made-up verdict, for tests of what is written after a gate has passed a drive."""
 
 from types import SimpleNamespace
-from typing import Any
 
-MADE_UP: dict[str, Any] = {
-    "watchdog_s": 0.4,
-    "cut_off_display_C": {"low": 20.0, "high": 40.0, "react_within_s": 0.1},
-    "polarity_check": {"needed": True, "test_current_A": 0.2, "test_s": 0.5, "display_change_at_least_K": 0.15},
-    "rest_before_first_play_s": 30.0,
-    "pause_at_least_s": 20.0,
-}
+from thermicon.circuit.safety.checks import CutOff, Demands, PolarityCheck
+
+CUT_OFF = CutOff(low=20.0, high=40.0, react_within_s=0.1)
+POLARITY = PolarityCheck(True, test_current_A=0.2, test_s=0.5, display_change_at_least_K=0.15, swapped_skin_C=(31, 33))
+MADE_UP = Demands(
+    0.4, CUT_OFF, POLARITY, rest_before_first_play_s=30.0, pause_at_least_s=20.0, zero_current_at_most_s=None, faults=()
+)
 
 
 class GreenVerdict:
@@ -22,7 +21,8 @@ class GreenVerdict:
 
     notes: tuple[str, ...] = ()
     repeated = SimpleNamespace(recovery_s=None, shortest_pause_s=None)
-    demanded = MADE_UP
+    demands = MADE_UP
+    demanded = MADE_UP.to_dict()
 
     def to_dict(self) -> dict[str, object]:
         return {"colour": "green"}

@@ -3,12 +3,17 @@
 The player is a header too, with cut-off, watchdog, abort and pauses.
 """
 
+import math
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
 from importlib import resources
+
+import numpy as np
 
 from thermicon.icons.model.context import clean_line
 
+from ...arrays import Array
 from ..delivered_drive import DeliveredDrive
 from .form import (
     PLAYS_SAMPLES,
@@ -18,6 +23,7 @@ from .form import (
     FormatError,
     MustPrevent,
     Played,
+    course_C,
     samples_of,
 )
 
@@ -26,6 +32,8 @@ PLAYER = "thermicon_player.h"
 OUTPUT_UNITS = {"volts": "volts", "amperes": "amperes", "duty": "duty, -1 ... 1", "temperatures": "amperes"}
 
 A_LINE = 16
+COURSE_S = 0.1
+"""A player gets the predicted display so often."""
 CENTI_K = 0.01
 SMALLEST, LARGEST = -32768, 32767
 LONGEST_NS, MOST_CODES = 2**32 - 1, 2**32 - 1
@@ -115,21 +123,29 @@ def identifier(name: str) -> str:
 def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     """Return the player for drives of one device, with the numbers that the hardware must keep to."""
     first = drives[0].delivery
+    down, up = partial(c_float, toward=-math.inf), partial(c_float, toward=math.inf)
+    inward = partial(c_float, toward=0.0)
+    courses = {identifier(each.delivery.icon.name): course_C(each.delivery, COURSE_S) for each in drives}
+    if first.device.driven_by == "temperatures":  # the set-point is what the display is to do
+        courses = dict.fromkeys(courses, np.zeros(0))
     numbers = {
         "CLOSED_LOOP": str(int(first.device.driven_by == "temperatures")),
-        "WATCHDOG_S": c_float(must.watchdog_s),
-        "LOW_C": c_float(must.low_C),
-        "HIGH_C": c_float(must.high_C),
-        "REACT_S": c_float(max(0.01, must.react_within_s)),
-        "REST_S": c_float(must.rest_s),
-        "PAUSE_S": c_float(must.pause_s),
+        "WATCHDOG_S": down(must.watchdog_s),
+        "LOW_C": up(must.low_C),
+        "HIGH_C": down(must.high_C),
+        "REACT_S": down(must.act_within_s),
+        "REST_S": up(must.rest_s),
+        "PAUSE_S": up(must.pause_s),
         "TEST_POLARITY": str(int(must.test_polarity)),
-        "TEST_COMMAND": c_float(command_for(first, must.test_current_A)),
+        "TEST_COMMAND": inward(command_for(first, must.test_current_A)),
         "TEST_UNIT": OUTPUT_UNITS[first.device.driven_by],
-        "TEST_S": c_float(must.test_s),
-        "TEST_FALL_K": c_float(must.test_fall_K),
-        **dict(zip(("KP", "KI", "KD"), map(c_float, must.gains), strict=True)),
-        **dict(zip(("LOWEST_A", "HIGHEST_A"), map(c_float, must.limits_A), strict=True)),
+        "TEST_S": up(must.test_s),
+        "TEST_FALL_K": down(must.test_fall_K),
+        **dict(zip(("KP", "KI", "KD"), map(inward, must.gains), strict=True)),
+        **dict(zip(("LOWEST_A", "HIGHEST_A"), map(inward, must.limits_A), strict=True)),
+        "SECOND_SENSOR": str(int(must.second_sensor)),
+        "COURSE_MS": str(round(1e3 * COURSE_S)),
+        "COURSES": "\n".join(_course(name, levels) for name, levels in courses.items()),
         "OUTPUT_UNIT": OUTPUT_UNITS[first.device.driven_by],
         "VERDICTS": "\n".join(f"   {played.file}: {played.verdict}." for played in drives),
     }
@@ -154,9 +170,21 @@ def command_for(delivery: DeliveredDrive, current_A: float) -> float:
     return current_A
 
 
-def c_float(value: float) -> str:
-    """A number as a C float literal."""
-    return f"{float(value)!r}f"
+def c_float(value: float, toward: float | None = None) -> str:
+    """A number as a C float literal; in 32 bits it is no farther from `toward` than the number itself."""
+    if toward is None:
+        return f"{float(value)!r}f"
+    short = np.float32(value)
+    if abs(toward - float(short)) > abs(toward - value) or (math.isinf(toward) and (float(short) - value) * toward < 0):
+        short = np.nextafter(short, np.float32(toward))
+    return f"{float(str(short))!r}f"
+
+
+def _course(name: str, levels: Array) -> str:
+    """The predicted display of an icon in hundredths of a degree; a single 0 stands for none."""
+    codes = np.rint(levels / CENTI_K).astype(int).tolist() or [0]
+    rows = ",\n".join("    " + ", ".join(map(str, codes[k : k + A_LINE])) for k in range(0, len(codes), A_LINE))
+    return f"static const int16_t thermicon_course_{name}[] PROGMEM = {{\n{rows}}};"
 
 
 FORMAT = Format(

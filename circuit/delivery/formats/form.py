@@ -1,13 +1,16 @@
 """The description of a drive file format, the input of its writer, and the events of a cue that files may mark."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
-from typing import Any
+
+import numpy as np
 
 from thermicon.icons.model.corners import Corners
 
+from ...arrays import Array
 from ...inputs import InputError
+from ...safety.checks import Demands
 from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
@@ -20,6 +23,7 @@ PLAYS_SETPOINTS = ("set-points",)
 PLAYS_TEMPERATURES = ("temperatures",)
 
 
+QUICKEST_S = 0.01
 STILL = 1e-9
 """A slope below this, in K/s or A/s, counts as level."""
 LONGEST_NAME = 200
@@ -80,6 +84,7 @@ class MustPrevent:
     Of a loop they are its gains, kp A/K, ki A/(K·s) and kd A·s/K, and its current limits. The defaults stand where the
     gate states nothing: a test current that moves a plate of a few J/K by some tenths of a kelvin, a minute of pause,
     as is usual in thermal studies, a loop so slow that no module makes it swing, and the current of most shipped rigs.
+    `watchdog_s` is 0 where no hang is safe: the cut-off protects then. `second_sensor`: the cut-off has one of its own.
     """
 
     watchdog_s: float = 0.5
@@ -94,6 +99,12 @@ class MustPrevent:
     pause_s: float = 60.0
     gains: tuple[float, float, float] = (0.1, 0.02, 0.0)
     limits_A: tuple[float, float] = (-1.5, 1.5)
+    second_sensor: bool = False
+
+    @property
+    def act_within_s(self) -> float:
+        """How quickly a player must act, in s; 0.01 where the gate finds nothing quick enough."""
+        return self.react_within_s or QUICKEST_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,6 +167,14 @@ def samples_of(delivery: DeliveredDrive) -> Samples:
     return delivery.played
 
 
+def course_C(delivery: DeliveredDrive, every_s: float) -> Array:
+    """The predicted display in °C at regular times in s of the file, and once after its end."""
+    trace = delivery.trace
+    times = every_s * np.arange(2 + int(delivery.end_s / every_s))
+    course: Array = np.interp(times, trace.time_s, trace.display_C)
+    return course
+
+
 def setpoints_in(delivery: DeliveredDrive) -> Setpoints:
     """The set-points of a drive whose device follows set-points."""
     assert isinstance(delivery.played, Setpoints)
@@ -209,29 +228,26 @@ LONGEST_REST_S = 1800.0
 """Held before the first play where the gate finds that 10 min of rest do not suffice."""
 
 
-def must_prevent(demands: Sequence[Mapping[str, Any]]) -> MustPrevent:
-    """The strictest over a set of what the gate demands of each icon (`Gate.demanded`)."""
-    cut_offs = [each["cut_off_display_C"] for each in demands]
-    tests = [check for each in demands if (check := each["polarity_check"]) and check["needed"]]
-    rests = [each["rest_before_first_play_s"] for each in demands]
-    pauses = [pause for each in demands if (pause := each["pause_at_least_s"]) is not None]
-    loop, limits_A = (demands[0].get(key) for key in ("loop", "current_limit_A"))  # alike in all icons of a set
-    plain = MustPrevent()
-
-    def gentlest(key: str, otherwise: float) -> float:
-        return min((float(test[key]) for test in tests), default=otherwise)
-
-    return MustPrevent(
-        watchdog_s=min(float(each["watchdog_s"]) for each in demands),
-        low_C=max(float(cut["low"]) for cut in cut_offs),
-        high_C=min(float(cut["high"]) for cut in cut_offs),
-        react_within_s=min(float(cut["react_within_s"]) for cut in cut_offs),
+def must_prevent(demands: Sequence[Demands]) -> MustPrevent:
+    """The strictest over a set of what the gate demands of each icon."""
+    cut_offs = [each.cut_off_display_C for each in demands]
+    tests = [each.polarity_check for each in demands if each.polarity_check and each.polarity_check.needed]
+    limits_A = [each.current_limit_A for each in demands if each.current_limit_A]
+    loop, plain = demands[0].loop, MustPrevent()  # loops are alike in all icons of a set
+    found = MustPrevent(
+        watchdog_s=min(each.watchdog_s for each in demands),
+        low_C=max(cut.low for cut in cut_offs),
+        high_C=min(cut.high for cut in cut_offs),
+        react_within_s=min(cut.react_within_s for cut in cut_offs),
         test_polarity=bool(tests),
-        test_current_A=gentlest("test_current_A", plain.test_current_A),
-        test_s=gentlest("test_s", plain.test_s),
-        test_fall_K=gentlest("display_change_at_least_K", plain.test_fall_K),
-        rest_s=max(LONGEST_REST_S if rest is None else float(rest) for rest in rests),
-        pause_s=max(map(float, pauses), default=plain.pause_s),
-        gains=(loop["kp_A_per_K"][1], loop["ki_A_per_Ks"][1], loop["kd_As_per_K"]) if loop else plain.gains,
-        limits_A=limits_A or plain.limits_A,
+        rest_s=max(LONGEST_REST_S if (rest := each.rest_before_first_play_s) is None else rest for each in demands),
+        pause_s=max(plain.pause_s if (pause := each.pause_at_least_s) is None else pause for each in demands),
+        limits_A=(max(low for low, _ in limits_A), min(high for _, high in limits_A)) if limits_A else plain.limits_A,
+        second_sensor=any(each.loop is not None for each in demands),
     )
+    if tests:  # one test as a whole: what falls by so much was found for its current and its time
+        test = min(tests, key=lambda each: each.test_current_A * each.test_s)
+        found = replace(found, test_current_A=test.test_current_A, test_s=test.test_s)
+        found = replace(found, test_fall_K=test.display_change_at_least_K)
+    gains = (loop.kp_A_per_K[1], loop.ki_A_per_Ks[1], loop.kd_As_per_K) if loop else plain.gains
+    return replace(found, gains=gains)

@@ -5,14 +5,18 @@ import io
 from collections import Counter
 from collections.abc import Sequence
 
+import numpy as np
+
+from ...play.guard import Numbers
+from ...play.script import COURSE_EVERY_S, script
 from ..delivered_drive import DeliveredDrive
-from .c_array import command_for, filled
-from .form import Column, Format, MustPrevent, Played, events_in, samples_of
-from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of
+from .c_array import command_for
+from .form import Column, Format, FormatError, MustPrevent, Played, course_C, events_in, samples_of
+from .tables import CSV, SERIAL, SETPOINT_CSV, has_voltage, volts_of, write_rows
 
 SET_FILES = CONDITIONS, PLAYER = "conditions.csv", "play_icons.py"
-FROZEN_S = 5.0
-"""A reading that has not changed for this long counts as frozen; a thermode's, in steps of 0.1 K, may rest longer."""
+MOST_ROWS = 1_000_000
+"""Rows of one drive file, which then has 60 MB: a minute at 16 kHz."""
 
 HEADER = ("icon", "drive_file", "sidecar_file", "duration_s", "ramp_start_s", "target_reached_s", "return_start_s")
 """First columns of the conditions file: names without spaces, as PsychoPy needs them."""
@@ -32,7 +36,16 @@ def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 
 def write(delivery: DeliveredDrive) -> bytes:
     """Return the drive file of one icon: a table, or the commands of a thermode."""
-    return _drive(delivery).write(delivery)
+    if _drive(delivery) is not CSV:
+        return _drive(delivery).write(delivery)
+    # The player puts out rows at one rate, so that each update needs one.
+    rows = np.arange(len(samples_of(delivery).codes))
+    if len(rows) > MOST_ROWS:
+        raise FormatError(
+            f"psychopy writes a row for each update, at most {MOST_ROWS:,}; there are {len(rows):,} at "
+            f"{delivery.rate_Hz:g} Hz: use a device with a lower rate, a shorter icon, or the format tdms"
+        )
+    return write_rows(delivery, rows)
 
 
 def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
@@ -46,7 +59,7 @@ def set_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes]:
     rows = csv.DictWriter(text, header, restval="", lineterminator="\n")
     rows.writeheader()
     rows.writerows(found)
-    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives[0].delivery, must)}
+    return {CONDITIONS: text.getvalue().encode("utf-8"), PLAYER: _player(drives, must)}
 
 
 def _row(played: Played) -> dict[str, str]:
@@ -61,35 +74,34 @@ def _row(played: Played) -> dict[str, str]:
     return row | {column: f"{time:.9g}" for column, time in times.items() if time is not None}
 
 
-def _player(delivery: DeliveredDrive, must: MustPrevent) -> bytes:
+def _player(drives: Sequence[Played], must: MustPrevent) -> bytes:
     """The player for what the device takes: NI volts, a thermode's commands, or set-points sent one by one."""
+    delivery = drives[0].delivery
     driven_by, device = delivery.device.driven_by, delivery.device
-    on, parts = "on an NI analogue output", ["guard", "polarity", "ni"]
-    off_V = "0.0"
+    kind, on, off_V = "ni", "on an NI analogue output", 0.0
     if driven_by == "set-points":
-        on, parts = "on a QST.Lab TCS II", ["guard", "tcs2"]
+        kind, on = "tcs2", "on a QST.Lab TCS II"
     elif driven_by == "temperatures" and not has_voltage(device):
-        on, parts = "on a temperature controller", ["guard", "send"]
+        kind, on = "function", "on a temperature controller"
     elif driven_by == "temperatures":  # a controller takes 0 V for a temperature, so that off is the rest
         on = "as set-points of a temperature controller on an NI analogue output"
-        off_V = repr(float(volts_of(device, samples_of(delivery).command[:1])[0]))
-    polarity = must.test_polarity and driven_by == "volts"
-    values = {
-        "ON": on,
-        "LOW_C": repr(must.low_C),
-        "HIGH_C": repr(must.high_C),
-        "LOOK_S": repr(max(0.01, 0.5 * must.react_within_s)),
-        "REST_S": repr(must.rest_s),
-        "PAUSE_S": repr(must.pause_s),
-        "TEST_POLARITY": str(polarity),
-        "TEST_COMMAND": repr(command_for(delivery, must.test_current_A) if polarity else 0.0),
-        "TEST_S": repr(must.test_s),
-        "TEST_FALL_K": repr(must.test_fall_K),
-        "FROZEN_S": "math.inf" if driven_by == "set-points" else repr(FROZEN_S),
-        "OFF": "_off",
-        "OFF_V": off_V,
-    }
-    return b"".join(filled(f"player-{part}.py.txt", values) for part in parts)
+        off_V = float(volts_of(device, samples_of(delivery).command[:1])[0])
+    within_s, polarity = must.act_within_s, must.test_polarity and driven_by == "volts"
+    numbers = Numbers(
+        low_C=must.low_C,
+        high_C=must.high_C,
+        look_every_s=0.5 * within_s,
+        late_s=min(within_s, must.watchdog_s or within_s),
+        rest_s=must.rest_s,
+        pause_s=must.pause_s,
+        second_sensor=must.second_sensor,
+        test_polarity=polarity,
+        test_command=command_for(delivery, must.test_current_A) if polarity else 0.0,
+        test_s=must.test_s,
+        test_fall_K=must.test_fall_K,
+    )
+    courses_C = {each.file: course_C(each.delivery, COURSE_EVERY_S).tolist() for each in drives if kind == "ni"}
+    return script(kind, on, numbers, courses_C, off_V).encode("utf-8")
 
 
 def _column(name: str, k: int) -> str:

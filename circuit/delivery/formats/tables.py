@@ -9,6 +9,7 @@ import io
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from ...arrays import Array
 from ..delivered_drive import DeliveredDrive
@@ -60,8 +61,12 @@ def write(delivery: DeliveredDrive) -> bytes:
 
     A device with more than 10,000 updates a second gets a row for each change of the command.
     """
+    return write_rows(delivery, samples_of(delivery).rows())
+
+
+def write_rows(delivery: DeliveredDrive, rows: npt.NDArray[np.intp]) -> bytes:
+    """Return the table of some samples, by their places."""
     samples = samples_of(delivery)
-    rows = samples.rows()
     times = samples.time_s[rows]
     current = () if delivery.device.driven_by == "duty" else (delivery.delivered.at(times),)
     numbers = zip(*(map(repr, each.tolist()) for each in (times, *current, samples.command[rows])), strict=True)

@@ -27,7 +27,7 @@ def display(quick: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setitem(sys.modules, "nidaqmx", device)
     monkeypatch.setitem(sys.modules, "nidaqmx.constants", device)
     made = bench_of(quick, monkeypatch).Display("ni", channel="Dev7/ao1")
-    made.player.REST_S = 0.0
+    made.player.REST_S = made.player.PAUSE_S = 0.0
     made.device = device
     return made
 
@@ -63,7 +63,8 @@ def test_the_guard_stops_a_display_that_is_too_warm(display: Any, quick: Path) -
 
 
 def test_a_pause_that_is_too_short_is_refused_by_the_player(display: Any, quick: Path) -> None:
-    display.player._known["ended"] = time.monotonic()
+    display.play(str(quick / "dip.csv"))
+    display._thread.join()
     display.player.PAUSE_S = 5.0
     display.play(str(quick / "dip.csv"))
     display._thread.join()
@@ -73,11 +74,12 @@ def test_a_pause_that_is_too_short_is_refused_by_the_player(display: Any, quick:
 
 def test_the_rest_is_held_before_the_first_play(display: Any, quick: Path) -> None:
     first = float(rows_of(quick / "dip.csv")[0]["command_V"])
-    display.player.REST_S = 0.05
+    display.player.REST_S, begun = 0.05, time.monotonic()
     display.rest(str(quick / "dip.csv"))
     display._thread.join()
     assert display.device.out == [first]
-    assert display.player._known["rested"]
+    display.play(str(quick / "dip.csv"))
+    assert time.monotonic() - begun > 0.05
 
 
 def test_other_devices_have_their_functions(quick: Path, monkeypatch: pytest.MonkeyPatch) -> None:

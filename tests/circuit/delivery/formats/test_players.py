@@ -5,24 +5,26 @@ import io
 import re
 import sys
 import types
+import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.circuit.daq import Daq
-from tests.circuit.delivery.one_drive import changed, prepare
+from tests.circuit.delivery.one_drive import changed, icon_of, prepare
 from tests.circuit.verdicts import MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.formats import load_format
-from thermicon.circuit.delivery.formats.form import MustPrevent, Played, must_prevent
+from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.icons import load_library
+from thermicon.circuit.safety.checks import Loop
+from thermicon.icons import Icon, load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
 ICON = load_library("six-icons")["double-dip"]
-MUST = must_prevent([MADE_UP])
 
 
 class Clock:
@@ -45,9 +47,12 @@ class Clock:
 class Bench:
     """A player of drives on a device, with its clock and its folder."""
 
-    def __init__(self, device: Device, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def __init__(
+        self, device: Device, folder: Path, monkeypatch: pytest.MonkeyPatch, icon: Icon = ICON, **demands: Any
+    ) -> None:
         form = load_format("psychopy")
-        ready = prepare(ICON, RIG, device, form, gate=GreenVerdict)
+        verdict = type("Verdict", (GreenVerdict,), {"demands": replace(MADE_UP, **demands)})
+        ready = self.ready = prepare(icon, RIG, device, form, gate=verdict)
         self.files = pack([ready], form)
         self.drive = form.file_name(ready.delivery)
         (folder / self.drive).write_bytes(self.files[self.drive])
@@ -100,17 +105,17 @@ class Bench:
 
 
 @pytest.fixture
-def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Device], Bench]:
-    return lambda device: Bench(device, tmp_path, monkeypatch)
+def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Bench]:
+    return lambda device, *icon, **demands: Bench(device, tmp_path, monkeypatch, *icon, **demands)
 
 
 @pytest.fixture
-def ni(bench: Callable[[Device], Bench]) -> Bench:
+def ni(bench: Callable[..., Bench]) -> Bench:
     return bench(Device.load("ni-analogue-output"))
 
 
 @pytest.fixture
-def tcs(bench: Callable[[Device], Bench]) -> Bench:
+def tcs(bench: Callable[..., Bench]) -> Bench:
     return bench(Device.load("qst-tcs2"))
 
 
@@ -191,12 +196,108 @@ class TestVolts:
             (lambda: float("nan"), r"the sensor is lost: it reads nan"),
             (lambda: 500.0, r"the sensor is lost: it reads 500\.0 degrees C"),
             (lambda: 1 / 0, r"the sensor is lost \(.*division by zero\)"),
-            (lambda: 31.0, r"the sensor is frozen: it has read 31\.000 degrees C for 5 s"),
+            (lambda: 31.0, r"the sensor is frozen: it has read 31\.000 degrees C while \d\.\d\d K were predicted"),
         ],
     )
     def test_a_sensor_that_fails_ends_with_zero(self, ni: Bench, reading: Callable[[], float], words: str) -> None:
         ni.player["TEST_POLARITY"] = False
         ni.stops(words, reading)
+        assert ni.daq.out[-1] == 0.0
+
+    @pytest.mark.parametrize(("name", "rate"), [("ni-analogue-output", 20_000.0), ("dc-coupled-audio", 48_000.0)])
+    def test_above_10_000_updates_a_second_the_judged_drive_is_put_out(
+        self, bench: Callable[..., Bench], name: str, rate: float
+    ) -> None:
+        quick = changed(Device.load(name), "update rate", "Hz", value=rate)
+        shape = "rest for 50 ms; to 0.2 A over 30 ms; hold for 100 ms; to 0 A over 30 ms; hold for 50 ms"
+        fast = bench(quick, icon_of(shape, "current"))
+        fast.play()
+        judged = fast.ready.delivery.delivered
+        times = np.arange(len(fast.daq.out[1])) / fast.daq.rate
+        assert fast.daq.rate == pytest.approx(rate)
+        assert times[-1] == pytest.approx(judged.time_s[-1])
+        assert 0.1 * np.array(fast.daq.out[1]) == pytest.approx(judged.at(times + 1e-9), abs=1e-9)
+        thinned = load_format("csv").write(fast.ready.delivery)
+        Path(fast.path).write_bytes(thinned)
+        fast.clock.now += 100.0
+        fast.stops(
+            r"row \d+: at \d\.\d+ s, where rows at one rate from 0 s on have .* give a drive with a row for each"
+        )
+
+    def test_more_rows_than_a_table_holds_are_refused(self, monkeypatch: pytest.MonkeyPatch, ni: Bench) -> None:
+        monkeypatch.setattr("thermicon.circuit.delivery.formats.psychopy.MOST_ROWS", 100)
+        with pytest.raises(
+            FormatError, match=r"a row for each update, at most 100; there are 802 at 100 Hz: use a dev"
+        ):
+            load_format("psychopy").write(ni.ready.delivery)
+
+    @pytest.mark.parametrize(
+        ("row", "column", "cell", "words"),
+        [
+            (1, 0, "0.5", "row 1: at 0.5 s"), (400, 0, "3.995", "row 400: at 3.995 s"),
+            (9, 0, "nan", "numbers"), (9, 2, "inf", "numbers"), (9, 2, "", "not a drive, a cell cannot be read"),
+            (802, 0, "9.02", "row 2: at 0.01 s"), (0, 2, "volts", "a cell cannot be read .*command_V"),
+        ],
+    )  # fmt: skip
+    def test_a_drive_with_another_clock_is_refused(
+        self, ni: Bench, row: int, column: int, cell: str, words: str
+    ) -> None:
+        lines = [line.split(",") for line in Path(ni.path).read_text().splitlines()]
+        lines[row][column] = cell
+        Path(ni.path).write_text("\n".join(map(",".join, lines)))
+        ni.stops(words)
+        Path(ni.path).write_text("\n".join(map(",".join, lines[:2])))
+        ni.stops("two rows or more" if row else "cannot be read")
+        assert not ni.daq.out
+
+    def test_what_may_have_played_before_is_followed_by_the_longer_of_rest_and_pause(
+        self, bench: Callable[..., Bench]
+    ) -> None:
+        ni = bench(Device.load("ni-analogue-output"), rest_before_first_play_s=2.0, pause_at_least_s=20.5)
+        ni.play()
+        assert ni.daq.ends - 8.02 == pytest.approx(100.0 + 20.5, abs=0.01)
+        ni.clock.now += 1.0
+        ni.player["abort"]()
+        ni.player["reset"]()
+        ni.play()
+        assert ni.daq.ends - 8.02 == pytest.approx(100.0 + 20.5 + 8.02 + 1.0 + 20.5, abs=0.1)
+
+    @pytest.mark.parametrize(
+        ("reads", "words"),
+        [
+            (lambda now: float("nan"), "clock of this computer is wrong"),
+            (lambda now: now - 5.0, "clock of this computer is wrong: it reads 12"),
+            (lambda now: 132.0, r"clock of this computer stands still at 132\.0 s"),
+        ],
+    )
+    def test_a_clock_that_is_wrong_ends_with_zero(self, ni: Bench, reads: Callable[[float], float], words: str) -> None:
+        true = ni.clock.monotonic
+        ni.clock.monotonic = lambda: true() if true() < 132.0 else reads(true())  # type: ignore[method-assign]
+        ni.stops(words)
+        assert (ni.daq.out[-1], ni.daq.stopped) == (0.0, 1)
+        assert true() < 132.3
+
+    @pytest.mark.parametrize("step_K", [0.05, 0.1])
+    def test_a_live_sensor_of_tenths_is_not_frozen_in_rest_and_pause(self, ni: Bench, step_K: float) -> None:
+        ni.player["TEST_POLARITY"] = False
+        display = ni.ready.delivery.trace
+
+        def reading() -> float:
+            since = ni.clock.now - (ni.daq.ends - 8.02)
+            return step_K * round(float(np.interp(since, display.time_s, display.display_C)) / step_K)
+
+        for _ in range(3):
+            ni.play(reading)
+            ni.clock.now += 20.0
+
+    def test_the_cut_off_acts_on_either_sensor(self, ni: Bench) -> None:
+        ni.player["TEST_POLARITY"] = False
+        second = iter([32.0 + 0.001 * (k % 2) for k in range(700)] + [41.0])
+        ni.stops(r"the display is at 41\.00 degrees C", ni.measured, lambda: next(second))
+        ni.player["reset"]()
+        ni.stops(r"the second sensor is lost", ni.measured, lambda: None)
+        ni.player["reset"]()
+        ni.stops(r"the second sensor is frozen", None, lambda: 32.0)
         assert ni.daq.out[-1] == 0.0
 
 
@@ -213,6 +314,23 @@ class TestThermode:
         assert tcs.clock.now == pytest.approx(130.0)
         with pytest.raises(RuntimeError, match=r"wait 28\.0 s more"):  # 8 s of icon and 20 s of pause
             tcs.player["play"](tcs.port)
+
+    def test_after_a_reset_the_rest_is_held_again(self, tcs: Bench) -> None:
+        tcs.player["prepare"](tcs.port, tcs.path)
+        tcs.player["play"](tcs.port)
+        tcs.clock.now += 3.0
+        tcs.player["abort"]()
+        assert tcs.sent[-1] == b"A", "nobody watches this play"
+        tcs.player["reset"]()
+        began = tcs.clock.now
+        tcs.player["play"](tcs.port)
+        assert tcs.clock.now == pytest.approx(began + 30.0)
+
+    def test_a_profile_that_ends_early_is_not_sent(self, tcs: Bench) -> None:
+        Path(tcs.path).write_bytes(tcs.files[tcs.drive][:-9])
+        with pytest.raises(ValueError, match="not the commands of a profile"):
+            tcs.player["prepare"](tcs.port, tcs.path)
+        assert not tcs.sent
 
     @pytest.mark.parametrize("interrupted", [True, False], ids=["interrupt", "display outside the cut-off"])
     def test_what_must_not_go_on_is_aborted(self, tcs: Bench, interrupted: bool) -> None:
@@ -236,7 +354,7 @@ class TestSetpoints:
 
     LOOP = Device.load("closed-loop-controller")
 
-    def test_rows_are_sent_at_their_times(self, bench: Callable[[Device], Bench]) -> None:
+    def test_rows_are_sent_at_their_times(self, bench: Callable[..., Bench]) -> None:
         loop = bench(self.LOOP)
         sent: list[tuple[float, float]] = []
         loop.play(lambda level: sent.append((loop.clock.now, level)), lambda: None)
@@ -245,14 +363,34 @@ class TestSetpoints:
         late = [at - 130.0 - float(row["time_s"]) for (at, _), row in zip(sent[1:], rows, strict=True)]
         assert max(map(abs, late)) < 1e-6
 
-    def test_the_output_is_off_after_a_cut_off(self, bench: Callable[[Device], Bench]) -> None:
+    def test_the_output_is_off_after_a_cut_off(self, bench: Callable[..., Bench]) -> None:
         loop = bench(self.LOOP)
         off: list[float] = []
         loop.reading = 45.0
         loop.stops("outside 20 to 40", lambda _: None, lambda: off.append(loop.clock.now), loop.measured)
         assert off
 
-    def test_as_a_voltage_off_is_the_rest(self, bench: Callable[[Device], Bench]) -> None:
+    def test_a_computer_that_hangs_for_longer_than_may_be_ends_it(self, bench: Callable[..., Bench]) -> None:
+        loop = bench(self.LOOP)
+        sent: list[float] = []
+
+        def hangs() -> None:
+            loop.clock.now += 0.15
+
+        loop.at(132.0, hangs)
+        loop.stops(r"late by 0\.1\d s", sent.append, lambda: sent.append(-1.0))
+        assert sent[-1] == -1.0
+
+    def test_a_controller_without_a_second_sensor_is_told_once(self, bench: Callable[..., Bench]) -> None:
+        loop = bench(self.LOOP, loop=Loop((0.1, 0.2), (0.02, 0.05), 0.0, 0.02, 0.1, 0.3, 3.0))
+        with pytest.warns(UserWarning, match="needs a second sensor: give its function as second_C") as told:
+            loop.play(lambda _: None, lambda: None, loop.measured)
+        assert len(told) == 1
+        loop.clock.now += 100.0
+        with warnings.catch_warnings(action="error"):
+            loop.play(lambda _: None, lambda: None, loop.measured, lambda: 32.0 + 1e-3 * (loop.clock.now % 2))
+
+    def test_as_a_voltage_off_is_the_rest(self, bench: Callable[..., Bench]) -> None:
         gain = changed(self.LOOP, "set-point gain", "V/K", value=0.1)
         volts = bench(changed(gain, "set-point offset", "V", value=-2.0))
         commands = [float(row["command_V"]) for row in volts.rows()]
@@ -260,25 +398,3 @@ class TestSetpoints:
         volts.at(132.0, volts.player["abort"])
         volts.stops(r"abort\(\) was called")
         assert volts.daq.out[-1] == pytest.approx(commands[0])
-
-
-class TestMustPrevent:
-    """Numbers of the gate as players get them."""
-
-    def test_the_strictest_of_a_set_counts(self) -> None:
-        gentle = {
-            **MADE_UP, "watchdog_s": 1.0, "pause_at_least_s": 90.0, "polarity_check": {"needed": False},
-            "cut_off_display_C": {"low": 24.0, "high": 44.0, "react_within_s": 0.5},
-        }  # fmt: skip
-        found = must_prevent([MADE_UP, gentle])
-        assert found == MustPrevent(0.4, 24.0, 40.0, 0.1, True, 0.2, 0.5, 0.15, 30.0, 90.0)
-
-    def test_what_the_gate_does_not_find_is_assumed(self) -> None:
-        unknown = {"polarity_check": None, "rest_before_first_play_s": None, "pause_at_least_s": None}
-        found = must_prevent([{**MADE_UP, **unknown}])
-        assert (found.test_polarity, found.rest_s, found.pause_s) == (False, 1800.0, 60.0)
-
-    def test_a_set_has_one_player(self) -> None:
-        form = load_format("c-array")
-        ready = prepare(ICON, RIG, Device.load("dac-12"), form, gate=GreenVerdict)
-        assert set(form.player([Played(ready.delivery, "a.h", "a.json")], MUST)) == set(form.set_files)
