@@ -2,8 +2,8 @@
 
 A play begins from rest, after no power, after many plays, or after a restart. From instants of it a current (or the
 set-point of a loop) hangs until the watchdog acts; a driver is stuck at any current, at its limits, or where it would
-hold the display just inside the cut-off; a loop has lost its sensor and sends its limit. Only the cut-off acts on these,
-and where it never does, the current stays.
+hold the display just inside the cut-off; a loop has lost its sensor and sends its limit. Only the cut-off acts on
+these, and where it never does, the current stays.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 from tests.circuit.delivery.benches import Bench, Display, Loop
 from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
-from tests.circuit.delivery.independent import Array, Circuit, Json, worlds_of
+from tests.circuit.delivery.independent import Array, Circuit, Json, meshed, worlds_of
 from tests.circuit.delivery.lanes import Lanes, joined
 from tests.circuit.delivery.replay import CLOSE_K, LEVELS, WATCHED, Skin
 
@@ -24,12 +24,13 @@ LEAST, INSTANTS, PLAYS = 25, 5, 20
 """Faults of a sort at least; instants after each start; plays one after the other."""
 STUCK_S, AFTER_S, LOOP_S, LONGEST_REST_S = 600.0, 120.0, 10.0, 1800.0
 INSIDE_K = 0.02
+NUISANCE = "the cut-off acts without a fault"
 LIMITS = np.array([LEVELS[name] for name in WATCHED])
 
 
 @dataclass
 class Faults:
-    """Of each (sort, start): how many faults were tried, the nearest they came to a hard limit in K, and what passed."""
+    """Of each (sort, start): how many were tried, the nearest they came to a hard limit in K, and what passed."""
 
     tried: Counter[tuple[str, str]] = field(default_factory=Counter)
     margin_K: dict[tuple[str, str], float] = field(default_factory=dict)
@@ -64,15 +65,15 @@ class Faults:
 
 
 def faulted(
-    files: Mapping[str, bytes], stems: Sequence[str], rng: np.random.Generator, most: int, changed: Json | None = None
+    files: Mapping[str, bytes], stems: Sequence[str], rng: np.random.Generator, lumps: int, changed: Json | None = None
 ) -> Faults:
-    """Faults of every sort after every start, in `most` worlds at most: the rig as given, and others by chance.
+    """Faults of every sort after every start, in worlds with so many `lumps`: the rig as given, others by chance.
 
     `changed` demands stand in the place of those of the sidecars.
     """
     found, told = Faults(), [sidecar_in(files, stem) for stem in stems]
     demands = [one["hardware_must_prevent"] | (changed or {}) for one in told]
-    benches = _benches(files, stems, demands, rng, most)
+    benches = _benches(files, stems, demands, rng, lumps)
     begun = list(_starts(benches, demands, rng))
     count = max(INSTANTS, -(-LEAST // len(begun)))
     for start, which, state in begun:
@@ -81,7 +82,7 @@ def faulted(
 
 
 def _benches(
-    files: Mapping[str, bytes], stems: Sequence[str], demands: list[Json], rng: np.random.Generator, most: int
+    files: Mapping[str, bytes], stems: Sequence[str], demands: list[Json], rng: np.random.Generator, lumps: int
 ) -> list[Bench]:
     told, played = sidecar_in(files, stems[0]), [read_file(files, stem) for stem in stems]
     rig, records = told["rig"]["document"], {each["quantity"]: each for each in told["device"]["records"]}
@@ -90,6 +91,7 @@ def _benches(
         ends = (span["low"], span["high"]) if cut["react_within_s"] else (cut["low"], cut["high"])  # by its maker
         return [Display(skin, one, ends) for one in played if isinstance(one, Course)]
     worlds = worlds_of(rig, rng, 6)
+    most = max(4, lumps // (2 + len(meshed(rig)[0])))
     if len(worlds) > most:
         worlds = [worlds[k] for k in (0, *rng.choice(np.arange(1, len(worlds)), most - 1, replace=False))]
     lanes, driver = Lanes.of(Circuit.of(rig, worlds)), rig["driver"]
@@ -172,7 +174,7 @@ def _tried(
     found.note("none", start, [""], bench.watched(normal))
     shown = normal[:, 4:6]
     acts = (shown[:, 0] < cut["low"] - wrong_K) | (shown[:, 1] > cut["high"] + wrong_K)
-    found.told[f"the cut-off acts without a fault, {start}"] += bool(acts.any())
+    found.told[f"{NUISANCE}, {start}"] += bool(acts.any())
     found.told["no watchdog is quick enough"] += not watchdog_s
     found.told["no cut-off is quick enough"] += not react_s
     faults: list[tuple[str, str, Array, Array, Array | float]] = []
@@ -206,7 +208,7 @@ def _tried(
     ended = states[cut_off]
     far[cut_off] = joined([far[cut_off], bench.off(ended, lanes[cut_off], AFTER_S)], len(cut_off))
     if not react_s:  # the sidecar says so
-        far[cut_off] = joined([], len(cut_off)) * [*[-1, -1] * 4, 1]
+        far[cut_off] = joined([], len(cut_off))
     for sort in dict.fromkeys(sort for sort, *_ in faults):
         which = [k for k, fault in enumerate(faults) if fault[0] == sort]
         rows = np.concatenate([far[k * worlds : (k + 1) * worlds] for k in which])
