@@ -33,7 +33,7 @@ from thermicon.icons.files.shipped import library_names
 
 EXPORTS, LUMPS = int(os.environ.get("THERMICON_FAULTS", "20")), 1600
 """Exports of each kind; nodes of a rig in all its worlds at most."""
-OF_A_SET, LONGEST_S = 12, 6.0
+OF_A_SET, LONGEST_S, ALL = 12, 6.0, 10**6
 """Icons of a shipped set at most, by chance of a family; the longest cue by chance."""
 Way = tuple[str, str]
 VOLTS = [(name, form) for name in ("dac-12", "dac-14", "dac-16", "ni-analogue-output") for form in ("csv", "psychopy")]
@@ -144,17 +144,26 @@ def test_an_export_with_faults(kind: str) -> None:
     assert len({start for _, start in found.tried}) >= 6
 
 
+def test_a_later_play_needs_a_longer_pause_for_its_faults_than_for_itself() -> None:
+    icons, rig, form = [load_library("six-icons")["warming-step"]], Rig.load("thenar"), load_format("csv")
+    (soon,) = prepare_set(icons, rig, Device.load("dac-16"), form, pause_s=5.0)
+    told = soon.verdict.to_dict()
+    assert soon.verdict.colour == "red"
+    assert f"the shortest safe pause is {told['shortest_pause_s']:g} s" in str(soon.verdict.reason)
+    assert told["shortest_pause_s"] == soon.verdict.demanded["pause_at_least_s"]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", list(CASES))
 def test_demands_that_were_too_lax_are_found_to_be_and_are_no_more(name: str) -> None:
     case, found, form = CASES[name], Faults(), load_format("csv")
     ready, rng = prepared(case), np.random.default_rng(3)
     files = pack([replace(one, refusals=()) for one in ready], form)
-    then = faulted(files, [one.delivery.icon.name for one in ready], rng, LUMPS, case["demands"])
+    then = faulted(files, [one.delivery.icon.name for one in ready], rng, ALL, case["demands"])
     says = [*then.unsafe, *(told for told, count in then.told.items() if count)]
     assert [each for each in says if each.startswith(case["fault"])], says
     if green := [one for one in ready if not one.refusals]:
-        tried(green, "csv", rng, name, found)
+        tried(green, "csv", rng, name, found, ALL)
     assert found.unsafe == []
     assert [told for told, count in found.told.items() if count and told.startswith(NUISANCE)] == []
 
