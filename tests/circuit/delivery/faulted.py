@@ -1,165 +1,215 @@
-"""Single faults in later plays of exported files, prevented as the sidecar demands, on the independent circuit."""
+"""Single faults in any play of exported files, prevented as the sidecar demands, on the independent circuit.
+
+A play begins from rest, after no power, after many plays, or after a restart. From instants of it a current (or the
+set-point of a loop) hangs until the watchdog acts; a driver is stuck at any current, at its limits, or where it would
+hold the display just inside the cut-off; a loop has lost its sensor and sends its limit. Only the cut-off acts on
+these, and where it never does, the current stays.
+"""
+
+from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from tests.circuit.delivery.benches import Bench, Display, Loop
 from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
-from tests.circuit.delivery.independent import Array, Circuit, Json
-from tests.circuit.delivery.replay import Held, Player, Skin, Worst
+from tests.circuit.delivery.independent import Array, Circuit, Json, meshed, worlds_of
+from tests.circuit.delivery.lanes import Lanes, joined
+from tests.circuit.delivery.replay import CLOSE_K, LEVELS, WATCHED, Skin
 
-INSTANTS, PLAYS = 25, 20
-TRIP_S, FOLLOWED_S = 0.005, 60.0
-AFTER = ((0.01, 50), (0.05, 30), (0.5, 56))
-"""Rows after a cut: step in s and how many."""
+LEAST, INSTANTS, PLAYS = 25, 5, 20
+"""Faults of a sort at least; instants after each start; plays one after the other."""
+STUCK_S, AFTER_S, LOOP_S, LONGEST_REST_S = 600.0, 120.0, 10.0, 1800.0
+INSIDE_K = 0.02
+NUISANCE = "the cut-off acts without a fault"
+LIMITS = np.array([LEVELS[name] for name in WATCHED])
 
 
 @dataclass
 class Faults:
-    """The worst of each fault, and how many were tried."""
+    """Of each (sort, start): how many were tried, the nearest they came to a hard limit in K, and what passed."""
 
-    worst: dict[str, Worst] = field(default_factory=dict)
-    tried: Counter[str] = field(default_factory=Counter)
+    tried: Counter[tuple[str, str]] = field(default_factory=Counter)
+    margin_K: dict[tuple[str, str], float] = field(default_factory=dict)
+    unsafe: list[str] = field(default_factory=list)
+    told: Counter[str] = field(default_factory=Counter)
 
-    def note(self, fault: str, rows: Array) -> None:
-        """Temperatures (rows, W, 4, …) of a fault."""
-        self.worst.setdefault(fault, Worst()).levels(rows)
-        self.tried[fault] += 1
+    def note(self, sort: str, start: str, whats: list[str], far: Array) -> None:
+        """Extremes (lanes, watched, 2) of faults, those of one fault side by side."""
+        limits = LIMITS[: far.shape[1]]
+        inside_K = np.minimum(far[:, :, 0] - limits[:, 0], limits[:, 1] - far[:, :, 1])
+        self.tried[sort, start] += len(whats)
+        self.margin_K[sort, start] = min(self.margin_K.get((sort, start), np.inf), float(inside_K.min()))
+        if inside_K.min() < -CLOSE_K:
+            lane, rule = np.unravel_index(inside_K.argmin(), inside_K.shape)
+            low, high = far[lane, rule]
+            what = whats[lane * len(whats) // len(far)]
+            self.unsafe.append(f"{sort} {what}, {start}: {WATCHED[rule]} {low:.2f} … {high:.2f} °C")
 
-    @property
-    def unsafe(self) -> dict[str, dict[str, float]]:
-        """Limits that are passed, by fault."""
-        return {fault: worst.unsafe for fault, worst in self.worst.items() if worst.unsafe}
+    def add(self, other: Faults) -> None:
+        """Add those of another export."""
+        self.tried += other.tried
+        self.told += other.told
+        self.unsafe += other.unsafe
+        for key, margin in other.margin_K.items():
+            self.margin_K[key] = min(margin, self.margin_K.get(key, np.inf))
+
+    def table(self) -> str:
+        """What was tried, a line each."""
+        rows = (f"{sort:22} {start:24} {self.tried[sort, start]:7} {self.margin_K[sort, start]:8.3f} K"
+                for sort, start in sorted(self.tried))  # fmt: skip
+        return "\n".join([*rows, str(dict(self.told))])
 
 
-def faulted(files: Mapping[str, bytes], stems: list[str], rng: np.random.Generator, most: int = 1000) -> Faults:
-    """Every demand of an export tried at instants of a play, and of its pause, after plays in any order.
+def faulted(
+    files: Mapping[str, bytes], stems: Sequence[str], rng: np.random.Generator, lumps: int, changed: Json | None = None
+) -> Faults:
+    """Faults of every sort after every start, in worlds with so many `lumps`: the rig as given, others by chance.
 
-    `most` worlds at most: the rig as given, and others by chance.
+    `changed` demands stand in the place of those of the sidecars.
     """
     found, told = Faults(), [sidecar_in(files, stem) for stem in stems]
-    played, rig = [read_file(files, stem) for stem in stems], told[0]["rig"]["document"]
-    demands = [one["hardware_must_prevent"] for one in told]
-    pause_s = max(float(one["pause_at_least_s"] or 0.0) for one in demands)
-    order = [int(rng.integers(len(stems))) for _ in range(int(rng.choice([1, 5, PLAYS])))]
-    currents = [one for one in played if isinstance(one, Held)]
-    if len(currents) == len(played):
-        player = Player(rig, rng)
-        worlds = player.circuit.worlds
-        if len(worlds) > most:
-            few = [0, *rng.choice(np.arange(1, len(worlds)), most - 1, replace=False)]
-            player.circuit = Circuit.of(rig, [worlds[k] for k in few])
-        _currents(player, currents, demands, [_ends_A(one) for one in told], order, pause_s, rng, found)
-    for course, demand, about in zip(played, demands, told, strict=True):
-        if isinstance(course, Course) and not course.held:
-            _shown(Skin(rig, rng), course, demand, about, pause_s, rng, found)
+    demands = [one["hardware_must_prevent"] | (changed or {}) for one in told]
+    benches = _benches(files, stems, demands, rng, lumps)
+    begun = list(_starts(benches, demands, rng))
+    count = max(INSTANTS, -(-LEAST // len(begun)))
+    for start, which, state in begun:
+        _tried(benches[which], demands[which], start, state, count, rng, found)
     return found
 
 
-def _ends_A(told: Json) -> list[tuple[float, float]]:
-    """The driver's limits, or the bridge's: mean A and mean square A²."""
+def _benches(
+    files: Mapping[str, bytes], stems: Sequence[str], demands: list[Json], rng: np.random.Generator, lumps: int
+) -> list[Bench]:
+    told, played = sidecar_in(files, stems[0]), [read_file(files, stem) for stem in stems]
+    rig, records = told["rig"]["document"], {each["quantity"]: each for each in told["device"]["records"]}
+    if told["device"]["driven_by"] == "set-points":
+        skin, span, cut = Skin(rig, rng).circuit, records["set-point range"], demands[0]["cut_off_display_C"]
+        ends = (span["low"], span["high"]) if cut["react_within_s"] else (cut["low"], cut["high"])  # by its maker
+        return [Display(skin, one, ends) for one in played if isinstance(one, Course)]
+    worlds = worlds_of(rig, rng, 6)
+    most = max(4, lumps // (2 + len(meshed(rig)[0])))
+    if len(worlds) > most:
+        worlds = [worlds[k] for k in (0, *rng.choice(np.arange(1, len(worlds)), most - 1, replace=False))]
+    lanes, driver = Lanes.of(Circuit.of(rig, worlds)), rig["driver"]
+    limits = driver.get("current_min_A") or -driver["current_limit_A"], driver["current_limit_A"]
+    peak = None
     if told["device"]["driven_by"] == "duty":
-        span = next(each for each in told["device"]["records"] if each["quantity"] == "output range")
-        peak = min(-span["low"], span["high"])
-        return [(-peak, peak**2), (peak, peak**2)]
-    driver = told["rig"]["document"]["driver"]
-    most = driver["current_limit_A"]
-    least = driver.get("current_min_A", -most)
-    return [(end, end**2) for end in (-most if least is None else least, most)]
+        peak = min(-records["output range"]["low"], records["output range"]["high"])
+        limits = -peak, peak
+    return [
+        Loop(lanes, one, demand, driver["update_Hz"], rng)
+        if isinstance(one, Course)
+        else Bench(lanes, one, limits, peak)
+        for one, demand in zip(played, demands, strict=True)
+    ]
 
 
-def _currents(
-    player: Player, files: list[Held], demands: list[Json], ends_A: list[list[tuple[float, float]]], order: list[int],
-    pause_s: float, rng: np.random.Generator, found: Faults,
-) -> None:  # fmt: skip
-    state = player.rest(files[order[0]])
-    for which in order:
-        state = player.through(files[which], state, pause_s)
-    for held, demand, ends in zip(files, demands, ends_A, strict=True):
-        cut, watchdog_s = demand["cut_off_display_C"], float(demand["watchdog_s"])
-        span = (cut["low"], cut["high"])
-        for at, current in _instants(player, held, state, pause_s, rng):
-            if watchdog_s:
-                _until(player, at, current, (-300.0, 300.0), watchdog_s, found, "hangs until the watchdog")
-            elif cut["react_within_s"] and "cut-off" in demand["faults"][0]["prevented_by"]:
-                _until(player, at, current, span, cut["react_within_s"], found, "hangs until the cut-off")
-            for end in ends if cut["react_within_s"] else ():
-                _until(player, at, end, span, cut["react_within_s"], found, "stuck until the cut-off")
-        if demand["rest_before_first_play_s"] is not None:  # on a display that was without power
-            begun = player.hold(player.modes(0.0, 0.0).steady(), held.rest, float(demand["rest_before_first_play_s"]))
-            found.note("first play after the rest", player.play(held, begun)[0])
-        found.tried["no watchdog is quick enough"] += not watchdog_s
-        found.tried["no cut-off is quick enough"] += not cut["react_within_s"]
+def _starts(benches: list[Bench], demands: list[Json], rng: np.random.Generator) -> Iterator[tuple[str, int, Array]]:
+    """How a play may begin: the start, which icon is played, and states (worlds, n)."""
+    pauses = [demand["pause_at_least_s"] for demand in demands]
+    rests = [demand["rest_before_first_play_s"] for demand in demands]
+    rest_s = LONGEST_REST_S if None in rests else max(rests)
+    check = demands[0]["polarity_check"] or {"test_current_A": 0.0, "test_s": 0.0}
+
+    def some() -> int:
+        return int(rng.integers(len(benches)))
+
+    def cold(bench: Bench, tested: bool) -> Array:
+        state = bench.unpowered()
+        if tested:
+            bench.lanes.hold(state, bench.every, bench.flow(check["test_current_A"]), check["test_s"])
+        bench.wait(state, rest_s)
+        return state
+
+    which = some()
+    yield "rest", which, benches[which].rest()
+    for tested in (False, True)[: 1 + bool(check["test_s"])]:
+        which = some()
+        yield "no power" + ", then a polarity check" * tested, which, cold(benches[which], tested)
+    if None in pauses:
+        return
+    pause_s, which = max(pauses), some()
+    state = cold(benches[which], False)
+    benches[which].run(state, 0.0, benches[which].end_s + pause_s)
+    yield "second play, no power", some(), state
+    for longer_s in (0.0, float(np.exp(rng.uniform(0, 4)))):
+        which = some()
+        state = benches[which].rest()
+        for _ in range(PLAYS):
+            benches[which].run(state, 0.0, benches[which].end_s + pause_s + longer_s)
+            which = some()
+        yield f"{PLAYS} plays" + ", longer pause" * bool(longer_s), which, state
+    state = cold(benches[which], False) if rng.random() < 0.5 else benches[which].rest()
+    for _ in range(int(rng.integers(1, 4))):
+        which = some()
+        benches[which].run(state, 0.0, float(rng.uniform(0, benches[which].end_s)))
+        benches[which].off(state, benches[which].every, float(np.exp(rng.uniform(-2, 6))))
+        which = some()
+        benches[which].wait(state, max(rest_s, pause_s))
+    yield "restart", which, state
 
 
-def _instants(
-    player: Player, held: Held, state: Array, pause_s: float, rng: np.random.Generator
-) -> list[tuple[Array, tuple[float, float]]]:
-    """States at instants of a play and its pause, with the current there: some just before a change."""
-    edges = np.cumsum(held.length_s)
-    times = [*rng.uniform(0, held.end_s, INSTANTS // 2), *rng.choice(edges, INSTANTS - INSTANTS // 2 - 3)]
-    times = sorted([*times, held.end_s + pause_s, *(held.end_s + rng.uniform(0, [pause_s, 20.0]))])
-    states, now = [], 0.0
-    flows = [*zip(held.length_s, held.mean_A, held.square_A2, strict=True), (1e9, *held.rest)]
-    for length, mean, square in flows:
-        end, current = now + float(length), (float(mean), float(square))
-        while times and times[0] <= end + 1e-9:
-            state, now = player.hold(state, current, max(0.0, times[0] - now)), max(now, times.pop(0))
-            states.append((state, current))
-        if not times:
-            break
-        state, now = player.hold(state, current, max(0.0, end - now)), end
-    return states
-
-
-def _until(
-    player: Player, state: Array, current: tuple[float, float], cut_C: tuple[float, float], late_s: float,
-    found: Faults, fault: str,
-) -> None:  # fmt: skip
-    """A current held until the display has left a span in each world, and for `late_s` more, then none."""
-    rows, waiting = [player.circuit.read(state)], np.ones(len(state), dtype=bool)
-    if cut_C[0] > -300.0:
-        move, add = player.step(*current, TRIP_S)
-        for _ in range(round(FOLLOWED_S / TRIP_S)):
-            shown = rows[-1][:, 2, 0]
-            waiting &= (shown > cut_C[0]) & (shown < cut_C[1])
-            if not waiting.any():
-                break
-            state = np.where(waiting[:, None, None], move @ state + add, state)
-            rows.append(player.circuit.read(state))
-    for part in (0.5, 0.5):
-        state = player.hold(state, current, part * late_s)
-        rows.append(player.circuit.read(state))
-    found.note(fault, np.concatenate([np.array(rows), player.follow(state, (0.0, 0.0), AFTER)]))
-
-
-def _shown(
-    skin: Skin, course: Course, demand: Json, told: Json, pause_s: float, rng: np.random.Generator, found: Faults
+def _tried(
+    bench: Bench, demand: Json, start: str, state: Array, count: int, rng: np.random.Generator, found: Faults
 ) -> None:
-    """A thermode whose set-point hangs, or whose loop is stuck at an end of its range."""
-    cut, watchdog_s, step = demand["cut_off_display_C"], float(demand["watchdog_s"]), course.step_s
-    modes, last = skin.steady(float(course.display_C[0])), float(course.display_C[-1])
-    waiting = np.full(max(2, round(pause_s / step) + 1), last)
-    for _ in range(PLAYS):
-        _, modes = skin.run(course.display_C, step, modes)
-        if pause_s > 0:
-            _, modes = skin.run(waiting, step, modes)
-    for place in sorted(int(each) for each in rng.integers(1, len(course.display_C), INSTANTS)):
-        _, at = skin.run(course.display_C[: place + 1], step, modes)
+    """Every sort of fault at some instants of a play and its pause, and the play without one."""
+    cut, watchdog_s = demand["cut_off_display_C"], float(demand["watchdog_s"])
+    react_s, wrong_K = cut["react_within_s"], (demand["loop"] or {}).get("sensor_offset_at_most_K", 0.0)
+    pause_s = float(demand["pause_at_least_s"] or 0.0)
+    changes = rng.choice(bench.edges_s, count // 3)
+    times = [*changes, *rng.uniform(0, bench.end_s, count - 1 - len(changes))]
+    times += [bench.end_s + rng.uniform(0, pause_s + 10.0)]
+    now, far, moments = 0.0, [], []
+    for time in sorted(times):
+        far.append(bench.run(state, now, time))
+        now = float(time)
+        moments.append((now, state.copy()))
+    if now < bench.end_s:
+        far.append(bench.run(state, now, bench.end_s))
+    normal = joined(far, len(bench.every))
+    found.note("none", start, [""], bench.watched(normal))
+    shown = normal[:, 4:6]
+    acts = (shown[:, 0] < cut["low"] - wrong_K) | (shown[:, 1] > cut["high"] + wrong_K)
+    found.told[f"{NUISANCE}, {start}"] += bool(acts.any())
+    found.told["no watchdog is quick enough"] += not watchdog_s
+    found.told["no cut-off is quick enough"] += not react_s
+    faults: list[tuple[str, str, Array, Array, Array | float]] = []
+    for time, begun in moments:
+        hung, at = bench.flow(*bench.at(time)), f"at {time:.2f} s"
         if watchdog_s:
-            level = np.full(max(2, round(watchdog_s / step) + 1), float(course.display_C[place]))
-            rows, ended = skin.run(level, step, at)
-            found.note("set-point hangs until the watchdog", rows)
-            found.note(
-                "set-point hangs until the watchdog", skin.run(np.full(3001, course.display_C[0]), 0.01, ended)[0]
-            )
-        if cut["react_within_s"]:
-            span = next(each for each in told["device"]["records"] if each["quantity"] == "set-point range")
-            for end in (span["low"], span["high"]):
-                count = max(1, round(cut["react_within_s"] / 1e-3))
-                rows, ended = skin.run(np.full(count + 1, end), 1e-3, at)
-                found.note("stuck until the cut-off", rows[:, :, :2])
-    found.tried["no watchdog is quick enough"] += not watchdog_s
-    found.tried["no cut-off is quick enough"] += not cut["react_within_s"]
+            left = begun.copy()
+            held = bench.hang(left, time, watchdog_s)
+            after = bench.wait(left, LOOP_S) if isinstance(bench, Loop) else bench.off(left, bench.every, AFTER_S)
+            found.note("hang", start, [at], bench.watched(joined([held, after], len(left))))
+        elif react_s and "cut-off" in demand["faults"][0]["prevented_by"]:
+            faults.append(("hang", at, begun, *hung.T))
+        inside = rng.choice([cut["low"] + INSIDE_K, cut["high"] - INSIDE_K, rng.uniform(cut["low"], cut["high"])])
+        share = rng.uniform()
+        flows = share * bench.least + (1 - share) * bench.most, bench.settling(inside), bench.least, bench.most
+        sorts = ("stuck", "stuck inside the cut-off", *[f"{'stuck' if bench.open else 'sensor lost,'} at a limit"] * 2)
+        faults += [
+            (sort, f"{at}, {one.min():.3f} … {one.max():.3f}", begun, one, bench.squares(one))
+            for sort, one in zip(sorts, flows, strict=True)
+        ]
+    worlds, count = len(bench.every), len(faults)
+    lanes, states = np.tile(bench.every, count), np.concatenate([begun for _, _, begun, _, _ in faults])
+    flow = np.concatenate([np.column_stack([one, square]) for _, _, _, one, square in faults])
+    cuts = np.array([cut["low"], cut["high"], react_s]) - rng.choice([-1, 0, 1], (len(lanes), 1)) * [
+        wrong_K,
+        wrong_K,
+        0,
+    ]
+    far = bench.lanes.hold(states, lanes, flow, STUCK_S, cuts)
+    cut_off = np.flatnonzero(far[:, 8] < STUCK_S)
+    ended = states[cut_off]
+    far[cut_off] = joined([far[cut_off], bench.off(ended, lanes[cut_off], AFTER_S)], len(cut_off))
+    if not react_s:  # the sidecar says so
+        far[cut_off] = joined([], len(cut_off))
+    for sort in dict.fromkeys(sort for sort, *_ in faults):
+        which = [k for k, fault in enumerate(faults) if fault[0] == sort]
+        rows = np.concatenate([far[k * worlds : (k + 1) * worlds] for k in which])
+        found.note(sort, start, [faults[k][1] for k in which], bench.watched(rows))
