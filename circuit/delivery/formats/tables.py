@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from ...arrays import Array
-from ..delivered_drive import DeliveredDrive
+from ..delivered_drive import DeliveredDrive, ModuleDrive
 from ..device import Device
 from ..setpoints import Setpoints
 from .form import (
@@ -21,7 +21,6 @@ from .form import (
     Column,
     Format,
     FormatError,
-    command_column,
     events_in,
     samples_of,
     setpoints_in,
@@ -46,13 +45,13 @@ TICK_S, STEP_K, LARGEST = 0.01, 0.1, 999
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Time, current (not for a bridge, whose current switches), command, code, event."""
-    current = () if delivery.device.driven_by == "duty" else (CURRENT,)
-    return (TIME, *current, command_column(delivery), CODE, EVENT)
+    kind = delivery.device.kind
+    return (TIME, *(() if kind.switches else (CURRENT,)), kind.command, CODE, EVENT)
 
 
 def setpoint_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Time, set-point, its voltage where the device states a gain, event."""
-    return (TIME, command_column(delivery), *((VOLTAGE,) if has_voltage(delivery.device) else ()), EVENT)
+    return (TIME, delivery.device.kind.command, *((VOLTAGE,) if has_voltage(delivery.device) else ()), EVENT)
 
 
 def write(delivery: DeliveredDrive) -> bytes:
@@ -60,10 +59,11 @@ def write(delivery: DeliveredDrive) -> bytes:
 
     A device with more than 10,000 updates a second gets a row for each change of the command.
     """
-    samples = samples_of(delivery)
+    assert isinstance(delivery, ModuleDrive)
+    samples, switches = delivery.played, delivery.device.kind.switches
     rows = samples.rows()
     times = samples.time_s[rows]
-    current = () if delivery.device.driven_by == "duty" else (delivery.delivered.at(times),)
+    current = () if switches else (delivery.delivered.at(times),)
     numbers = zip(*(map(repr, each.tolist()) for each in (times, *current, samples.command[rows])), strict=True)
     cells = ([*each, code] for each, code in zip(numbers, samples.codes[rows].tolist(), strict=True))
     return _written(delivery, columns(delivery), times, cells)
@@ -98,8 +98,8 @@ def _written(
 
 
 def has_voltage(device: Device) -> bool:
-    """Whether set-points can be put out as a voltage."""
-    return device.record("set-point gain") is not None
+    """Whether it takes set-points that can be put out as a voltage."""
+    return device.kind.regulated and device.record("set-point gain") is not None
 
 
 def volts_of(device: Device, display_C: Array) -> Array:
