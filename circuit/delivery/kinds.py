@@ -1,7 +1,7 @@
 """The five kinds of device: what each puts out, how it delivers a cue, which gate judges that, and what plays it.
 
-`driven_by` of a device file names one, which is `Device.kind`. A new kind is a class here, by its name in `KINDS` and in
-`DrivenBy` of `devicefile.py`; what its devices must state is in `circuit/data/device-quantities.toml`.
+`driven_by` of a device file names one, which is `Device.kind`. A new kind is a class here, with its name in `KINDS` and
+in `DrivenBy` of `devicefile.py`; what its devices must state is in `circuit/data/device-quantities.toml`.
 """
 
 import math
@@ -19,16 +19,18 @@ from ..solver.drive import Drive, duty_of, switched
 from ..solver.steady import steady_of
 from .controlled import gate_controlled
 from .deliver import deliver_open, deliver_setpoints
-from .delivered_drive import DeliveredDrive
+from .delivered_drive import DeliveredDrive, ModuleDrive
 from .device import Device, Scale
 from .devicefile import DeviceError, DrivenBy
 from .formats.form import Column
 from .samples import Samples
 from .temperatures import deliver_temperatures, follow_samples
-from .worstcase import gate_bridged, module_drives, ways_of
+from .worstcase import ways_of
 
 FINEST_SETPOINT_K = 0.001
 """Step of set-points where a controller states none: a tenth of the resolution of the best display thermistors."""
+RIPPLES_BELOW_HZ = 100.0
+"""A carrier below this ripples a plate of a few J/K by more than some tens of millikelvins, and is played as it is."""
 
 
 class Kind:
@@ -50,7 +52,7 @@ class Kind:
 
     def judge(self, deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
         """Check what one device delivers of cues on one rig, which may be played repeatedly in any order."""
-        drives = [one.delivered for one in module_drives(deliveries)]
+        drives = [one.delivered for one in deliveries if isinstance(one, ModuleDrive)]
         return gate_set([(one, float(one.current_A[0])) for one in drives], deliveries[0].rig, pause_s=pause_s)
 
     def scale(self, device: Device, peak: float) -> Scale:
@@ -126,7 +128,13 @@ class Duty(Kind):
 
     def judge(self, deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
         """By the mean of each update, unless the carrier is so slow that the plate ripples."""
-        return gate_bridged(deliveries, pause_s)
+        device, drives = deliveries[0].device, []
+        peak, averaged = device.bridge_A, device.most("carrier frequency") >= RIPPLES_BELOW_HZ
+        for one in deliveries:
+            assert isinstance(one, ModuleDrive)
+            means = Drive(one.played.time_s, one.played.command * peak, held=True)
+            drives.append((means if averaged else one.delivered, float(one.played.command[0]) * peak))
+        return gate_set(drives, deliveries[0].rig, bridge_A=peak, pause_s=pause_s, averaged=averaged)
 
     def ends(self, device: Device) -> tuple[float, float]:
         """Always on, either way."""

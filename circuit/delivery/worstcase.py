@@ -1,9 +1,6 @@
-"""The gate of safety for what a device delivers: how each kind of device meets the corners of a rig's uncertainty.
+"""The gate of safety for what a device delivers, and what an open loop does in the corners of a rig's uncertainty.
 
-Volts and amperes are played open loop, so the gain of the current source counts. A bridge switches its full current,
-so its rest and its last value are means. A thermode shows its own set-points at its own tick: they are judged as they
-stand, with its lag and without, and neither module nor driver nor heat sink of a rig take part. A controller around
-the rig's module is judged in `controlled.py`.
+A thermode shows its own set-points at its own tick: they are judged as they stand, with its lag and without.
 """
 
 from collections.abc import Sequence
@@ -16,9 +13,8 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..safety.corners import corners_of
 from ..safety.display import DisplayCourse
-from ..safety.gate import Gate, gate_set
+from ..safety.gate import Gate
 from ..solver.batch_inputs import Bank, cut, run_forward
-from ..solver.drive import Drive
 from ..solver.network import network_of
 from ..solver.simulate import rows_until
 from ..solver.steady import state_under_current
@@ -27,9 +23,6 @@ from .setpoints import display_of, lag_of
 
 AT_ONCE, LAGGED = "followed at once", "followed with its lag"
 
-RIPPLES_BELOW_HZ = 100.0
-"""A carrier below this ripples a plate of a few J/K by more than some tens of millikelvins, and is played as it is."""
-
 SETTLED_LAGS = 12.0
 """After this many lags a display is within 1e-5 of its last step."""
 
@@ -37,23 +30,6 @@ SETTLED_LAGS = 12.0
 def worst_cases(deliveries: Sequence[DeliveredDrive], pause_s: float | None = None) -> tuple[Gate, ...]:
     """Check what one device delivers of several cues on one rig, which may be played repeatedly in any order."""
     return deliveries[0].device.kind.judge(deliveries, pause_s)
-
-
-def module_drives(deliveries: Sequence[DeliveredDrive]) -> list[ModuleDrive]:
-    """Those deliveries that drive a module: all of a device that is no thermode."""
-    return [each for each in deliveries if isinstance(each, ModuleDrive)]
-
-
-def gate_bridged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
-    """A bridge: by its means, which heat as what switches does, unless it is so slow that the plate ripples."""
-    device, rig = deliveries[0].device, deliveries[0].rig
-    peak, averaged = device.bridge_A, device.most("carrier frequency") >= RIPPLES_BELOW_HZ
-    drives = []
-    for delivery in module_drives(deliveries):
-        samples = delivery.played
-        means = Drive(samples.time_s, samples.command * peak, held=True)
-        drives.append((means if averaged else delivery.delivered, float(samples.command[0]) * peak))
-    return gate_set(drives, rig, bridge_A=peak, pause_s=pause_s, averaged=averaged)
 
 
 def ways_of(delivery: DeliveredDrive) -> tuple[DisplayCourse, ...]:

@@ -13,10 +13,8 @@ from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from ..samples import Samples
-from ..setpoints import Setpoints
 
 PLAYS_SAMPLES = ("volts", "amperes", "duty")
-PLAYS_SETPOINTS = ("set-points",)
 PLAYS_TEMPERATURES = ("temperatures",)
 
 
@@ -153,12 +151,6 @@ def check_name(name: str) -> str:
 def samples_of(delivery: DeliveredDrive) -> Samples:
     """The samples of a drive whose device plays samples."""
     assert isinstance(delivery.played, Samples)
-    return delivery.played
-
-
-def setpoints_in(delivery: DeliveredDrive) -> Setpoints:
-    """The set-points of a drive whose device follows set-points."""
-    assert isinstance(delivery.played, Setpoints)
     return delivery.played
 
 

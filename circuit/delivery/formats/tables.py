@@ -11,20 +11,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from ...arrays import Array
-from ..delivered_drive import DeliveredDrive, ModuleDrive
+from ..delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
 from ..device import Device
 from ..setpoints import Setpoints
-from .form import (
-    PLAYS_SAMPLES,
-    PLAYS_SETPOINTS,
-    PLAYS_TEMPERATURES,
-    Column,
-    Format,
-    FormatError,
-    events_in,
-    samples_of,
-    setpoints_in,
-)
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, events_in, samples_of
 
 FIRST = "rest"
 TIME = Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next")
@@ -147,7 +137,8 @@ def serial_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 
 def serial_write(delivery: DeliveredDrive) -> bytes:
     """Return the commands; the last, L, starts the stimulation."""
-    setpoints = setpoints_in(delivery)
+    assert isinstance(delivery, ThermodeDrive)
+    setpoints = delivery.played
     _check(setpoints, delivery.device.name)
     greatest = max(setpoints.baseline, *(level for _, level in setpoints.segments)) + round(ABOVE_K / setpoints.step_K)
     segments = "".join(f"{ticks:03d}{level:03d}" for ticks, level in setpoints.segments)
@@ -180,7 +171,7 @@ SERIAL = Format(
     name="tcs2-serial",
     title="commands for the serial line of a QST.Lab TCS II",
     suffix=".tcs2.txt",
-    takes=PLAYS_SETPOINTS,
+    takes=("set-points",),
     device="qst-tcs2",
     source="pytcsii (mpcoll), list of commands in its header",
     how="115,200 baud: send each line without its line feed; wait at the baseline before L; A aborts",
