@@ -91,12 +91,12 @@ def remembered(judge: Callable[..., Any], folder: Path) -> Callable[..., Any]:
 @pytest.fixture(scope="session", autouse=True)
 def verdicts(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """What exports ask of the safety gate is computed once in a run; tests of the gate itself ask it directly."""
-    from thermicon.circuit.delivery import worstcase
+    from thermicon.circuit.delivery import kinds
 
     folder = shared_folder(tmp_path_factory) / "verdicts"
     with pytest.MonkeyPatch.context() as patch:
         for name in ("gate_set", "gate_shown", "gate_controlled"):
-            patch.setattr(worstcase, name, remembered(getattr(worstcase, name), folder / name))
+            patch.setattr(kinds, name, remembered(getattr(kinds, name), folder / name))
         yield
 
 

@@ -18,14 +18,13 @@ from ..solver.drive import Drive
 from ..solver.inverse import Design, baseline_C, design, target_at
 from ..solver.modes import modes_of
 from ..solver.simulate import duration_s, rows_until, simulate_current
-from ..solver.steady import steady_of
 from ..solver.trace import Trace
-from .delivered_drive import DeliveredDrive, Narrowed
+from .delivered_drive import DeliveredDrive, ModuleDrive, Narrowed, ThermodeDrive
 from .device import Device
 from .devicefile import DeviceError
-from .samples import Samples, current_of, led, rate_of, sample, within
+from .samples import Samples, led, rate_of, sample, within
 from .setpoints import Setpoints, closed, display_of, setpoints_of
-from .temperatures import deliver_temperatures, designed_until, follow_samples
+from .temperatures import designed_until
 
 ROWS_HZ = 100.0
 """Rows of a thermode's traces per second, as those of `simulate_current`."""
@@ -36,11 +35,12 @@ BRIDGE_ROUNDS = 3
 
 def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0) -> DeliveredDrive:
     """Return what a device delivers of a cue on a rig."""
-    if device.driven_by == "set-points":
-        return deliver_setpoints(icon, rig, device, tail_s)
-    if device.driven_by == "temperatures":
-        return deliver_temperatures(icon, rig, device, tail_s)
-    end, requested = duration_s(icon, rig) + tail_s, rig.driver.update_Hz
+    return device.kind.deliver(icon, rig, device, tail_s)
+
+
+def deliver_open(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ModuleDrive:
+    """Return a cue as a device delivers it whose current nothing corrects."""
+    kind, end, requested = device.kind, duration_s(icon, rig) + tail_s, rig.driver.update_Hz
     plan = design(icon, rig, end)
     rate = rate_of(device, requested, end)
     narrow = within(device, rig)
@@ -53,11 +53,12 @@ def deliver(icon: Icon, rig: Rig, device: Device, *, tail_s: float = 0.0) -> Del
         warnings = (narrowed.text, *warnings)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
     model = simulate_current(designed, rig, start_C=plan.start_C)
-    delivered, start = current_of(device, rig, samples), _start_of(device, rig, samples)
-    trace = simulate_current(delivered, rig, start_C=start)
-    return DeliveredDrive(
-        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome,
-        warnings, None, narrowed,
+    delivered = kind.flow(device, rig, samples)
+    trace = simulate_current(delivered, rig, start_C=kind.start(device, rig, samples))
+    return ModuleDrive(
+        icon=icon, rig=rig, device=device, requested_Hz=requested, rate_Hz=rate, lead_s=1.0 / rate, played=samples,
+        designed=designed, delivered=delivered, designed_trace=model, trace=trace, outcome=plan.outcome,
+        device_warnings=warnings, narrowed=narrowed,
     )  # fmt: skip
 
 
@@ -65,36 +66,25 @@ def _sampled(
     device: Device, rig: Rig, possible: Drive, rate_Hz: float, model: Trace
 ) -> tuple[Samples, tuple[str, ...]]:
     """The codes of a drive; those of a bridge also compensate the heat that leaks back from its hotter hot plate."""
-    hotter = np.zeros_like(model.time_s)
-    samples, warnings = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
-    if device.driven_by != "duty" or device.duty_rule != "equal heat":
-        return samples, warnings
-    for _ in range(BRIDGE_ROUNDS):
-        drive = current_of(device, rig, samples)
-        hot = simulate_current(drive, rig, start_C=_start_of(device, rig, samples))
+    kind, hotter = device.kind, np.zeros_like(model.time_s)
+    found = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    for _ in range(BRIDGE_ROUNDS if kind.switches and device.duty_rule == "equal heat" else 0):
+        drive, start = kind.flow(device, rig, found[0]), kind.start(device, rig, found[0])
+        hot = simulate_current(drive, rig, start_C=start)
         hotter = np.interp(model.time_s, hot.time_s, hot.hot_plate_C) - model.hot_plate_C
-        samples, warnings = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
-    return samples, warnings
-
-
-def _start_of(device: Device, rig: Rig, samples: Samples) -> Array | None:
-    """State in °C from which a delivered drive starts; None: the steady state of its first current."""
-    if device.driven_by != "duty":
-        return None
-    return steady_of(rig, float(samples.command[0]), device.bridge_A)
+        found = sample(device, rig, possible, rate_Hz, (model.time_s, model.display_C, hotter))
+    return found
 
 
 def traces_until(delivery: DeliveredDrive, end_s: float) -> tuple[Trace, Trace]:
     """Return the traces (designed, delivered) until a time in s on the clock of the files, ending at rest."""
-    rig, played = delivery.rig, delivery.played
-    if isinstance(played, Setpoints):
-        designed, delivered, _ = traces_of_setpoints(delivery.icon, rig, delivery.device, played, end_s)
-        return designed, delivered
+    rig, device, kind = delivery.rig, delivery.device, delivery.device.kind
+    if isinstance(delivery, ThermodeDrive):
+        return traces_of_setpoints(delivery.icon, rig, device, delivery.played, end_s)[:2]
+    assert isinstance(delivery, ModuleDrive)
     designed = simulate_current(designed_until(delivery.designed, end_s), rig)
-    until = played.until(end_s)
-    by_loop = delivery.device.driven_by == "temperatures"
-    drive = _cut(follow_samples(rig, until) if by_loop else current_of(delivery.device, rig, until), end_s)
-    return designed, simulate_current(drive, rig, start_C=_start_of(delivery.device, rig, played))
+    drive = _cut(kind.flow(device, rig, delivery.played.until(end_s)), end_s)
+    return designed, simulate_current(drive, rig, start_C=kind.start(device, rig, delivery.played))
 
 
 def _cut(drive: Drive, end_s: float) -> Drive:
@@ -120,26 +110,18 @@ def _narrowed(device: Device, rig: Rig, narrow: Rig, plan: Design, best: Design)
         )
         return Narrowed(text, most, best.outcome)
     low, high = device.interval("output range")
-    through = f" ({signed(low)} … {signed(high)} A)"
-    cure = f"use a device of {abs(peak):.3g} A or more"
-    if device.driven_by == "volts":
-        gain = rig.driver.transconductance_A_per_V
-        least = gain * max(
-            wanted_A.max() / narrow_driver.current_max_A, wanted_A.min() / (narrow_driver.current_min_A or -np.inf)
-        )
-        through = f" ({signed(low)} … {signed(high)} V through driver.transconductance_A_per_V = {gain:g})"
-        least = np.ceil(100 * least - 1e-6) / 100
-        cure = f"raise that to {least:g} if the current source can, or use a device of more volts"
+    times = max(wanted_A.max() / narrow_driver.current_max_A, wanted_A.min() / (narrow_driver.current_min_A or -np.inf))
+    unit, cure = device.kind.wider(rig, peak, times)
     if low >= 0.0 and wanted_A.min() < -1e-9:
         peak, cure = float(wanted_A.min()), "use a device of both signs"
     text = (
-        f"{device.name} plays {signed(narrow_driver.current_min_A)} … {signed(narrow_driver.current_max_A)} A{through}"
-        f", the design needs up to {signed(peak, '.3g')} A; {cure}"
+        f"{device.name} plays {signed(narrow_driver.current_min_A)} … {signed(narrow_driver.current_max_A)} A "
+        f"({signed(low)} … {signed(high)} {unit}), the design needs up to {signed(peak, '.3g')} A; {cure}"
     )
     return Narrowed(text, most, best.outcome)
 
 
-def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float) -> DeliveredDrive:
+def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ThermodeDrive:
     """Return a cue as a thermode delivers it; its clock begins with the start command.
 
     Raises DeviceError where the cue prescribes a current, or set-points that the thermode cannot take.
@@ -160,8 +142,9 @@ def deliver_setpoints(icon: Icon, rig: Rig, device: Device, tail_s: float) -> De
     )
     designed, trace, undelayed = traces_of_setpoints(icon, rig, device, setpoints, end)
     rate = 1.0 / setpoints.tick_s
-    return DeliveredDrive(
-        icon, rig, device, rate, rate, 0.0, setpoints, None, designed, trace, outcome, (), undelayed
+    return ThermodeDrive(
+        icon=icon, rig=rig, device=device, requested_Hz=rate, rate_Hz=rate, played=setpoints,
+        designed_trace=designed, trace=trace, prompt_trace=undelayed, outcome=outcome,
     )  # fmt: skip
 
 

@@ -15,7 +15,6 @@ from ..rig.rig import Rig
 from ..solver.drive import Drive
 from ..solver.trace import Outcome, Trace
 from .device import Device
-from .devicefile import DeviceError
 from .samples import Samples
 from .setpoints import Setpoints
 
@@ -32,15 +31,13 @@ class Narrowed:
     outcome: Outcome | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DeliveredDrive:
     """A cue as designed and as a device delivers it, on one clock.
 
     `rate_Hz` and `requested_Hz` are the actual and requested rows per second, `lead_s` the time when the cue begins.
-    `played` goes into files: the best design within the range of the device. `drives` are the currents designed and
-    delivered, None for a thermode; `designed_trace` and `trace` the simulation without the device, and with it;
-    `outcome` whether the design reaches the target. `prompt_trace` is the delivery of a thermode without its lag: a
-    constant lag is a delay and not a loss. `narrowed` says what was changed where the device's range is too small.
+    `played` goes into files; `designed_trace` and `trace` are the simulation without the device, and with it; `outcome`
+    says whether the design reaches the target.
     """
 
     icon: Icon
@@ -48,15 +45,12 @@ class DeliveredDrive:
     device: Device
     requested_Hz: float
     rate_Hz: float
-    lead_s: float
+    lead_s: float = 0.0
     played: Samples | Setpoints
-    drives: tuple[Drive, Drive] | None
     designed_trace: Trace
     trace: Trace
     outcome: Outcome | None
-    device_warnings: tuple[str, ...]
-    prompt_trace: Trace | None = None
-    narrowed: Narrowed | None = None
+    device_warnings: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return (
@@ -65,40 +59,53 @@ class DeliveredDrive:
         )
 
     @property
-    def designed(self) -> Drive:
-        """The current as designed; raises DeviceError for a thermode."""
-        return self._drives[0]
-
-    @property
-    def delivered(self) -> Drive:
-        """The current that flows; raises DeviceError for a thermode."""
-        return self._drives[1]
-
-    @property
-    def _drives(self) -> tuple[Drive, Drive]:
-        if self.drives is None:
-            raise DeviceError(f"{self.device.name} is a thermode: its current is not known")
-        return self.drives
-
-    @property
     def deviation(self) -> DeliveryDeviation:
         """How far the delivery deviates from the design, without a constant lag."""
-        return delivery_deviation(self.designed_trace, self.prompt_trace or self.trace)
+        return delivery_deviation(self.designed_trace, self.trace)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What to know about the delivery: limits of the device, and of the driver, which a bridge replaces."""
-        return self.device_warnings if self.device.driven_by == "duty" else (*self.device_warnings, *self.trace.beyond)
+        return self.device_warnings if self.device.kind.switches else (*self.device_warnings, *self.trace.beyond)
 
     @property
     def end_s(self) -> float:
         """Time in s of the row that marks the end."""
-        return float(self.trace.time_s[-1] if self.drives is None else self.delivered.time_s[-1])
+        return float(self.trace.time_s[-1])
 
     @property
     def file_s(self) -> float:
         """Duration in s of the file; a file of set-points omits the rest with which the simulation begins."""
         return float(self.played.time_s[-1])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModuleDrive(DeliveredDrive):
+    """What the rig's module gets: the currents as `designed` and `delivered`.
+
+    `played` is the best design within the range of the device, `narrowed` what was changed where that is too small.
+    """
+
+    played: Samples
+    designed: Drive
+    delivered: Drive
+    narrowed: Narrowed | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThermodeDrive(DeliveredDrive):
+    """What a thermode shows, whose current is not known.
+
+    `prompt_trace` is the delivery without its lag: a constant lag is a delay and not a loss.
+    """
+
+    played: Setpoints
+    prompt_trace: Trace
+
+    @property
+    def deviation(self) -> DeliveryDeviation:
+        """How far the delivery without its lag deviates from the design."""
+        return delivery_deviation(self.designed_trace, self.prompt_trace)
 
 
 PLACES = {"skin": "skin_C", "cold receptor": "cold_receptor_C", "warm receptor": "warm_receptor_C"}

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.near_words import did_you_mean
 
@@ -15,8 +15,8 @@ from ..inputs import read_text
 from ..records import Record
 from .devicefile import DeviceError, DrivenBy, read_device_table
 
-FINEST_SETPOINT_K = 0.001
-"""Step of set-points where a controller states none: a tenth of the resolution of the best display thermistors."""
+if TYPE_CHECKING:
+    from .kinds import Kind
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,36 +118,23 @@ class Device:
         return min(-low, high)
 
     @property
+    def kind(self) -> Kind:
+        """The kind of device that it is, by what it is driven by."""
+        from .kinds import KINDS
+
+        return KINDS[self.driven_by]
+
+    @property
     def unit(self) -> str:
         """Unit of what it puts out: V, A, 1 (duty) or °C."""
-        return {"volts": "V", "amperes": "A", "duty": "1", "set-points": "°C", "temperatures": "°C"}[self.driven_by]
+        return self.kind.command.unit
 
     def scale(self, peak: float) -> Scale:
         """Return its codes for a waveform whose largest command has size `peak`, in the device's unit.
 
         Fixed levels do not depend on the waveform; others are set to its peak, rounded up to a thousandth.
         """
-        if self.driven_by == "temperatures":
-            low, high = self.interval("set-point range")
-            record = self.record("set-point step")
-            step = FINEST_SETPOINT_K if record is None else record.central
-            return Scale(0.0, step, math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9), self.unit)
-        record = self.record("resolution")
-        assert record is not None
-        bits = round(record.central)
-        low, high = self.interval("output range")
-        if self.driven_by == "duty":
-            low, high = -1.0, 1.0
-        if self.levels == "waveform":
-            reach = min(max(math.ceil(peak * 1e3 - 1e-9) / 1e3, 1e-3), high, -low)
-            low, high = -reach, reach
-        unit = self.unit
-        if self.codes == "symmetric":
-            most = 2 ** (bits - 1) - 1
-            return Scale(0.5 * (low + high), (high - low) / (2 * most), -most, most, unit)
-        if self.codes == "from zero":
-            return Scale(low, (high - low) / (2**bits - 1), 0, 2**bits - 1, unit)
-        return Scale(0.5 * (low + high), (high - low) / 2**bits, -(2 ** (bits - 1)), 2 ** (bits - 1) - 1, unit)
+        return self.kind.scale(self, peak)
 
 
 def device_names() -> tuple[str, ...]:

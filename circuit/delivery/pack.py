@@ -201,8 +201,7 @@ def _played_facts(delivery: DeliveredDrive) -> dict[str, object]:
 
 
 def _predicted(delivery: DeliveredDrive) -> dict[str, object]:
-    numbers: dict[str, object] = dict(summarise(delivery.trace).to_dict())
-    numbers |= {"duration_s": delivery.file_s} if isinstance(delivery.played, Setpoints) else {}
+    numbers = {**summarise(delivery.trace).to_dict(), "duration_s": delivery.file_s}
     return {key: value for key, value in numbers.items() if key not in OF_THE_TARGET}
 
 

@@ -15,7 +15,7 @@ from ..safety.repeated import check_pause
 from ..safety.words import more_and_cure
 from ..solver.trace import Outcome
 from .deliver import deliver
-from .delivered_drive import DeliveredDrive, DeliveryDeviation, loss_limit
+from .delivered_drive import DeliveredDrive, DeliveryDeviation, ModuleDrive, loss_limit
 from .device import Device
 from .formats import Format
 from .setpoints import Setpoints
@@ -97,7 +97,7 @@ def refusals_of(delivery: DeliveredDrive, verdict: Gate, deviation: DeliveryDevi
     A consequence is not listed besides its cause: what a device with too small a range misses or loses is reported with
     the range, and losses are not reported where the drive is unsafe.
     """
-    refusals, narrowed = [], delivery.narrowed
+    refusals, narrowed = [], delivery.narrowed if isinstance(delivery, ModuleDrive) else None
     tells = (narrowed.text,) if narrowed else ()
     if verdict.colour == "red":
         reason = verdict.reason or "the gate says red"
@@ -130,7 +130,7 @@ def lost_text(deviation: DeliveryDeviation) -> str:
 def _out_of_reach(delivery: DeliveredDrive, outcome: Outcome, safe: bool) -> str:
     """The rig's own shortfall and its cure; a cue that is unsafe should not get more current."""
     text = outcome.reason or "the target is missed"
-    if delivery.drives is None:  # a thermode, which has neither driver nor module
+    if not isinstance(delivery, ModuleDrive):  # a thermode, which has neither driver nor module
         return f"{text}; use a slower or smaller change, or use a thermode that can"
     rig, driver = delivery.rig, delivery.rig.driver
     limits_met = [name for name, _ in outcome.limits]
@@ -157,7 +157,7 @@ def _lossy(delivery: DeliveredDrive, lost: str) -> Refusal:
     elif delivery.rate_Hz < 0.9 * delivery.requested_Hz:
         why = f"{device.name}: it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
     else:
-        unit = " of full duty" if device.driven_by == "duty" else f" {device.unit}"
+        unit = " of full duty" if device.kind.switches else f" {device.unit}"
         why = f"{device.name}: its steps are {signed(played.scale.step, '.3g')}{unit}"
     text = f"{lost}; {why}; use a device that is finer or faster there"
     return Refusal("lossy", text, () if isinstance(played, Setpoints) else delivery.device_warnings)

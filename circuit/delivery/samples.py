@@ -12,7 +12,7 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array
 from ..rig.rig import Rig
-from ..solver.drive import Drive, duty_of, switched
+from ..solver.drive import Drive
 from ..solver.inverse import Design
 from .device import Device, Scale
 from .devicefile import DeviceError
@@ -65,7 +65,7 @@ def rate_of(device: Device, requested_Hz: float, length_s: float) -> float:
     shorter buffer plays fewer samples. Raises DeviceError where it then falls below its slowest rate.
     """
     carrier = 0.0
-    if device.driven_by == "duty":
+    if device.kind.switches:
         carrier = device.most("carrier frequency")
         rate, low = carrier / math.ceil(carrier / requested_Hz - 1e-9), 0.0
     else:
@@ -113,7 +113,8 @@ def sample(
     count = max(math.ceil(float(designed.time_s[-1]) * rate_Hz - 1e-9), least)
     edges = np.arange(count + 1) / rate_Hz
     current = np.append(_means(designed, edges), designed.current_A[0])
-    command = _command(device, rig, current, edges, plates)
+    cold_C, hotter_K = (np.interp(edges, plates[0], column) for column in plates[1:])
+    command = device.kind.commands(device, rig, current, cold_C, hotter_K)
     warnings = []
     limit = device.most("slew rate")
     limited = _slewed(command, limit / rate_Hz)
@@ -135,22 +136,11 @@ def sample(
 
 def within(device: Device, rig: Rig) -> Rig:
     """Return the rig with its driver limited to the currents in A of a device, unless the device has more."""
-    low, high = device.interval("output range")
-    gain = rig.driver.transconductance_A_per_V if device.driven_by == "volts" else 1.0
-    low, high = max(low * gain, rig.driver.current_min_A), min(high * gain, rig.driver.current_max_A)
+    low, high = (end * device.kind.unit_A(device, rig) for end in device.kind.ends(device))
+    low, high = max(low, rig.driver.current_min_A), min(high, rig.driver.current_max_A)
     if (low, high) == (rig.driver.current_min_A, rig.driver.current_max_A):
         return rig
     return rig.with_(**{"driver.current_min_A": low, "driver.current_limit_A": high})
-
-
-def current_of(device: Device, rig: Rig, samples: Samples) -> Drive:
-    """Return the current in A that flows when a device plays its samples, held from row to row."""
-    command, times = samples.command, samples.time_s
-    if device.driven_by == "duty":
-        return switched(command, samples.rate_Hz, device.most("carrier frequency"), device.bridge_A)
-    gain = rig.driver.transconductance_A_per_V if device.driven_by == "volts" else 1.0
-    rows = samples.rows()
-    return Drive(times[rows], command[rows] * gain, held=True)
 
 
 def led(plan: Design, end_s: float, rate_Hz: float) -> Drive:
@@ -175,13 +165,6 @@ def _means(drive: Drive, edges: Array) -> Array:
     charge = np.concatenate([[0.0], np.cumsum(0.5 * (begins + ends) * widths)])
     means: Array = np.diff(np.interp(edges, times, charge)) / np.diff(edges)
     return means
-
-
-def _command(device: Device, rig: Rig, current: Array, times: Array, plates: tuple[Array, Array, Array]) -> Array:
-    if device.driven_by == "duty":
-        cold, hotter = (np.interp(times, plates[0], column) for column in plates[1:])
-        return duty_of(device.duty_rule, current, device.bridge_A, rig.module, cold, hotter)
-    return current / rig.driver.transconductance_A_per_V if device.driven_by == "volts" else current
 
 
 def _slewed(command: Array, most: float) -> Array:

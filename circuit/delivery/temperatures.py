@@ -32,14 +32,14 @@ from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
 from ..solver.network import PAST_MOST_COOLING, network_of
 from ..solver.simulate import duration_s, simulate_current
 from ..solver.steady import check_sink, holding_current_A, state_under_current, steady_state
-from .delivered_drive import DeliveredDrive
+from .delivered_drive import ModuleDrive
 from .device import Device
 from .devicefile import DeviceError
 from .samples import Samples, led, rate_of
 from .setpoints import check_level
 
 
-def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) -> DeliveredDrive:
+def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ModuleDrive:
     """Return a cue as a controller around the rig's module delivers it.
 
     Raises DeviceError where the cue prescribes a current, or a temperature beyond the controller.
@@ -58,8 +58,9 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) ->
     delivered = follow_samples(rig, samples)
     model = simulate_current(designed, rig, start_C=plan.start_C)
     trace = simulate_current(designed_until(delivered, float(designed.time_s[-1])), rig)
-    return DeliveredDrive(
-        icon, rig, device, requested, rate, 1.0 / rate, samples, (designed, delivered), model, trace, plan.outcome, ()
+    return ModuleDrive(
+        icon=icon, rig=rig, device=device, requested_Hz=requested, rate_Hz=rate, lead_s=1.0 / rate, played=samples,
+        designed=designed, delivered=delivered, designed_trace=model, trace=trace, outcome=plan.outcome,
     )  # fmt: skip
 
 

@@ -1,9 +1,6 @@
-"""The gate of safety for what a device delivers: how each kind of device meets the corners of a rig's uncertainty.
+"""The gate of safety for what a device delivers, and what an open loop does in the corners of a rig's uncertainty.
 
-Volts and amperes are played open loop, so the gain of the current source counts. A bridge switches its full current,
-so its rest and its last value are means. A thermode shows its own set-points at its own tick: they are judged as they
-stand, with its lag and without, and neither module nor driver nor heat sink of a rig take part. A controller around
-the rig's module is judged in `controlled.py`.
+A thermode shows its own set-points at its own tick: they are judged as they stand, with its lag and without.
 """
 
 from collections.abc import Sequence
@@ -16,22 +13,15 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..safety.corners import corners_of
 from ..safety.display import DisplayCourse
-from ..safety.gate import Gate, gate_set, gate_shown
+from ..safety.gate import Gate
 from ..solver.batch_inputs import Bank, cut, run_forward
-from ..solver.drive import Drive
 from ..solver.network import network_of
 from ..solver.simulate import rows_until
-from ..solver.steady import state_under_current, steady_of
-from .controlled import gate_controlled
-from .delivered_drive import DeliveredDrive
-from .formats.form import samples_of
-from .samples import Samples
-from .setpoints import Setpoints, display_of, lag_of
+from ..solver.steady import state_under_current
+from .delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
+from .setpoints import display_of, lag_of
 
 AT_ONCE, LAGGED = "followed at once", "followed with its lag"
-
-RIPPLES_BELOW_HZ = 100.0
-"""A carrier below this ripples a plate of a few J/K by more than some tens of millikelvins, and is played as it is."""
 
 SETTLED_LAGS = 12.0
 """After this many lags a display is within 1e-5 of its last step."""
@@ -39,35 +29,13 @@ SETTLED_LAGS = 12.0
 
 def worst_cases(deliveries: Sequence[DeliveredDrive], pause_s: float | None = None) -> tuple[Gate, ...]:
     """Check what one device delivers of several cues on one rig, which may be played repeatedly in any order."""
-    device, rig = deliveries[0].device, deliveries[0].rig
-    if device.driven_by == "set-points":
-        stuck = device.interval("set-point range")
-        return gate_shown([ways_of(delivery) for delivery in deliveries], rig, stuck_C=stuck, pause_s=pause_s)
-    if device.driven_by == "temperatures":
-        return gate_controlled(deliveries, pause_s)
-    if device.driven_by == "duty":
-        return _bridged(deliveries, pause_s)
-    assert device.driven_by in ("volts", "amperes"), f"no gate for a device driven by {device.driven_by}"
-    drives = [(delivery.delivered, float(delivery.delivered.current_A[0])) for delivery in deliveries]
-    return gate_set(drives, rig, pause_s=pause_s)
-
-
-def _bridged(deliveries: Sequence[DeliveredDrive], pause_s: float | None) -> tuple[Gate, ...]:
-    """A bridge: by its means, which heat as what switches does, unless it is so slow that the plate ripples."""
-    device, rig = deliveries[0].device, deliveries[0].rig
-    peak, averaged = device.bridge_A, device.most("carrier frequency") >= RIPPLES_BELOW_HZ
-    drives = []
-    for delivery in deliveries:
-        samples = samples_of(delivery)
-        means = Drive(samples.time_s, samples.command * peak, held=True)
-        drives.append((means if averaged else delivery.delivered, float(samples.command[0]) * peak))
-    return gate_set(drives, rig, bridge_A=peak, pause_s=pause_s, averaged=averaged)
+    return deliveries[0].device.kind.judge(deliveries, pause_s)
 
 
 def ways_of(delivery: DeliveredDrive) -> tuple[DisplayCourse, ...]:
     """The display of a thermode in each way in which it may follow its set-points, at its own tick."""
+    assert isinstance(delivery, ThermodeDrive)
     played, device = delivery.played, delivery.device
-    assert isinstance(played, Setpoints)
     ways = [DisplayCourse(AT_ONCE, *display_of(played, device, lagged=False))]
     if lag_of(device) > 0:
         settling = SETTLED_LAGS * lag_of(device)
@@ -108,23 +76,19 @@ def open_loop_spread(delivery: DeliveredDrive) -> OpenLoopSpread | None:
 
     A corner without a steady state, or one that diverges, is left to the gate.
     """
-    played, device = delivery.played, delivery.device
-    if device.driven_by in ("set-points", "temperatures") or not isinstance(played, Samples):
+    device = delivery.device
+    if device.kind.regulated or not isinstance(delivery, ModuleDrive):
         return None
     drive, lanes, starts, gains = delivery.delivered, [], [], []
     for corner in corners_of(delivery.rig):
+        gain, network = 1.0 + corner.gain_relative, network_of(corner.rig)
         try:
-            if device.driven_by == "duty":
-                start = steady_of(corner.rig, float(played.command[0]), device.bridge_A * (1.0 + corner.gain_relative))
-            else:
-                start = state_under_current(
-                    network_of(corner.rig), float(drive.current_A[0]) * (1.0 + corner.gain_relative)
-                )
+            start = device.kind.start(device, corner.rig, delivery.played, gain)
+            starts.append(state_under_current(network, float(drive.current_A[0]) * gain) if start is None else start)
         except ArithmeticError:
             continue
-        lanes.append(network_of(corner.rig))
-        starts.append(start)
-        gains.append(1.0 + corner.gain_relative)
+        lanes.append(network)
+        gains.append(gain)
     bank, every = Bank.of(lanes), np.arange(len(lanes), dtype=np.int64)
     rows = rows_until(float(drive.time_s[-1]), ROWS_HZ)
     intervals = cut(rows, drive.time_s, np.array(gains)[:, np.newaxis] * drive.current_A, drive.held)

@@ -128,15 +128,15 @@ def show_devices() -> None:
     devices = [Device.load(name) for name in device_names()]
     rows = []
     for device in devices:
-        low, high = device.interval("set-point range" if device.unit == "°C" else "output range")
-        unit = {"V": "V", "°C": "°C"}.get(device.unit, "A")
+        reach = next(record for record in device.records if record.quantity in ("set-point range", "output range"))
+        low, high = device.interval(reach.quantity)
         bits, step = device.record("resolution"), device.record("set-point step")
         steps = f"{bits.central:g} bits" if bits else f"{step.central:g} K" if step else "–"
         fastest = next(
             (_rate(device.most(name)) for name in ("update rate", "carrier frequency") if device.record(name)),
             f"{device.most('tick') * 1e3:g} ms ticks",
         )
-        rows.append((device.name, device.driven_by, f"{number(low)} to {number(high)} {unit}", steps, fastest))
+        rows.append((device.name, device.driven_by, f"{number(low)} to {number(high)} {reach.unit}", steps, fastest))
     played = [device.name for device in devices if device.played]
     tested = f"Tested on hardware: {', '.join(played)}." if played else "None of them has been tested on hardware yet."
     own = "Describe your own device in a .toml file like the shipped ones (--copy), with a source for each number."

@@ -20,7 +20,7 @@ from thermicon.icons.near_words import did_you_mean
 from .judging import Judged, Progress, judge_drives, judge_sessions
 from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
 from .study_file import MOST_ASKED, Study, StudyError, Threshold, parse_study, study_hash, study_text
-from .timing import Landing, find_gap, find_landing, regulated
+from .timing import Landing, find_gap, find_landing
 
 if TYPE_CHECKING:
     from thermicon.circuit import Device, Rig
@@ -117,7 +117,7 @@ def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
     form = load_format(study.stimuli.format)
     form.check(materials.device)
     check_names([icon.name for icon in icons], form)
-    held = regulated(materials.device.driven_by)
+    held = materials.device.kind.regulated
     mean_s = sum(duration_s(icon, rig) for icon in icons) / len(icons)
     plays = plays_of(study, len(icons))
     check_session_time(plays, mean_s, study.timing.gap_s or 0.0)

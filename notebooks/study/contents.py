@@ -29,9 +29,6 @@ if TYPE_CHECKING:
 SCRIPTS = ("run_study.py", "study_bench.py", "study_questplus.py")
 """The script and what it imports; the last one only for a threshold."""
 
-PLAYERS = {"volts": "ni", "set-points": "tcs2"}
-"""How the script calls play_icons.py, by what the device is driven by; otherwise by functions of the laboratory."""
-
 CONDITIONS = ("participant", "trial", "block", "icon", "drive_file", "sidecar_file", "duration_s", "marker")
 LEVELS = ("icon", "change_K", "drive_file", "sidecar_file", "duration_s", "marker")
 QUESTIONS = ("Which pattern was that?", "Did you feel a change?")
@@ -107,6 +104,8 @@ def planned_s(plan: Plan) -> float:
 
 def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, int]) -> dict[str, Any]:
     """Return what the script reads and what a methods section needs; units are in the names."""
+    from thermicon.circuit.delivery.formats.tables import has_voltage
+
     materials, judged, landing = plan.materials, plan.judged, plan.landing
     study, threshold = materials.study, materials.study.threshold
     names = list(markers)
@@ -121,7 +120,7 @@ def study_facts(plan: Plan, stimuli: Mapping[str, str], markers: Mapping[str, in
         "participants": list(labels_of(study)),
         "rig": materials.rig.name,
         "device": materials.device.name,
-        "plays": PLAYERS.get(materials.device.driven_by, "send") if not _volts_of_setpoints(plan) else "ni",
+        "plays": "ni" if has_voltage(materials.device) else materials.device.kind.player,
         "stimuli": list(stimuli.values()),
         "choices": _choices(plan),
         "question": study.run.question or QUESTIONS[threshold is not None],
@@ -153,14 +152,6 @@ def _session_facts(session: Session) -> dict[str, object]:
     whole = session.to_dict()
     left_out = ("plays", "checks", "uncertainty", "limits", "what_it_is_not")
     return {key: value for key, value in whole.items() if key not in left_out}
-
-
-def _volts_of_setpoints(plan: Plan) -> bool:
-    """Whether set-points of a controller go out as a voltage, which the player of NI devices does."""
-    from thermicon.circuit.delivery.formats.tables import has_voltage
-
-    device = plan.materials.device
-    return device.driven_by == "temperatures" and has_voltage(device)
 
 
 def _choices(plan: Plan) -> dict[str, dict[str, str]]:

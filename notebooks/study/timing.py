@@ -55,11 +55,6 @@ class Landing:
     left_at_10_s_K: float
 
 
-def regulated(driven_by: str) -> bool:
-    """Whether a device measures its display and corrects it; a drive in volts or amperes is played open loop."""
-    return driven_by in ("set-points", "temperatures")
-
-
 def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> tuple[float, tuple[str, str]]:
     """Largest d′ by which an icon differs from itself alone, after which icon, and which one it is."""
     from thermicon.circuit.solver.simulate import duration_s

@@ -45,7 +45,7 @@ LEAST_EXACT = 1e-4
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """The array."""
     scale = samples_of(delivery).scale
-    step = CENTI_K if delivery.device.driven_by == "temperatures" else scale.step
+    step = CENTI_K if delivery.device.kind.regulated else scale.step
     return (Column("wave", "", f"codes; times {step:.9g} plus {scale.offset:.9g} {scale.unit}"),)
 
 
@@ -53,7 +53,7 @@ def write(delivery: DeliveredDrive) -> bytes:
     """Return the header; raises FormatError for codes that 16 bits cannot hold."""
     samples, device = samples_of(delivery), delivery.device
     scale = samples.scale
-    if device.driven_by == "temperatures" and abs(scale.step / CENTI_K - round(scale.step / CENTI_K)) > 1e-9:
+    if device.kind.regulated and abs(scale.step / CENTI_K - round(scale.step / CENTI_K)) > 1e-9:
         raise FormatError(
             f"c-array holds set-points in hundredths of a degree; {device.name} has steps of {scale.step:g} K: state a "
             f"set-point step that is a multiple of {CENTI_K:g} K"
@@ -63,7 +63,7 @@ def write(delivery: DeliveredDrive) -> bytes:
     name, codes, period = identifier(delivery.icon.name), samples.codes.tolist(), period_ns(samples.rate_Hz)
     if len(codes) > MOST_CODES:
         raise FormatError(f"c-array counts at most {MOST_CODES:,} codes; there are {len(codes):,}")
-    times = round(scale.step / CENTI_K) if device.driven_by == "temperatures" else 1
+    times = round(scale.step / CENTI_K) if device.kind.regulated else 1
     codes, step = [times * code for code in codes], scale.step / times
     rows = [", ".join(map(str, codes[k : k + A_LINE])) for k in range(0, len(codes), A_LINE)]
     unit = {"1": "duty", "°C": "degrees C, the set-point,"}.get(scale.unit, scale.unit)
@@ -126,10 +126,10 @@ def player_files(drives: Sequence[Played], must: MustPrevent) -> dict[str, bytes
     down, up = partial(c_float, toward=-math.inf), partial(c_float, toward=math.inf)
     inward = partial(c_float, toward=0.0)
     courses = {identifier(each.delivery.icon.name): course_C(each.delivery, COURSE_S) for each in drives}
-    if first.device.driven_by == "temperatures":  # the set-point is what the display is to do
+    if first.device.kind.regulated:  # the set-point is what the display is to do
         courses = dict.fromkeys(courses, np.zeros(0))
     numbers = {
-        "CLOSED_LOOP": str(int(first.device.driven_by == "temperatures")),
+        "CLOSED_LOOP": str(int(first.device.kind.regulated)),
         "WATCHDOG_S": down(must.watchdog_s),
         "LOW_C": up(must.low_C),
         "HIGH_C": down(must.high_C),
@@ -162,12 +162,9 @@ def filled(template: str, values: Mapping[str, str]) -> bytes:
 
 def command_for(delivery: DeliveredDrive, current_A: float) -> float:
     """The command of a device for a test current in A, in what it puts out: V, A or mean duty."""
-    device = delivery.device
-    if device.driven_by == "volts":
-        return current_A / delivery.rig.driver.transconductance_A_per_V
-    if device.driven_by == "duty":
-        return min(1.0, current_A / device.bridge_A)
-    return current_A
+    device, kind = delivery.device, delivery.device.kind
+    command = current_A / kind.unit_A(device, delivery.rig)
+    return min(1.0, command) if kind.switches else command
 
 
 def c_float(value: float, toward: float | None = None) -> str:

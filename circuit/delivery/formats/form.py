@@ -16,10 +16,8 @@ from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
 from ..device import Device
 from ..samples import Samples
-from ..setpoints import Setpoints
 
 PLAYS_SAMPLES = ("volts", "amperes", "duty")
-PLAYS_SETPOINTS = ("set-points",)
 PLAYS_TEMPERATURES = ("temperatures",)
 
 
@@ -175,29 +173,12 @@ def course_C(delivery: DeliveredDrive, every_s: float) -> Array:
     return course
 
 
-def setpoints_in(delivery: DeliveredDrive) -> Setpoints:
-    """The set-points of a drive whose device follows set-points."""
-    assert isinstance(delivery.played, Setpoints)
-    return delivery.played
-
-
 def events_in(delivery: DeliveredDrive) -> tuple[Event, ...]:
     """Events of the cue on the clock of its file: files of samples begin with one update of rest, set-points do not."""
     icon, rig = delivery.icon, delivery.rig
     base = baseline_C(icon, rig)
     start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
-    return events_of(icon.corners(start), 0.0 if isinstance(delivery.played, Setpoints) else delivery.lead_s)
-
-
-def command_column(delivery: DeliveredDrive) -> Column:
-    """The column of commands of a device that plays samples."""
-    name, meaning = {
-        "volts": ("command_V", "voltage that the device puts out"),
-        "amperes": ("command_A", "current that the device puts out"),
-        "temperatures": ("display_C", "set-point that the controller gets for the display"),
-        "duty": ("duty", "share of a cycle that the bridge is on; negative: reversed"),
-    }[delivery.device.driven_by]
-    return Column(name, delivery.device.unit, f"{meaning}, held until the next row")
+    return events_of(icon.corners(start), delivery.lead_s)
 
 
 def events_of(corners: Corners, lead_s: float = 0.0) -> tuple[Event, ...]:

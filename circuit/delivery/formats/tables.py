@@ -12,21 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from ...arrays import Array
-from ..delivered_drive import DeliveredDrive
+from ..delivered_drive import DeliveredDrive, ModuleDrive, ThermodeDrive
 from ..device import Device
 from ..setpoints import Setpoints
-from .form import (
-    PLAYS_SAMPLES,
-    PLAYS_SETPOINTS,
-    PLAYS_TEMPERATURES,
-    Column,
-    Format,
-    FormatError,
-    command_column,
-    events_in,
-    samples_of,
-    setpoints_in,
-)
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, events_in, samples_of
 
 FIRST = "rest"
 TIME = Column("time_s", "s", "time of the row; the icon begins in the second row, and a row is held until the next")
@@ -47,13 +36,13 @@ TICK_S, STEP_K, LARGEST = 0.01, 0.1, 999
 
 def columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Time, current (not for a bridge, whose current switches), command, code, event."""
-    current = () if delivery.device.driven_by == "duty" else (CURRENT,)
-    return (TIME, *current, command_column(delivery), CODE, EVENT)
+    kind = delivery.device.kind
+    return (TIME, *(() if kind.switches else (CURRENT,)), kind.command, CODE, EVENT)
 
 
 def setpoint_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Time, set-point, its voltage where the device states a gain, event."""
-    return (TIME, command_column(delivery), *((VOLTAGE,) if has_voltage(delivery.device) else ()), EVENT)
+    return (TIME, delivery.device.kind.command, *((VOLTAGE,) if has_voltage(delivery.device) else ()), EVENT)
 
 
 def write(delivery: DeliveredDrive) -> bytes:
@@ -66,9 +55,10 @@ def write(delivery: DeliveredDrive) -> bytes:
 
 def write_rows(delivery: DeliveredDrive, rows: npt.NDArray[np.intp]) -> bytes:
     """Return the table of some samples, by their places."""
-    samples = samples_of(delivery)
+    assert isinstance(delivery, ModuleDrive)
+    samples, switches = delivery.played, delivery.device.kind.switches
     times = samples.time_s[rows]
-    current = () if delivery.device.driven_by == "duty" else (delivery.delivered.at(times),)
+    current = () if switches else (delivery.delivered.at(times),)
     numbers = zip(*(map(repr, each.tolist()) for each in (times, *current, samples.command[rows])), strict=True)
     cells = ([*each, code] for each, code in zip(numbers, samples.codes[rows].tolist(), strict=True))
     return _written(delivery, columns(delivery), times, cells)
@@ -103,8 +93,8 @@ def _written(
 
 
 def has_voltage(device: Device) -> bool:
-    """Whether set-points can be put out as a voltage."""
-    return device.record("set-point gain") is not None
+    """Whether it takes set-points that can be put out as a voltage."""
+    return device.kind.regulated and device.record("set-point gain") is not None
 
 
 def volts_of(device: Device, display_C: Array) -> Array:
@@ -152,7 +142,8 @@ def serial_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 
 def serial_write(delivery: DeliveredDrive) -> bytes:
     """Return the commands; the last, L, starts the stimulation."""
-    setpoints = setpoints_in(delivery)
+    assert isinstance(delivery, ThermodeDrive)
+    setpoints = delivery.played
     _check(setpoints, delivery.device.name)
     greatest = max(setpoints.baseline, *(level for _, level in setpoints.segments)) + round(ABOVE_K / setpoints.step_K)
     segments = "".join(f"{ticks:03d}{level:03d}" for ticks, level in setpoints.segments)
@@ -185,7 +176,7 @@ SERIAL = Format(
     name="tcs2-serial",
     title="commands for the serial line of a QST.Lab TCS II",
     suffix=".tcs2.txt",
-    takes=PLAYS_SETPOINTS,
+    takes=("set-points",),
     device="qst-tcs2",
     source="pytcsii (mpcoll), list of commands in its header",
     how="115,200 baud: send each line without its line feed; wait at the baseline before L; A aborts",

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...program import own_version
 from ..delivered_drive import DeliveredDrive
-from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, command_column, samples_of
+from .form import PLAYS_SAMPLES, PLAYS_TEMPERATURES, Column, Format, FormatError, samples_of
 from .tables import CODE, VOLTAGE, has_voltage, volts_of
 
 FULL = 32768
@@ -82,11 +82,8 @@ def wav_write(delivery: DeliveredDrive) -> bytes:
 
 def tdms_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
     """Channels of the group `thermicon`."""
-    return (command_column(delivery), CODE, *((VOLTAGE,) if _is_voltage(delivery) else ()))
-
-
-def _is_voltage(delivery: DeliveredDrive) -> bool:
-    return delivery.device.driven_by == "temperatures" and has_voltage(delivery.device)
+    device = delivery.device
+    return (device.kind.command, CODE, *((VOLTAGE,) if has_voltage(device) else ()))
 
 
 def tdms_write(delivery: DeliveredDrive) -> bytes:
@@ -105,7 +102,7 @@ def tdms_write(delivery: DeliveredDrive) -> bytes:
     root = RootObject({"name": delivery.icon.name, "author": f"thermicon {own_version()}"})
     group = GroupObject(GROUP, {"device": delivery.device.name, "rig": delivery.rig.name})
     values = [samples.command, samples.codes.astype("<i4")]
-    if _is_voltage(delivery):
+    if has_voltage(delivery.device):
         values.append(volts_of(delivery.device, samples.command))
     channels = [
         ChannelObject(GROUP, column.name, value, {"unit_string": column.unit, **clock})

@@ -228,10 +228,10 @@ class TestSetpoints:
 
     def test_a_thermode_has_no_current(self) -> None:
         found = deliver(STEP, RIG, self.THERMODE)
-        assert (found.lead_s, found.end_s, found.rate_Hz, found.drives) == (0.0, 8.0, 100.0, None)
+        assert (found.lead_s, found.end_s, found.rate_Hz) == (0.0, 8.0, 100.0)
         assert not found.trace.has_current
         with pytest.raises(DeviceError, match=r"qst-tcs2 is a thermode: its current is not known"):
-            found.delivered  # noqa: B018
+            self.THERMODE.kind.flow(self.THERMODE, RIG, deliver(STEP, RIG, DAC).played)
         words = r"qst-tcs2 is a thermode: it takes temperatures, and ramp prescribes a current; use control display"
         with pytest.raises(DeviceError, match=words):
             deliver(RAMP_A, RIG, self.THERMODE)

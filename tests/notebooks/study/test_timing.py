@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermicon.circuit import Rig
+from thermicon.circuit import Device, Rig
 from thermicon.icons import load_library
 from thermicon.notebooks.study.schedule import Course, Pace, Trial, planned_plays
 from thermicon.notebooks.study.study_file import StudyError, Timing
@@ -12,7 +12,6 @@ from thermicon.notebooks.study.timing import (
     carried_over,
     find_gap,
     find_landing,
-    regulated,
     settling,
     shortest_gap_s,
 )
@@ -62,8 +61,9 @@ def test_a_landing_ends_where_the_skin_has_settled(held: bool) -> None:
 
 
 def test_nothing_that_corrects_makes_a_landing_longer() -> None:
-    held, alone = (find_landing(ICONS[0], THENAR, Timing(), regulated(kind)) for kind in ("temperatures", "volts"))
-    assert (regulated("set-points"), regulated("amperes")) == (True, False)
+    held, alone = (
+        find_landing(ICONS[0], THENAR, Timing(), Device.load(name).kind.regulated) for name in ("qst-tcs2", "dac-16")
+    )
     assert 60.0 < held.landing_s < 180.0 < alone.landing_s
     assert 0.5 < held.left_at_10_s_K < 1.2 < alone.left_at_10_s_K
 
