@@ -25,6 +25,7 @@ from .device import Device
 from .devicefile import DeviceError
 from .samples import Samples, current_of, led, rate_of, sample, within
 from .setpoints import Setpoints, closed, display_of, setpoints_of
+from .shaped import looped
 from .temperatures import deliver_temperatures, designed_until, follow_samples
 
 ROWS_HZ = 100.0
@@ -93,7 +94,7 @@ def traces_until(delivery: DeliveredDrive, end_s: float) -> tuple[Trace, Trace]:
     designed = simulate_current(designed_until(delivery.designed, end_s), rig)
     until = played.until(end_s)
     by_loop = delivery.device.driven_by == "temperatures"
-    drive = _cut(follow_samples(rig, until) if by_loop else current_of(delivery.device, rig, until), end_s)
+    drive = _cut(follow_samples(looped(rig), until) if by_loop else current_of(delivery.device, rig, until), end_s)
     return designed, simulate_current(drive, rig, start_C=_start_of(delivery.device, rig, played))
 
 

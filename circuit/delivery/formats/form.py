@@ -8,6 +8,7 @@ from typing import Any
 from thermicon.icons.model.corners import Corners
 
 from ...inputs import InputError
+from ...safety.checks import Loop
 from ...solver.inverse import baseline_C
 from ...solver.steady import steady_state
 from ..delivered_drive import DeliveredDrive
@@ -232,6 +233,6 @@ def must_prevent(demands: Sequence[Mapping[str, Any]]) -> MustPrevent:
         test_fall_K=gentlest("display_change_at_least_K", plain.test_fall_K),
         rest_s=max(LONGEST_REST_S if rest is None else float(rest) for rest in rests),
         pause_s=max(map(float, pauses), default=plain.pause_s),
-        gains=(loop["kp_A_per_K"][1], loop["ki_A_per_Ks"][1], loop["kd_As_per_K"]) if loop else plain.gains,
+        gains=Loop(**loop).played if loop else plain.gains,
         limits_A=limits_A or plain.limits_A,
     )
