@@ -35,6 +35,8 @@ ROUNDS, CLOSE_K, AHEAD_S = 12, 0.02, 0.05
 
 More rounds, or more than the loop's own delay, make set-points swing; none are needed within 20 mK.
 """
+LEAD_K = 4.0
+"""How far set-points may lead their cue: a calm loop sends all of a usual driver's current; a weaker one misses more."""
 
 
 @lru_cache(maxsize=64)
@@ -79,7 +81,8 @@ def shaped(rig: Rig, samples: Samples, time_s: Array, display_C: Array) -> Sampl
     Where the driver is at its limit nothing is corrected. The first and last set-point, the rest, stay as they are.
     """
     loop, period, scale = looped(rig), 1.0 / rig.driver.update_Hz, samples.scale
-    place, rest = places_of(samples, period), steady_state(rig, "display", float(samples.command[0]))
+    rest, end_s = steady_state(rig, "display", float(samples.command[0])), float(samples.time_s[-1])
+    place = np.minimum(places_of(samples.until(end_s + AHEAD_S), period), len(samples.codes) - 1)
     goal = np.interp(period * np.arange(1, len(place) + 1), time_s, display_C)
     count, late = np.bincount(place, minlength=len(samples.codes)), round(AHEAD_S / period)
     levels, best, least_K = samples.command, samples, math.inf
@@ -95,5 +98,6 @@ def shaped(rig: Rig, samples: Samples, time_s: Array, display_C: Array) -> Sampl
         miss = np.where(why == FREE, goal - shown, 0.0)
         ahead = np.append(miss[late:], np.zeros(min(late, len(miss))))
         levels = levels + np.bincount(place, ahead, len(count)) / np.maximum(count, 1)
+        levels = np.clip(levels, samples.command - LEAD_K, samples.command + LEAD_K)
         levels[[0, -1]] = samples.command[[0, -1]]
     return best
