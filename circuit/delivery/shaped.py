@@ -36,7 +36,7 @@ ROUNDS, CLOSE_K, AHEAD_S = 12, 0.02, 0.05
 More rounds, or more than the loop's own delay, make set-points swing; none are needed within 20 mK.
 """
 LEAD_K = 4.0
-"""How far set-points may lead their cue: a calm loop sends all of a usual driver's current; a weaker one misses more."""
+"""How far set-points may lead a cue: a calm loop then sends all of a usual driver's current; a weaker one misses."""
 
 
 @lru_cache(maxsize=64)
@@ -72,7 +72,7 @@ def places_of(samples: Samples, period_s: float) -> Index:
     """The index of the sample in force at each update of the driver."""
     count = max(1, math.ceil(float(samples.time_s[-1]) / period_s - 1e-9))
     place = np.floor(np.arange(count) * (period_s * samples.rate_Hz) + 1e-6).astype(np.int64)
-    return np.minimum(place, len(samples.codes) - 1)
+    return np.asarray(np.minimum(place, len(samples.codes) - 1))
 
 
 def shaped(rig: Rig, samples: Samples, time_s: Array, display_C: Array) -> Samples:

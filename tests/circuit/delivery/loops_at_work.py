@@ -119,11 +119,12 @@ class Bench:
             trips = (second < self.low_C) | (second > self.high_C)
             self.off_in_s = np.minimum(self.off_in_s - self.period_s, np.where(trips, self.react_s, np.inf))
             amperes = np.where(self.off_in_s < self.period_s * 0.5, 0.0, sent)
-            for self.state in self.follower.update(amperes, self.state):
-                states.append(self.state)
-                before_C, self.display = self.display, self.follower.circuit.read(self.state[:, :, None])[:, 2, 0]
+            for state in self.follower.update(amperes, self.state):
+                states.append(state)
+                before_C, self.display = self.display, self.follower.circuit.read(state[:, :, None])[:, 2, 0]
                 shown_C = np.where(which.lag_s > 0, 0.5 * (before_C + self.display), self.display)
                 self.felt = keep * self.felt + (1 - keep) * shown_C
+            self.state = states[-1]
         return self.follower.circuit.read(np.array(states).transpose(1, 2, 0)).transpose(2, 0, 1), copies
 
     def judge(self, rows: Array, worst: Worst) -> None:

@@ -66,7 +66,7 @@ class TestDeliveredDrive:
         loop = RIG.with_(**{f"controller.{key}": value for key, value in gains.items()})
         stronger, usual = deliver(STEP, loop, LOOP), deliver(STEP, RIG, LOOP)
         leads = [float(np.ptp(one.played.command)) for one in (stronger, usual)]
-        assert 6.0 < leads[0] < leads[1] - 0.5, "a strong loop needs less of a lead"
+        assert leads[0] < leads[1] - 0.5, "a strong loop needs less of a lead"
         assert np.abs(stronger.trace.display_C - stronger.designed_trace.display_C).max() < 0.1
 
     def test_a_slower_controller_gets_every_nth_set_point(self) -> None:
