@@ -20,12 +20,14 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..safety.checks import Before, Check, CutOff, Scenario, worst_of
 from ..safety.ensemble import LaneDrives
+from ..safety.held import inwards
 from ..safety.single_faults import AFTER_ROWS_S
 from ..safety.tally import Tally
 from ..solver.batch_inputs import Bank, State, run_follow
 from ..solver.network import COMPLIANCE_V, HIGHEST_A, LOWEST_A
 from .delivered_drive import loss_limit
 from .samples import Samples
+from .shaped import regulated
 from .temperatures import FollowingModule, past_most_cooling, rest_of_a_loop, updates_of
 
 SENSOR_K = 0.3
@@ -89,11 +91,10 @@ class AnyLoop:
         return given, tuple(replace(check, run=replace(check.run, way=f"{check.run.way}{cure}")) for check in wide)
 
     def _shown(self, play: Samples, limits_A: Limits_A) -> Array:
-        """The display of the rig as given that follows set-points within current limits."""
-        period, lane = 1.0 / self.module.ensemble.rig.driver.update_Hz, np.zeros(1, dtype=np.int64)
-        state = self.bank.states([rest_of_a_loop(self.module.rigs[0], float(play.command[0]))[1]])
-        goals = updates_of(play, period)[np.newaxis]
-        return run_follow(self.within(limits_A), lane, lane, period, goals, False, state)[1]
+        """The display of the rig as given that its loop takes along set-points within current limits."""
+        rig = self.module.rigs[0]
+        rest, goals = rest_of_a_loop(rig, float(play.command[0])), updates_of(play, 1.0 / rig.driver.update_Hz)
+        return regulated(rig, self.within(limits_A), goals, rest)[1]
 
     def _swings(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
         """Rates and hot plate where a loop swings between the cut-offs, from a display without power on."""
@@ -135,8 +136,8 @@ class AnyLoop:
         for reaction, edge, within_A in itertools.product(REACTIONS_S, edges, (limits_A, narrow_A)):
             checks = self._stuck(begun[edge], within_A, reaction)
             if all(check.passed for check in checks):
-                return CutOff(round(edge[0], 1), round(edge[1], 1), reaction), within_A, checks
-        return CutOff(round(edge[0], 1), round(edge[1], 1), 0.0), within_A, checks
+                return CutOff(*inwards(*edge), reaction), within_A, checks
+        return CutOff(*inwards(*edge), 0.0), within_A, checks
 
     def _held_at(self, level_C: float) -> State:
         """Each corner with its display held at a level indefinitely, or as near to it as the module can."""

@@ -1,13 +1,13 @@
 """The gate for a controller around the rig's own module: its display at the set-points, and what any loop may do.
 
-A display that is as far from its set-points as the loop's sensor may be wrong bounds the doses of repetition, and the
-temperatures of a loop that works. What no loop may pass, in any play after any other, is in `any_loop.py`; which PI
-loops play the set-points without swinging, in the fastest and slowest corners, is tried here. The module that follows
-shows how a play ends.
+A display that is as far from its set-points, and from what the loop makes of them, as its sensor may be wrong bounds
+the doses of repetition, and the temperatures of a loop that works. What no loop may pass, in any play after any other,
+is in `any_loop.py`; that the loop which the set-points are shaped for does not swing, in the fastest and slowest
+corners, is tried here, and no other loop is demanded. The module that follows by it shows how a play ends.
 """
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,6 @@ from thermicon.icons.number_text import signed
 
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
-from ..rig.rigfile import Controller
 from ..safety.checks import Check, CutOff, Demands, Loop, Scenario, SingleFault, worst_of
 from ..safety.demanded import polarity_check
 from ..safety.display import DisplayCourse, DisplayPlant
@@ -30,18 +29,13 @@ from .any_loop import SENSOR_K, AnyLoop, Limits_A
 from .delivered_drive import DeliveredDrive
 from .formats.form import samples_of
 from .samples import Samples
+from .shaped import LATE_S, PLAYING, looped
 from .temperatures import FollowingModule, rest_of_a_loop, updates_of
 
 BESIDE_K = 0.5
 """How far beside its set-points a display is judged: a wrong sensor, and what a loop swings by on the average."""
-SENSOR_LAG_S, LATE_S = 0.1, 0.02
-"""Sensor and delay of a loop that the rig does not state: a bead glued to a plate, two turns of a loop of 100 Hz."""
 DELAYS_S = (0.1, 0.05, 0.02, 0.01, 0.0)
 """Delays that a loop of the rig may have beside what its file states; the longest that does not swing is demanded."""
-CALM = 0.7
-"""kp · K/s per A · (lag + delay): an integrator that is late by so much overshoots by some percent."""
-RESETS_PER_S = (0.5, 0.25, 0.1, 0.05)
-"""ki/kp, the quickest first: slower than the loop itself, so that it does not swing."""
 WEAKER = 0.5
 """Share of the gains from which on a loop is judged."""
 SETTLING_S, SWING_K = 10.0, 0.2
@@ -58,7 +52,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
         [(_beside(delivery, BESIDE_K), _beside(delivery, -BESIDE_K)) for delivery in deliveries],
         rig, stuck_C=stuck_C, pause_s=pause_s, module=True,
     )  # fmt: skip
-    module, under = FollowingModule.of(rig), DisplayPlant.of(rig, stuck_C)
+    module, under = FollowingModule.of(looped(rig)), DisplayPlant.of(rig, stuck_C)
     loops, plays = AnyLoop.of(module), [samples_of(delivery) for delivery in deliveries]
     cuts, unpowered_C = [verdict.demands.cut_off_display_C for verdict in verdicts], module.unpowered_C()
     reach_C = (
@@ -71,7 +65,7 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
     flows = np.concatenate([drive.current_A for drive in drives], axis=1)
     used_A = min(0.0, float(flows.min())), max(0.0, float(flows.max()))
     cut, limits_A, held = loops.cut_off(reach_C, limits_A, used_A)
-    loop, swung = _judged_loop(loops, plays, limits_A, cut)
+    loop, swung = _judged_loop(loops, plays, limits_A, cut, (LATE_S,) if rig.controller is None else DELAYS_S)
     failed = tuple(check for check in (*swings, *held, *swung) if not check.passed)
     judged = []
     for delivery, verdict, drive in zip(deliveries, verdicts, drives, strict=True):
@@ -94,9 +88,11 @@ def gate_controlled(deliveries: Sequence[DeliveredDrive], pause_s: float | None)
 
 
 def _beside(delivery: DeliveredDrive, beside_K: float = 0.0) -> DisplayCourse:
-    """A display that is this far beside its set-points, from one update to the next."""
-    samples = samples_of(delivery)
-    return DisplayCourse(f"display {signed(beside_K, '+g')} K", 1.0 / samples.rate_Hz, samples.command + beside_K)
+    """A display that is this far beside its set-points or what the loop makes of them, whichever is farther out."""
+    samples, beyond = samples_of(delivery), np.maximum if beside_K >= 0.0 else np.minimum
+    shown = np.interp(samples.time_s, delivery.trace.time_s, delivery.trace.display_C)
+    display = beyond(samples.command, shown) + beside_K
+    return DisplayCourse(f"display {signed(beside_K, '+g')} K", 1.0 / samples.rate_Hz, display)
 
 
 def _demands(
@@ -140,34 +136,32 @@ def _rest_s(under: DisplayPlant, delivery: DeliveredDrive, unpowered_C: tuple[fl
 
 
 def _judged_loop(
-    loops: AnyLoop, plays: Sequence[Samples], limits_A: Limits_A, cut: CutOff
+    loops: AnyLoop, plays: Sequence[Samples], limits_A: Limits_A, cut: CutOff, delays_s: Sequence[float]
 ) -> tuple[Loop, tuple[Check, ...]]:
-    """The rig's own loop, or one that suits its module, with what it may differ by; then a check that fails, if any."""
+    """The rig's loop, what it may differ by, and the longest delay that does not swing; then a failed check, if any."""
     bank = loops.within(limits_A)
     middle_K = float(plays[0].command.mean()) + ZERO_C_IN_K
     heat_W_per_A = bank.plates[:, ALPHA] * middle_K - bank.plates[:, LOWEST_A] * bank.plates[:, RESISTANCE]
     speed = heat_W_per_A * loops.module.ensemble.gain / bank.plates[:, COLD_J_PER_K]
     rigs = sorted({0, int(speed.argmin()), int(speed.argmax())})
     slew = max(float(np.abs(np.diff(play.command)).max()) * play.rate_Hz for play in plays)
-    for loop in _candidates(loops.module.ensemble.rig.controller, float(speed.max()), float(f"{slew:.3g}")):
+    own = loops.module.ensemble.rig.controller
+    assert own is not None
+
+    def band(gain: float, low: float) -> tuple[float, float]:
+        return float(f"{low * gain:.4g}"), float(f"{(1.0 + PLAYING) * gain:.4g}")
+
+    kp, ki = own.kp_A_per_K, own.ki_A_per_Ks
+    for delay in delays_s:
+        loop = Loop(
+            band(kp, WEAKER), band(ki, WEAKER), own.kd_As_per_K, delay, own.lag_s, SENSOR_K, float(f"{slew:.3g}"),
+            band(kp, 1.0 - PLAYING), band(ki, 1.0 - PLAYING), own.lag_s,
+        )  # fmt: skip
         swings = (_swing(loops, bank, rigs, loop, play, cut) for play in plays)
         failed = tuple(itertools.islice((check for check in swings if not check.passed), 1))
         if not failed:
             break
     return loop, failed
-
-
-def _candidates(own: Controller | None, speed: float, slew: float) -> Iterator[Loop]:
-    """The loops that are tried, the most useful first: the rig's with shorter and shorter delays, or slower resets."""
-    if own is not None:
-        kp, ki = own.kp_A_per_K, own.ki_A_per_Ks
-        for delay in DELAYS_S:
-            yield Loop((WEAKER * kp, kp), (WEAKER * ki, ki), own.kd_As_per_K, delay, own.lag_s, SENSOR_K, slew)
-        return
-    kp = float(f"{CALM / (speed * (SENSOR_LAG_S + LATE_S)):.2g}")
-    for reset in RESETS_PER_S:
-        ki = float(f"{reset * kp:.2g}")
-        yield Loop((WEAKER * kp, kp), (WEAKER * ki, ki), 0.0, LATE_S, SENSOR_LAG_S, SENSOR_K, slew)
 
 
 def _swing(loops: AnyLoop, bank: Bank, rigs: Sequence[int], loop: Loop, play: Samples, cut: CutOff) -> Check:

@@ -24,6 +24,7 @@ from .device import Device, Scale
 from .devicefile import DeviceError, DrivenBy
 from .formats.form import Column
 from .samples import Samples
+from .shaped import looped
 from .temperatures import deliver_temperatures, follow_samples
 from .worstcase import ways_of
 
@@ -179,7 +180,7 @@ class Temperatures(Kind):
 
     def flow(self, device: Device, rig: Rig, samples: Samples) -> Drive:
         """The current by which the display follows."""
-        return follow_samples(rig, samples)
+        return follow_samples(looped(rig), samples)
 
 
 class SetPoints(Temperatures):

@@ -154,6 +154,8 @@ def _lossy(delivery: DeliveredDrive, lost: str) -> Refusal:
         why = f"{device.name}: its set-points have steps of {played.step_K:g} K"
     elif delivery.device_warnings:
         why = "; ".join(delivery.device_warnings)
+    elif device.driven_by == "temperatures" and delivery.rate_Hz >= 0.9 * delivery.requested_Hz:
+        return Refusal("lossy", f"{lost}; its loop follows no better; use a slower change, or a quicker [controller]")
     elif delivery.rate_Hz < 0.9 * delivery.requested_Hz:
         why = f"{device.name}: it plays {delivery.rate_Hz:.3g} of the {delivery.requested_Hz:g} updates a second"
     else:

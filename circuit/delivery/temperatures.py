@@ -1,8 +1,8 @@
 """Temperatures against time, for a controller with its own loop around the rig's module.
 
-The set-points are the means of the designed display temperature over each period, held until the next. The display is
-that of the rig's own module following them, at the rig's update rate and within its driver's limits, by the rig's own
-PID loop where it has one.
+The set-points are the means of the designed display temperature over each period, held until the next, shaped through
+the loop that plays them (`shaped.py`). The display is that of the rig's own module following them by that loop, at the
+rig's update rate and within its driver's limits.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ from ..safety.current import checks_of_lanes
 from ..safety.ensemble import Ensemble, LaneDrives
 from ..safety.single_faults import Faulty
 from ..safety.tally import WATCHED
-from ..solver.batch_inputs import Bank, bank_of, run_follow, run_regulate
+from ..solver.batch_inputs import Bank, bank_of, run_follow
 from ..solver.drive import Drive
-from ..solver.inverse import Design, baseline_C, design, design_ideal, gains_of
+from ..solver.inverse import Design, baseline_C, design_ideal
 from ..solver.network import PAST_MOST_COOLING, network_of
 from ..solver.simulate import duration_s, simulate_current
 from ..solver.steady import check_sink, holding_current_A, state_under_current, steady_state
@@ -37,6 +37,7 @@ from .device import Device
 from .devicefile import DeviceError
 from .samples import Samples, led, rate_of
 from .setpoints import check_level
+from .shaped import looped, places_of, regulated, shaped
 
 
 def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) -> ModuleDrive:
@@ -52,11 +53,12 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) ->
     requested = rig.driver.update_Hz
     end = duration_s(icon, rig) + tail_s
     rate = rate_of(device, requested, end)
-    plan = design(icon, rig, end)
+    plan = design_ideal(icon, rig, end)
     samples = _sampled(icon, rig, device, end, rate)
     designed = designed_until(led(plan, end, rate), (len(samples.codes) - 1) / rate)
-    delivered = follow_samples(rig, samples)
     model = simulate_current(designed, rig, start_C=plan.start_C)
+    samples = shaped(rig, samples, model.time_s, model.display_C)
+    delivered = follow_samples(looped(rig), samples)
     trace = simulate_current(designed_until(delivered, float(designed.time_s[-1])), rig)
     return ModuleDrive(
         icon=icon, rig=rig, device=device, requested_Hz=requested, rate_Hz=rate, lead_s=1.0 / rate, played=samples,
@@ -64,31 +66,29 @@ def deliver_temperatures(icon: Icon, rig: Rig, device: Device, tail_s: float) ->
     )  # fmt: skip
 
 
-def follow_samples(rig: Rig, samples: Samples, *, to_the_limit: bool = False) -> Drive:
-    """Return the current by which the rig's display follows held set-points; RigError without a steady state.
+def follow_samples(rig: Rig, samples: Samples, *, to_the_limit: bool = False, gain: float = 1.0) -> Drive:
+    """Return the current by which the rig's display follows held set-points, by its own loop or at the driver's best.
 
     It ends with the set-points, in a row of the current that holds the rest. `to_the_limit`: where the module cannot
     reach a set-point, even the first, the current goes to the driver's limit, past the most cooling, as in a real loop.
+    `gain` is that of the current source, which a loop's gains have too. Raises RigError without a steady state.
     """
     first = float(samples.command[0])
     rest, state = rest_of_a_loop(rig, first) if to_the_limit else steady_state(rig, "display", first)
     lane, period = np.zeros(1, dtype=np.int64), 1.0 / rig.driver.update_Hz
     bank = past_most_cooling([rig]) if to_the_limit else bank_of(rig)
-    setpoint = updates_of(samples, period)[np.newaxis]
-    times: Array = np.arange(setpoint.shape[1] + 1, dtype=np.float64) * period
+    setpoint = updates_of(samples, period)
+    times: Array = np.arange(len(setpoint) + 1, dtype=np.float64) * period
     if rig.controller is None:
-        currents, _, _ = run_follow(bank, lane, lane, period, setpoint, False, bank.states([state]))
+        current = run_follow(bank, lane, lane, period, setpoint[np.newaxis], False, bank.states([state]))[0][0]
     else:
-        gains = np.array([gains_of(rig)])
-        currents, _, _ = run_regulate(bank, lane, lane, period, setpoint, gains, np.array([rest]), bank.states([state]))
-    return Drive(times, [*currents[0], rest], held=True)
+        current = regulated(rig, bank, setpoint, (rest, state), gain)[0]
+    return Drive(times, [*current, rest], held=True)
 
 
 def updates_of(samples: Samples, period_s: float) -> Array:
     """The set-point in force at each update of the driver."""
-    count = max(1, math.ceil(float(samples.time_s[-1]) / period_s - 1e-9))
-    place = np.floor(np.arange(count) * (period_s * samples.rate_Hz) + 1e-6).astype(np.int64)
-    return np.asarray(samples.command[np.minimum(place, len(samples.codes) - 1)])
+    return np.asarray(samples.command[places_of(samples, period_s)])
 
 
 def rest_of_a_loop(rig: Rig, level_C: float) -> tuple[float, Array]:
@@ -148,7 +148,7 @@ def _course(icon: Icon, rig: Rig, end_s: float) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FollowingModule:
-    """The rig's module in the corners of its uncertainty, in which it follows set-points as fast as its driver can.
+    """The rig's module in the corners of its uncertainty, where it follows set-points by its loop or its driver's best.
 
     A loop corrects the gain of its current source, but not the limit at which that saturates: `rigs` have the limits as
     they flow. A weaker source is slower, so only the strongest is judged. Where a set-point cannot be reached the loop
@@ -168,7 +168,10 @@ class FollowingModule:
 
     def drives(self, samples: Samples) -> LaneDrives:
         """The currents by which each corner follows set-points, as commanded."""
-        flows = [follow_samples(rig, samples, to_the_limit=True) for rig in self.rigs]
+        flows = [
+            follow_samples(rig, samples, to_the_limit=True, gain=float(gain))
+            for rig, gain in zip(self.rigs, self.ensemble.gain, strict=True)
+        ]
         return LaneDrives(flows[0].time_s, np.array([flow.current_A for flow in flows]) / self.ensemble.gain[:, None])
 
     def checks(self, drives: LaneDrives) -> tuple[Check, ...]:

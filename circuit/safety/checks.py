@@ -230,7 +230,8 @@ class Loop:
 
     Gains lie between both numbers. A delay counts from measuring to output, lag and offset are those of the loop's own
     sensor; the offset also bounds that of the second sensor, on which the cut-off acts. The set-points of the files
-    change by `set_points_K_per_s` at most.
+    change by `set_points_K_per_s` at most. They are shaped for a loop in the middle of the gains of `playing`, with
+    that lag and without delay: what it plays is predicted, what another one inside the demands plays is only safe.
     """
 
     kp_A_per_K: tuple[float, float]
@@ -240,6 +241,15 @@ class Loop:
     sensor_lag_at_most_s: float
     sensor_offset_at_most_K: float
     set_points_K_per_s: float
+    playing_kp_A_per_K: tuple[float, float]
+    playing_ki_A_per_Ks: tuple[float, float]
+    playing_sensor_lag_s: float
+
+    @property
+    def played(self) -> tuple[float, float, float]:
+        """The gains for which set-points are shaped: kp A/K, ki A/(K·s) and kd A·s/K."""
+        kp, ki = (sum(band) / 2.0 for band in (self.playing_kp_A_per_K, self.playing_ki_A_per_Ks))
+        return kp, ki, self.kd_As_per_K
 
 
 @dataclass(frozen=True, slots=True)

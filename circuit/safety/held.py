@@ -61,6 +61,11 @@ def around_C(limits: Limits, display_C: Span, held: Span = (-math.inf, math.inf)
     limit = {rule.upper: rule.limit for rule in hard if rule.above_C is None}
     low = max(limit[False], display_C[0] - beyond_K, held[0])
     high = min(limit[True], display_C[1] + beyond_K, held[1])
+    return inwards(low, high)
+
+
+def inwards(low: float, high: float) -> Span:
+    """Both ends of a cut-off in °C, in whole steps."""
     return round(STEP_K * math.ceil(low / STEP_K - 1e-6), 1), round(STEP_K * math.floor(high / STEP_K + 1e-6), 1)
 
 

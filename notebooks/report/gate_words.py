@@ -105,10 +105,11 @@ def demands_text(gates: Sequence[Named]) -> str:
         least, most = max(low for low, _ in limits), min(high for _, high in limits)
         parts.append(f"a controller limited to {signed(least, 'g')} … {most:g} A")
     if loop is not None:
-        (kp, most_kp), (ki, most_ki) = loop.kp_A_per_K, loop.ki_A_per_Ks
+        (kp, most_kp), (ki, most_ki), set_to = loop.kp_A_per_K, loop.ki_A_per_Ks, loop.played
         parts.append(
-            f"its loop of {kp:.3g} to {most_kp:.3g} A/K and {ki:.3g} to {most_ki:.3g} A/(K·s) with a sensor that lags "
-            f"by {loop.sensor_lag_at_most_s:g} s, is wrong by {loop.sensor_offset_at_most_K:g} K and is acted on "
+            f"its loop set to {set_to[0]:.3g} A/K and {set_to[1]:.3g} A/(K·s), for which set-points are shaped (safe: "
+            f"{kp:.3g} to {most_kp:.3g} and {ki:.3g} to {most_ki:.3g}), with a sensor that lags by "
+            f"{loop.sensor_lag_at_most_s:g} s, is wrong by {loop.sensor_offset_at_most_K:g} K and is acted on "
             f"{loop.delay_at_most_s:g} s later at most"
         )
     if any(one.polarity_check is not None and one.polarity_check.needed for _, one in every):

@@ -230,5 +230,4 @@ def must_prevent(demands: Sequence[Demands]) -> MustPrevent:
         test = min(tests, key=lambda each: each.test_current_A * each.test_s)
         found = replace(found, test_current_A=test.test_current_A, test_s=test.test_s)
         found = replace(found, test_fall_K=test.display_change_at_least_K)
-    gains = (loop.kp_A_per_K[1], loop.ki_A_per_Ks[1], loop.kd_As_per_K) if loop else plain.gains
-    return replace(found, gains=gains)
+    return replace(found, gains=loop.played if loop else plain.gains)

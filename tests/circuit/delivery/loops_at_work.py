@@ -92,7 +92,7 @@ class Bench:
     ) -> tuple[Array, list[Bench]]:
         """Watched rows (rows, L, 4) under set-points, or a current that is stuck; `every`: copies on the way."""
         which, gain = self.which, self.follower.circuit.gain
-        keep = np.where(which.lag_s > 0, np.exp(-self.period_s / np.maximum(which.lag_s, 1e-9)), 0.0)
+        keep = np.where(which.lag_s > 0, np.exp(-self.follower.row_s / np.maximum(which.lag_s, 1e-9)), 0.0)
         behind = np.floor(which.delay_s / self.period_s + 1e-9).astype(int)
         lanes, states, copies = np.arange(len(self.felt)), [self.state], []
         for number, level in enumerate(levels_C):
@@ -104,7 +104,6 @@ class Bench:
                     for lane, k in zip(lanes, np.minimum(behind + 1, len(self.seen) - 1), strict=True)
                 ]
             )
-            self.felt = keep * self.felt + (1 - keep) * self.display
             self.seen = [*self.seen[1:], self.felt + which.offset_K + wrong_K]
             now = np.array([self.seen[-1 - k][lane] for lane, k in zip(lanes, behind, strict=True)])
             error = now - level
@@ -120,9 +119,12 @@ class Bench:
             trips = (second < self.low_C) | (second > self.high_C)
             self.off_in_s = np.minimum(self.off_in_s - self.period_s, np.where(trips, self.react_s, np.inf))
             amperes = np.where(self.off_in_s < self.period_s * 0.5, 0.0, sent)
-            states.extend(self.follower.update(amperes, self.state))
+            for state in self.follower.update(amperes, self.state):
+                states.append(state)
+                before_C, self.display = self.display, self.follower.circuit.read(state[:, :, None])[:, 2, 0]
+                shown_C = np.where(which.lag_s > 0, 0.5 * (before_C + self.display), self.display)
+                self.felt = keep * self.felt + (1 - keep) * shown_C
             self.state = states[-1]
-            self.display = self.follower.circuit.read(self.state[:, :, None])[:, 2, 0]
         return self.follower.circuit.read(np.array(states).transpose(1, 2, 0)).transpose(2, 0, 1), copies
 
     def judge(self, rows: Array, worst: Worst) -> None:

@@ -31,17 +31,19 @@ VOLTS = changed(LOOP, "set-point gain", "V/K", value=0.1)
 class TestDeliveredDrive:
     """What the display does under set-points."""
 
-    def test_set_points_are_the_display_of_the_cue_by_means(self) -> None:
+    def test_set_points_lead_the_display_of_the_cue_and_rest_before_and_after(self) -> None:
         played = deliver(STEP, RIG, LOOP).played
         middles = np.arange(800) * 0.01 + 0.005
-        ideal = np.interp(middles, [0, 2, 6, 8], [32, 26, 26, 32])
-        assert np.abs(played.command[1:-1] - ideal).max() <= 0.005 + 1e-9
+        lead_K = played.command[1:-1] - np.interp(middles, [0, 2, 6, 8], [32, 26, 26, 32])
+        assert lead_K[:190].max() < -0.3, "a calm loop falls as fast as the cue by set-points below it"
+        assert lead_K[620:790].min() > 0.3
+        assert np.abs(lead_K[400:590]).max() < 0.5, "while it holds they come near"
         assert played.command[0] == played.command[-1] == pytest.approx(32.0)
 
-    def test_the_display_follows_within_an_update_on_the_rigs_module(self) -> None:
+    def test_the_display_follows_the_design_on_the_rigs_module(self) -> None:
         found = deliver(STEP, RIG, LOOP)
         assert found.trace.has_current
-        assert np.abs(found.trace.display_C - found.designed_trace.display_C).max() < 0.05
+        assert np.abs(found.trace.display_C - found.designed_trace.display_C).max() < 0.1
         assert found.trace.current_A.max() <= RIG.driver.current_max_A
         assert found.deviation.lost == ()
         again = simulate_current(found.delivered, RIG)
@@ -50,7 +52,7 @@ class TestDeliveredDrive:
     def test_a_skin_cue_gets_the_display_that_its_design_finds(self) -> None:
         found = deliver(SKIN, RIG, LOOP)
         assert found.outcome.reached
-        assert np.abs(found.trace.skin_C - found.designed_trace.skin_C).max() < 0.05
+        assert np.abs(found.trace.skin_C - found.designed_trace.skin_C).max() < 0.1
 
     def test_the_drivers_limits_hold_it_back(self) -> None:
         weak = RIG.with_(**{"driver.current_limit_A": 0.6})
@@ -62,8 +64,10 @@ class TestDeliveredDrive:
     def test_a_rigs_own_loop_is_what_follows(self) -> None:
         gains = {"lag_s": 0.1, "kp_A_per_K": 2.0, "ki_A_per_Ks": 1.0, "kd_As_per_K": 0.15}
         loop = RIG.with_(**{f"controller.{key}": value for key, value in gains.items()})
-        late = deliver(STEP, loop, LOOP).trace.display_C - deliver(STEP, RIG, LOOP).trace.display_C
-        assert 0.1 < np.abs(late).max() < 1.5
+        stronger, usual = deliver(STEP, loop, LOOP), deliver(STEP, RIG, LOOP)
+        leads = [float(np.ptp(one.played.command)) for one in (stronger, usual)]
+        assert leads[0] < leads[1] - 0.5, "a strong loop needs less of a lead"
+        assert np.abs(stronger.trace.display_C - stronger.designed_trace.display_C).max() < 0.1
 
     def test_a_slower_controller_gets_every_nth_set_point(self) -> None:
         found = deliver(STEP, RIG, changed(LOOP, "update rate", "Hz", value=10.0))

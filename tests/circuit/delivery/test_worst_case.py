@@ -153,7 +153,8 @@ class TestFollowedSetPoints:
 
     def test_a_step_that_needs_more_current_than_any_loop_may_have_is_refused_with_one_that_is_safe(self) -> None:
         shape = "step warm by 0.8 °C; hold for 0.06 s; step cool by 0.8 °C; hold for 0.1 s"
-        rig = RIG.with_(**SMALL, **{"module.cold_plate_J_per_K": 1.5})
+        strong = {"kp_A_per_K": 0.5, "ki_A_per_Ks": 0.125}
+        rig = RIG.with_(**SMALL, controller=strong, **{"module.cold_plate_J_per_K": 1.5})
         found = worst_case(by_controller(shape, rig))
         told = re.search(
             r"under any loop of −1\.5 … 1\.5 A, as its set-points need; a driver\.current_limit_A of (\d\.\d+) A slows",
