@@ -44,7 +44,7 @@ def too_kind(delivery: DeliveredDrive) -> Gate:
 def test_a_few_drives_are_safe_as_written(part: int, count: int, red: int) -> None:
     told = run_part(part, count, look=1)
     assert told.unsafe == []
-    assert told.counts["written"] >= 3
+    assert told.counts["written"] >= 2
     assert told.counts["red"] >= red, "drives that must not be written are among them"
     assert told.refused_margins
     assert min(told.refused_margins) < 0, "the replay finds what the gate refuses to be unsafe"
