@@ -1,6 +1,7 @@
 """Single faults: what the hardware must do is simulated, and keeps every hard limit of temperature."""
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from tests.circuit.delivery.replay import Held, Player, exposure
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Limits, Rig, gate
+from thermicon.circuit.safety.checks import CutOff
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.demanded import TEST_A, TEST_S, dose_time_s, polarity_check
 from thermicon.circuit.safety.display import DisplayPlant
@@ -16,7 +18,7 @@ from thermicon.circuit.safety.ensemble import Ensemble, between
 from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.held import around_C, held_C
 from thermicon.circuit.safety.repeated import Repeating
-from thermicon.circuit.safety.single_faults import Faulty
+from thermicon.circuit.safety.single_faults import Faulty, Moments
 from thermicon.circuit.safety.starts import BEGINNINGS, Beginning, Starts
 from thermicon.circuit.safety.tally import WATCHED, Tally, cem43_min
 from thermicon.circuit.solver.batch_inputs import State
@@ -291,3 +293,75 @@ def test_everything_that_is_demanded_is_in_the_verdict() -> None:
         "host hangs in mid-play", "first play on a display that was without power", "poles swapped",
         "driver stuck at its limit",
     ]  # fmt: skip
+
+
+def hottest_C(one: Faulty, moments: Moments, cut: CutOff, late_s: float) -> float:
+    """The warmest skin where a driver at its lower limit is cut so long after the display has left the cut-off."""
+    ensemble, full_A, hottest = one.ensemble, THENAR.driver.current_min_A, 0.0
+    skin, display = WATCHED.index("skin_C"), WATCHED.index("display_C")
+    fine = np.arange(0.0, 10.0, 0.01)
+    shown = ensemble.watch(full_A, moments.state, fine, moments.rigs)[display]
+    for lane in range(len(shown)):
+        alone, state = ensemble.only([int(moments.rigs[lane])]), moments.state.take(np.array([lane]))
+        until = fine[int((shown[lane] >= cut.high).argmax())] + late_s
+        values, then = alone.hold(full_A, state, np.linspace(0.0, until, 50))
+        after, _ = alone.hold(0.0, then, np.arange(0.0, 5.0, 0.02))
+        hottest = max(hottest, float(values[skin].max()), float(after[skin].max()))
+    return hottest
+
+
+def test_a_cut_off_that_acts_a_fifth_too_late_keeps_the_limit_and_half_as_late_again_does_not() -> None:
+    """With the limit moved to where the stated reaction has just become long enough."""
+    plain = replace(faulty(), instants=(2, 5, 8))
+    moments = plain.moments()
+
+    def stated(highest_C: float) -> CutOff:
+        limits = Limits.of({"skin_highest_C": highest_C, "skin_highest_soft_C": 35.0})
+        return replace(plain, limits=limits).cut_off((25.0, 39.0), moments)[0]
+
+    low, high = 38.5, 42.0
+    assert stated(low).react_within_s < 0.1 <= stated(high).react_within_s
+    while high - low > 0.005:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if stated(middle).react_within_s >= 0.1 else (middle, high)
+    cut = stated(high)
+    assert cut.react_within_s == 0.1
+    assert hottest_C(plain, moments, cut, 0.12) <= high
+    assert hottest_C(plain, moments, cut, 0.15) > high + 0.01
+
+
+def test_a_watchdog_a_fifth_too_slow_keeps_every_limit_and_half_as_slow_again_does_not() -> None:
+    one = faulty()
+    moments, (watchdog_s, _) = one.moments(), one.watchdog_s()
+
+    def passes(hangs_s: float) -> bool:
+        alone = np.arange(len(moments.rigs))
+        for lane in alone.tolist():
+            few, state = one.ensemble.only([int(moments.rigs[lane])]), moments.state.take(np.array([lane]))
+            within, then = temperatures_pass(few, float(moments.command_A[lane]), state, np.linspace(0.0, hangs_s, 60))
+            if not within or not temperatures_pass(few, 0.0, then, TIMES[:500])[0]:
+                return False
+        return True
+
+    assert passes(1.2 * watchdog_s)
+    assert not passes(1.5 * watchdog_s)
+
+
+def test_a_pause_grows_until_a_cut_off_of_a_tenth_of_a_second_suffices_in_plays() -> None:
+    """After a pause a fifth shorter it would have to be quicker, though the display may still stay where it goes."""
+    tight = {"safety.skin_highest_C": 40.5, "safety.skin_highest_soft_C": 36.0, "driver.current_limit_A": 2.2}
+    rig = sure_rig("thenar").with_(**tight)
+    warm = Drive([0, 0.1, 2.6, 3.6, 4.6], [REST, -0.4, 0.2, REST, REST], held=True)
+    found = gate(warm, rig, pause_s=600.0).repeated
+    assert found.shortest_pause_s is not None and found.faultless_pause_s is not None
+    assert found.shortest_pause_s > 2.0 * found.faultless_pause_s
+    plant, held = CurrentPlant.of(Ensemble.of(rig)), held_C(rig, rig.limits)
+    known, rest = Repeating(plant, [[CurrentPlay(warm, REST)]], rig.limits), plant.ensemble.at_rest(REST)
+
+    def reaction_s(pause_s: float) -> float:
+        bounds = Beginning.of(known, pause_s, 100.0).after(pause_s).bounds
+        one = Faulty(plant.ensemble, warm, REST, rest, rig.limits, bounds=bounds)
+        assert one.shown_C[1] + 0.2 < held[1]
+        return one.cut_off(around_C(rig.limits, one.shown_C, held))[0].react_within_s
+
+    assert reaction_s(0.8 * found.shortest_pause_s) < 0.1 <= reaction_s(found.shortest_pause_s)

@@ -382,7 +382,9 @@ class TestSetpoints:
         assert sent[-1] == -1.0
 
     def test_a_controller_without_a_second_sensor_is_told_once(self, bench: Callable[..., Bench]) -> None:
-        loop = bench(self.LOOP, loop=Loop((0.1, 0.2), (0.02, 0.05), 0.0, 0.02, 0.1, 0.3, 3.0, (0.19, 0.21), (0.04, 0.06), 0.1))
+        loop = bench(
+            self.LOOP, loop=Loop((0.1, 0.2), (0.02, 0.05), 0.0, 0.02, 0.1, 0.3, 3.0, (0.19, 0.21), (0.04, 0.06), 0.1)
+        )
         with pytest.warns(UserWarning, match="needs a second sensor: give its function as second_C") as told:
             loop.play(lambda _: None, lambda: None, loop.measured)
         assert len(told) == 1
