@@ -12,6 +12,7 @@ from thermicon.circuit.safety.held import BEYOND_K
 from thermicon.circuit.safety.plant import ENDING_S, LATER_S, RECOVERED_K
 from thermicon.circuit.safety.repeated import LONGEST_PAUSE_S
 from thermicon.circuit.safety.single_faults import INSTANTS, MARGIN, REACTIONS_S
+from thermicon.circuit.safety.starts import BEGINNINGS
 from thermicon.icons import load_library
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -37,6 +38,11 @@ def test_the_constants_without_a_source_are_those_of_the_code() -> None:
         f"{', '.join(f'{one:g}' for one in REACTIONS_S[:0:-1])} or {REACTIONS_S[0]:g} s",
     ):
         assert words in text, words
+
+
+def test_the_beginnings_that_the_page_names_are_those_from_which_faults_are_tried() -> None:
+    """`tests/circuit/safety/test_single_faults.py` draws states of each of them and finds them between the bounds."""
+    assert tuple(re.findall(r"^\| `([a-z ]+)` \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE)) == BEGINNINGS
 
 
 def test_a_session_of_a_closed_loop_is_judged_in_the_open_loop_scenarios() -> None:
