@@ -10,11 +10,10 @@ from typing import Any
 import pytest
 
 from tests.circuit.delivery.one_drive import prepare
-from tests.circuit.verdicts import MADE_UP, GreenVerdict
+from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.safety.checks import Loop
 from thermicon.icons import load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
@@ -24,7 +23,6 @@ CFLAGS = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"]
 OK, NO_SENSOR, NOT_RESTED, NO_CLOCK = 0, 1, 2, 6
 PLAYING, STOPPED, NO_FAULT = 2, 3, 0
 LATE, LOST, FROZEN, STANDS = 3, 4, 5, 9
-LOOP = Loop((0.1, 0.2), (0.02, 0.05), 0.0, 0.02, 0.1, 0.3, 3.0, (0.19, 0.21), (0.04, 0.06), 0.1)
 
 
 def build(folder: Path, device: str, compiler: str, **demands: Any) -> Path:

@@ -19,9 +19,9 @@ import numpy as np
 import pytest
 
 from tests.circuit.daq import Daq
-from tests.circuit.delivery.formats.test_c_player import FROZEN, LATE, LOOP, LOST, STANDS, STOPPED, build, run
+from tests.circuit.delivery.formats.test_c_player import FROZEN, LATE, LOST, STANDS, STOPPED, build, run
 from tests.circuit.delivery.one_drive import prepare
-from tests.circuit.verdicts import GreenVerdict
+from tests.circuit.verdicts import LOOP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack

@@ -16,11 +16,10 @@ import pytest
 
 from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
-from tests.circuit.verdicts import MADE_UP, GreenVerdict
+from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.safety.checks import Loop
 from thermicon.icons import Icon, load_library
 
 RIG = Rig.load("thenar").with_(**{"driver.transconductance_A_per_V": 0.1})
@@ -382,9 +381,7 @@ class TestSetpoints:
         assert sent[-1] == -1.0
 
     def test_a_controller_without_a_second_sensor_is_told_once(self, bench: Callable[..., Bench]) -> None:
-        loop = bench(
-            self.LOOP, loop=Loop((0.1, 0.2), (0.02, 0.05), 0.0, 0.02, 0.1, 0.3, 3.0, (0.19, 0.21), (0.04, 0.06), 0.1)
-        )
+        loop = bench(self.LOOP, loop=LOOP)
         with pytest.warns(UserWarning, match="needs a second sensor: give its function as second_C") as told:
             loop.play(lambda _: None, lambda: None, loop.measured)
         assert len(told) == 1
