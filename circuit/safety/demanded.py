@@ -15,7 +15,7 @@ from ..solver.drive import Drive
 from .checks import Check, CutOff, Demands, PolarityCheck, Scenario, SingleFault, colour_of, findings_of
 from .current import CurrentPlant, CurrentPlay
 from .ensemble import Ensemble
-from .held import BEYOND_K, NEARER_K, around_C, held_C, stays
+from .held import BEYONDS_K, around_C, held_C, stays
 from .plant import Single
 from .repeated import LONGEST_PAUSE_S, PAUSE_STEP_S, PRACTICAL_S, Repeating, lengthened_s
 from .single_faults import STUCK_SHARES, Faulty
@@ -59,8 +59,8 @@ def demanded(
         return around_C(repeating.limits, reach_of(pause_s), held, beyond_K)
 
     longest_s = max(begin_s, *recovered_s)
-    practical = _resting(after(longest_s)[0], ends(longest_s, BEYOND_K))[0].react_within_s >= PRACTICAL_S
-    beyond_K = BEYOND_K if practical else NEARER_K
+    react_s = [_resting(after(longest_s)[0], ends(longest_s, one))[0].react_within_s for one in BEYONDS_K]
+    beyond_K = BEYONDS_K[int(np.argmax(np.minimum(react_s, PRACTICAL_S)))]  # the farthest that suffices, or the slowest
     hardest = [one.hardest(ends(begin_s, beyond_K), PRACTICAL_S) for one in after(begin_s)]
 
     def holds(number: int, pause_s: float, within_s: Span) -> bool:

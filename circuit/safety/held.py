@@ -18,11 +18,10 @@ from ..solver.modes import FELT, modes_of
 from .checks import Check
 from .corners import contact_corners
 
-BEYOND_K, NEARER_K = 1.0, 0.5
-"""Cut-offs are this far beyond what the display reaches in any corner, so that they act only on a fault; the nearer one
-where a driver that gets stuck without power before would need a cut-off quicker than is practical."""
-LEAST_BEYOND_K = 0.2
-"""They may come so near to it where a display may not stay farther out: what a thermistor may be wrong by."""
+BEYOND_K, LEAST_BEYOND_K = 1.0, 0.2
+BEYONDS_K = BEYOND_K, 0.5, LEAST_BEYOND_K
+"""Cut-offs are this far beyond what the display reaches in any corner, so that they act only on a fault; nearer where a
+driver that gets stuck on a display without power would need a cut-off quicker than is practical."""
 INSIDE_K = 0.1
 """So far inside a limit must stay what a display leads to that is held: for what follows until a cut-off has acted."""
 STEP_K = 0.1

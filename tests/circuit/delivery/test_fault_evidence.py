@@ -39,7 +39,7 @@ Way = tuple[str, str]
 VOLTS = [(name, form) for name in ("dac-12", "dac-14", "dac-16", "ni-analogue-output") for form in ("csv", "psychopy")]
 KINDS: dict[str, list[Way]] = {
     "volts": [*VOLTS, ("coarse", "csv"), ("dac-12", "c-array"), ("ni-analogue-output", "tdms")],
-    "amperes": [("source", "csv"), ("source", "psychopy")],
+    "amperes": [("source", "csv"), ("source", "c-array")],
     "bridge": [("pwm-h-bridge-10", "csv"), ("pwm-h-bridge-10", "c-array")],
     "set-points": [("qst-tcs2", "tcs2-serial"), ("qst-tcs2", "psychopy")],
     "temperatures": [("closed-loop-controller", "setpoint-csv"), ("closed-loop-controller", "psychopy")],
