@@ -79,7 +79,7 @@ class DeliveredDrive:
         return float(self.played.time_s[-1])
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ModuleDrive(DeliveredDrive):
     """What the rig's module gets: the currents as `designed` and `delivered`.
 
@@ -92,7 +92,7 @@ class ModuleDrive(DeliveredDrive):
     narrowed: Narrowed | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ThermodeDrive(DeliveredDrive):
     """What a thermode shows, whose current is not known.
 
