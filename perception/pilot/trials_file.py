@@ -19,7 +19,8 @@ COLUMNS = ("participant", "trial", "presented", "responded")
 EXAMPLE = ",".join(COLUMNS)
 WHAT = "table of trials"
 MOST_MB, MOST_ROWS, MOST_PARTICIPANTS = 20, 200_000, 1000
-LONGEST_LABEL, LONGEST_COUNT = 100, 6
+LONGEST_LABEL = 100
+LONGEST_COUNT = 6
 NOTHING = ("", "n/a", "na", "nan", "none", "null", "no answer", "no response", "-", "–", "timeout")
 """What experiments write where nobody answered."""
 WIDE = re.compile(
