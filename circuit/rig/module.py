@@ -56,6 +56,13 @@ class Extraction:
     thermal_resistance_K_per_W: float
     mean_C: float
 
+    def greatest(self, hot_C: float) -> tuple[float, float]:
+        """Greatest difference in K between plates that absorb no heat, and its current in A, with this hot side."""
+        merit_per_K = self.seebeck_V_per_K**2 * self.thermal_resistance_K_per_W / self.resistance_ohm
+        hot_K = hot_C + ZERO_C_IN_K
+        cold_K = (math.sqrt(1.0 + 2.0 * merit_per_K * hot_K) - 1.0) / merit_per_K
+        return hot_K - cold_K, self.seebeck_V_per_K * cold_K / self.resistance_ohm
+
 
 class Datasheet(KeyTable):
     """The figures that a maker prints for a Peltier module at one hot-side temperature.

@@ -25,6 +25,8 @@ COLUMNS = (
     "q_max_W",
     "dt_max_K",
 )
+ONE_STAGE = 0.03
+"""Share by which ΔTmax may miss the printed one: single-stage sheets come within 0.008, a two-stage one has 0.19."""
 LEAST_APART_K = 1.0
 """Two sheets closer than this in mean module temperature cannot show its influence."""
 
@@ -108,6 +110,10 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
     extractions = _extract(sheets, four)
     hot = " and ".join(f"{sheet.t_hot_C:g}" for sheet in sheets)
     figures, how = ("four", "Qmax reproduced") if four else ("three", "no Qmax to check them against")
+    for sheet, found in zip(sheets, extractions, strict=True):  # four figures for three numbers leave one to compare
+        span, current = found.greatest(sheet.t_hot_C)
+        if abs(span / sheet.dt_max_K - 1.0) > ONE_STAGE:
+            warnings.append(sentence("warnings.not_one_stage", sheet=sheet, span=span, current=current))
     said = f"{what}: {figures} figures with the hot side at {hot} °C, {how}"
     if len(extractions) == 2:
         low, high = sorted(sheet.mean_C for sheet in extractions)

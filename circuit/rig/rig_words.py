@@ -23,6 +23,8 @@ WIDTH = 118
 PLATE_KEYS = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
 SAME_FACE = 0.01
 """Share by which a contact in cm² may differ from the face of a module by rounding alone."""
+PLATE_SHARE = 0.2
+"""Plates on record are assumed from the footprint, within 20 % for ceramics of 0.5 to 0.8 mm."""
 
 LIVING_C = (28.0, 38.5)
 """Blood in a limb is between that of a cold hand and a feverish core; assumed, and only warned about."""
@@ -135,6 +137,10 @@ def _module(rig: Rig) -> Iterator[str]:
     hot, cold, replaced = rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K, stated.get("module.name") == name
     if replaced and build.plate_J_per_K is None and not set(PLATE_KEYS) <= set(stated):
         yield sentence("warnings.plates_unknown", name=name, hot=hot, cold=cold, keys=keys)
+    plate, known = build.plate_J_per_K, {*stated, *document.get("source", {})}
+    own = [each for key, each in zip(PLATE_KEYS, (hot, cold), strict=True) if key not in known]
+    if plate is not None and any(abs(each - plate) > PLATE_SHARE * plate for each in own):
+        yield sentence("warnings.plates_other", name=name, keys=keys, hot=hot, cold=cold, plate=plate)
     if build.face_cm2 is not None and area_cm2 > (1.0 + SAME_FACE) * build.face_cm2:
         yield sentence("warnings.face_small", name=name, area=area_cm2, face=build.face_cm2)
     if replaced and rig.driver.current_max_A > build.i_max_A:

@@ -1,11 +1,12 @@
 """Say in plain words what is wrong with one statement, from its own pieces and from what the grammar could take."""
 
 import re
+from dataclasses import replace
 
-from ..model.words import NOT_YET, QUOTES, VOCABULARY, nearest
+from ..model.words import LACKING, NOT_YET, QUOTES, VOCABULARY, nearest
 from .diagnose_family import family
 from .diagnose_number import not_a_number, notation, unit
-from .diagnose_word import connective, extra, joined, pace, unit_twice, word
+from .diagnose_word import connective, extra, joined, pace, peaks, unit_twice, word
 from .failed_statement import FailedStatement, at, short, signed, swap
 from .source import Edit, Finding
 
@@ -18,9 +19,18 @@ def diagnose(case: FailedStatement) -> Finding:
     for rule in _RULES:
         finding = rule(case)
         if finding is not None:
-            return finding
+            return _lacking(case, finding)
     what = f'"{short(case.bad.text)}" does not fit here' if case.bad.text else "something is missing here"
     return at(case.bad, "E101", what, _examples(case.where))
+
+
+def _lacking(case: FailedStatement, finding: Finding) -> Finding:
+    """Return a finding, without a corrected line where a word has no counterpart in the language."""
+    words = [piece.text.casefold() for piece in case.pieces[case.index :] if piece.text not in (case.names or ())]
+    said = next((LACKING[word] for word in words if word in LACKING), finding.help)
+    if case.where not in ("icon", "repeat") or said == finding.help or finding.code == "E105":
+        return finding
+    return replace(finding, help=said, cures=())
 
 
 def not_yet(case: FailedStatement) -> Finding | None:
@@ -91,7 +101,8 @@ def character(case: FailedStatement) -> Finding | None:
         return found
     code = f"U+{ord(bad.text):04X}"
     shown = f'"{bad.text}" ({code})' if bad.text.isprintable() else code
-    return at(bad, "E105", f"the character {shown} has no meaning here", "remove it", swap(bad, ""))
+    cures = [swap(bad, "")] if case.idle([bad]) else []
+    return at(bad, "E105", f"the character {shown} has no meaning here", "remove it", *cures)
 
 
 def opening(case: FailedStatement) -> Finding | None:
@@ -123,7 +134,8 @@ def block(case: FailedStatement) -> Finding | None:
         cause, hint = 'no "{" opens the block after this', 'statements are written in "{ ... }"'
         return Finding("E114", here.start, here.end, cause, hint, (cure,))
     if case.first == "repeat":
-        return at(bad, "E114", 'a "{" is needed here', "for example: repeat 3 { ... }", swap(bad, ""))
+        cures = [swap(bad, "")] if case.idle([bad]) else []
+        return at(bad, "E114", 'a "{" is needed here', "for example: repeat 3 { ... }", *cures)
     texted = any(piece.kind == "text" for piece in case.rest[:1])
     if bad.kind == "word" and case.index == 2 and case.first == "icon" and not texted:
         joined = Edit(case.pieces[1].end, bad.end, "-" + bad.text)
@@ -167,5 +179,5 @@ def _keys() -> str:
 _RULES = (
     *(not_yet, quotes, text, family, unit_twice, notation, unit, not_a_number, comment, joined, character),
     *(opening, block, name),
-    *(word, extra, pace, connective),
+    *(word, peaks, extra, pace, connective),
 )

@@ -90,9 +90,7 @@ def unit(case: FailedStatement) -> Finding | None:
         return at(number, "E102", "this number has no unit", EXAMPLES[kind], *(() if shared else (cure,)))
     if bad.text in (case.names or ()):
         help = "a parameter replaces number and unit; there is no arithmetic"
-        return at(
-            bad, "E103", f'"{short(bad.text)}" is a parameter, not a unit', help, Edit(number.start, bad.start, "")
-        )
+        return at(bad, "E103", f'"{short(bad.text)}" is a parameter, not a unit', help)
     if bad.text in ("%", "%/s"):
         return at(bad, "E103", f'"{bad.text}" is not a unit of this language', EXAMPLES[kind])
     others = [other for other in unit_kinds(bad.text) if other not in kinds]
@@ -192,7 +190,7 @@ def not_a_number(case: FailedStatement) -> Finding | None:
     what = f'a number is needed, not "{short(bad.text)}"' if bad.text else "a number is missing here"
     if case.first == "cue":
         cures = [swap(bad, "1")]
-    elif case.rest and case.rest[0].kind == "number" and not cures and bad.text != "±":
+    elif case.rest and case.rest[0].kind == "number" and not cures and case.idle([bad]):
         cures = [Edit(bad.start, case.rest[0].start, "")]
     wanted = "current" if case.first == "to" and case.index == 1 else _WANTED.get(case.pieces[case.index - 1].text, "")
     help = EXAMPLES.get(wanted, "numbers look like 6, 0.5 or 1e-3, each with its unit")

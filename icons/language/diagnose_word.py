@@ -1,11 +1,17 @@
 """Diagnosis of the small words: at, over, by, to, for, every, starting; and of what stands behind a whole statement."""
 
+import math
+import re
+
 from ..model.units import UNITS, decimal_text, exact_number
-from ..model.words import EXAMPLES, JOINERS, STARTS, VOCABULARY, WAVES, nearest, unit_kinds
+from ..model.words import EXAMPLES, JOINERS, LACKING, STARTS, VOCABULARY, WAVES, nearest, unit_kinds
 from .failed_statement import FailedStatement, at, either, short, swap
 from .source import Edit, Finding
 
 _CONNECTIVES = {"AT": "at", "OVER": "over", "BY": "by", "TO": "to", "FOR": "for", "EVERY": "every"}
+_TAKES = {"at": "rate", "by": "difference", "to": "absolute"}
+"""Kinds of quantity behind a connective; behind the others there is a time."""
+_PEAKS = re.compile(r"(peak[ -]to[ -]peak|pp|p-p|pk-pk)(?!\S)", re.IGNORECASE)
 _PACE_ALIASES = {"in": "over", "during": "over", "for": "over", "within": "over", "with": "at", "@": "at"}
 _TAILS = {"hold": "for 1 s", "rest": "for 1 s", "pulse": "for 500 ms"}
 
@@ -52,12 +58,6 @@ def _statement_behind(case: FailedStatement) -> int | None:
     return None
 
 
-def _worthless(case: FailedStatement) -> bool:
-    """Tell whether nothing is lost with what stands from here on: no number, text or statement."""
-    rest = case.pieces[case.index :]
-    return not any(piece.kind in ("number", "text") or piece.text in VOCABULARY[case.where] for piece in rest)
-
-
 def _two_times(case: FailedStatement) -> Finding | None:
     """``1 min 30 s``: a time in two parts."""
     place = case.index + (case.bad.text in JOINERS)
@@ -98,10 +98,20 @@ def extra(case: FailedStatement) -> Finding | None:
     if twice:
         help = 'either "at" a rate or "over" a time: one follows from the other'
     # A suggestion leaves nothing out that was meant.
-    cures = (Edit(before.end, case.pieces[-1].end, ""),) if twice or _worthless(case) else ()
+    rest = case.pieces[case.index :]
+    kept = twice and len(rest) == 3 and _one_pace(case)
+    cures = (Edit(before.end, case.pieces[-1].end, ""),) if kept or case.idle(rest) else ()
     if bad.text == "for" and case.first in ("cool", "warm", "change", "to", "return"):
         cures = (Edit(before.end, bad.start, "; hold "),)
     return at(bad, "E108", f'the statement is complete before "{short(bad.text)}"', help, *cures)
+
+
+def _one_pace(case: FailedStatement) -> bool:
+    """Tell whether rate and time of a change say the same: 6 °C at 3 °C/s over 2 s."""
+    by, pace, over = (case.quantity((case.find(word) or 0) + 1) for word in ("by", "at", "over"))
+    if by is None or pace is None or over is None or f"{by[1]}/{over[1]}" != pace[1]:
+        return False
+    return math.isclose(abs(by[0]), pace[0] * over[0])
 
 
 def _behind_play(case: FailedStatement) -> Finding | None:
@@ -162,11 +172,11 @@ def pace(case: FailedStatement) -> Finding | None:
         cures = [Edit(bad.start, bad.start, "at "), Edit(bad.start, bad.start, "over ")]
     elif bad.kind == "word":
         close = _PACE_ALIASES.get(bad.text) or nearest(bad.text, ("at", "over"))
-        if close:
+        if close and bad.text != "every":
             cures = [swap(bad, close)]
         elif (behind := _statement_behind(case)) is not None:
             cures = [Edit(bad.start, behind, f"{rate}; ")]
-        elif _worthless(case):
+        elif case.idle(pieces[case.index :]):
             cures = [Edit(bad.start, pieces[-1].end, rate)]
     return at(bad, "E107", f'"at" or "over" is needed, not "{short(bad.text)}"', help, *cures)
 
@@ -178,6 +188,17 @@ def unit_twice(case: FailedStatement) -> Finding | None:
         return None
     what = f'"{before.text}" has its unit already'
     return at(bad, "E104", what, "the unit of a parameter is in the header, after its values", swap(bad, ""))
+
+
+def peaks(case: FailedStatement) -> Finding | None:
+    """An amplitude that is given from peak to peak."""
+    size, found = case.quantity(case.index - 2), _PEAKS.match(case.text_from(case.index))
+    if case.index < 4 or "EVERY" not in case.accepts or found is None or not size or abs(size[0]) > 1e9:
+        return None
+    begin, end = case.pieces[case.index - 2], case.pieces[case.index + found[0].count(" ")]
+    cure = Edit(begin.start, end.end, f"{decimal_text(size[0] / 2.0)} {size[1]}")
+    said = "the size of a wave is its amplitude", LACKING["peak-to-peak"]
+    return Finding("E116", case.bad.start, end.end, *said, (cure,))
 
 
 def connective(case: FailedStatement) -> Finding | None:
@@ -219,11 +240,16 @@ def _joined(case: FailedStatement, words: list[str]) -> list[Edit]:
     later = next((piece for piece in case.rest if piece.text in words), None)
     between = [piece for piece in case.rest if later is not None and piece.start < later.start]
     # Where a change begins need not be said; any other number must not get lost.
-    if later is not None and (bad.text == "from" or not any(piece.kind == "number" for piece in between)):
+    if later is not None and (bad.text == "from" or case.idle([bad, *between])):
         cures.append(Edit(bad.start, later.start, ""))
+    quantity = case.quantity(case.index + (bad.kind != "number"))
+    kinds = set(unit_kinds(quantity[1])) if quantity else set()
+    words = [text for text in words if not kinds or kinds & {_TAKES.get(text, "time"), "current", "current_rate"}]
+    words = ["to"] if bad.text == "at" and "to" in words else words
     if bad.kind == "number":
         cures += [Edit(bad.start, bad.start, f"{text} ") for text in words]
     elif bad.kind == "word":
         cures += [swap(bad, close)] if (close := nearest(bad.text, words)) else []
-        cures += [swap(bad, text) for text in words]
+        if bad.text in ("at", "over", *_PACE_ALIASES) or case.idle([bad]):
+            cures += [swap(bad, text) for text in words]
     return cures

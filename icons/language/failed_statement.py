@@ -1,10 +1,14 @@
 """One statement that stopped making sense, as the rules of diagnosis see it, and how they say what they found."""
 
+from collections.abc import Iterable
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
-from ..model.words import DASHES
+from ..model.words import DASHES, FILLERS, STARTS
 from .source import Edit, Finding, Piece
+
+_BOUNDS = "<>≤≥±"
+"""Characters that are not idle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +51,12 @@ class FailedStatement:
     def rest(self) -> list[Piece]:
         """The pieces behind the one that does not fit."""
         return self.pieces[self.index + 1 :]
+
+    def idle(self, pieces: Iterable[Piece]) -> bool:
+        """Tell whether nothing is left out without these pieces: fillers, repeated words, and where the change goes."""
+        said = (piece.text.casefold() for piece in pieces if piece.kind != "other" or piece.text in _BOUNDS)
+        repeated = self.before.text if self.before is not None else ""
+        return all(word in FILLERS or word == repeated or STARTS.get(word) == self.first for word in said)
 
     def next(self, count: int = 1) -> str:
         """Return the text of a piece behind the one that does not fit, or ""."""

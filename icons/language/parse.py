@@ -85,7 +85,9 @@ class _Suggester:
             left = [found for found in analysis.findings if tried.place(found.start)[0] == line]
             if not left and len(analysis.findings) + analysis.more <= self.count:
                 return tried.lines[line - 1].strip() or None
-            if left and depth < _MOST_CURES and (deeper := self.cured(tried, left[0], depth + 1)) is not None:
+            # A name that a cure made up is not respelt: what was written behind it would be lost.
+            done = not left or depth >= _MOST_CURES or (finding.code, left[0].code) == ("E113", "E230")
+            if not done and (deeper := self.cured(tried, left[0], depth + 1)) is not None:
                 return deeper
         return None
 

@@ -51,6 +51,9 @@ EXAMPLES: dict[str, str] = _TABLES["examples"]
 """Examples of kinds of quantity and of statements."""
 WORD_ALIASES, STARTS, BOUNDS, NUMBER_WORDS = map(_meant, ("words", "starts", "bounds", "numbers"))
 _UNIT_ALIASES = _meant("units")
+FILLERS = frozenset(_TABLES["fillers"]["said"].split())
+"""Words that leave nothing out when they go."""
+LACKING = _meant("lacking")
 QUOTES: dict[str, str] = _TABLES["quotes"]
 """Quotation marks that are not straight double ones, and what closes each."""
 _SCALED = {unit: (known, Fraction(size)) for units, (known, size) in _TABLES["sizes"].items() for unit in units.split()}
@@ -78,7 +81,7 @@ def nearest_unit(word: str, kind: Kind) -> str | None:
     for spelling in (plain, _UNIT_ALIASES.get(plain.casefold(), ""), slash.join(parts)):
         if spelling in UNITS[kind]:
             return spelling
-    if word in _SCALED or head[-1:] in "Ff℉" or any(char.isdigit() for char in word):
+    if word in _SCALED or head[-1:] in "Ff℉" or head.endswith(("pp", "rms")) or any(char.isdigit() for char in word):
         return None
     # What begins otherwise, or is per something else, is a unit of another size: µs, mK, °C/ms.
     same = [unit for unit in UNITS[kind] if unit[:1] == plain[:1] and unit.partition("/")[2] in (per, "")]

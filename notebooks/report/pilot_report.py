@@ -156,13 +156,16 @@ def people_table(data: Answered) -> Grid:
     """One row per participant and one for all: trials, per cent correct, bits."""
     rows = [_row(score) for score in data.each[:MOST_PEOPLE]]
     if (more := len(data.each) - MOST_PEOPLE) > 0:
-        rows.append([f"and {more} more", "", "", "", ""])
-    return grid(["", "trials", "correct", "95 %", "bits"], [*rows, _row(data.pooled)], ("trials", "correct", "bits"))
+        rows.append([f"and {more} more", "", "", "", "", ""])
+    columns, rows = ["", "trials", "correct", "95 %", "bits", "no answer"], [*rows, _row(data.pooled)]
+    rows = rows[-1:] if data.trials.grouped else rows
+    kept = len(columns) if data.pooled.unanswered else -1
+    return grid(columns[:kept], [row[:kept] for row in rows], ("trials", "correct", "bits", "no answer"))
 
 
 def _row(score: AnswerScore) -> list[str]:
     correct = [percent(score.proportion_correct), percent_span(*score.proportion_correct_interval)]
-    return [score.who, str(score.trials), *correct, f"{score.information_bits:.2f}"]
+    return [score.who, str(score.trials), *correct, f"{score.information_bits:.2f}", str(score.unanswered)]
 
 
 def observed_sentences(data: Answered) -> list[str]:
@@ -173,6 +176,18 @@ def observed_sentences(data: Answered) -> list[str]:
         f"{pooled.information_bits_plugin:.2f} bits, {pooled.information_bits_bias:.2f} too many by that formula; "
         "with few trials some bias is left."
     ]
+    if pooled.unanswered:
+        lines.append(
+            f"{pooled.unanswered} of {pooled.trials} trials have no answer: not correct in the table, and left out of "
+            "bits, test of fit and likelihood."
+        )
+    if trials.passed:
+        lines.append(f"Passed over, since they have neither icon nor answer: {trials.passed} rows or trials of a row.")
+    if trials.grouped:
+        lines.append(
+            "Counts of one group say nothing of differences between people, of order or of carry-over. The interval "
+            "takes all answers as independent, and the prediction takes the group for one person."
+        )
     if trials.never_presented:
         lines.append(
             f"Never presented: {', '.join(trials.never_presented)}. What is said of them is prediction alone, and "
@@ -184,14 +199,15 @@ def observed_sentences(data: Answered) -> list[str]:
 def fit_sentences(found: Observed[Answered, Fit]) -> list[str]:
     """The test of fit before and after, and the pairs that were missed."""
     fit, pooled = found.fit, found.data.pooled
-    seen_bits = pooled.information_bits_plugin
+    seen = found.data.trials.pooled
     middle, low, high = fit.proportion_correct
     bits, least, most = fit.information_bits_plugin
     lines = [
         f"Predicted for this experiment: {percent(middle)} correct ({percent_span(low, high)}), {bits:.2f} plug-in "
-        f"bits ({least:.2f}–{most:.2f}). Observed: {percent(pooled.proportion_correct)}, {seen_bits:.2f} "
-        "bits. This prediction is the median of experiments with as many participants and trials; that of the set, "
-        "below, is the mean over people and laboratories, so the two may differ.",
+        f"bits ({least:.2f}–{most:.2f}). Observed{' where they answered' * bool(pooled.unanswered)}: "
+        f"{percent(float(seen.trace() / seen.sum()))}, {pooled.information_bits_plugin:.2f} bits. This prediction is "
+        "the median of experiments with as many participants and trials; that of the set, below, is the mean over "
+        "people and laboratories, so the two may differ.",
         f"Test of fit (posterior predictive): p = {p_text(fit.p)} before, {p_text(found.fit_after.p)} after the "
         f"answers were used{_verdict(found)}",
     ]
@@ -222,7 +238,7 @@ def p_text(p: float) -> str:
 
 
 def _verdict(found: Observed[Answered, Fit]) -> str:
-    if (total := found.data.trials.total) < LEAST_TRIALS:
+    if (total := int(found.data.trials.counts.sum())) < LEAST_TRIALS:
         few = "1 answer is too little" if total == 1 else f"{total} answers are too few"
         return f": {few} to judge the model by; {LEAST_TRIALS} or more can"
     why = misfit(found.fit.p, found.fit_after.p, "answers", len(found.conditioned.after))

@@ -171,13 +171,13 @@ class Answered:
     @cached_property
     def pooled(self) -> AnswerScore:
         """Score of all participants together."""
-        return score("all", self.trials.counts)
+        return score("all", self.trials.counts, self.trials.unanswered.sum(axis=1))
 
     @cached_property
     def each(self) -> tuple[AnswerScore, ...]:
         """Score of each participant."""
-        rows = zip(self.trials.participants, self.trials.counts, strict=True)
-        return tuple(score(name, counts[None]) for name, counts in rows)
+        rows = zip(self.trials.participants, self.trials.counts, self.trials.unanswered, strict=True)
+        return tuple(score(name, counts[None], float(missing.sum())) for name, counts, missing in rows)
 
     def simulate(self, some: Laboratories, step: Step | None = None) -> Confusions:
         """Confusions of the people of each laboratory."""
@@ -220,6 +220,9 @@ class Answered:
             "icons": list(trials.icons),
             "never_presented": list(trials.never_presented),
             "counts": trials.pooled.astype(int).tolist(),
+            "unanswered": trials.unanswered.sum(axis=0).astype(int).tolist(),
+            "rows_passed_over": trials.passed,
+            "one_group": trials.grouped,
             "observed": asdict(self.pooled),
             "each": [asdict(each) for each in self.each],
         }

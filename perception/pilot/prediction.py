@@ -194,16 +194,17 @@ def simulated_counts(played: Confusions, presented: Array, rng: np.random.Genera
 def compare(trials: Trials, played: Confusions, *, seed: int = 0) -> Fit:
     """Compare observed answers with experiments simulated in the laboratories of a prediction."""
     rng = np.random.default_rng(np.random.SeedSequence([seed, 13]))
-    each = simulated_counts(played, trials.presented, rng)
+    each = simulated_counts(played, trials.counts.sum(axis=2), rng)
     pooled, seen = each.sum(axis=1), trials.pooled
     expected = seen.sum(axis=1)[:, None] * played.pooled.mean(axis=0)
     shown = expected > 0.0
     off = [float(((one - expected)[shown] ** 2 / expected[shown]).sum()) for one in (seen, *pooled)]
-    spread = [(np.trace(one, axis1=1, axis2=2) / one.sum(axis=(1, 2))).std() for one in (trials.counts, *each)]
+    answered = trials.counts.sum(axis=(1, 2)).clip(1.0)
+    spread = [(np.trace(one, axis1=1, axis2=2) / answered).std() for one in (trials.counts, *each)]
     return Fit(
         p=_share(off),
         p_people=_share(spread) if len(trials.participants) >= LEAST_PEOPLE else None,
-        proportion_correct=median_three(np.trace(pooled, axis1=1, axis2=2) / trials.total),
+        proportion_correct=median_three(np.trace(pooled, axis1=1, axis2=2) / seen.sum()),
         information_bits_plugin=median_three(np.array([plugin_information(one)[0] for one in pooled])),
         pairs=tuple(_pairs(trials, seen, pooled)),
     )

@@ -9,7 +9,7 @@ than Wilson's, which their number alone leaves.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,6 +22,8 @@ class Trials:
 
     `icons` are the names of all that could be answered, in the order of the set; `counts` (participants, icons
     presented, icons answered). `source` and `digest` are the name of the file and the first 16 digits of its SHA-256.
+    `unanswered` (participants, icons presented) are trials without an answer, `passed` rows of the file
+    with neither icon nor answer. `grouped` says that the counts of a group are given as those of one participant.
 
     Examples
     --------
@@ -35,17 +37,21 @@ class Trials:
     counts: Array
     source: str = ""
     digest: str = ""
+    unanswered: Array = field(default_factory=lambda: np.zeros((1, 1)))
+    passed: int = 0
+    grouped: bool = False
 
     def __post_init__(self) -> None:
-        own_arrays(self, "counts")
-        counts = self.counts
+        object.__setattr__(self, "unanswered", np.broadcast_to(self.unanswered, np.shape(self.counts)[:2]))
+        own_arrays(self, "counts", "unanswered")
+        counts = np.concatenate([self.counts, self.unanswered[..., None]], axis=2)
         wanted = (len(self.participants), len(self.icons), len(self.icons))
-        if counts.shape != wanted or not self.participants:
+        if self.counts.shape != wanted or not self.participants:
             raise ValueError(f"counts of answers must have shape {wanted} with at least one participant")
         if not (counts >= 0.0).all() or (counts != np.floor(counts)).any():
             raise ValueError("counts of answers must be whole numbers of 0 or more")
-        if (counts.sum(axis=(1, 2)) == 0.0).any():
-            raise ValueError("every participant needs at least one answer")
+        if (counts.sum(axis=(1, 2)) == 0.0).any() or not self.counts.any():
+            raise ValueError("every participant needs at least one trial, and somebody an answer")
 
     @property
     def pooled(self) -> Array:
@@ -56,13 +62,13 @@ class Trials:
     @property
     def presented(self) -> Array:
         """How often each participant was presented each icon (participants, icons)."""
-        found: Array = self.counts.sum(axis=2)
+        found: Array = self.counts.sum(axis=2) + self.unanswered
         return found
 
     @property
     def total(self) -> int:
         """Number of trials of all participants."""
-        return int(self.counts.sum())
+        return int(self.presented.sum())
 
     @property
     def never_presented(self) -> tuple[str, ...]:
@@ -82,7 +88,7 @@ FEWEST = 2
 
 @dataclass(frozen=True, slots=True)
 class AnswerScore:
-    """Per cent correct, with a 95 % interval, and bits of some answers.
+    """Per cent correct, with a 95 % interval, and bits of some answers; trials without one are not correct.
 
     `information_bits_plugin` are bits as published information is computed, `information_bits` those without their bias
     `information_bits_bias`, within what a set of this size can carry.
@@ -95,6 +101,7 @@ class AnswerScore:
     information_bits_plugin: float
     information_bits_bias: float
     information_bits: float
+    unanswered: int = 0
 
 
 def plugin_information(counts: Array) -> tuple[float, float]:
@@ -116,25 +123,28 @@ def plugin_information(counts: Array) -> tuple[float, float]:
     return bits, max(float(bias), 0.0)
 
 
-def score(who: str, counts: Array) -> AnswerScore:
+def score(who: str, counts: Array, unanswered: float | Array = 0.0) -> AnswerScore:
     """Scores of the answers (participants, icons, icons) of one participant or of several together.
 
-    The interval is Wilson's, or over participants Student's by the jackknife where that is wider.
+    Trials `unanswered` (participants,) count as not correct, and are left out of the bits. The interval is Wilson's, or
+    over participants Student's by the jackknife where that is wider.
     """
     pooled = counts.sum(axis=0)
-    total, correct = float(pooled.sum()), float(np.trace(pooled))
+    trials = counts.sum(axis=(1, 2)) + unanswered
+    total, correct = float(trials.sum()), float(np.trace(pooled))
     low, high = wilson(correct, total)
     if len(counts) >= FEWEST:
         from scipy.stats import t
 
         without = pooled - counts
-        each = np.trace(without, axis1=1, axis2=2) / without.sum(axis=(1, 2))
+        each = np.trace(without, axis1=1, axis2=2) / (total - trials)
         spread = math.sqrt((len(each) - 1) / len(each) * float(np.square(each - each.mean()).sum()))
         half = float(t.ppf(0.975, len(each) - 1)) * spread
         low, high = max(min(correct / total - half, low), 0.0), min(max(correct / total + half, high), 1.0)
-    bits, bias = plugin_information(pooled)
+    bits, bias = plugin_information(pooled) if pooled.any() else (0.0, 0.0)
     corrected = min(max(bits - bias, 0.0), math.log2(len(pooled)))
-    return AnswerScore(who, int(total), correct / total, (low, high), bits, bias, corrected)
+    missing = int(total - pooled.sum())
+    return AnswerScore(who, int(total), correct / total, (low, high), bits, bias, corrected, missing)
 
 
 def wilson(successes: float, trials: float) -> tuple[float, float]:

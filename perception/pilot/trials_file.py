@@ -1,7 +1,9 @@
 """The door for answers: a CSV file of trials, or what is wrong with it, where, and what helps."""
 
 import hashlib
-from collections.abc import Collection, Sequence
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes,
 from thermicon.icons.files.table import Kind, Table, read_table
 from thermicon.icons.near_words import did_you_mean
 
+from ..arrays import Array
 from .trials import Trials
 
 COLUMNS = ("participant", "trial", "presented", "responded")
@@ -17,6 +20,14 @@ EXAMPLE = ",".join(COLUMNS)
 WHAT = "table of trials"
 MOST_MB, MOST_ROWS, MOST_PARTICIPANTS = 20, 200_000, 1000
 LONGEST_LABEL = 100
+LONGEST_COUNT = 6
+NOTHING = ("", "n/a", "na", "nan", "none", "null", "no answer", "no response", "-", "–", "timeout")
+"""What experiments write where nobody answered."""
+WIDE = re.compile(
+    r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|responded|response|trial)(?:[_ .-]?(\d+))?", re.I
+)
+ASKED, WIDE_EXAMPLE = ("icon", "presented"), "participant,icon_1,answer_1,icon_2,answer_2"
+"""Words of `WIDE` for what was presented, and how such a line begins."""
 
 
 class TrialsError(InputError):
@@ -26,9 +37,11 @@ class TrialsError(InputError):
 def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
-    A CSV file has the columns participant, trial, presented and responded; others are left alone. Semicolons and tabs
-    also separate columns; lines that begin with # are comments. Participants are in the order of the file. A
-    `TrialsError` says what is wrong, where, and what helps.
+    A CSV file has the columns participant, trial, presented and responded, where trials are numbered anew in each block
+    also block; or one row a participant with icon_1, answer_1 and so on; or a matrix of counts, a row for each icon
+    presented and a column for each answer, which is one group. Other columns are left alone, semicolons and tabs also
+    separate them, and lines that begin with # are comments. Where nobody answered, the cell is empty or one of
+    `NOTHING`. Participants are in the order of the file. A `TrialsError` says what is wrong, where, and what helps.
 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -38,27 +51,84 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     Trials(1 participant, 2 trials, 2 icons)
     """
     file = Path(path)
-    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT)
-    names, known = tuple(icons), set(icons)
-    places = {name: place for place, name in enumerate(names)}
-    answers: dict[str, list[tuple[int, int]]] = {}
-    first: dict[tuple[str, str], int] = {}
-    for line, row in table.records(COLUMNS):
+    table, digest = table_in(file, (), EXAMPLE, WHAT)
+    names, places = tuple(icons), {name: place for place, name in enumerate(icons)}
+    if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
+        matrix = _matrix(file, table, places)
+        return Trials(names, ("all",), matrix[None, :, :-1], file.name, digest, matrix[None, :, -1], grouped=True)
+    runs: dict[str, list[dict[tuple[str, str], tuple[int, int]]]] = {}
+    lines: dict[tuple[str, tuple[str, str]], int] = {}
+    passed = 0
+    for line, (participant, block, number, *cells) in _asked(file, table):
         where = f"{file}:{line}"
-        person, trial = label(row["participant"], "participant", where), label(row["trial"], "trial", where)
-        if (person, trial) in first:
+        icon, answer = (cell if cell in places or cell.casefold() not in NOTHING else "" for cell in cells)
+        if not icon and answer not in places:
+            passed += 1
+            continue
+        person, trial = label(participant, "participant", where), label(number, "trial", where)
+        key, own = (block, trial), runs.setdefault(person, [{}])
+        if key in own[-1]:
+            if len(own[-1]) == 1 or key != next(iter(own[-1])):
+                raise TrialsError(
+                    f"{where}: participant {quoted(person)} has trial {quoted(trial)} twice, also in line "
+                    f"{lines[person, key]}; number the trials on, add a column block, or remove the copy"
+                )
+            own.append({})  # the numbers start anew, as they do with each block
+        lines[person, key], shown = line, places[_icon(icon, "presented", places, where)]
+        own[-1][key] = shown, places[_icon(answer, "responded", places, where)] if answer else len(names)
+    check_labels(file, runs)
+    counts = np.zeros((len(runs), len(names), len(names) + 1))
+    for place, (person, own) in enumerate(runs.items()):
+        if any(run == before for before, run in pairwise(own)):
             raise TrialsError(
-                f"{where}: participant {quoted(person)} has trial {quoted(trial)} twice, also in line "
-                f"{first[person, trial]}; number the trials of a participant on, or remove the copy"
+                f"{file}: participant {quoted(person)} has the same trials twice, with the same icons and answers; "
+                "remove the copy, or name the blocks in a column block"
             )
-        first[person, trial] = line
-        shown, said = (places[_icon(row[column], column, known, where)] for column in ("presented", "responded"))
-        answers.setdefault(person, []).append((shown, said))
-    check_labels(file, answers)
-    counts = np.zeros((len(answers), len(names), len(names)))
-    for number, pairs in enumerate(answers.values()):
-        np.add.at(counts[number], tuple(np.array(pairs).T), 1.0)
-    return Trials(names, tuple(answers), counts, file.name, digest)
+        np.add.at(counts[place], tuple(np.array([pair for run in own for pair in run.values()]).T), 1.0)
+    if not counts[..., :-1].any():
+        raise TrialsError(f"{file}: no row has both an icon and an answer of the set; write one row per trial")
+    return Trials(names, tuple(runs), counts[..., :-1], file.name, digest, counts[..., -1], passed)
+
+
+def _asked(path: Path, table: Table) -> Iterator[tuple[int, list[str]]]:
+    """Line, and participant, block, trial, icon and answer of each trial, from a row a trial or a row a participant."""
+    found = {(m[1] or m[3], m[2].lower() in ASKED): m[0] for m in map(WIDE.fullmatch, table.header) if m}
+    numbers = dict.fromkeys(number for number, asked in found if number and asked and "presented" not in table.header)
+    if not numbers:
+        table_in(path, COLUMNS, f"{EXAMPLE}, or, one row a participant, {WIDE_EXAMPLE}", WHAT)
+        for line, row in table.records((*COLUMNS, "block")):
+            yield line, [row["participant"], row.get("block", ""), *(row[column] for column in COLUMNS[1:])]
+        return
+    table_in(path, COLUMNS[:1], WIDE_EXAMPLE, WHAT)
+    if single := [name for (number, asked), name in found.items() if number and (number, not asked) not in found]:
+        raise TrialsError(f"{path}:{table.line}: {single[0]} stands alone; a trial has two columns: {WIDE_EXAMPLE}")
+    for line, row in table.records(("participant", "block", *found.values())):
+        for number in numbers:
+            pair = row[found[number, True]], row[found[number, False]]
+            yield line, [row["participant"], row.get("block", ""), number, *pair]
+
+
+def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
+    """Counts (icons, icons + 1) of a matrix whose rows are icons presented and columns answers, the last no answer."""
+    first, *names = (name for place, name in enumerate(table.header) if name or not place)
+    none = [name for name in names if name not in places and name.casefold() in NOTHING]
+    top = f"{path}:{table.line}"
+    said = [len(places) if name in none else places[_icon(name, "a column", places, top)] for name in names]
+    counts: Array = np.zeros((len(places), len(places) + 1))
+    for line, row in table.records((first, *names)):
+        where = f"{path}:{line}"
+        shown, cells = places[_icon(row[first], "a row", places, where)], [row[name] or "0" for name in names]
+        if counts[shown].any() or shown not in said:
+            raise TrialsError(f"{where}: {row[first]} has two rows, or no column; an icon has one of each")
+        if wrong := [cell for cell in cells if not cell.isdecimal() or len(cell) > LONGEST_COUNT]:
+            raise TrialsError(
+                f"{where}: {quoted(wrong[0])} is not a count; write numbers of answers (a per cent of a row times its "
+                "number of trials)"
+            )
+        counts[shown, said] = [int(cell) for cell in cells]
+    if not counts[:, :-1].any():
+        raise TrialsError(f"{path}: every count is 0; write how often each answer was given")
+    return counts
 
 
 def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tuple[Table, str]:
@@ -112,11 +182,11 @@ def check_labels(path: Path, participants: Collection[str]) -> None:
         )
 
 
-def _icon(cell: str, column: str, known: set[str], where: str) -> str:
+def _icon(cell: str, column: str, known: Mapping[str, int], where: str) -> str:
     name = label(cell, column, where)
     if name in known:
         return name
     same = [icon for icon in known if icon.casefold() == name.casefold()]
     hint = f"did you mean {same[0]}? Names differ by case" if same else did_you_mean(name, known)
-    cure = "" if same else "; where somebody answered none of the icons, remove the row" * (column == "responded")
+    cure = "" if same else "; where nobody answered, leave the cell empty" * (column == "responded")
     raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}{cure}")

@@ -170,6 +170,7 @@ def test_every_shipped_module_has_its_source_and_one_is_no_data_sheet() -> None:
 
 THENAR = Rig.load("thenar")
 TEC = {"i_max_A": 6.4, "v_max_V": 14.4, "dt_max_K": 66, "t_hot_C": 25, "q_max_W": 50}
+TWO_STAGE = {"i_max_A": 6.1, "v_max_V": 15.5, "dt_max_K": 83.0, "t_hot_C": 27.0, "q_max_W": 30.8}
 TEC_WARM = {"i_max_A": 6.4, "v_max_V": 16.4, "dt_max_K": 75, "t_hot_C": 50, "q_max_W": 57}
 GIVEN = "seebeck_V_per_K = 0.0521\nresistance_ohm = 6.35\nthermal_resistance_K_per_W = 6.56\n"
 
@@ -208,6 +209,39 @@ def test_without_qmax_three_figures() -> None:
     assert silent.warnings == ()
     mixed = THENAR.with_(**{"module.datasheet": [sheet, TEC_WARM]})
     assert "three figures with the hot side at 25 and 50 °C" in mixed.module_source
+
+
+@pytest.mark.parametrize(
+    ("figures", "said"), [(TEC | {"q_max_W": 42}, False), (TEC | {"q_max_W": 41}, True), (TWO_STAGE, True)]
+)
+def test_figures_that_are_not_those_of_one_stage_are_said(figures: dict[str, float], said: bool) -> None:
+    rig = THENAR.with_(**{"module.datasheet": [figures]})
+    warned = [text for text in rig.warnings if "not that of one stage" in text]
+    assert bool(warned) == said
+    if said:
+        hot_C = figures["t_hot_C"]
+        span, current = hot_C - coldest_C(rig.module, hot_C), greatest_difference_A(rig.module, hot_C)
+        assert f"{span:.3g} K at {current:.2g} A, and it prints {figures['dt_max_K']:g} K at " in warned[0]
+    without = {key: value for key, value in figures.items() if key != "q_max_W"}
+    assert not any("one stage" in text for text in THENAR.with_(**{"module.datasheet": [without]}).warnings)
+
+
+@pytest.mark.parametrize(("plates", "source", "said"), [
+    ((2.6, 2.6), "", True), ((4.6, 2.6), "", True), ((3.8, 5.4), "", False), ((2.6, 2.6), "weighed", False),
+])  # fmt: skip
+def test_plates_of_another_module_are_said_unless_their_source_is(
+    tmp_path: Path, plates: tuple[float, float], source: str, said: bool
+) -> None:
+    text = THENAR.with_(module={"name": "TEC1-12706"}, contact={"area_cm2": 16.0}).toml
+    for key, value in zip(("hot", "cold"), plates, strict=True):
+        text = text.replace(f"{key}_plate_J_per_K = 4.6", f"{key}_plate_J_per_K = {value}")
+        text = text.replace(
+            "[source]", f'[source]\n"module.{key}_plate_J_per_K" = "{source}"' if source else "[source]"
+        )
+    (tmp_path / "mine.toml").write_text(text, "utf-8")
+    assert (
+        any("those on record for it 4.6 J/K each" in text for text in Rig.load(tmp_path / "mine.toml").warnings) == said
+    )
 
 
 def test_two_sheets_are_taken_between_heat_sink_and_resting_skin() -> None:

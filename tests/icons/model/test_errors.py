@@ -48,6 +48,13 @@ def test_a_mistake_is_told_and_a_suggestion_cures_its_line(mistake: dict[str, An
         assert error.line not in {other.line for other in left.errors}, str(left)
 
 
+@pytest.mark.parametrize(("line", "meant"), messages(__file__)["meaning"].items())
+def test_a_suggestion_keeps_every_word_that_was_meant_or_is_not_made(line: str, meant: str | list[str]) -> None:
+    (error,) = errors_of(f"cue 1\nicon x {{ hold for 1 s }}\nicon y {{\n  {line}\n}}")
+    assert error.suggestion == (meant if isinstance(meant, str) else None)
+    assert isinstance(meant, str) or meant[0] in error.render()
+
+
 def test_every_code_is_reached() -> None:
     at_the_door = {f"E00{n}" for n in range(1, 8)}
     recordings = {"E013", "E014", "E015", "E016"}

@@ -70,6 +70,22 @@ def test_the_command_after_keep_predicts_for_the_laboratory(cli: Cli, two: Path,
     assert "warning: my lab.csv was conditioned on" not in ranked.stderr
 
 
+def test_trials_without_an_answer_and_counts_of_a_group_are_said(cli: Cli, two: Path, tmp_path: Path) -> None:
+    path, out = tmp_path / "trials.csv", tmp_path / "out.json"
+    rows = [f"ann,{k},warm-step,{'warm-step' if k else 'timeout'}" for k in range(24)]
+    path.write_text("\n".join(["participant,trial,presented,responded", "ann,read,,", *rows, "bob,1,warm-step,"]))
+    words = told(cli("pilot", two, "--answers", path, *QUICK, "--json", out), "no answer", "1 rows or trials")
+    assert "all 25 92 %" in words and "2 of 25 trials have no answer" in words
+    assert "Observed where they answered: 100 %" in words
+    own = json.loads(out.read_text(encoding="utf-8"))
+    assert (sum(own["unanswered"]), sum(map(sum, own["counts"])), own["trials"]) == (2, 23, 25)
+    assert (own["rows_passed_over"], own["one_group"], own["each"][1]["unanswered"]) == (1, False, 1)
+    path.write_text("shown,warm-step,cool-step\nwarm-step,20,4\ncool-step,5,19\n")
+    words = told(cli("pilot", two, "--answers", path, *QUICK, "--json", out), "Counts of one group say nothing of")
+    assert "all 48 81 %" in words and "no answer" not in words
+    assert json.loads(out.read_text(encoding="utf-8"))["one_group"]
+
+
 def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: Path) -> None:
     words = told(cli("pilot", two, "--answers", answers, "--draws", 200), "95 % bits 95 % narrower")
     assert "too few to say" not in words

@@ -46,7 +46,7 @@ def test_bits_stay_within_what_the_set_can_carry() -> None:
 @pytest.mark.parametrize(
     ("counts", "said"),
     [
-        (np.zeros((1, 2, 2)), "every participant needs at least one answer"),
+        (np.zeros((1, 2, 2)), "every participant needs at least one trial"),
         (np.full((1, 2, 2), 0.5), "whole numbers of 0 or more"),
         (np.ones((1, 3, 3)), "must have shape"),
     ],

@@ -1,5 +1,7 @@
 """Tables of answers and of measurements: what is read, and what each bad table is refused with."""
 
+import math
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +11,7 @@ from tests.builders import messages
 from thermicon.circuit import Rig
 from thermicon.perception.pilot import trials_file
 from thermicon.perception.pilot.measurements_file import is_measurements, read_measurements
+from thermicon.perception.pilot.trials import score
 from thermicon.perception.pilot.trials_file import TrialsError, read_trials
 
 ICONS = ("cool-step", "warm-step", "dip")
@@ -43,6 +46,60 @@ def test_semicolons_quotes_comments_and_further_columns_are_read(tmp_path: Path)
     head = "# made by hand\nblock;responded;presented;trial;participant"
     found = read_trials(written(tmp_path, 'A;dip;"dip";1;P1', "", 'A;"warm-step"; dip ;2;P1', head=head), ICONS)
     assert found.pooled[2].tolist() == [0, 1, 1]
+
+
+def asked_and_said(missing: str = "") -> dict[str, list[tuple[str, str]]]:
+    """Two participants' trials, in two blocks of six; every fifth is answered wrongly or, with a word, not at all."""
+    rng, found = np.random.default_rng(5), {}
+    for person in ("P1", "P2"):
+        shown = [ICONS[k] for _ in range(2) for k in rng.permutation([0, 1, 2, 0, 1, 2])]
+        found[person] = [(icon, icon if k % 5 else missing or ICONS[k % 3]) for k, icon in enumerate(shown)]
+    return found
+
+
+def table_of(shape: str, trials: dict[str, list[tuple[str, str]]]) -> list[str]:
+    """The lines of a file in which these trials are written in one of the shapes."""
+    long = [(person, k, *pair) for person, pairs in trials.items() for k, pair in enumerate(pairs)]
+    if shape == "wide":
+        head = ",".join(f"icon_{k},answer_{k}" for k in range(12))
+        return [f"participant,{head}", *(",".join([p, *sum(pairs, ())]) for p, pairs in trials.items())]
+    if shape == "instructions":
+        rows = [f"{p},{k},{icon},{said}" for p, k, icon, said in long]
+        return [HEAD, "P1,,,", "P1,read,,go on", *rows, "P2,end,null,null"]
+    if shape == "restarting":
+        return [HEAD, *(f"{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
+    if shape == "blocks":
+        return [f"block,{HEAD}", *(f"{k // 6},{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
+    said = [*ICONS, "none"]
+    pairs = [(icon, answer if answer in ICONS else "none") for *_, icon, answer in long]
+    counts = [f"{icon}," + ",".join(str(pairs.count((icon, answer))) for answer in said) for icon in reversed(ICONS)]
+    return [",".join(["presented", *said]), *counts]
+
+
+@pytest.mark.parametrize("missing", ["", "n/a", "None", "null", "no answer", "-", "timeout"])
+@pytest.mark.parametrize("shape", ["blocks", "restarting", "wide", "instructions", "matrix"])
+def test_however_an_experiment_writes_its_trials_their_scores_are_the_same(
+    tmp_path: Path, shape: str, missing: str
+) -> None:
+    trials = asked_and_said(missing)
+    head, *rows = table_of(shape, trials)
+    found = read_trials(written(tmp_path, *rows, head=head), ICONS)
+    every = [pair for pairs in trials.values() for pair in pairs]
+    pairs = [pair for pair in every if pair[1] in ICONS]
+    joint, shown, said = Counter(pairs), Counter(icon for icon, _ in pairs), Counter(answer for _, answer in pairs)
+    bits = sum(n / len(pairs) * math.log2(n * len(pairs) / (shown[a] * said[b])) for (a, b), n in joint.items())
+    own = score("all", found.counts, found.unanswered.sum(axis=1))
+    assert own.proportion_correct == pytest.approx(sum(icon == answer for icon, answer in every) / 24)
+    assert own.information_bits_plugin == pytest.approx(bits)
+    assert (own.trials, own.unanswered, found.total) == (24, 24 - len(pairs), 24)
+    assert found.pooled.tolist() == [[joint[a, b] for b in ICONS] for a in ICONS]
+    assert (found.participants, found.grouped) == ((("all",), True) if shape == "matrix" else (("P1", "P2"), False))
+    assert found.passed == 3 * (shape == "instructions")
+
+
+def test_an_icon_may_be_called_none(tmp_path: Path) -> None:
+    found = read_trials(written(tmp_path, "P1,1,none,none", "P1,2,dip,"), ("none", "dip"))
+    assert (found.pooled.tolist(), found.unanswered.tolist()) == ([[1, 0], [0, 0]], [[0, 1]])
 
 
 MESSAGES = messages(__file__)
