@@ -91,8 +91,8 @@ def demanded(
         resting = _resting(after(pause_s)[0], ends(pause_s, beyond_K))
         rows = zip(faults, singles, in_plays, numbers, strict=True)
         return [
-            (_demands(faulty, single, found, resting, (rest_s, beginning.unpowered(k, 0.0)), said_s), failed)
-            for faulty, single, found, k in rows
+            (_demands(faulty, single, one, resting, (rest_s, beginning.unpowered(k, 0.0)), said_s), failed)
+            for faulty, single, one, k in rows
         ]
 
     if shortest_s is None:
