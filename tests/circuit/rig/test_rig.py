@@ -182,3 +182,26 @@ def test_a_plate_that_is_warned_of_is_off_in_a_drive_and_not_with_short_steps() 
     for stored, least, most in ((0.01, 0.1, 0.3), (0.037, 0.0, 0.03)):
         rig = THENAR.with_(**{"module.cold_plate_J_per_K": stored})
         assert least < np.abs(display_C(rig, 100.0) - display_C(rig, 5000.0)).max() < most
+
+
+@pytest.mark.parametrize(
+    ("key", "slip", "fine"),
+    [
+        ("contact.area_cm2", 0.09, 0.2),
+        ("driver.transconductance_A_per_V", 150.0, 9.0),
+        ("skin.warm_receptor_mm", 10.0, 2.5),
+        ("skin.cold_receptor_mm", 0.02, 0.05),
+    ],
+)
+def test_a_value_that_is_so_unusual_that_its_unit_may_be_mistaken_is_told(key: str, slip: float, fine: float) -> None:
+    thenar = Rig.load("thenar")
+    (told,) = [text for text in thenar.with_(**{key: slip}).warnings if "check its unit" in text]
+    assert told.startswith(f"{key} = {slip:g} ")
+    assert not [text for text in thenar.with_(**{key: fine}).warnings if "check its unit" in text]
+
+
+def test_a_stratum_corneum_in_metres_is_told() -> None:
+    document = json.loads(Rig.load("thenar").document)
+    document["skin"]["layer"][0]["thickness_mm"] = 0.00017
+    thin = Rig.load("thenar").with_(skin={"layer": document["skin"]["layer"]})
+    assert any("of the stratum corneum = 0.00017 mm: usual are 0.005 to 2 mm" in text for text in thin.warnings)
