@@ -25,9 +25,6 @@ LONGEST_NAME, LONGEST_LINE = 200, 2000
 LONGEST_QUOTE = 62
 """Characters of a value that a message quotes."""
 
-LIKE_MILLISECONDS = "these look like milliseconds; divide the column by 1000, so that it is in s"
-"""What a message says of times that are a thousand times too long, and the cure."""
-
 TEXT_FAULT = "text"
 """Type of pydantic's error for a text that may not stand where it does."""
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault, text_of
+from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
 from thermicon.icons.files.table import Kind, Table, read_table
+from thermicon.icons.files.table_text import table_text
 from thermicon.icons.near_words import did_you_mean
 
 from .trials import Trials
@@ -72,7 +73,7 @@ def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tupl
     def fault(kind: Kind, line: int | None, wrong: str, cure: str) -> Exception:
         return said(kind, line, wrong, "one experiment a file is enough" if kind == "size" else cure)
 
-    table = read_table(text_of(data, path, what, TrialsError), fault, example, MOST_ROWS)
+    table = read_table(table_text(data, fault, example), fault, example, MOST_ROWS, needed)
     if missing := [name for name in needed if name not in table.header]:
         close = {cell.lower(): cell for cell in table.header}
         hints = [f"rename {close[name]!r} to {name}" for name in missing if name in close]

@@ -1,0 +1,153 @@
+"""Names of columns as instruments and programs write them: which of ours is meant, and in which unit it is.
+
+A unit stands in brackets, behind a slash, a comma, a space or an underscore: ``Temp (°C)``, ``T_display/degC``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit: the SI unit that ends our names, and by which factor and addition a number becomes one in it."""
+
+    ours: str
+    factor: float = 1.0
+    plus: float = 0.0
+
+
+ZERO_F = -32.0 / 1.8
+SPELLINGS = {
+    "s sec secs second seconds sekunden": Unit("s"),
+    "ms msec msecs millisecond milliseconds millis": Unit("s", 1e-3),
+    "us µs μs usec microsecond microseconds": Unit("s", 1e-6),
+    "min mins minute minutes": Unit("s", 60.0),
+    "h hr hour hours": Unit("s", 3600.0),
+    "c °c ºc ℃ degc deg.c degrees.c celsius deg.celsius degrees.celsius": Unit("C"),
+    "k kelvin": Unit("C", 1.0, -273.15),
+    "f °f ºf ℉ degf deg.f degrees.f fahrenheit": Unit("C", 1 / 1.8, ZERO_F),
+    "mc m°c mdegc millidegc millicelsius": Unit("C", 1e-3),
+    "a amp amps ampere amperes": Unit("A"),
+    "ma milliamp milliamps milliampere": Unit("A", 1e-3),
+    "v volt volts": Unit("V"),
+    "mv millivolt millivolts": Unit("V", 1e-3),
+}
+UNITS = {spelling: unit for spellings, unit in SPELLINGS.items() for spelling in spellings.split()}
+
+TIME = {"time", "timestamp", "datetime", "zeit", "uhrzeit", "zeitstempel", "elapsed", "temps", "tiempo", "tempo"}
+BESIDE_TIME = {"x", "value", "date", "datum", "relative", "local", "utc", "gmt", "system", "stamp", "scan", "since",
+               "start", "run", "of", "day"}  # fmt: skip
+THERMAL = {"t", "temp", "temps", "temperature", "temperatur", "température", "temperatura"}
+IDLE = {"actual", "measured", "mean", "avg", "value", "output", "average", "ist", "istwert", "reading", "sensor",
+        "ch", "channel"}  # fmt: skip
+OTHERS = {
+    "i": "current", "strom": "current", "tec current": "current", "drive current": "current", "courant": "current",
+    "u": "voltage", "spannung": "voltage", "tec voltage": "voltage", "tension": "voltage",
+    "hot side": "hot plate", "hotplate": "hot plate", "set point": "setpoint", "setpoint": "setpoint",
+    "soll": "setpoint", "haut": "skin", "vsense": "current", "plus": "voltage",
+}  # fmt: skip
+"""Other words for what our names say."""
+
+BRACKET = re.compile(r"(.*?)[\s_]*[(\[{<]([^)\]}>]*)[)\]}>].*")
+BEHIND = re.compile(r"(.*?)(?:\s*[/,|]\s*|[\s_]+)([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?")
+SPICE = re.compile(r"([vi])\((.+)\)", re.IGNORECASE)
+
+
+def unit_of(text: str) -> Unit | None:
+    """The unit that a text is, with or without brackets; None where it is none.
+
+    >>> unit_of("[Deg C]"), unit_of("ms"), unit_of("note")
+    (Unit(ours='C', factor=1.0, plus=0.0), Unit(ours='s', factor=0.001, plus=0.0), None)
+    """
+    return UNITS.get(re.sub(r"\s+", ".", text.strip(" ()[]{}<>\"'").lower()))
+
+
+def parted(cell: str) -> tuple[str, Unit | None]:
+    """The words of a name without its unit, and the unit."""
+    for pattern in (BRACKET, BEHIND):
+        if (found := pattern.fullmatch(cell)) and (unit := unit_of(found[2])):
+            return found[1], unit
+    return ("time", unit) if (unit := unit_of(cell)) and unit.ours == "s" and cell.lower() != "s" else (cell, None)
+
+
+def _words(text: str) -> list[str]:
+    apart = re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", text)
+    return [word for word in re.split(r"[\W_]+", apart.lower()) if word]
+
+
+def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
+    """Which of our ``names`` a cell of a header means, and its unit (None: not said); None where it means none.
+
+    >>> meant("Display Temp (°F)", ["time_s", "display_C"])[0], meant("Current", ["current_A"])
+    ('display_C', None)
+    """
+    if found := SPICE.fullmatch(cell):
+        word = found[2].lower()
+        ours = OTHERS.get(word, "") + "_" + ("A" if found[1].lower() == "i" else "V")
+        known = next((name for name in names if name.lower() == word), ours)
+        return (known, Unit(known.rpartition("_")[2])) if known in names else None
+    text, unit = parted(cell)
+    words = _words(text)
+    of_time = unit is None or unit.ours == "s"
+    if of_time and set(words) & TIME and set(words) <= TIME | BESIDE_TIME | {word for word in words if word.isdigit()}:
+        return ("time_s", unit) if "time_s" in names else None
+    if unit and of_time:
+        return ("time_s", unit) if words in (["t"], ["x", "value"]) and "time_s" in names else None
+    core = " ".join(word for word in words if word not in THERMAL | IDLE)
+    core = OTHERS.get(core, core or ("temperature" if set(words) & THERMAL and (unit or words != ["t"]) else ""))
+    for name in names:
+        base, _, ours = name.rpartition("_")
+        if core == base.replace("_", " ").lower() and (unit.ours if unit else "C") == ours:
+            return name, unit
+    if core.startswith("probe ") and unit and unit.ours == "C" and any(name.startswith("probe_") for name in names):
+        return f"probe_{core[6:].replace(' ', '_')}_C", unit
+    return None
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """A header in our names where they are known: units of those that were renamed, and what was ambiguous."""
+
+    header: tuple[str, ...]
+    units: Mapping[str, Unit]
+    renamed: Mapping[str, str]
+    doubtful: Mapping[str, tuple[str, ...]]
+
+
+NOTHING_RENAMED = Named((), {}, {}, {})
+
+
+def named(header: Iterable[str], names: Iterable[str], theirs: Mapping[str, str]) -> Named:
+    """Read a header: names that are ours stay, those that ``theirs`` gives for ours, and those that mean one of ours.
+
+    Where two cells may be the same, none is taken, but a time whose unit is said goes before others.
+    """
+    cells, names = list(header), list(names)
+    given = {cells.index(own): name for name, own in theirs.items() if own in cells}
+    taken = set(cells) | set(given.values())
+    claims: dict[str, list[tuple[int, Unit | None]]] = {}
+    for at, cell in enumerate(cells):
+        if at not in given and cell not in names and not (cell.startswith("probe_") and cell.endswith("_C")):
+            found = meant(cell, names)
+            if found and found[0] not in taken:
+                claims.setdefault(found[0], []).append((at, found[1]))
+    units = {
+        name: unit for at, name in given.items() if (unit := parted(cells[at])[1] or Unit(name.rpartition("_")[2]))
+    }
+    new, renamed, doubtful = list(cells), dict[str, str](), dict[str, tuple[str, ...]]()
+    for at, name in given.items():
+        new = [f"({cell})" if cell == name else cell for cell in new]
+        new[at], renamed[name] = name, cells[at]
+    for name, several in claims.items():
+        best = [one for one in several if one[1] or len(several) == 1] if name == "time_s" else several
+        if len(best) != 1:
+            doubtful[name] = tuple(cells[at] for at, _ in several)
+            continue
+        ((at, unit),) = best
+        new[at], renamed[name] = name, cells[at]
+        if unit:
+            units[name] = unit
+    return Named(tuple(new), units, renamed, doubtful)
