@@ -90,6 +90,8 @@ def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
         known = next((name for name in names if name.lower() == word), ours)
         return (known, Unit(known.rpartition("_")[2])) if known in names else None
     text, unit = parted(cell)
+    if unit and text in names and text.endswith(f"_{unit.ours}"):
+        return text, unit
     words = _words(text)
     of_time = unit is None or unit.ours == "s"
     if of_time and set(words) & TIME and set(words) <= TIME | BESIDE_TIME | {word for word in words if word.isdigit()}:

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..number_text import count_of
 from .clock import PLAIN_CURE, order_fault, seconds_of, spread
 from .table import LONGEST_CELL, Table, as_number
 from .units import impossible, like_units_of_time, unit_fault
@@ -82,10 +81,14 @@ def measured(
             columns[name] = np.where(wrong, np.nan, columns[name])
         else:
             kept &= ~wrong
-    left = [f"{name} {cell!r} in {count_of(count, 'row')}" for name, cells in counts.items()
-            for cell, count in cells.most_common(3) if cell]  # fmt: skip
+    left = [
+        f"{name} is {cell!r} in {count:,} of {len(time):,} rows"
+        for name, cells in counts.items()
+        for cell, count in cells.most_common(3)
+        if cell
+    ]
     if left:
-        notes.append(f"no readings, {'taken as gaps' if gaps else 'left out'}: {', '.join(left)} of {len(time):,}")
+        notes.append(f"{', '.join(left)}, which are {'taken as gaps' if gaps else 'left out'}")
     time, lines = time[kept], lines[kept]
     columns = {name: column[kept] for name, column in columns.items()}
     if (found := order_fault(time)) is not None:
@@ -99,10 +102,9 @@ def measured(
         if (fault := unit_fault(name, columns[name])) is not None:
             raise table.fault("unit", None, *fault)
     if like := like_units_of_time(time):
-        notes.append(
-            f"time_s goes in whole steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}: if these are "
-            f"{like[0]}, {like[1]} to have s"
-        )
+        step, length = np.median(np.diff(time)), time[-1] - time[0]
+        what = f"time_s goes in steps of {step:g} over {length:g}: these look like {like[0]}"
+        notes.append(f"{what}; if they are, {like[1]} to have s")
     return Measured(time, columns, tuple(lines.tolist()), tuple(notes))
 
 

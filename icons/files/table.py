@@ -148,7 +148,7 @@ def read_table(
     above, mark, skipped = _line_of_names(text, names, theirs)
     lines = _rows(text, above, mark, fault)
     line, first = next(lines, (0, [""]))
-    header = [cell.strip() for cell in first]
+    header = [cell.strip().strip('"') for cell in first]
     header[0] = header[0] if header[0] == "#" else header[0].lstrip("# ")
     while len(header) > 1 and not header[-1]:
         header.pop()
@@ -179,7 +179,8 @@ def read_table(
         raise fault("table", line, f"no column is called {lost[0]}; the columns are {there}", "spell it as in the file")
     ours = named(header, names, theirs)
     notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
-    notes += ["read " + ", ".join(f"{name} from {own!r}" for name, own in ours.renamed.items())] if ours.renamed else []
+    read = [f"{name} from {own!r}" for name, own in ours.renamed.items() if not own.startswith(name)]
+    notes += [f"read {', '.join(read)}"] if read else []
     return Table(ours.header, line, tuple(rows), tuple(places), fault, mark, ours, tuple(notes))
 
 

@@ -19,8 +19,8 @@ MOST_SIZE = 1e12
 """Times by the clock of a computer have ten digits; what reads a wire that is off has fewer."""
 COLDEST_C, HOTTEST_C = -40.0, 150.0
 """Outside, a sensor of a display on skin is unplugged or its wire broken."""
-ON_SKIN_C, HOT_PLATE_C = (5.0, 55.0), (5.0, 100.0)
-"""Ranges of what touches skin and of other parts, in which a column of another unit must lie as a whole."""
+ON_SKIN_C, HOT_PLATE_C, MEDIAN_C = (5.0, 55.0), (5.0, 100.0), 15.0
+"""Ranges of what touches skin and of other parts, in which a column of another unit must lie, and its least median."""
 BURNING_C = 65.0
 """Medians of display or skin from here on would burn; 18 to 54 °C have these numbers in °F."""
 POSSIBLE_C, JUMP_K = (-10.0, 60.0), 20.0
@@ -64,10 +64,8 @@ def _errors(values: Array, low: float, high: float, widest: tuple[float, float])
         return beyond
     at = np.flatnonzero(doubtful & ~beyond)
     after = np.searchsorted(sound, at)
-    for near in (np.maximum(after - 1, 0), np.minimum(after, sound.size - 1)):
-        at_jump = np.abs(values[at] - values[sound[near]]) > JUMP_K
-        at, after = at[at_jump], after[at_jump]
-    beyond[at] = True
+    neighbours = sound[np.maximum(after - 1, 0)], sound[np.minimum(after, sound.size - 1)]
+    beyond[at] = np.min([np.abs(values[at] - values[near]) for near in neighbours], axis=0) > JUMP_K
     return beyond
 
 
@@ -129,7 +127,12 @@ def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
             scaled = there * factor + plus
             wrong = _errors(scaled, low, high, (low - JUMP_K, high + JUMP_K))
             kept = scaled[~wrong]
-            if wrong.mean() <= MOST_LEFT_OUT and low <= kept.min() and kept.max() <= high:
+            if (
+                wrong.mean() <= MOST_LEFT_OUT
+                and low <= kept.min()
+                and kept.max() <= high
+                and np.median(kept) > MEDIAN_C
+            ):
                 fitting.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", how))
         if fitting:
             like, how = (" or ".join(each) for each in zip(*fitting, strict=True))

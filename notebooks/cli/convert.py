@@ -53,18 +53,12 @@ def convert_command(
     chosen = [each for each in column or [] if each not in pairs]
     if len(chosen) > 1:
         raise usage(f"{' and '.join(chosen)} cannot both be the temperature", "--column")
-    recording: dict[str, Any] = {
-        "tolerance_K": tolerance,
-        "name": name,
-        "column": "".join(chosen) or None,
-        "control": control,
-    }
-    given = {
-        key: value for key, value in {**recording, "columns": theirs_of(pairs) or None}.items() if value is not None
-    }
+    recording = {"tolerance_K": tolerance, "name": name, "column": "".join(chosen), "control": control}
+    recording["columns"] = theirs_of(pairs)
+    given = {key: value for key, value in recording.items() if value not in (None, "", {})}
     if given and not is_table(file):
         option = next(iter(given)).removesuffix("_K").replace("columns", "column")
-        raise usage("applies only to a recording, a table such as a .csv file", f"--{option}")
+        raise usage("applies only to a recording, a .csv file or another table", f"--{option}")
     if tolerance is not None and not (math.isfinite(tolerance) and tolerance > 0):
         raise usage(f"{tolerance:g} is not a difference in K above 0", "--tolerance")
     if output == STDOUT:
