@@ -73,18 +73,13 @@ def parted(cell: str) -> tuple[str, Unit | None]:
     return ("time", unit) if (unit := unit_of(cell)) and unit.ours == "s" and cell.lower() != "s" else (cell, None)
 
 
-def _words(text: str) -> list[str]:
-    apart = re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", text)
-    return [word for word in re.split(r"[\W_]+", apart.lower()) if word]
-
-
 def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
     """Which of our ``names`` a cell of a header means, and its unit (None: not said); None where it means none.
 
     >>> meant("Display Temp (°F)", ["time_s", "display_C"])[0], meant("Current", ["current_A"])
     ('display_C', None)
     """
-    if found := SPICE.fullmatch(cell):
+    if (found := SPICE.fullmatch(cell)) and not unit_of(found[2]):
         word = found[2].lower()
         ours = OTHERS.get(word, "") + "_" + ("A" if found[1].lower() == "i" else "V")
         known = next((name for name in names if name.lower() == word), ours)
@@ -92,21 +87,18 @@ def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
     text, unit = parted(cell)
     if unit and text in names and text.endswith(f"_{unit.ours}"):
         return text, unit
-    words = _words(text)
-    of_time = unit is None or unit.ours == "s"
-    if of_time and set(words) & TIME and set(words) <= TIME | BESIDE_TIME | {word for word in words if word.isdigit()}:
-        return ("time_s", unit) if "time_s" in names else None
-    if unit and of_time:
-        return ("time_s", unit) if words in (["t"], ["x", "value"]) and "time_s" in names else None
+    apart = re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", text)
+    words = [word for word in re.split(r"[\W_\d]+", apart.lower()) if word]
+    if unit is None or unit.ours == "s":
+        of_time = set(words) & TIME and set(words) <= TIME | BESIDE_TIME
+        if of_time or words == ["x", "value"] or (unit and words == ["t"]):
+            return ("time_s", unit) if "time_s" in names else None
     core = " ".join(word for word in words if word not in THERMAL | IDLE)
     core = OTHERS.get(core, core or ("temperature" if set(words) & THERMAL and (unit or words != ["t"]) else ""))
-    for name in names:
-        base, _, ours = name.rpartition("_")
-        if core == base.replace("_", " ").lower() and (unit.ours if unit else "C") == ours:
-            return name, unit
-    if core.startswith("probe ") and unit and unit.ours == "C" and any(name.startswith("probe_") for name in names):
+    if core.startswith("probe ") and unit and unit.ours == "C" and "display_C" in names:
         return f"probe_{core[6:].replace(' ', '_')}_C", unit
-    return None
+    ours = f"{core.replace(' ', '_')}_{unit.ours if unit else 'C'}"
+    return next(((name, unit) for name in names if name.lower() == ours.lower()), None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,31 +117,25 @@ NOTHING_RENAMED = Named((), {}, {}, {})
 def named(header: Iterable[str], names: Iterable[str], theirs: Mapping[str, str]) -> Named:
     """Read a header: names that are ours stay, those that ``theirs`` gives for ours, and those that mean one of ours.
 
-    Where two cells may be the same, none is taken, but a time whose unit is said goes before others.
+    Where two cells may be the same, none is taken, but one whose unit is said goes before others.
     """
     cells, names = list(header), list(names)
-    given = {cells.index(own): name for name, own in theirs.items() if own in cells}
-    taken = set(cells) | set(given.values())
-    claims: dict[str, list[tuple[int, Unit | None]]] = {}
-    for at, cell in enumerate(cells):
-        if at not in given and cell not in names and not (cell.startswith("probe_") and cell.endswith("_C")):
-            found = meant(cell, names)
-            if found and found[0] not in taken:
-                claims.setdefault(found[0], []).append((at, found[1]))
-    units = {
-        name: unit for at, name in given.items() if (unit := parted(cells[at])[1] or Unit(name.rpartition("_")[2]))
+    new, units, doubtful = list(cells), dict[str, Unit](), dict[str, tuple[str, ...]]()
+    places: dict[str, list[tuple[int, Unit | None]]] = {
+        name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells
     }
-    new, renamed, doubtful = list(cells), dict[str, str](), dict[str, tuple[str, ...]]()
-    for at, name in given.items():
-        new = [f"({cell})" if cell == name else cell for cell in new]
-        new[at], renamed[name] = name, cells[at]
-    for name, several in claims.items():
-        best = [one for one in several if one[1] or len(several) == 1] if name == "time_s" else several
+    new = [f"({cell})" if cell in places else cell for cell in cells]
+    for at, cell in enumerate(cells):
+        if cell not in names and cell not in theirs.values() and not re.fullmatch("probe_.+_C", cell):
+            found = meant(cell, names)
+            if found and found[0] not in {*cells, *theirs}:
+                places.setdefault(found[0], []).append((at, found[1]))
+    renamed = dict[str, str]()
+    for name, several in places.items():
+        best = [one for one in several if one[1] or len(several) == 1]
         if len(best) != 1:
             doubtful[name] = tuple(cells[at] for at, _ in several)
             continue
-        ((at, unit),) = best
-        new[at], renamed[name] = name, cells[at]
-        if unit:
-            units[name] = unit
+        at, unit = best[0]
+        new[at], renamed[name], units[name] = name, cells[at], unit or Unit("")
     return Named(tuple(new), units, renamed, doubtful)

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from .clock import PLAIN_CURE, order_fault, seconds_of, spread
-from .table import LONGEST_CELL, Table, as_number
-from .units import impossible, like_units_of_time, unit_fault
+from .clock import order_fault, seconds_of, spread
+from .table import LONGEST_CELL, Table
+from .units import POSSIBLE_C, SENSED_C, errors, like_units_of_time, unit_fault
 
 if TYPE_CHECKING:
     import numpy as np
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-TIME = "time_s"
+TIME, CLOCK_CURE = "time_s", "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,20 +32,15 @@ class Measured:
 
 
 def missing(table: Table, name: str, what: str = "") -> Exception:
-    """The fault of a column that a table does not have, with what may be it."""
-    if name in table.names.doubtful:
-        own = table.names.doubtful[name]
-        return table.fault("table", table.line, f"{' and '.join(own)} may be {name}", say_which(name, own[0]))
-    others = [own for own in table.header if own and own not in (*table.names.renamed, TIME, "icon")]
-    close = next((own for own in others if own.lower()[:1] == name[0]), others[0] if others else "THEIRS")
-    said = f"the column {name}{f' ({what})' if what else ''} is missing; found {table.found}"
-    return table.fault("table", table.line, said, say_which(name, close))
-
-
-def say_which(name: str, own: str) -> str:
-    """How a command line and Python say which column is meant."""
-    quoted = f'"{name}={own}"' if set(own) & set(" ()[]/&;*|<>$'°") else f"{name}={own}"
-    return f'say which it is: --column {quoted} (in Python columns={{"{name}": "{own}"}})'
+    """The fault of a column that a table does not have, or may have twice, and how to say which it is."""
+    own = next(iter(table.names.doubtful.get(name, ())), "")
+    others = [cell for cell in table.header if cell and cell not in (*table.names.renamed, TIME, "icon")]
+    close = own or next((cell for cell in others if cell.lower()[:1] == name[0]), others[0] if others else "THEIRS")
+    said = f"{' and '.join(table.names.doubtful[name])} may be {name}" if own else ""
+    said = said or f"the column {name}{f' ({what})' if what else ''} is missing; found {table.found}"
+    quote = '"' if set(close) & set(" ()[]/&;*|<>$'°") else ""
+    cure = f'--column {quote}{name}={close}{quote} (in Python columns={{"{name}": "{close}"}})'
+    return table.fault("table", table.line, said, f"say which it is: {cure}")
 
 
 def measured(
@@ -59,67 +54,52 @@ def measured(
     """
     import numpy as np
 
-    time, lines = _times(table), np.array(table.lines)
+    time, lines, notes = _times(table), np.array(table.lines), list(table.notes)
     counts = {name: Counter[str]() for name in names}
     columns = {name: table.numbers(name, cure, gaps=counts[name] if gaps else None, most=most) for name in names}
     for name, unit in table.names.units.items():
-        if name in columns and (unit.factor, unit.plus) != (1.0, 0.0):
+        if name in columns:
             columns[name] = columns[name] * unit.factor + unit.plus
-    notes = [*table.notes]
-    kept = np.ones(len(time), dtype=bool)
-    if len(time) > 1:  # a row that stands twice
-        same = [np.diff(time) == 0, *(np.diff(np.nan_to_num(column, nan=-1e300)) == 0 for column in columns.values())]
-        twice = np.flatnonzero(np.logical_and.reduce(same)) + 1
-        if twice.size <= 0.1 * len(time) and (np.diff(time) == 0).sum() == twice.size:
-            kept[twice] = False
-            notes += [f"rows that stand twice count once: {twice.size}"] if twice.size else []
-    for name in names:
-        wrong = impossible(name, columns[name]) & kept
-        for value in np.unique(columns[name][wrong]):
-            counts[name][f"{value:g}"] += int((columns[name][wrong] == value).sum())
-        if gaps:
-            columns[name] = np.where(wrong, np.nan, columns[name])
-        else:
-            kept &= ~wrong
-    left = [
-        f"{name} is {cell!r} in {count:,} of {len(time):,} rows"
-        for name, cells in counts.items()
-        for cell, count in cells.most_common(3)
-        if cell
-    ]
-    if left:
-        notes.append(f"{', '.join(left)}, which are {'taken as gaps' if gaps else 'left out'}")
-    time, lines = time[kept], lines[kept]
-    columns = {name: column[kept] for name, column in columns.items()}
+    rows = np.stack([time, *columns.values()])
+    filled, kept = np.nan_to_num(rows, nan=-1e300), np.ones(len(time), dtype=bool)
+    kept[1:] = (filled[:, 1:] != filled[:, :-1]).any(axis=0)
+    if (twice := int((~kept).sum())) and twice == int((np.diff(time) == 0).sum()) <= 0.1 * len(time):
+        notes.append(f"rows that stand twice count once: {twice}")
+    else:
+        kept[:] = True
+    for name, column in columns.items():
+        wrong = errors(column, SENSED_C if name.startswith("hot_plate") else POSSIBLE_C) & name.endswith("_C")
+        counts[name].update(f"{value:g}" for value in column[wrong])
+        kept &= gaps | ~wrong
+        columns[name] = np.where(wrong, np.nan, column)
+    left = [f"{name} is {cell!r} in {count:,} of {len(time):,} rows"
+            for name, cells in counts.items() for cell, count in cells.most_common(3) if cell]  # fmt: skip
+    notes += [f"{', '.join(left)}, which are {'taken as gaps' if gaps else 'left out'}"] if left else []
+    time, lines, columns = time[kept], lines[kept], {name: column[kept] for name, column in columns.items()}
     if (found := order_fault(time)) is not None:
         row, why = found
         what = f"time_s {time[row]:.9g} s does not come after {time[row - 1]:.9g} s; times must increase"
         raise table.fault("time", int(lines[row]), what, why)
-    time, count = spread(time, list(columns.values()), steps)
-    if count:
-        notes.append(f"the clock has too few digits: {count:,} rows at the time of the row before were spread")
-    for name in names:
-        if (fault := unit_fault(name, columns[name])) is not None:
+    time, count = spread(time, steps)
+    notes += (
+        [f"the clock has too few digits: {count:,} rows at the time of the row before were spread"] if count else []
+    )
+    for name, column in columns.items():
+        if (fault := unit_fault(name, column)) is not None:
             raise table.fault("unit", None, *fault)
     if like := like_units_of_time(time):
-        step, length = np.median(np.diff(time)), time[-1] - time[0]
-        what = f"time_s goes in steps of {step:g} over {length:g}: these look like {like[0]}"
-        notes.append(f"{what}; if they are, {like[1]} to have s")
+        what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}"
+        notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
     return Measured(time, columns, tuple(lines.tolist()), tuple(notes))
 
 
 def _times(table: Table) -> Array:
     """The column of times, as numbers, or as times of day with or without dates."""
-    import numpy as np
-
-    cells = list(table.texts(TIME))
-    unit = table.names.units.get(TIME)
-    first = next(filter(None, cells), "")
-    if not math.isnan(as_number(first, table.mark)) or ":" not in first:
-        return table.numbers(TIME, "remove the row") * (unit.factor if unit else 1.0)
-    times, wrong = seconds_of(cells)
-    if wrong is not None:
-        cell = cells[wrong][:LONGEST_CELL]
-        what = f"{TIME} is {cell!r}, not a time" if cell else f"{TIME} is empty"
-        raise table.fault("cell", table.lines[wrong], what, PLAIN_CURE if cell else "remove the row")
-    return np.array(times)
+    cells, unit = list(table.texts(TIME)), table.names.units.get(TIME)
+    if ":" not in next(filter(None, cells), "") or "" in cells:
+        return table.numbers(TIME, CLOCK_CURE if ":" in "".join(cells) else "remove the row") * (
+            unit.factor if unit else 1.0
+        )
+    if (times := seconds_of(cells)) is None:
+        raise table.fault("cell", table.lines[0], f"{TIME} is {cells[0][:LONGEST_CELL]!r}, not a time", CLOCK_CURE)
+    return times

@@ -149,7 +149,6 @@ def read_table(
     lines = _rows(text, above, mark, fault)
     line, first = next(lines, (0, [""]))
     header = [cell.strip().strip('"') for cell in first]
-    header[0] = header[0] if header[0] == "#" else header[0].lstrip("# ")
     while len(header) > 1 and not header[-1]:
         header.pop()
     if not any(header):
@@ -179,13 +178,15 @@ def read_table(
         raise fault("table", line, f"no column is called {lost[0]}; the columns are {there}", "spell it as in the file")
     ours = named(header, names, theirs)
     notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
-    read = [f"{name} from {own!r}" for name, own in ours.renamed.items() if not own.startswith(name)]
+    read = [f"{name} from {own!r}" for name, own in ours.renamed.items()]
     notes += [f"read {', '.join(read)}"] if read else []
     return Table(ours.header, line, tuple(rows), tuple(places), fault, mark, ours, tuple(notes))
 
 
 def _are_units(cells: Sequence[str]) -> bool:
-    return any(map(unit_of, cells)) and all(unit_of(cell) or not cell.strip(" ()[]-") for cell in cells)
+    """Whether a row has units, and besides no more than a word, as loggers write it below the names."""
+    said = [cell for cell in cells if cell.strip(" ()[]-")]
+    return sum(unit_of(cell) is None for cell in said) < 0.5 * len(said) and not re.search(r"\d", "".join(said))
 
 
 def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
@@ -198,7 +199,8 @@ def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -
             cells = _cells(line.lstrip("# ") if line.startswith("# ") else line, each)
             score = float(len({found for cell in cells if (found := _known(cell, names, theirs))}))
             below = next((_cells(row, each) for row in lines[at + 1 :] if row.strip()), [])
-            score += 0.5 * (len(cells) == len(below) > 1) if score else 0.0
+            fits = len(cells) == len(below) > 1
+            score = score + 0.5 * fits if score and (fits or each != " ") else 0.0
             if score > best and len(cells) <= MOST_CELLS:
                 best, place, mark = score, at, each
     if not best:
@@ -228,9 +230,11 @@ def _cells(line: str, mark: str) -> list[str]:
 
 def _rows(text: str, above: int, mark: str, fault: Fault) -> Iterator[tuple[int, list[str]]]:
     """Rows that are not empty, each with its line in the file, from the line of names on."""
-    stream = io.StringIO(text, newline="")
+    stream: Iterator[str] = io.StringIO(text, newline="")
     for _ in range(above):
-        stream.readline()
+        next(stream)
+    first = next(stream, "")
+    stream = itertools.chain([first.lstrip("# ") if first.startswith("#") else first], stream)
     if mark == " ":
         yield from ((above + at, row) for at, line in enumerate(stream, 1) if (row := line.split()))
         return

@@ -13,6 +13,7 @@ from ..files.measured_table import measured, missing
 from ..files.shipped import bytes_of
 from ..files.table import Fault, Table, read_table
 from ..files.table_text import table_text
+from ..files.units import like_units_of_time
 from ..model.context import Context, name_fault
 from ..model.errors import CueErrors, whole_file
 from ..model.icon import Icon
@@ -220,11 +221,15 @@ def _check_times(file: str, times: list[float], rows: Sequence[int]) -> None:
         if n > 1 and time == times[n - 2]:
             help = "two readings at one time are a step; write more decimals of the time"
             raise whole_file("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
+    import numpy as np
+
     length = times[-1] - times[0]
     if length == 0:
         raise whole_file("E015", file, f"all readings are at {times[0]:g} s", "a recording lasts some time")
     if length > LONGEST_S:
-        help = f"an icon lasts at most {LONGEST_S:g} s; divide by 1000 if these are milliseconds, or cut the file"
+        like = like_units_of_time(np.array(times), whole=False)
+        help = f"if these are {like[0]}, {like[1]}; otherwise cut the file" if like else "cut the file"
+        help = f"an icon lasts at most {LONGEST_S:g} s; {help}"
         raise whole_file("E221", file, f"{TIME} runs over {length:,.6g} s", help)
 
 
