@@ -209,17 +209,16 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
 
 def _check_columns(table: Table) -> None:
     """Refuse a table without times or any column of a log, and columns that look like misspelt ones."""
-    misspelt = [(cell, _misspelt(cell, NAMES)) for cell in table.header if cell not in NAMES]
-    wrong = [f"{cell}: did you mean {name}?" for cell, name in misspelt if name and name not in table.header]
-    if wrong:
-        raise table.fault(
-            "table", table.line, f"{' '.join(wrong)} Found {table.found}", "rename the column, or remove it"
-        )
+    alike = {cell: _misspelt(cell, NAMES) for cell in table.header if cell not in NAMES}
+    if wrong := [f"{cell}: did you mean {name}?" for cell, name in alike.items() if name and name not in table.header]:
+        what = f"{' '.join(wrong)} Found {table.found}"
+        raise table.fault("table", table.line, what, "rename the column, or remove it")
     if "time_s" not in table.header:
         raise missing(table, "time_s", "time in s")
-    if not any(map(is_known, table.header)) or set(table.names.doubtful) - {"time_s"}:
-        doubtful = next((name for name in table.names.doubtful), "")
-        raise missing(table, doubtful or "display_C", "" if doubtful else f"one of {', '.join(NAMES[1:])}")
+    if doubtful := next((name for name in table.names.doubtful), ""):
+        raise missing(table, doubtful)
+    if not any(map(is_known, table.header)):
+        raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
 
 
 def _misspelt(cell: str, known: Sequence[str]) -> str | None:

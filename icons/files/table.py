@@ -35,8 +35,8 @@ NO_NAME = re.compile(r"[-+\d.,;eE\s]*|n/a|nan")
 """A cell that names no column."""
 WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
-FEW, LONGEST_CELL, MOST_ABOVE, MOST_CELLS = 8, 60, 200, 1000
-"""Columns that a message lists, characters of a cell that it quotes; lines and cells in which names are looked for."""
+FEW, LONGEST_CELL, MOST_ABOVE = 8, 60, 200
+"""Columns that a message lists, characters of a cell that it quotes; lines in which the names are looked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,13 +173,12 @@ def read_table(
         places.append(place)
         if len(rows) > most_rows:
             raise fault("size", None, f"more than {most_rows:,} rows", "keep every tenth row, or cut the file")
-    if lost := [f"{own!r}, which is to be {name}" for name, own in theirs.items() if not {own, name} & set(header)]:
-        there = ", ".join(header[:FEW])
-        raise fault("table", line, f"no column is called {lost[0]}; the columns are {there}", "spell it as in the file")
     ours = named(header, names, theirs)
     notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
     read = [f"{name} from {own!r}" for name, own in ours.renamed.items()]
     notes += [f"read {', '.join(read)}"] if read else []
+    lost = [f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header]
+    notes += [f"no column is called {', and none '.join(lost)}"] if lost else []
     return Table(ours.header, line, tuple(rows), tuple(places), fault, mark, ours, tuple(notes))
 
 
@@ -197,11 +196,13 @@ def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -
     for at, line in enumerate(lines):
         for each in (*MARKS, " "):
             cells = _cells(line.lstrip("# ") if line.startswith("# ") else line, each)
-            score = float(len({found for cell in cells if (found := _known(cell, names, theirs))}))
+            known = [cell for cell in cells if cell in names or cell in theirs.values()]
+            alike = {found[0] for cell in cells if len(cell) <= LONGEST_CELL and (found := meant(cell, names))}
+            score = float(len(alike.union(known)))
             below = next((_cells(row, each) for row in lines[at + 1 :] if row.strip()), [])
             fits = len(cells) == len(below) > 1
             score = score + 0.5 * fits if score and (fits or each != " ") else 0.0
-            if score > best and len(cells) <= MOST_CELLS:
+            if score > best:
                 best, place, mark = score, at, each
     if not best:
         head = lines[first] if first < len(lines) else ""
@@ -209,14 +210,6 @@ def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -
         if mark == "," and "," not in head and re.fullmatch(r"\s*[-+\d.eE]+(\s+[-+\d.eE]+)+\s*", head):
             mark = " "
     return place, mark, sum(bool(line.strip()) and not line.startswith(ASIDE) for line in lines[:place])
-
-
-def _known(cell: str, names: Sequence[str], theirs: Mapping[str, str]) -> str:
-    if cell in names:
-        return cell
-    given = next((name for name, own in theirs.items() if own == cell), "")
-    found = None if given or len(cell) > LONGEST_CELL else meant(cell, names)
-    return given or (found[0] if found else "")
 
 
 def _cells(line: str, mark: str) -> list[str]:

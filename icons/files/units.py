@@ -50,7 +50,7 @@ def errors(values: Array, possible: tuple[float, float], widest: tuple[float, fl
     They are beyond the widest range, or beyond what is possible by a jump from and to their neighbours.
 
     >>> import numpy as np
-    >>> errors(np.array([32.0, 31.9, 85.0, 31.9, 32.0, 32.1, 32.0]), POSSIBLE_C).sum()
+    >>> int(errors(np.array([32.0, 31.9, 85.0, 31.9, 32.0, 32.1, 32.0]), POSSIBLE_C).sum())
     1
     """
     import numpy as np

@@ -169,7 +169,9 @@ def read_readings(path: str | Path, column: str | None = None, columns: Mapping[
         return whole_file(_CODES[kind], f"{file}:{line}" if line else file, what, cure)
 
     table = read_table(_text(Path(path), file, fault), fault, EXAMPLE, MOST_ROWS, NAMES, columns)
-    chosen = _column(f"{file}:{table.line}", table, column)
+    given = column or next((name for name in columns or () if name in CONTROL_OF), None)
+    ours = next((name for name, own in table.names.renamed.items() if own == given), given)
+    chosen = _column(f"{file}:{table.line}", table, ours)
     for name in (TIME, chosen):
         table.texts(name)
     if len(table.rows) < 2:

@@ -24,9 +24,7 @@ if TYPE_CHECKING:
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
-HOW = (
-    "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv or other text"
-)
+HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv"
 
 APPLIES = {
     "--file": (("rig",), "belongs to two rigs; two sets are A and B"),

@@ -76,7 +76,7 @@ def convert_command(
 def is_table(file: str) -> bool:
     """Whether a file is a recording, by its ending, and is not cue text."""
     path = Path(file)
-    if path.suffix.lower() == ".csv" or path.suffix.lower() not in TABLES or not path.is_file():
+    if path.suffix.lower() not in TABLES or not path.is_file():
         return path.suffix.lower() in TABLES
     with path.open("rb") as opened:
         return not re.search(rb"(?m)^\s*cue\s+\d", opened.read(4000))

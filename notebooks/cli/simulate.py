@@ -169,21 +169,15 @@ def simulate_file(
 
 
 def simulate_drive(
-    drive: Path,
-    hold: bool,
-    theirs: dict[str, str],
-    rig: Rig,
-    rate_Hz: float,
-    output: Path | None,
-    figure: FigureOptions,
-) -> None:  # fmt: skip
+    file: Path, hold: bool, theirs: dict[str, str], rig: Rig, rate_Hz: float, output: Path | None, figure: FigureOptions
+) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
     from thermicon.circuit.solver.drive import read_drive
     from thermicon.circuit.solver.simulate import simulate_current
 
-    _check_outputs(drive, output, [] if figure.figure is None else [figure.figure])
+    _check_outputs(file, output, [] if figure.figure is None else [figure.figure])
     with noted():
-        played = read_drive(drive, hold=hold, columns=theirs)
+        played = read_drive(file, hold=hold, columns=theirs)
     tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
     if figure.figure is not None:
         figure.write(felt_overview(simulate_current(played, rig), rig.changes))

@@ -1,4 +1,4 @@
-"""Tables as instruments and programs write them: every command reads the same numbers, or a sentence whose cure works."""
+"""Tables as instruments and programs write them: every command reads the same numbers, or names a cure that works."""
 
 import multiprocessing
 import random
@@ -202,6 +202,20 @@ def test_a_form_is_read_to_the_same_numbers_at_every_door(tmp_path: Path, name: 
     (tmp_path / "a.csv").write_bytes(FORMS[name])
     for door in DOORS.values():
         assert right(door(tmp_path / "a.csv", {}))
+
+
+PAGE_ROWS = re.findall(
+    r"(?m)^\| (?!written)(.+) \| `(.+)` \|$",
+    (Path(__file__).parents[3] / "docs" / "reference" / "tables.md").read_text("utf-8"),
+)
+
+
+@pytest.mark.parametrize(("form", "example"), PAGE_ROWS, ids=[form for form, _ in PAGE_ROWS])
+def test_an_example_of_the_page_is_read(tmp_path: Path, form: str, example: str) -> None:
+    (tmp_path / "a.csv").write_text(example.replace(" ⏎ ", "\n").replace("→", "\t"), "utf-8")
+    found = read_curves(str(tmp_path / "a.csv"))
+    assert np.ptp(found.time_s) == pytest.approx(0.1, abs=1e-6), form
+    assert found.columns["display_C"] == pytest.approx([32.0, 31.9])
 
 
 Cure = Callable[[str], str] | dict[str, str]
