@@ -1,7 +1,7 @@
 """The door for answers: a CSV file of trials, or what is wrong with it, where, and what helps."""
 
 import hashlib
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,11 +24,12 @@ class TrialsError(InputError):
     """A table of answers cannot be used; the message says what, where and the cure."""
 
 
-def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
+def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, str] | None = None) -> Trials:
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
     A CSV file has the columns participant, trial, presented and responded; others are left alone. Semicolons and tabs
-    also separate columns; lines that begin with # are comments. Participants are in the order of the file. A
+    also separate columns; lines that begin with # are comments. Participants are in the order of the file;
+    `columns` says what the file calls ours. A
     `TrialsError` says what is wrong, where, and what helps.
 
     >>> import pathlib, tempfile
@@ -39,7 +40,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     Trials(1 participant, 2 trials, 2 icons)
     """
     file = Path(path)
-    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT)
+    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT, columns)
     names, known = tuple(icons), set(icons)
     places = {name: place for place, name in enumerate(names)}
     answers: dict[str, list[tuple[int, int]]] = {}
@@ -62,7 +63,9 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     return Trials(names, tuple(answers), counts, file.name, digest)
 
 
-def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tuple[Table, str]:
+def table_in(
+    path: Path, needed: Sequence[str], example: str, what: str, columns: Mapping[str, str] | None = None
+) -> tuple[Table, str]:
     """Return the table in a file, and the first 16 digits of the file's SHA-256, by which a result names it.
 
     A TrialsError lists which columns of those `needed` are missing, and what was found.
@@ -73,7 +76,7 @@ def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tupl
     def fault(kind: Kind, line: int | None, wrong: str, cure: str) -> Exception:
         return said(kind, line, wrong, "one experiment a file is enough" if kind == "size" else cure)
 
-    table = read_table(table_text(data, fault, example), fault, example, MOST_ROWS, needed)
+    table = read_table(table_text(data, fault, example), fault, example, MOST_ROWS, needed, columns)
     if missing := [name for name in needed if name not in table.header]:
         close = {cell.lower(): cell for cell in table.header}
         hints = [f"rename {close[name]!r} to {name}" for name in missing if name in close]
