@@ -37,7 +37,7 @@ def seconds_of(cells: Sequence[str]) -> Array | None:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 times = pd.to_datetime(pd.Series(plain), dayfirst=day_first)
-            found.append((times - times.iloc[0]).dt.total_seconds().to_numpy(dtype=float))
+            found.append(np.asarray((times - times.iloc[0]).dt.total_seconds(), dtype=np.float64))
         except (ValueError, OverflowError, TypeError, AttributeError):
             continue
     if not found:

@@ -57,11 +57,7 @@ SPICE = re.compile(r"([vi])\((.+)\)", re.IGNORECASE)
 
 
 def unit_of(text: str) -> Unit | None:
-    """The unit that a text is, with or without brackets; None where it is none.
-
-    >>> unit_of("[Deg C]"), unit_of("ms"), unit_of("note")
-    (Unit(ours='C', factor=1.0, plus=0.0), Unit(ours='s', factor=0.001, plus=0.0), None)
-    """
+    """The unit that a text such as [Deg C] or ms is; None where it is none."""
     return UNITS.get(re.sub(r"\s+", ".", text.strip(" ()[]{}<>\"'").lower()))
 
 
@@ -70,7 +66,8 @@ def parted(cell: str) -> tuple[str, Unit | None]:
     for pattern in (BRACKET, BEHIND):
         if (found := pattern.fullmatch(cell)) and (unit := unit_of(found[2])):
             return found[1], unit
-    return ("time", unit) if (unit := unit_of(cell)) and unit.ours == "s" and cell.lower() != "s" else (cell, None)
+    unit = unit_of(cell) if len(cell) > 1 else None  # "ms", but not the least value, "min"
+    return ("time", unit) if unit and unit.ours == "s" and unit.factor <= 1 else (cell, None)
 
 
 def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:

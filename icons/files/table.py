@@ -128,13 +128,9 @@ def as_number(cell: str, mark: str = ",") -> float:
 
 
 def read_table(
-    text: str,
-    fault: Fault,
-    example: str,
-    most_rows: int,
-    names: Sequence[str] = (),
+    text: str, fault: Fault, example: str, most_rows: int, names: Sequence[str] = (),
     theirs: Mapping[str, str] | None = None,
-) -> Table:
+) -> Table:  # fmt: skip
     """Return the table in a text; raises a fault for rows that do not fit the line of names, and for too many.
 
     ``example`` is such a line, for messages. That line is the one that has the most of ``names``, of what means the
@@ -176,7 +172,7 @@ def read_table(
     ours = named(header, names, theirs)
     notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
     read = [f"{name} from {own!r}" for name, own in ours.renamed.items()]
-    notes += [f"read {', '.join(read)}"] if read else []
+    notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
     lost = [f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header]
     notes += [f"no column is called {', and none '.join(lost)}"] if lost else []
     return Table(ours.header, line, tuple(rows), tuple(places), fault, mark, ours, tuple(notes))

@@ -9,22 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .table import Fault
 
-TABLES = (
-    ".csv",
-    ".tsv",
-    ".txt",
-    ".dat",
-    ".log",
-    ".lvm",
-    ".prn",
-    ".raw",
-    ".tdms",
-    ".xlsx",
-    ".xls",
-    ".ods",
-    ".zip",
-    ".gz",
-)
+TABLES = (".csv", ".tsv", ".txt", ".dat", ".log", ".lvm", ".prn", ".raw", ".tdms", ".xlsx", ".xls", ".ods", ".zip",
+          ".gz")  # fmt: skip
 """Endings of what may hold a table, or gets a sentence on how to make one of it."""
 
 SHEET, UNPACK = "save the sheet as CSV, and give that file", "unpack it, and give the table in it"

@@ -53,8 +53,8 @@ def convert_command(
     chosen = [each for each in column or [] if each not in pairs]
     if len(chosen) > 1:
         raise usage(f"{' and '.join(chosen)} cannot both be the temperature", "--column")
-    recording = {"tolerance_K": tolerance, "name": name, "column": "".join(chosen), "control": control}
-    recording["columns"] = theirs_of(pairs)
+    recording: dict[str, Any] = {"tolerance_K": tolerance, "name": name, "control": control}
+    recording |= {"column": "".join(chosen), "columns": theirs_of(pairs)}
     given = {key: value for key, value in recording.items() if value not in (None, "", {})}
     if given and not is_table(file):
         option = next(iter(given)).removesuffix("_K").replace("columns", "column")
