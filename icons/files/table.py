@@ -171,7 +171,8 @@ def read_table(
             raise fault("size", None, f"more than {most_rows:,} rows", "keep every tenth row, or cut the file")
     ours = named(header, names, theirs)
     notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
-    read = [f"{name} from {own!r}" for name, own in ours.renamed.items()]
+    read = [f"{name} from {own!r}" for name, own in ours.renamed.items()
+            if theirs.get(name) != own or ours.units[name].factor != 1 or ours.units[name].plus]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
     lost = [f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header]
     notes += [f"no column is called {', and none '.join(lost)}"] if lost else []

@@ -168,10 +168,11 @@ def read_readings(path: str | Path, column: str | None = None, columns: Mapping[
     def fault(kind: str, line: int | None, what: str, cure: str) -> CueErrors:
         return whole_file(_CODES[kind], f"{file}:{line}" if line else file, what, cure)
 
-    table = read_table(_text(Path(path), file, fault), fault, EXAMPLE, MOST_ROWS, NAMES, columns)
-    given = column or next((name for name in columns or () if name in CONTROL_OF), None)
-    ours = next((name for name, own in table.names.renamed.items() if own == given), given)
-    chosen = _column(f"{file}:{table.line}", table, ours)
+    own = None if column in (None, *NAMES) else column
+    theirs = {**(columns or {}), **({"temperature_C": own} if own else {})}
+    table = read_table(_text(Path(path), file, fault), fault, EXAMPLE, MOST_ROWS, NAMES, theirs)
+    given = next((name for name in theirs if name in CONTROL_OF and name in table.names.renamed), column)
+    chosen = _column(f"{file}:{table.line}", table, given)
     for name in (TIME, chosen):
         table.texts(name)
     if len(table.rows) < 2:

@@ -93,11 +93,11 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
         table = table.only(_rows_of(list(table.texts("icon")), path, icon))
     if len(table.rows) < 2:
         raise LogError(f"{path}: {len(table.rows)} rows; at least two are needed")
-    found = measured(table, known, CURE, most=LARGEST)
+    whole = all(name in table.header and name not in table.names.renamed for name in COLUMNS[1:])
+    found = measured(table, known, CURE, most=LARGEST, ours=whole)
     if (same := numpy.flatnonzero(numpy.diff(found.time_s) <= 0)).size:
         line = found.lines[int(same[0]) + 1]
         raise fault("time", line, f"all rows are at {found.time_s[0]:g} s", "times must increase: write more decimals")
-    whole = all(name in table.header for name in COLUMNS[1:])
     ignored = tuple(name for name in table.header if name and name not in (*COLUMNS, *known))
     return Curves(where.name, found.time_s, found.columns, whole, ignored, found.notes)
 
