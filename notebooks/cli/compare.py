@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from thermicon.icons import Icon
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
-MOST_IGNORED = 8
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
 HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv"
 
@@ -179,9 +178,7 @@ def _tables(names: tuple[str, str], icon: str | None, theirs: dict[str, str], sh
         for said in curves.notes:
             note(f"note: {curves.name}: {said}")
         if curves.ignored:
-            more = ", …" if len(curves.ignored) > MOST_IGNORED else ""
-            shown = ", ".join(curves.ignored[:MOST_IGNORED])
-            note(f"{curves.name}: ignored columns that no trace has: {shown}{more}")
+            note(f"{curves.name}: ignored columns that no trace has: {', '.join(curves.ignored)}")
     said = ""
     if shift:
         second, said = _shifted(first, second)

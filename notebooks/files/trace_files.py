@@ -98,8 +98,9 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
     if (same := numpy.flatnonzero(numpy.diff(found.time_s) <= 0)).size:
         line = found.lines[int(same[0]) + 1]
         raise fault("time", line, f"all rows are at {found.time_s[0]:g} s", "times must increase: write more decimals")
-    ignored = tuple(name for name in table.header if name and name not in (*COLUMNS, *known))
-    return Curves(where.name, found.time_s, found.columns, whole, ignored, found.notes)
+    ignored = [name for name in table.header if name and name not in (*COLUMNS, *known)]
+    shown = (*ignored[:8], "…") if len(ignored) > 8 else tuple(ignored)
+    return Curves(where.name, found.time_s, found.columns, whole, shown, found.notes)
 
 
 def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:
