@@ -10,11 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.icons.files.clock import order_fault
 from thermicon.icons.files.measured_table import measured, missing
 from thermicon.icons.files.table import Table, read_table
-from thermicon.icons.files.table_text import table_text
-from thermicon.icons.files.units import MOST_SIZE, like_units_of_time, unit_fault
+from thermicon.icons.files.units import like_units_of_time, unit_fault
 from thermicon.icons.near_words import nearest_words
 
 from ..arrays import Array
@@ -89,7 +87,7 @@ class Log:
                 f"{name}: no column of a log; needed is one of {', '.join(DRIVES)}, and any of "
                 f"{', '.join(MEASURED)}; found time_s, {', '.join(values)}"
             )
-        for key, column in used.items():
+        for key, column in {"time_s": time, **used}.items():
             if fault := unit_fault(key, column):
                 raise LogError(f"{name}: {'; '.join(fault)}")
         unused = unused or ", ".join(key for key in values if key not in used)
@@ -152,21 +150,17 @@ def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
         raise LogError(f"{_place(name, row, rows)}: time_s is empty; remove the row")
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
-        row, why = order_fault(time) or (int(back[0]) + 1, "leave out rows that stand twice, or write more decimals")
+        row = int(back[0]) + 1
         raise LogError(
             f"{_place(name, row, rows)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
-            f"increase: {why}"
+            f"increase: sort the rows, or give each recording its own file"
         )
     step, like = float(np.median(np.diff(time))), like_units_of_time(time, whole=False)
-    if like and not SHORTEST_S <= step <= SLOWEST_S:
-        span = f"steps of {step:g} over {time[-1] - time[0]:g}"
-        raise LogError(f"{name}: time_s goes in {span}: these look like {like[0]}; {like[1]} to have s")
-    if step > SLOWEST_S:
-        rule = f"a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
-        raise LogError(f"{name}: time_s goes in steps of {step:g} s; {rule}")
-    if (last := float(np.abs(time).max())) > MOST_SIZE:
-        rule = f"beyond the {MOST_SIZE:g} that any instrument gives; leave that row out"
-        raise LogError(f"{name}: time_s reaches {last:g}, {rule}")
+    if step > SLOWEST_S or (like and step < SHORTEST_S):
+        cure = f"s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
+        if like:
+            cure = f"over {time[-1] - time[0]:g}: these look like {like[0]}; {like[1]} to have s"
+        raise LogError(f"{name}: time_s goes in steps of {step:g} {cure}")
 
 
 MOST_MB = 200.0
@@ -193,8 +187,7 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     """
     where = Path(path)
     data = read_bytes(where, "log", MOST_MB, LogError)
-    fault, example = table_fault(where, LogError), "time_s,current_A,…"
-    table = read_table(table_text(data, fault, example), fault, example, MOST_ROWS, NAMES, columns)
+    table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
     _check_columns(table)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
     found = measured(table, wanted, CURE)
@@ -208,20 +201,12 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
 
 
 def _check_columns(table: Table) -> None:
-    """Refuse a table without times or any column of a log, and columns that look like misspelt ones."""
-    alike = {cell: _misspelt(cell, NAMES) for cell in table.header if cell not in NAMES}
-    if wrong := [f"{cell}: did you mean {name}?" for cell, name in alike.items() if name and name not in table.header]:
-        what = f"{' '.join(wrong)} Found {table.found}"
-        raise table.fault("table", table.line, what, "rename the column, or remove it")
-    if "time_s" not in table.header:
-        raise missing(table, "time_s", "time in s")
-    if doubtful := next((name for name in table.names.doubtful), ""):
-        raise missing(table, doubtful)
-    if not any(map(is_known, table.header)):
+    """Refuse a table without any column of a log, and a column that looks like a misspelt one."""
+    known = {name.lower(): name for name in NAMES}
+    for cell in table.header:
+        close = known.get("".join(nearest_words(cell.lower(), known, 1, MISSPELT)))
+        if close and close not in table.header and cell not in NAMES:
+            what = f"{cell}: did you mean {close}? Found {table.found}"
+            raise table.fault("table", table.line, what, "rename the column, or remove it")
+    if table.names.doubtful or not any(map(is_known, table.header)):
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
-
-
-def _misspelt(cell: str, known: Sequence[str]) -> str | None:
-    """The known column that a name is but for case or a letter."""
-    close = nearest_words(cell.lower(), [name.lower() for name in known], 1, MISSPELT)
-    return next((name for name in known if close and name.lower() == close[0]), None)

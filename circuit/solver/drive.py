@@ -13,7 +13,6 @@ import numpy as np
 
 from thermicon.icons.files.measured_table import measured, missing
 from thermicon.icons.files.table import read_table
-from thermicon.icons.files.table_text import table_text
 
 from ..arrays import Array
 from ..inputs import InputError, read_bytes, table_fault
@@ -140,27 +139,22 @@ def read_drive(path: str | Path, hold: bool = False, columns: Mapping[str, str] 
     Drive(2 rows, 2 s, 0 … 0.5 A, linear)
     """
     where = Path(path)
-    fault = table_fault(where, DriveError)
-    text = table_text(read_bytes(where, "drive file", MOST_MB, DriveError), fault, ",".join(COLUMNS))
-    table = read_table(text, fault, ",".join(COLUMNS), MOST_ROWS, COLUMNS, columns)
-    if lost := [name for name in COLUMNS if name not in table.header]:
-        if "duty" in table.header and "current_A" in lost:
+    data = read_bytes(where, "drive file", MOST_MB, DriveError)
+    table = read_table(data, table_fault(where, DriveError), ",".join(COLUMNS), MOST_ROWS, COLUMNS, columns)
+    if "current_A" not in table.header:
+        if "duty" in table.header:
             raise DriveError(
                 f"{where}:1: these are duties of a bridge, which switches its full current within every row, so that "
                 f"there is no current to hold; only drives for a device driven by volts or amperes can be replayed, "
                 f"and what this one does is in the sidecar beside it, under predicted"
             )
-        raise missing(table, lost[0], "current in A" if lost[0] == "current_A" else "time in s")
+        raise missing(table, "current_A", "current in A")
     found = measured(table, COLUMNS[1:], "correct it, or remove the row", gaps=False, steps=True)
     for note in found.notes:
         warnings.warn(f"{where}: {note}", stacklevel=2)
-    begin, times = found.time_s[:1], found.time_s - found.time_s[:1]
-    if begin.any():
-        warnings.warn(f"{where}: times count from the first row, which is at {begin[0]:.9g} s", stacklevel=2)
-    if len(times) > 1:
-        again = np.append(False, np.diff(times) == 0)
-        room = np.append(np.diff(times), STEP_S) / 2
-        times = times + np.where(again, np.minimum(STEP_S, room), 0.0)
+    times = found.time_s - found.time_s[0]
+    again, room = np.append(False, np.diff(times) == 0), np.append(np.diff(times), STEP_S) / 2
+    times = times + np.where(again, np.minimum(STEP_S, room), 0.0)
     try:
         return Drive(times, found.columns["current_A"], hold)
     except DriveError as problem:

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 DAY_S, HOUR_S, LONGEST_STAMP = 86_400.0, 3600.0, 60
-LEAST_STAMPS = 3
-"""Stamps that a clock with too few digits has at least; rows of fewer are of one time."""
 
 
 def seconds_of(cells: Sequence[str]) -> Array | None:
@@ -56,7 +54,7 @@ def spread(time: Array, steps: bool) -> tuple[Array, int]:
 
     starts = np.flatnonzero(np.diff(time, prepend=-np.inf) != 0)
     counts = np.diff(starts, append=len(time))
-    if counts.max(initial=1) <= 1 + steps or len(starts) < LEAST_STAMPS:
+    if counts.max(initial=1) <= 1 + steps or len(starts) < 2:
         return time, 0
     gap = np.diff(time[starts], append=time[-1] + np.median(np.diff(time[starts])))
     place = np.arange(len(time)) - np.repeat(starts, counts)

@@ -92,8 +92,6 @@ def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
             return ("time_s", unit) if "time_s" in names else None
     core = " ".join(word for word in words if word not in THERMAL | IDLE)
     core = OTHERS.get(core, core or ("temperature" if set(words) & THERMAL and (unit or words != ["t"]) else ""))
-    if core.startswith("probe ") and unit and unit.ours == "C" and "display_C" in names:
-        return f"probe_{core[6:].replace(' ', '_')}_C", unit
     ours = f"{core.replace(' ', '_')}_{unit.ours if unit else 'C'}"
     return next(((name, unit) for name in names if name.lower() == ours.lower()), None)
 
@@ -108,16 +106,13 @@ class Named:
     doubtful: Mapping[str, tuple[str, ...]]
 
 
-NOTHING_RENAMED = Named((), {}, {}, {})
-
-
 def named(header: Iterable[str], names: Iterable[str], theirs: Mapping[str, str]) -> Named:
     """Read a header: names that are ours stay, those that ``theirs`` gives for ours, and those that mean one of ours.
 
     Where two cells may be the same, none is taken, but one whose unit is said goes before others.
     """
     cells, names = list(header), list(names)
-    new, units, doubtful = list(cells), dict[str, Unit](), dict[str, tuple[str, ...]]()
+    units, renamed, doubtful = dict[str, Unit](), dict[str, str](), dict[str, tuple[str, ...]]()
     places: dict[str, list[tuple[int, Unit | None]]] = {
         name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells
     }
@@ -127,12 +122,11 @@ def named(header: Iterable[str], names: Iterable[str], theirs: Mapping[str, str]
             found = meant(cell, names)
             if found and found[0] not in {*cells, *theirs}:
                 places.setdefault(found[0], []).append((at, found[1]))
-    renamed = dict[str, str]()
     for name, several in places.items():
         best = [one for one in several if one[1] or len(several) == 1]
-        if len(best) != 1:
+        if len(best) == 1:
+            at, unit = best[0]
+            new[at], renamed[name], units[name] = name, cells[at], unit or Unit("")
+        else:
             doubtful[name] = tuple(cells[at] for at, _ in several)
-            continue
-        at, unit = best[0]
-        new[at], renamed[name], units[name] = name, cells[at], unit or Unit("")
     return Named(tuple(new), units, renamed, doubtful)

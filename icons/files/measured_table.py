@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .clock import order_fault, seconds_of, spread
-from .table import LONGEST_CELL, Table
+from .table import Table
 from .units import POSSIBLE_C, SENSED_C, errors, like_units_of_time, unit_fault
 
 if TYPE_CHECKING:
@@ -31,13 +31,14 @@ class Measured:
     notes: tuple[str, ...]
 
 
-def missing(table: Table, name: str, what: str = "") -> Exception:
+def missing(table: Table, name: str, what: str) -> Exception:
     """The fault of a column that a table does not have, or may have twice, and how to say which it is."""
-    own = next(iter(table.names.doubtful.get(name, ())), "")
+    name, what = (name, what) if TIME in table.header else (TIME, "time in s")
+    name, several = next(iter(table.names.doubtful.items()), (name, ()))
     others = [cell for cell in table.header if cell and cell not in (*table.names.renamed, TIME, "icon")]
-    close = own or next((cell for cell in others if cell.lower()[:1] == name[0]), others[0] if others else "THEIRS")
-    said = f"{' and '.join(table.names.doubtful[name])} may be {name}" if own else ""
-    said = said or f"the column {name}{f' ({what})' if what else ''} is missing; found {table.found}"
+    close = [*several, *others, "THEIRS"][0]
+    said = f"{' and '.join(several)} may be {name}" if several else ""
+    said = said or f"the column {name} ({what}) is missing; found {table.found}"
     quote = '"' if set(close) & set(" ()[]/&;*|<>$'°") else ""
     cure = f'--column {quote}{name}={close}{quote} (in Python columns={{"{name}": "{close}"}})'
     return table.fault("table", table.line, said, f"say which it is: {cure}")
@@ -49,23 +50,25 @@ def measured(
 ) -> Measured:  # fmt: skip
     """Return times and the columns called ``names``, in SI units; raises faults of the table with their cures.
 
-    Units that names in the file say are converted, error values of sensors are left out, stamps of a clock with too few
-    digits are spread, and notes say so. Without ``gaps`` a cell that is empty is a fault, and rows with an error value
-    are left out; with ``steps`` two readings at one time are a step, otherwise times rise. ``cure`` is for such cells.
-    What is ``ours``, a simulated trace, may have any value.
+    Without ``gaps`` an empty cell is a fault, with this ``cure``, and rows with an error value are left out; with
+    ``steps`` two readings at one time are a step. What is ``ours``, a simulated trace, may have any value.
     """
     import numpy as np
 
+    if TIME not in table.header:
+        raise missing(table, TIME, "time in s")
     time, lines, notes = _times(table), np.array(table.lines), list(table.notes)
     counts = {name: Counter[str]() for name in names}
     columns = {name: table.numbers(name, cure, gaps=counts[name] if gaps else None, most=most) for name in names}
     for name, unit in table.names.units.items():
         if name in columns:
             columns[name] = columns[name] * unit.factor + unit.plus
-    rows = np.stack([time, *columns.values()])
-    filled, kept = np.nan_to_num(rows, nan=-1e300), np.ones(len(time), dtype=bool)
-    kept[1:] = (filled[:, 1:] != filled[:, :-1]).any(axis=0)
-    if (twice := int((~kept).sum())) and twice == int((np.diff(time) == 0).sum()) <= 0.1 * len(time):
+    if (few := len(time)) < 2:
+        what = f"{few or 'no'} row{'s' * (not few)} below the names of the columns"
+        raise table.fault("table", None, what, "at least two are needed, a start and an end")
+    rows = np.nan_to_num(np.stack([time, *columns.values()]), nan=-1e300)
+    kept = np.append(True, (np.diff(rows) != 0).any(axis=0))
+    if 0 < (twice := int((~kept).sum())) == int((np.diff(time) == 0).sum()) <= 0.1 * len(time):
         notes.append(f"rows that stand twice count once: {twice}")
     else:
         kept[:] = True
@@ -78,10 +81,12 @@ def measured(
             for name, cells in counts.items() for cell, count in cells.most_common(3) if cell]  # fmt: skip
     notes += [f"{', '.join(left)}, which are {'taken as gaps' if gaps else 'left out'}"] if left else []
     time, lines, columns = time[kept], lines[kept], {name: column[kept] for name, column in columns.items()}
-    if (found := order_fault(time)) is not None:
+    if found := order_fault(time):
         row, why = found
         what = f"time_s {time[row]:.9g} s does not come after {time[row - 1]:.9g} s; times must increase"
         raise table.fault("time", int(lines[row]), what, why)
+    if not np.ptp(time):
+        raise table.fault("time", None, f"all rows are at {time[0]:g} s", "times must increase: write more decimals")
     time, count = spread(time, steps)
     if count:
         notes.append(f"the clock has too few digits: {count:,} rows at the time of the row before were spread")
@@ -97,10 +102,7 @@ def measured(
 def _times(table: Table) -> Array:
     """The column of times, as numbers, or as times of day with or without dates."""
     cells, unit = list(table.texts(TIME)), table.names.units.get(TIME)
-    if ":" not in next(filter(None, cells), "") or "" in cells:
-        return table.numbers(TIME, CLOCK_CURE if ":" in "".join(cells) else "remove the row") * (
-            unit.factor if unit else 1.0
-        )
-    if (times := seconds_of(cells)) is None:
-        raise table.fault("cell", table.lines[0], f"{TIME} is {cells[0][:LONGEST_CELL]!r}, not a time", CLOCK_CURE)
-    return times
+    if ":" in "".join(cells[:1]) and "" not in cells and (times := seconds_of(cells)) is not None:
+        return times
+    cure = CLOCK_CURE if ":" in "".join(cells) else "remove the row"
+    return table.numbers(TIME, cure) * (unit.factor if unit else 1.0)

@@ -13,10 +13,11 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from .column_names import NOTHING_RENAMED, Named, meant, named, unit_of
+from .column_names import Named, meant, named, unit_of
+from .table_text import table_text
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,8 +36,8 @@ NO_NAME = re.compile(r"[-+\d.,;eE\s]*|n/a|nan")
 """A cell that names no column."""
 WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
-FEW, LONGEST_CELL, MOST_ABOVE = 8, 60, 200
-"""Columns that a message lists, characters of a cell that it quotes; lines in which the names are looked for."""
+FEW, LONGEST_CELL, MOST_ABOVE, LONGEST_LINE = 8, 60, 200, 100_000
+"""Columns that a message lists, characters of a cell that it quotes; lines, and of each how much, to find names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +52,9 @@ class Table:
     rows: tuple[list[str], ...]
     lines: tuple[int, ...]
     fault: Fault
-    mark: str = ","
-    names: Named = NOTHING_RENAMED
-    notes: tuple[str, ...] = ()
+    mark: str
+    names: Named
+    notes: tuple[str, ...]
 
     @property
     def found(self) -> str:
@@ -73,11 +74,6 @@ class Table:
         there = [name for name in names if name in self.header]
         for line, *cells in zip(self.lines, *map(self.texts, there), strict=True):
             yield line, dict(zip(there, cells, strict=True))
-
-    def only(self, rows: Sequence[int]) -> Table:
-        """The table with these rows alone."""
-        kept = tuple(self.rows[row] for row in rows), tuple(self.lines[row] for row in rows)
-        return replace(self, rows=kept[0], lines=kept[1])
 
     def numbers(
         self, name: str, cure: str, *, gaps: Counter[str] | None = None, most: float = math.inf
@@ -110,12 +106,8 @@ class Table:
         if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]):
             theirs = self.names.renamed.get(name, name)
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
-        others = [other for other in self.rows[row] if other.strip() and other.strip() != cell]
-        if cell and not others and len(self.header) > 1:
-            return "remove this line, which is no row of the table"
-        if cell and any(meant(each, [name]) for each in (cell, *others)):
-            return "the names of a second table: give each table its own file"
-        return ""
+        alone = len(self.header) > 1 and {other.strip() for other in self.rows[row]} <= {"", cell}
+        return "remove this line, which is no row of the table" if cell and alone else ""
 
 
 def as_number(cell: str, mark: str = ",") -> float:
@@ -128,36 +120,35 @@ def as_number(cell: str, mark: str = ",") -> float:
 
 
 def read_table(
-    text: str, fault: Fault, example: str, most_rows: int, names: Sequence[str] = (),
+    data: bytes, fault: Fault, example: str, most_rows: int, names: Sequence[str] = (),
     theirs: Mapping[str, str] | None = None,
 ) -> Table:  # fmt: skip
-    """Return the table in a text; raises a fault for rows that do not fit the line of names, and for too many.
+    """Return the table in the bytes of a file; raises a fault for rows that do not fit the line of names.
 
     ``example`` is such a line, for messages. That line is the one that has the most of ``names``, of what means the
     same, and of what ``theirs`` calls them; where none has any, the first line.
 
-    >>> table = read_table("a;b\\n1,5;2\\n", lambda *about: ValueError(about), "a,b", 10)
+    >>> table = read_table(b"a;b\\n1,5;2\\n", lambda *about: ValueError(about), "a,b", 10)
     >>> table.numbers("a", "").tolist(), list(table.records(["b"]))
     ([1.5], [(2, {'b': '2'})])
     """
-    theirs = theirs or {}
+    theirs, text = theirs or {}, table_text(data, fault, example)
     above, mark, skipped = _line_of_names(text, names, theirs)
     lines = _rows(text, above, mark, fault)
     line, first = next(lines, (0, [""]))
     header = [cell.strip().strip('"') for cell in first]
-    while len(header) > 1 and not header[-1]:
-        header.pop()
     if not any(header):
         raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
     if all(map(NO_NAME.fullmatch, header)):
-        put = example if mark == "," else f"{len(header)} names such as {example.replace(',', mark)}"
+        put = example if mark == "," or not header[1:] else f"{len(header)} names such as {example.replace(',', mark)}"
         raise fault("table", line, "this line holds numbers, not the names of columns", f"put {put} above it")
     rows, places = list[list[str]](), list[int]()
     for place, row in lines:
         bare = [cell.strip() for cell in row[: len(header)]]
         if row[0].startswith(ASIDE) or bare == header or all(set(cell) <= {"-", "=", "*"} for cell in bare):
             continue  # names that stand again, and rules between pages
-        if not rows and _are_units(bare):
+        said = [] if rows else [cell for cell in bare if cell.strip(" ()[]-")]  # a row of units, but for a word
+        if sum(unit_of(cell) is None for cell in said) < 0.5 * len(said) and not re.search(r"\d", "".join(said)):
             header = [f"{name} [{cell.strip(' ()[]')}]" if unit_of(cell) else name
                       for name, cell in itertools.zip_longest(header, bare, fillvalue="")]  # fmt: skip
             continue
@@ -179,15 +170,9 @@ def read_table(
     return Table(ours.header, line, tuple(rows), tuple(places), fault, mark, ours, tuple(notes))
 
 
-def _are_units(cells: Sequence[str]) -> bool:
-    """Whether a row has units, and besides no more than a word, as loggers write it below the names."""
-    said = [cell for cell in cells if cell.strip(" ()[]-")]
-    return sum(unit_of(cell) is None for cell in said) < 0.5 * len(said) and not re.search(r"\d", "".join(said))
-
-
 def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
     """How many lines stand above the names, what separates the cells, and how many of those lines say something."""
-    lines = [line for line, _ in zip(io.StringIO(text), range(MOST_ABOVE), strict=False)]
+    lines = [line[:LONGEST_LINE] for line, _ in zip(io.StringIO(text), range(MOST_ABOVE), strict=False)]
     first = next((at for at, line in enumerate(lines) if line.strip() and not line.startswith(ASIDE)), len(lines))
     best, place, mark = 0.0, first, ""
     for at, line in enumerate(lines):
@@ -202,32 +187,22 @@ def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -
             if score > best:
                 best, place, mark = score, at, each
     if not best:
-        head = lines[first] if first < len(lines) else ""
-        mark = max(MARKS, key=head.count) if any(one in head for one in MARKS) else ","
-        if mark == "," and "," not in head and re.fullmatch(r"\s*[-+\d.eE]+(\s+[-+\d.eE]+)+\s*", head):
-            mark = " "
+        head = "".join(lines[first : first + 1])
+        mark = max(MARKS, key=head.count) if any(one in head for one in MARKS) else " "
     return place, mark, sum(bool(line.strip()) and not line.startswith(ASIDE) for line in lines[:place])
 
 
 def _cells(line: str, mark: str) -> list[str]:
-    if mark == " ":
-        return line.split()
-    try:
-        return [cell.strip() for cell in next(csv.reader([line], delimiter=mark), [])]
-    except csv.Error:
-        return []
+    return line.split() if mark == " " else [cell.strip() for cell in next(csv.reader([line], delimiter=mark), [])]
 
 
 def _rows(text: str, above: int, mark: str, fault: Fault) -> Iterator[tuple[int, list[str]]]:
     """Rows that are not empty, each with its line in the file, from the line of names on."""
-    stream: Iterator[str] = io.StringIO(text, newline="")
-    for _ in range(above):
-        next(stream)
+    stream: Iterator[str] = itertools.islice(io.StringIO(text, newline=""), above, None)
     first = next(stream, "")
     stream = itertools.chain([first.lstrip("# ") if first.startswith("#") else first], stream)
     if mark == " ":
-        yield from ((above + at, row) for at, line in enumerate(stream, 1) if (row := line.split()))
-        return
+        stream, mark = ("\t".join(line.split()) for line in stream), "\t"
     reader = csv.reader(stream, delimiter=mark)
     try:
         for row in reader:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 MOST_SIZE = 1e12
-"""Times by the clock of a computer have ten digits; what reads a wire that is off has fewer."""
+"""What reads a wire that is off has fewer digits."""
 SENSED_C = (-40.0, 150.0)
 """Outside, a sensor of a display on skin is unplugged or its wire broken."""
 ON_SKIN_C, HOT_PLATE_C, MEDIAN_C = (5.0, 55.0), (5.0, 100.0), 15.0
@@ -27,7 +27,7 @@ POSSIBLE_C, JUMP_K = (-10.0, 60.0), 20.0
 """What touches skin is within; a reading beyond that jumps by more, from and to its neighbours, is an error."""
 MOST_LEFT_OUT = 0.2
 """Larger shares of impossible readings are no single errors of a sensor."""
-LIMITS = {"A": (50.0, "ampere"), "V": (200.0, "volt")}
+LIMITS = {"A": (50.0, "milliamperes"), "V": (200.0, "millivolts")}
 """Far above what any display on skin takes, and far below what it takes in milliamperes and millivolts."""
 STEPS_S, LENGTHS_S, LONG_S = (1e-4, 2.0), (1.0, 3600.0), 600.0
 """Rows and lengths of what is recorded of a display in s, and the length from which whole seconds are doubted."""
@@ -38,9 +38,6 @@ TEMPERATURES = (
     ("°F", 1 / 1.8, -32 / 1.8, "subtract 32 and divide by 1.8"),
     *((f"{part} of °C", by, 0.0, f"divide by {1 / by:.0f}")
       for part, by in (("tenths", 0.1), ("hundredths", 0.01), ("thousandths", 0.001))),
-    *((f"{part} of kelvin", by, -273.15, f"divide by {1 / by:.0f} and subtract 273.15")
-      for part, by in (("tenths", 0.1), ("hundredths", 0.01), ("thousandths", 0.001))),
-    ("tenths of °F", 0.1 / 1.8, -32 / 1.8, "divide by 10, subtract 32 and divide by 1.8"),
 )  # fmt: skip
 
 
@@ -68,20 +65,13 @@ def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
 
     there = values[np.isfinite(values)]
     most, unit = float(np.abs(there).max(initial=0.0)), name.rpartition("_")[2]
-    found = _temperature_fault(name, there) if unit == "C" and there.size else None
-    limit, word = LIMITS.get(unit, (np.inf, ""))
-    if found is None and limit < most <= MOST_SIZE:
-        what = f"{name} reaches {most:g} {unit}, above {limit:g} {unit}"
-        by = {"milli": 1e3, "micro": 1e6}
-        fits = [
-            (f"{part}{word}s", f"divide it by {by[part]:.0f}") for part in by if 1e-3 < most / by[part] / limit <= 1
-        ]
-        if not fits:
-            return what, "no display on skin takes it: correct it"
-        return f"{what}: it looks like {_either(fits, 0)}", f"{_either(fits, 1)}, so that it is in {unit}"
-    if found is None and most > MOST_SIZE:
+    limit, small = LIMITS.get(unit, (np.inf, ""))
+    if most > MOST_SIZE:
         return f"{name} reaches {most:g}, beyond the {MOST_SIZE:g} that any instrument gives", "leave that row out"
-    return found
+    if most > limit:
+        what = f"{name} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}"
+        return what, f"divide it by 1000, so that it is in {unit}"
+    return _temperature_fault(name, there) if unit == "C" and there.size else None
 
 
 def _either(fits: list[tuple[str, str]], at: int) -> str:
@@ -94,30 +84,24 @@ def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
     middle, on_skin = float(np.median(there)), not name.startswith(("hot_plate", "probe_"))
     outside = (there < SENSED_C[0]) | (there > SENSED_C[1])
     low, high = ON_SKIN_C if on_skin else HOT_PLATE_C
-    if SENSED_C[0] <= middle <= (BURNING_C if on_skin else SENSED_C[1]):
-        if outside.mean() <= MOST_LEFT_OUT:
-            return None
-    else:
-        fits = list[tuple[str, str]]()
-        for unit, factor, plus, how in TEMPERATURES:
-            scaled = there * factor + plus
-            kept = scaled[~errors(scaled, (low, high), (low - JUMP_K, high + JUMP_K))]
-            if low <= kept.min() and kept.max() <= high and np.median(kept) > MEDIAN_C:
-                fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", how))
-        if fits:
-            cure = f"{_either(fits, 1)}{', whichever they are,' if len(fits) > 1 else ''} to have °C"
-            return f"{name} has a median of {middle:g}: these look like {_either(fits, 0)}", cure
-    if not outside.any():
+    plausible = SENSED_C[0] <= middle <= (BURNING_C if on_skin else SENSED_C[1])
+    fits = list[tuple[str, str]]()
+    for unit, factor, plus, how in () if plausible else TEMPERATURES:
+        scaled = there * factor + plus
+        kept = scaled[~errors(scaled, (low, high), (low - JUMP_K, high + JUMP_K))]
+        if low <= kept.min() and kept.max() <= high and np.median(kept) > MEDIAN_C:
+            fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", how))
+    if fits:
+        cure = f"{_either(fits, 1)}{', whichever they are,' if len(fits) > 1 else ''} to have °C"
+        return f"{name} has a median of {middle:g}: these look like {_either(fits, 0)}", cure
+    if not outside.any() or (plausible and outside.mean() <= MOST_LEFT_OUT):
         return None
     what = f"{name} reads {there[np.argmax(outside)]:g} °C in {100 * outside.mean():.0f} % of its rows"
     return f"{what}: a sensor that is unplugged or shorted", "connect it, or remove the column"
 
 
 def like_units_of_time(time: Array, whole: bool = True) -> tuple[str, str] | None:
-    """Units that times fit better than s, in words, and what makes s of them; None where s is likelier.
-
-    With ``whole``, which is for times that may be s after all, they are whole numbers.
-    """
+    """Units that times fit better than s, and what makes s of them; with ``whole``, of whole numbers alone."""
     import numpy as np
 
     if len(time) < 2 + whole:

@@ -11,8 +11,7 @@ from typing import Literal
 
 from ..files.measured_table import measured, missing
 from ..files.shipped import bytes_of
-from ..files.table import Fault, Table, read_table
-from ..files.table_text import table_text
+from ..files.table import Table, read_table
 from ..files.units import like_units_of_time
 from ..model.context import Context, name_fault
 from ..model.errors import CueErrors, whole_file
@@ -170,79 +169,42 @@ def read_readings(path: str | Path, column: str | None = None, columns: Mapping[
 
     own = None if column in (None, *NAMES) else column
     theirs = {**(columns or {}), **({"temperature_C": own} if own else {})}
-    table = read_table(_text(Path(path), file, fault), fault, EXAMPLE, MOST_ROWS, NAMES, theirs)
+    most = int(MOST_MB * 1_000_000)
+    data = bytes_of(Path(path), "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
+    if data is None:
+        raise whole_file("E001", file, "no file has this name", "check its folder and its spelling")
+    table = read_table(data, fault, EXAMPLE, MOST_ROWS, NAMES, theirs)
     given = next((name for name in theirs if name in CONTROL_OF and name in table.names.renamed), column)
     chosen = _column(f"{file}:{table.line}", table, given)
-    for name in (TIME, chosen):
-        table.texts(name)
-    if len(table.rows) < 2:
-        what = f"{len(table.rows) or 'no'} row{'s' * (not table.rows)} below the names of the columns"
-        raise fault("table", None, what, "at least two are needed, a start and an end")
     found = measured(table, [chosen], _CURE, gaps=False, steps=True)
     times, levels = found.time_s.tolist(), found.columns[chosen].tolist()
-    _check_times(file, times, found.lines)
-    _check_levels(file, chosen, levels, found.lines)
+    if (length := times[-1] - times[0]) > LONGEST_S:
+        like = like_units_of_time(found.time_s, whole=False)
+        help = f"if these are {like[0]}, {like[1]}; otherwise cut the file" if like else "cut the file"
+        what = f"{TIME} runs over {length:,.6g} s"
+        raise whole_file("E221", file, what, f"an icon lasts at most {LONGEST_S:g} s; {help}")
+    for line, level in zip(found.lines, levels, strict=True):
+        if not LOWEST_C <= level <= HIGHEST_C:
+            what = f"{chosen} is {level:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
+            raise fault("unit", line, what, "correct or remove the reading, if it is an error of the sensor")
     notes = tuple(f"{file}: {note}" for note in found.notes)
     return Readings(file, chosen, _from_zero(times), tuple(levels), found.lines[0], notes)
 
 
-def _text(path: Path, file: str, fault: Fault) -> str:
-    most = int(MOST_MB * 1_000_000)
-    data = bytes_of(path, "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
-    if data is None:
-        raise whole_file("E001", file, "no file has this name", "check its folder and its spelling")
-    return table_text(data, fault, EXAMPLE)
-
-
 def _column(place: str, table: Table, column: str | None) -> str:
     """Return the column with the temperatures."""
-    header, found = table.header, f"the columns are {table.found}"
-    if TIME not in header:
-        raise missing(table, TIME, "time in s")
-    known = [cell for cell in header if cell in CONTROL_OF]
+    known = [cell for cell in table.header if cell in CONTROL_OF]
     if column is None and len(known) > 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
         raise whole_file("E013", place, what, f'say which: --column {known[0]} (column="{known[0]}" in Python)')
     if column is None and not known:
-        others = [cell for cell in header if cell != TIME]
-        if table.names.doubtful:
-            raise missing(table, next(iter(table.names.doubtful)))
-        what = f"no column is called {', '.join(list(CONTROL_OF)[:-1])} or {list(CONTROL_OF)[-1]}; {found}"
-        first = (others or ["name"])[0]
-        said = f'--column "{first}"' if " " in first else f"--column {first}"
-        raise whole_file("E013", place, what, f'say which is meant: {said} (column="{first}" in Python)')
+        raise missing(table, "temperature_C", f"or {', '.join(list(CONTROL_OF)[1:])}")
     chosen = column or known[0]
-    if chosen not in header or chosen == TIME:
-        close = nearest(chosen, [cell for cell in header if cell != TIME])
+    if chosen not in table.header or chosen == TIME:
+        close = nearest(chosen, [cell for cell in table.header if cell != TIME])
         help = f"did you mean {close}?" if close else "the name must be spelled as in the file"
-        raise whole_file("E013", place, f"no temperature is called {chosen!r}; {found}", help)
+        raise whole_file("E013", place, f"no temperature is called {chosen!r}; found {table.found}", help)
     return chosen
-
-
-def _check_times(file: str, times: list[float], rows: Sequence[int]) -> None:
-    for n, time in enumerate(times):
-        if n > 1 and time == times[n - 2]:
-            help = "two readings at one time are a step; write more decimals of the time"
-            raise whole_file("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
-    import numpy as np
-
-    length = times[-1] - times[0]
-    if length == 0:
-        raise whole_file("E015", file, f"all readings are at {times[0]:g} s", "a recording lasts some time")
-    if length > LONGEST_S:
-        like = like_units_of_time(np.array(times), whole=False)
-        help = f"if these are {like[0]}, {like[1]}; otherwise cut the file" if like else "cut the file"
-        help = f"an icon lasts at most {LONGEST_S:g} s; {help}"
-        raise whole_file("E221", file, f"{TIME} runs over {length:,.6g} s", help)
-
-
-def _check_levels(file: str, column: str, levels: list[float], rows: Sequence[int]) -> None:
-    out = next((n for n, level in enumerate(levels) if not LOWEST_C <= level <= HIGHEST_C), None)
-    if out is None:
-        return
-    help = "correct or remove the reading, if it is an error of the sensor"
-    what = f"{column} is {levels[out]:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
-    raise whole_file("E219", f"{file}:{rows[out]}", what, help)
 
 
 def _from_zero(times: list[float]) -> tuple[float, ...]:

@@ -47,15 +47,10 @@ def convert_command(
 
     JSON keeps everything except comments. A recording (a table) becomes an icon of a few straight pieces.
     """
-    from thermicon.icons.recordings.recorded import NAMES
-
-    pairs = [each for each in column or [] if each.partition("=")[0] in NAMES and "=" in each]
-    chosen = [each for each in column or [] if each not in pairs]
-    if len(chosen) > 1:
-        raise usage(f"{' and '.join(chosen)} cannot both be the temperature", "--column")
-    recording: dict[str, Any] = {"tolerance_K": tolerance, "name": name, "control": control}
-    recording |= {"column": "".join(chosen), "columns": theirs_of(pairs)}
-    given = {key: value for key, value in recording.items() if value not in (None, "", {})}
+    chosen = [None, *(each for each in column or [] if "=" not in each)][-1]
+    theirs = theirs_of([each for each in column or [] if "=" in each]) or None
+    recording = {"tolerance_K": tolerance, "name": name, "column": chosen, "columns": theirs, "control": control}
+    given = {key: value for key, value in recording.items() if value is not None}
     if given and not is_table(file):
         option = next(iter(given)).removesuffix("_K").replace("columns", "column")
         raise usage("applies only to a recording, a .csv file or another table", f"--{option}")

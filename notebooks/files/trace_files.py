@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -78,29 +78,21 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
     from thermicon.circuit.solver.trace import COLUMNS
     from thermicon.icons.files.measured_table import measured, missing
     from thermicon.icons.files.table import read_table
-    from thermicon.icons.files.table_text import table_text
 
-    where, fault, example = Path(path), table_fault(path, LogError), "time_s,display_C,skin_C"
-    text = table_text(read_bytes(where, "trace or log", MOST_MB, LogError), fault, example)
-    table = read_table(text, fault, example, MOST_ROWS, COLUMNS[1:], theirs)
+    where, example = Path(path), "time_s,display_C,skin_C"
+    data = read_bytes(where, "trace or log", MOST_MB, LogError)
+    table = read_table(data, table_fault(path, LogError), example, MOST_ROWS, COLUMNS[1:], theirs)
     known = [name for name in dict.fromkeys(table.header) if name in COLUMNS[2:] or EXTRA.fullmatch(name)]
-    if "time_s" not in table.header:
-        raise missing(table, "time_s", "time in s")
     if not known:
-        doubtful = next(iter(table.names.doubtful), "")
-        raise missing(table, doubtful or "display_C", "" if doubtful else "or another one of a trace, such as skin_C")
+        raise missing(table, "display_C", "or another one of a trace, such as skin_C")
     if "icon" in table.header:
-        table = table.only(_rows_of(list(table.texts("icon")), path, icon))
-    if len(table.rows) < 2:
-        raise LogError(f"{path}: {len(table.rows)} rows; at least two are needed")
+        rows = _rows_of(list(table.texts("icon")), path, icon)
+        kept = tuple(table.rows[row] for row in rows), tuple(table.lines[row] for row in rows)
+        table = replace(table, rows=kept[0], lines=kept[1])
     whole = all(name in table.header and name not in table.names.renamed for name in COLUMNS[1:])
     found = measured(table, known, CURE, most=LARGEST, ours=whole)
-    if (same := numpy.flatnonzero(numpy.diff(found.time_s) <= 0)).size:
-        line = found.lines[int(same[0]) + 1]
-        raise fault("time", line, f"all rows are at {found.time_s[0]:g} s", "times must increase: write more decimals")
-    ignored = [name for name in table.header if name and name not in (*COLUMNS, *known)]
-    shown = (*ignored[:8], "…") if len(ignored) > 8 else tuple(ignored)
-    return Curves(where.name, found.time_s, found.columns, whole, shown, found.notes)
+    ignored = tuple(name for name in table.header if name and name not in (*COLUMNS, *known))
+    return Curves(where.name, found.time_s, found.columns, whole, ignored[:8], found.notes)
 
 
 def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:

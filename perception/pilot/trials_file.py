@@ -8,7 +8,6 @@ import numpy as np
 
 from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
 from thermicon.icons.files.table import Kind, Table, read_table
-from thermicon.icons.files.table_text import table_text
 from thermicon.icons.near_words import did_you_mean
 
 from .trials import Trials
@@ -76,7 +75,7 @@ def table_in(
     def fault(kind: Kind, line: int | None, wrong: str, cure: str) -> Exception:
         return said(kind, line, wrong, "one experiment a file is enough" if kind == "size" else cure)
 
-    table = read_table(table_text(data, fault, example), fault, example, MOST_ROWS, needed, columns)
+    table = read_table(data, fault, example, MOST_ROWS, needed, columns)
     if missing := [name for name in needed if name not in table.header]:
         close = {cell.lower(): cell for cell in table.header}
         hints = [f"rename {close[name]!r} to {name}" for name in missing if name in close]

@@ -62,15 +62,6 @@ def numbered(at: int, row: list[str]) -> list[str]:
     return [str(at), *row]
 
 
-def raw() -> bytes:
-    head = "Title: * dip\nDate: Mon Mar  2 2026\nPlotname: Transient Analysis\nFlags: real\nNo. Variables: 3\n"
-    head += (
-        "No. Points: 60\nVariables:\n\t0\ttime\ttime\n\t1\ti(vsense)\tcurrent\n\t2\tv(display_C)\tvoltage\nValues:\n"
-    )
-    rows = zip(TIME, CURRENT, DISPLAY, strict=True)
-    return (head + "".join(f" {at}\t{t:.8e}\n\t{a:.8e}\n\t{c:.8e}\n\n" for at, (t, a, c) in enumerate(rows))).encode()
-
-
 def printed() -> bytes:
     head = f"* dip\nTransient Analysis\n{PAGE}\nIndex   time            i(vsense)       v(display_c)\n{PAGE}\n"
     rows = [
@@ -110,7 +101,7 @@ FORMS: dict[str, bytes] = {
     "Excel on a Mac": written(end="\r"),
     "LibreOffice": written(("Time/s", "Current/A", "Display/°C"), mark="\t", comma=True),
     "Google Sheets": written(('"Time, s"', '"Current, A"', '"Display, °C"')),
-    "PowerShell": written(tuple(f'"{name}"' for name in OURS), code="utf-16-le", end="\r\n"),
+    "PowerShell": written(tuple(f'"{name}"' for name in OURS), code="utf-16", end="\r\n"),
     "Arduino serial plotter": written(("t_ms", "I_mA", "T_display_C"), number(1000, form=".0f"), number(1000),
         above="TEC loop ready\n"),
     "PuTTY log": written(above="=~=~=~= PuTTY log 2026.03.02 23:59:58 =~=~=~=\nTEC loop v2 ready\nkp=1.5, ki=0.4\n"),
@@ -158,7 +149,6 @@ FORMS: dict[str, bytes] = {
     "true minus": written(more=lambda at, row: [*row, "−1"], names=(*OURS, "note")),
     "a row twice": written(change=(r"(\n2,[^\n]*)", r"\1\1")),
     "names again": written(change=(r"\n3,", "\ntime_s,current_A,display_C\n3,")),
-    "ngspice raw": raw(),
     "ngspice print": printed(),
     "ngspice wrdata": written((" time", "i(vsense)", "v(display_C)"), mark="  ", below="\n"),
     "LTspice": written(("time", "I(Vsense)", "V(display_c)"), number(1, 0, ".15e"), mark="\t", end="\r\n"),
@@ -283,7 +273,7 @@ REFUSED: dict[str, tuple[str | bytes, str, Cure]] = {
     "ODS": (b"PK\3\4mimetypeapplication/vnd.oasis.opendocument.spreadsheet", "LibreOffice.*as CSV",
         lambda _: written().decode()),
     "gzip": (b"\x1f\x8b....", "gzip.*unpack it", lambda _: written().decode()),
-    "binary raw": (b"Title: * dip\nVariables:\nBinary:\n\0\0", "set filetype=ascii", lambda _: raw().decode()),
+    "binary raw": (b"Title: * dip\nVariables:\nBinary:\n\0\0", "by wrdata in ngspice", lambda _: written().decode()),
 }  # fmt: skip
 
 
