@@ -25,9 +25,6 @@ LONGEST_NAME, LONGEST_LINE = 200, 2000
 LONGEST_QUOTE = 62
 """Characters of a value that a message quotes."""
 
-LIKE_MILLISECONDS = "these look like milliseconds; divide the column by 1000, so that it is in s"
-"""What a message says of times that are a thousand times too long, and the cure."""
-
 TEXT_FAULT = "text"
 """Type of pydantic's error for a text that may not stand where it does."""
 
@@ -82,11 +79,7 @@ def read_text(path: Path, what: str, limit_MB: float, error: type[Exception] = I
     """The text of a file of a kind `what` ("rig file"), of at most `limit_MB`; raises `error`, which says what is
     wrong.
     """
-    return text_of(read_bytes(path, what, limit_MB, error), path, what, error)
-
-
-def text_of(data: bytes, path: Path, what: str, error: type[Exception] = InputError) -> str:
-    """The text in the bytes of a file, each line ended by a newline alone, as on any system; raises `error`."""
+    data = read_bytes(path, what, limit_MB, error)
     if not data.strip():
         raise error(f"{path}: the file is empty; a {what} was expected")
     if b"\0" in data:

@@ -84,6 +84,16 @@ def usage(message: str, option: str) -> typer.BadParameter:
     return typer.BadParameter(clean_line(message), param_hint=f"'{option}'")
 
 
+@contextlib.contextmanager
+def noted(kind: str = "note") -> Iterator[None]:
+    """Tell the warnings that Python code gives meanwhile as notes of this kind, once there was no error."""
+    with warnings.catch_warnings(record=True) as raised:
+        warnings.simplefilter("always")
+        yield
+    for warning in raised:
+        note(f"{kind}: {warning.message}")
+
+
 def check_changes(changes: Sequence[str]) -> None:
     """Fail with a usage error unless every ``--set`` has the form KEY=VALUE."""
     for change in changes:
@@ -116,11 +126,8 @@ def load_observer(file: Path | None, rig: Rig | None = None, needs_draws: str = 
     """
     from thermicon.perception.observer.observer_model import ObserverModel
 
-    with warnings.catch_warnings(record=True) as raised:
-        warnings.simplefilter("always")
+    with noted("warning"):
         model = ObserverModel.load(file)
-    for warning in raised:
-        note(f"warning: {warning.message}")
     if model.posterior is None:
         cure = _cure_without_draws(file)
         if needs_draws:

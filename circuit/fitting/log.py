@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import math
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from thermicon.icons.files.table import read_table
+from thermicon.icons.files.measured_table import measured, missing
+from thermicon.icons.files.table import Table, read_table
+from thermicon.icons.files.units import like_units_of_time, unit_fault
 from thermicon.icons.near_words import nearest_words
 
 from ..arrays import Array
-from ..inputs import LIKE_MILLISECONDS, quoted, read_bytes, table_fault, text_of
-from ..rig.module import ZERO_C_IN_K
+from ..inputs import read_bytes, table_fault
 from .keys import FitError
 
 DRIVES = ("current_A", "command_V")
@@ -26,20 +26,8 @@ TEMPERATURES = ("display_C", "skin_C", "hot_plate_C")
 MEASURED = (*TEMPERATURES, "voltage_V")
 
 FEWEST_ROWS, MOST_ROWS = 20, 1_000_000
-MOST_SIZE = 1e12
-"""Times by the clock of a computer have ten digits; what reads a wire that is off has fewer."""
-COLDEST_C, HOTTEST_C = -40.0, 150.0
-"""Outside, a sensor of a display on skin is unplugged or its wire broken."""
-
-KELVIN = (ZERO_C_IN_K + COLDEST_C, ZERO_C_IN_K + HOTTEST_C)
-FAHRENHEIT_FROM, FAHRENHEIT_TO = 65.0, 130.0
-"""Medians of display or skin from here on would burn; 18 to 54 °C have these numbers in °F."""
-
-SLOWEST_S, MILLI = 2.0, 1000.0
-"""A log with rows farther apart than 2 s shows nothing of a display; as a rule its times are milliseconds."""
-
-MOST_A, MOST_V = 50.0, 200.0
-"""Far above what any display on skin takes, and far below what it takes in milliamperes and millivolts."""
+SHORTEST_S, SLOWEST_S = 1e-4, 2.0
+"""Rows farther apart than 2 s show nothing of a display; closer than 0.1 ms they count days, as a rule."""
 
 
 class LogError(FitError):
@@ -99,9 +87,9 @@ class Log:
                 f"{name}: no column of a log; needed is one of {', '.join(DRIVES)}, and any of "
                 f"{', '.join(MEASURED)}; found time_s, {', '.join(values)}"
             )
-        for key, column in used.items():
-            if fault := _unit_fault(key, column):
-                raise LogError(f"{name}: {fault}")
+        for key, column in {"time_s": time, **used}.items():
+            if fault := unit_fault(key, column):
+                raise LogError(f"{name}: {'; '.join(fault)}")
         unused = unused or ", ".join(key for key in values if key not in used)
         more = (f"{name}: columns that are not used: {unused}",) if unused else ()
         for array in (time, *used.values()):
@@ -167,74 +155,26 @@ def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
             f"{_place(name, row, rows)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
             f"increase: sort the rows, or give each recording its own file"
         )
-    if fault := _unit_fault("time_s", time):
-        raise LogError(f"{name}: {fault}")
-
-
-def _unit_fault(column: str, values: Array) -> str | None:
-    """Return why a column is not in the unit of its name, with the cure; None where it may be."""
-    there = values[np.isfinite(values)]
-    if not there.size:
-        return None
-    if (most := float(np.abs(there).max())) > MOST_SIZE:
-        return f"{column} reaches {most:g}, beyond the {MOST_SIZE:g} that any instrument gives; leave that row out"
-    if column == "time_s":
-        return _time_fault(there)
-    if column.endswith("_C"):
-        return _temperature_fault(column, there)
-    limit, unit, small = (MOST_A, "A", "milliamperes") if column.endswith("_A") else (MOST_V, "V", "millivolts")
-    if most > limit:
-        return (
-            f"{column} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}; divide it by 1000, so "
-            f"that it is in {unit}"
-        )
-    return None
-
-
-def _time_fault(time: Array) -> str | None:
-    step = float(np.median(np.diff(time)))
-    if step <= SLOWEST_S:
-        return None
-    if step * 1e-3 >= 1e-4 and float(time[-1] - time[0]) > 60.0 and step <= SLOWEST_S * MILLI:
-        return f"time_s goes in steps of {step:g} over {time[-1] - time[0]:g}: {LIKE_MILLISECONDS}"
-    return f"time_s goes in steps of {step:g} s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
-
-
-def _temperature_fault(column: str, there: Array) -> str | None:
-    middle = float(np.median(there))
-    if KELVIN[0] < middle < KELVIN[1] and middle > HOTTEST_C:
-        return f"{column} has a median of {middle:g}: these look like kelvin; subtract {ZERO_C_IN_K:g} to have °C"
-    if column in ("display_C", "skin_C") and FAHRENHEIT_FROM < middle < FAHRENHEIT_TO:
-        return f"{column} has a median of {middle:g}: these look like °F; convert the column to °C"
-    outside = (there < COLDEST_C) | (there > HOTTEST_C)
-    if outside.mean() > 0.01:
-        first = float(there[np.argmax(outside)])
-        return (
-            f"{column} reads {first:g} °C in {100 * outside.mean():.0f} % of its rows: a sensor that is unplugged or "
-            f"shorted; connect it, or remove the column"
-        )
-    return None
+    step, like = float(np.median(np.diff(time))), like_units_of_time(time, whole=False)
+    if step > SLOWEST_S or (like and step < SHORTEST_S):
+        cure = f"s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
+        if like:
+            cure = f"over {time[-1] - time[0]:g}: these look like {like[0]}; {like[1]} to have s"
+        raise LogError(f"{name}: time_s goes in steps of {step:g} {cure}")
 
 
 MOST_MB = 200.0
-OTHER_UNIT = {
-    "time_ms": ("time_s", "divide it by 1000"),
-    "time_min": ("time_s", "multiply it by 60"),
-    "current_mA": ("current_A", "divide it by 1000"),
-    "voltage_mV": ("voltage_V", "divide it by 1000"),
-    "command_mV": ("command_V", "divide it by 1000"),
-    **{f"{name.removesuffix('_C')}_K": (name, "subtract 273.15") for name in MEASURED if name.endswith("_C")},
-    **{f"{name.removesuffix('_C')}_F": (name, "convert it to °C") for name in MEASURED if name.endswith("_C")},
-}
-"""Columns in another unit than a log has, the name they should have, and how to convert them."""
+NAMES = ("time_s", *DRIVES, *MEASURED)
+CURE = "leave the cell empty"
 
 MISSPELT = 0.85
 """A name of a column that is so much alike a known one is taken for a slip of the pen."""
 
 
-def read_log(path: str | Path) -> Log:
+def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     r"""Read a measured log: a table with a line of names, its cells separated by commas, semicolons or tabs.
 
+    `columns` says what the file calls ours, such as {"display_C": "T1"}, where that does not follow from its names.
     Raises LogError for a file that is not a log, with its line or column and the cure.
 
     >>> import tempfile
@@ -247,41 +187,26 @@ def read_log(path: str | Path) -> Log:
     """
     where = Path(path)
     data = read_bytes(where, "log", MOST_MB, LogError)
+    table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
+    _check_columns(table)
+    wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
+    found = measured(table, wanted, CURE)
+    unused = ", ".join([name for name in table.header if name not in ("time_s", "icon", "", *wanted)][:8])
+    notes = [f"{where.name}: {note}" for note in found.notes]
+    places = [f"{where}:{line}" for line in found.lines]
     digest = hashlib.sha256(data).hexdigest()
-    text = text_of(data, where, "log", LogError)
-    table = read_table(text, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS)
-    wanted = [name for name in dict.fromkeys(table.header) if name == "time_s" or is_known(name)]
-    gaps = {name: Counter[str]() for name in wanted}
-    columns = {name: table.numbers(name, "leave the cell empty", gaps=gaps[name]) for name in wanted}
-    _check_columns(where.name, columns, table.header)
-    notes = [
-        f"{where.name}: {name} is {quoted(cell)} in {count:,} of {len(table.rows):,} rows, which are taken as gaps"
-        for name, counts in gaps.items()
-        for cell, count in counts.items()
-        if cell
-    ]
-    unused = ", ".join([name for name in table.header if name not in columns and name != "icon"][:8])
-    places = [f"{where}:{line}" for line in table.lines]
-    return Log.of(where.name, columns, sha256=digest, notes=notes, rows=places, unused=unused)
+    return Log.of(
+        where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes, rows=places, unused=unused
+    )
 
 
-def _check_columns(name: str, columns: Mapping[str, Array], header: Sequence[str]) -> None:
-    """Every missing column at once, with what was found and what another unit should be converted to."""
-    wrong = [f"{found} should be {right}: {how}" for found, (right, how) in OTHER_UNIT.items() if found in header]
-    missing = [] if "time_s" in columns else ["time_s (time in s)"]
-    if not any(is_known(column) for column in columns):
-        missing.append(f"one of {', '.join(DRIVES)}, or any of {', '.join(MEASURED)}")
-    known = ("time_s", *DRIVES, *MEASURED)
-    misspelt = [(cell, _misspelt(cell, known)) for cell in header if cell not in columns and cell not in OTHER_UNIT]
-    wrong += [f"{cell}: did you mean {name}? Rename it" for cell, name in misspelt if name and name not in columns]
-    if not missing and not wrong:
-        return
-    parts = [f"missing: {', and '.join(missing)}"] if missing else []
-    parts += [*wrong, f"found {', '.join(header[:12])}"]
-    raise LogError(f"{name}: {'; '.join(parts)}")
-
-
-def _misspelt(cell: str, known: Sequence[str]) -> str | None:
-    """The known column that a name is but for case or a letter."""
-    close = nearest_words(cell.lower(), [name.lower() for name in known], 1, MISSPELT)
-    return next((name for name in known if close and name.lower() == close[0]), None)
+def _check_columns(table: Table) -> None:
+    """Refuse a table without any column of a log, and a column that looks like a misspelt one."""
+    known = {name.lower(): name for name in NAMES}
+    for cell in table.header:
+        close = known.get("".join(nearest_words(cell.lower(), known, 1, MISSPELT)))
+        if close and close not in table.header and cell not in NAMES:
+            what = f"{cell}: did you mean {close}? Found {table.found}"
+            raise table.fault("table", table.line, what, "rename the column, or remove it")
+    if table.names.doubtful or not any(map(is_known, table.header)):
+        raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")

@@ -4,17 +4,18 @@ At duty D and current Ip a bridge pumps α·T·D·Ip, but its resistance heats w
 same mean heats with (D·Ip)². A slow cycle also ripples the plate.
 """
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from thermicon.icons.files.measured_table import measured, missing
 from thermicon.icons.files.table import read_table
-from thermicon.icons.model.context import clean_line
 
 from ..arrays import Array
-from ..inputs import InputError, read_text, table_fault
+from ..inputs import InputError, read_bytes, table_fault
 from ..rig.module import ZERO_C_IN_K, Peltier
 
 COLUMNS = ("time_s", "current_A")
@@ -24,6 +25,8 @@ MOST_MB, MOST_ROWS = 200, 10_000_000
 SHORTEST_S, LONGEST_S, MOST_A = 1e-15, 1e7, 1e6
 """Closest rows in s, far below the switching time of any driver and far above rounding; longest drive in s,
 four months; largest current in A, far above what any module takes."""
+STEP_S = 1e-6
+"""Length of a step in s, where a file has two currents at one time."""
 
 
 class DriveError(InputError):
@@ -104,8 +107,8 @@ class Drive:
         return np.asarray(np.interp(time_s, self.time_s, self.current_A), dtype=np.float64)
 
 
-def read_drive(path: str | Path, hold: bool = False) -> Drive:
-    r"""Read a drive from a CSV file with the columns `time_s` and `current_A`.
+def read_drive(path: str | Path, hold: bool = False, columns: Mapping[str, str] | None = None) -> Drive:
+    r"""Read a drive from a CSV file with the columns `time_s` and `current_A`; two currents at one time are a step.
 
     Parameters
     ----------
@@ -113,6 +116,8 @@ def read_drive(path: str | Path, hold: bool = False) -> Drive:
         The file.
     hold
         Whether each current is held until the next row; otherwise it is linear between rows.
+    columns
+        What the file calls ours, such as `{"current_A": "I1"}`, where that does not follow from its names.
 
     Returns
     -------
@@ -134,22 +139,24 @@ def read_drive(path: str | Path, hold: bool = False) -> Drive:
     Drive(2 rows, 2 s, 0 … 0.5 A, linear)
     """
     where = Path(path)
-    text = read_text(where, "drive file", MOST_MB, DriveError)
-    table = read_table(text, table_fault(where, DriveError), ",".join(COLUMNS), MOST_ROWS)
-    if missing := [name for name in COLUMNS if name not in table.header]:
-        if "duty" in table.header and "current_A" in missing:
+    data = read_bytes(where, "drive file", MOST_MB, DriveError)
+    table = read_table(data, table_fault(where, DriveError), ",".join(COLUMNS), MOST_ROWS, COLUMNS, columns)
+    if "current_A" not in table.header:
+        if "duty" in table.header:
             raise DriveError(
                 f"{where}:1: these are duties of a bridge, which switches its full current within every row, so that "
                 f"there is no current to hold; only drives for a device driven by volts or amperes can be replayed, "
                 f"and what this one does is in the sidecar beside it, under predicted"
             )
-        raise DriveError(
-            f"{where}:{table.line}: column {missing[0]} is missing; the first line must be time_s,current_A "
-            f"(found {clean_line(table.found)})"
-        )
-    times, currents = (table.numbers(name, "correct it, or remove the row") for name in COLUMNS)
+        raise missing(table, "current_A", "current in A")
+    found = measured(table, COLUMNS[1:], "correct it, or remove the row", gaps=False, steps=True)
+    for note in found.notes:
+        warnings.warn(f"{where}: {note}", stacklevel=2)
+    times = found.time_s - found.time_s[0]
+    again, room = np.append(False, np.diff(times) == 0), np.append(np.diff(times), STEP_S) / 2
+    times = times + np.where(again, np.minimum(STEP_S, room), 0.0)
     try:
-        return Drive(times, currents, hold)
+        return Drive(times, found.columns["current_A"], hold)
     except DriveError as problem:
         raise DriveError(f"{where}: {problem}") from None
 

@@ -172,14 +172,14 @@ def decode(data: str | bytes, file: str) -> str:
     return text
 
 
-def utf8_of(data: bytes, file: str, rule: str = "a cue file is plain UTF-8 text") -> str:
+def utf8_of(data: bytes, file: str) -> str:
     """Return the text in bytes; CueErrors when they are binary or not UTF-8."""
     for mark, kind in _OTHERS.items():
         if data.startswith(mark):
-            raise whole_file("E006", file, f"this is {kind}", rule)
+            raise whole_file("E006", file, f"this is {kind}", "a cue file is plain UTF-8 text")
     if b"\0" in data:
         what = f"a zero byte at byte offset {data.index(0)}"
-        raise whole_file("E006", file, what, f"{rule}, not UTF-16 and not a document")
+        raise whole_file("E006", file, what, "a cue file is plain UTF-8 text, not UTF-16 and not a document")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:

@@ -2,15 +2,17 @@
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
+from ..files.measured_table import measured, missing
 from ..files.shipped import bytes_of
 from ..files.table import Table, read_table
-from ..language.source import utf8_of
+from ..files.units import like_units_of_time
 from ..model.context import Context, name_fault
 from ..model.errors import CueErrors, whole_file
 from ..model.icon import Icon
@@ -26,13 +28,15 @@ CONTROL_OF: dict[str, Control | None] = {
     "display_C": "display",
     "skin_C": "skin",
 }
+NAMES = (TIME, *CONTROL_OF)
 """Columns that a recording may have, and what the icon then controls; None where the column does not tell."""
 
 MOST_ROWS, MOST_MB = 1_000_000, 200
 """Rows of a recording, about five minutes at 3 kHz, and room for them with many further columns."""
 EXAMPLE = f"{TIME},temperature_C"
 _CURE = "fill it in, or remove the row; between readings the course is taken as linear"
-_CODES = {"table": "E013", "size": "E004", "cell": "E014"}
+_CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "binary": "E006", "coding": "E007",
+          "time": "E015", "unit": "E219"}  # fmt: skip
 
 
 def from_csv(
@@ -40,6 +44,7 @@ def from_csv(
     *,
     name: str | None = None,
     column: str | None = None,
+    columns: Mapping[str, str] | None = None,
     control: Literal["display", "skin"] = "display",
     tolerance_K: float = 0.05,
     baseline_C: float | None = None,
@@ -55,6 +60,8 @@ def from_csv(
         Name of the icon; None: the name of the file.
     column
         Column to read in place of those above.
+    columns
+        What the file calls ours, such as ``{"time_s": "t"}``, where that does not follow from its names.
     control
         What the icon controls, unless the column is ``display_C`` or ``skin_C``.
     tolerance_K
@@ -92,7 +99,9 @@ def from_csv(
         raise ValueError(f"name: {wrong}")
     if baseline_C is not None and (found := fault(float(baseline_C), "absolute")):
         raise ValueError(f"baseline_C: {found[1]}")
-    read = read_readings(path, column)
+    read = read_readings(path, column, columns)
+    for note in read.notes:
+        warnings.warn(note, stacklevel=2)
     first = read.level_C[0]
     if baseline_C is not None and abs(baseline_C - first) > tolerance_K:
         what = f"the recording begins at {first:g} °C, baseline_C is {baseline_C:g} °C"
@@ -145,101 +154,57 @@ class Readings:
     time_s: tuple[float, ...]
     level_C: tuple[float, ...]
     first_row: int
+    notes: tuple[str, ...] = ()
 
 
-def read_readings(path: str | Path, column: str | None = None) -> Readings:
+def read_readings(path: str | Path, column: str | None = None, columns: Mapping[str, str] | None = None) -> Readings:
     """Return the recording in a CSV file; `column` names its temperatures, where the header does not tell.
 
-    Raises ValueError that says what is wrong with the file, and in which row.
+    `columns` says what the file calls ours. Raises ValueError that says what is wrong with the file, and in which row.
     """
     file = str(path)
 
     def fault(kind: str, line: int | None, what: str, cure: str) -> CueErrors:
         return whole_file(_CODES[kind], f"{file}:{line}" if line else file, what, cure)
 
-    table = read_table(_text(Path(path), file), fault, EXAMPLE, MOST_ROWS)
-    chosen = _column(f"{file}:{table.line}", table, column)
-    times, levels = (table.numbers(name, _CURE).tolist() for name in (TIME, chosen))
-    if len(times) < 2:
-        what = f"{len(times) or 'no'} row{'s' * (not times)} below the names of the columns"
-        raise fault("table", None, what, "at least two are needed, a start and an end")
-    _check_times(file, times, table.lines)
-    _check_levels(file, chosen, levels, table.lines)
-    return Readings(file, chosen, _from_zero(times), tuple(levels), table.lines[0])
-
-
-def _text(path: Path, file: str) -> str:
+    own = None if column in (None, *NAMES) else column
+    theirs = {**(columns or {}), **({"temperature_C": own} if own else {})}
     most = int(MOST_MB * 1_000_000)
-    data = bytes_of(path, "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
+    data = bytes_of(Path(path), "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
     if data is None:
         raise whole_file("E001", file, "no file has this name", "check its folder and its spelling")
-    text = utf8_of(data, file, "a recording is a table, saved as CSV in UTF-8").removeprefix("\ufeff")
-    if not text.strip():
-        raise whole_file("E005", file, "nothing but white space", f"the first line is such as: {EXAMPLE}")
-    return text
+    table = read_table(data, fault, EXAMPLE, MOST_ROWS, NAMES, theirs)
+    given = next((name for name in theirs if name in CONTROL_OF and name in table.names.renamed), column)
+    chosen = _column(f"{file}:{table.line}", table, given)
+    found = measured(table, [chosen], _CURE, gaps=False, steps=True)
+    times, levels = found.time_s.tolist(), found.columns[chosen].tolist()
+    if (length := times[-1] - times[0]) > LONGEST_S:
+        like = like_units_of_time(found.time_s, whole=False)
+        help = f"if these are {like[0]}, {like[1]}; otherwise cut the file" if like else "cut the file"
+        what = f"{TIME} runs over {length:,.6g} s"
+        raise whole_file("E221", file, what, f"an icon lasts at most {LONGEST_S:g} s; {help}")
+    for line, level in zip(found.lines, levels, strict=True):
+        if not LOWEST_C <= level <= HIGHEST_C:
+            what = f"{chosen} is {level:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
+            raise fault("unit", line, what, "correct or remove the reading, if it is an error of the sensor")
+    notes = tuple(f"{file}: {note}" for note in found.notes)
+    return Readings(file, chosen, _from_zero(times), tuple(levels), found.lines[0], notes)
 
 
 def _column(place: str, table: Table, column: str | None) -> str:
     """Return the column with the temperatures."""
-    header, found = table.header, f"the columns are {table.found}"
-    if TIME not in header:
-        close = nearest(TIME, header) or next((cell for cell in header if cell.lower().startswith("t")), None)
-        hint = f"is it {close!r}? Its name must say that it is in seconds: " if close else "the time in s has the name "
-        raise whole_file("E013", place, f"the column {TIME} is missing; {found}", f"{hint}{TIME}")
-    known = [cell for cell in header if cell in CONTROL_OF]
+    known = [cell for cell in table.header if cell in CONTROL_OF]
     if column is None and len(known) > 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
         raise whole_file("E013", place, what, f'say which: --column {known[0]} (column="{known[0]}" in Python)')
     if column is None and not known:
-        others = [cell for cell in header if cell != TIME]
-        meant = next((pair for pair in ((cell, _meant(cell)) for cell in others) if pair[1]), None)
-        hint = f"rename {meant[0]!r} to {meant[1]} if it is in °C, or say" if meant else "say"
-        what = f"no column is called {', '.join(list(CONTROL_OF)[:-1])} or {list(CONTROL_OF)[-1]}; {found}"
-        first = (others or ["name"])[0]
-        said = f'--column "{first}"' if " " in first else f"--column {first}"
-        raise whole_file("E013", place, what, f'{hint} which is meant: {said} (column="{first}" in Python)')
+        raise missing(table, "temperature_C", f"or {', '.join(list(CONTROL_OF)[1:])}")
     chosen = column or known[0]
-    if chosen not in header or chosen == TIME:
-        close = nearest(chosen, [cell for cell in header if cell != TIME])
+    if chosen not in table.header or chosen == TIME:
+        close = nearest(chosen, [cell for cell in table.header if cell != TIME])
         help = f"did you mean {close}?" if close else "the name must be spelled as in the file"
-        raise whole_file("E013", place, f"no temperature is called {chosen!r}; {found}", help)
+        raise whole_file("E013", place, f"no temperature is called {chosen!r}; found {table.found}", help)
     return chosen
-
-
-def _meant(cell: str) -> str | None:
-    return "temperature_C" if cell.lower().startswith(("temp", "t_")) else nearest(cell, CONTROL_OF)
-
-
-def _check_times(file: str, times: list[float], rows: Sequence[int]) -> None:
-    for n, (before, time) in enumerate(pairwise(times), start=1):
-        if time < before:
-            what = f"{TIME} is {time:g} s, after {before:g} s in the row before"
-            raise whole_file("E015", f"{file}:{rows[n]}", what, "times must not fall; keep one recording per file")
-        if n > 1 and time == times[n - 2]:
-            help = "two readings at one time are a step; write more decimals of the time"
-            raise whole_file("E015", f"{file}:{rows[n]}", f"{TIME} is {time:g} s for the third time", help)
-    length = times[-1] - times[0]
-    if length == 0:
-        raise whole_file("E015", file, f"all readings are at {times[0]:g} s", "a recording lasts some time")
-    if length > LONGEST_S:
-        help = f"an icon lasts at most {LONGEST_S:g} s; divide by 1000 if these are milliseconds, or cut the file"
-        raise whole_file("E221", file, f"{TIME} runs over {length:,.6g} s", help)
-
-
-def _check_levels(file: str, column: str, levels: list[float], rows: Sequence[int]) -> None:
-    out = next((n for n, level in enumerate(levels) if not LOWEST_C <= level <= HIGHEST_C), None)
-    if out is None:
-        return
-    middle = sorted(levels)[len(levels) // 2]
-    help = "correct or remove the reading, if it is an error of the sensor"
-    if 200 < middle < 400:
-        help = "these look like kelvin: convert the column to °C"
-    elif HIGHEST_C < middle < 150:
-        help = "these look like °F: convert the column to °C"
-    elif not LOWEST_C <= middle <= HIGHEST_C:
-        help = "check the unit: the column must be in °C"
-    what = f"{column} is {levels[out]:g}; an icon keeps to {LOWEST_C:g} to {HIGHEST_C:g} °C".replace("-", "−")
-    raise whole_file("E219", f"{file}:{rows[out]}", what, help)
 
 
 def _from_zero(times: list[float]) -> tuple[float, ...]:

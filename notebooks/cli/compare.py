@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from thermicon.icons.files.table_text import TABLES
 from thermicon.icons.number_text import number
 
 from ..files.outputs import check_separate
@@ -15,14 +16,13 @@ from ..files.trace_files import Curves, LogError, align, curves_of, quantity, re
 from ..messages import load_rig, note, usage
 from ..report.run_report import Comparison, compare_report, headline
 from ..report.terminal import show
-from .options import FigureOptions, IconName, RigOptions, flag, opt, pick, read_set
+from .options import FigureOptions, IconName, RigOptions, Theirs, flag, opt, pick, read_set, theirs_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
-TABLES = (".csv",)
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
 HOW = "a rig is a name or a .toml file, an icon FILE:ICON, a set a .cue file or a name, a trace or log .csv"
 
@@ -31,6 +31,7 @@ APPLIES = {
     "--icon": (("rig", "set", "table"), "the two icons are A and B"),
     "--rig": (("icon", "set"), "the two rigs are A and B; traces and logs are compared as they are"),
     "--set": (("rig", "icon", "set"), "traces and logs are compared as they are"),
+    "--column": (("table",), "belongs to tables"),
     "--align": (("table",), "belongs to a trace and a log, which have clocks of their own"),
 }
 """The kinds that an option applies to, and what is said for others."""
@@ -45,6 +46,7 @@ def compare_command(
         str | None, opt("FILE", "For two rigs: the icons to play.  [default: one icon of six-icons]")
     ] = None,
     icon: IconName = None,
+    column: Theirs = None,
     align: Annotated[
         bool, flag("--align", "For a trace and a log: shift B in time to where it is most like A.")
     ] = False,
@@ -52,11 +54,11 @@ def compare_command(
     """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
-    .csv files with time_s and columns of a trace. Of two sets, the icons with the same name are compared;
+    tables with time_s and columns of a trace. Of two sets, the icons with the same name are compared;
     rank predicts how well each is identified.
     """
     kind, both = kind_of_both(first, second), (first, second)
-    given = (file, icon, rig.rig, rig.changes, align)
+    given = (file, icon, rig.rig, rig.changes, column, align)
     for (option, (kinds, why)), value in zip(APPLIES.items(), given, strict=True):
         if value and kind not in kinds:
             raise usage(why, option)
@@ -71,7 +73,7 @@ def compare_command(
     elif kind == "set":
         made = _sets(both, icon, rig.load())
     else:
-        made = [_tables(both, icon, align)]
+        made = [_tables(both, icon, theirs_of(column), align)]
     if figure.figure is not None:
         from ..figures.compare_figure import compare_figure
 
@@ -169,10 +171,12 @@ def _equally_long(icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig]) -> list[Trace
     return traces
 
 
-def _tables(names: tuple[str, str], icon: str | None, shift: bool) -> Comparison:
+def _tables(names: tuple[str, str], icon: str | None, theirs: dict[str, str], shift: bool) -> Comparison:
     """Compare the curves of two files, the second shifted in time where that is asked."""
-    first, second = (read_curves(path, icon) for path in names)
+    first, second = (read_curves(path, icon, theirs) for path in names)
     for curves in (first, second):
+        for said in curves.notes:
+            note(f"note: {curves.name}: {said}")
         if curves.ignored:
             note(f"{curves.name}: ignored columns that no trace has: {', '.join(curves.ignored)}")
     said = ""

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
 from thermicon.icons.atomic import OutputError
+from thermicon.icons.files.table_text import TABLES
 from thermicon.icons.number_text import number
 
 from ..files.outputs import STDOUT, check_output
-from ..messages import fail, note, usage
-from .options import opt, out, read_set, write_text
+from ..messages import fail, note, noted, usage
+from .options import opt, out, read_set, theirs_of, write_text
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -22,30 +24,36 @@ SUFFIXES = (".cue", ".json")
 
 
 def convert_command(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A .cue or .csv file, or a shipped set.")],
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A cue file, a table or a shipped set.")],
     output: Annotated[
         Path,
         out("OUT", "The file to write: .cue or .json.", "-o", "--output"),
     ],
     tolerance: Annotated[
         float | None,
-        opt("K", "For .csv: largest deviation of the icon from the recording, in K.", name="--tolerance"),
+        opt("K", "For a table: largest deviation of the icon from the recording, in K.", name="--tolerance"),
     ] = None,
-    name: Annotated[str | None, opt("NAME", "For .csv: the name of the icon.", name="--name")] = None,
-    column: Annotated[str | None, opt("COLUMN", "For .csv: the column of temperatures.", name="--column")] = None,
+    name: Annotated[str | None, opt("NAME", "For a table: the name of the icon.", name="--name")] = None,
+    column: Annotated[
+        list[str] | None,
+        opt("COLUMN", "For a table: the column of temperatures, or NAME=THEIRS for any column.", name="--column"),
+    ] = None,
     control: Annotated[
         Literal["skin", "display"] | None,
-        typer.Option(help="For .csv: whether skin or display temperatures were recorded."),
+        typer.Option(help="For a table: whether skin or display temperatures were recorded."),
     ] = None,
 ) -> None:
     """Write icons as a cue file or, for other programs, as JSON, as the ending says.
 
-    JSON keeps everything except comments. A recording (.csv) becomes an icon of a few straight pieces.
+    JSON keeps everything except comments. A recording (a table) becomes an icon of a few straight pieces.
     """
-    recording = {"tolerance_K": tolerance, "name": name, "column": column, "control": control}
+    chosen = [None, *(each for each in column or [] if "=" not in each)][-1]
+    theirs = theirs_of([each for each in column or [] if "=" in each]) or None
+    recording = {"tolerance_K": tolerance, "name": name, "column": chosen, "columns": theirs, "control": control}
     given = {key: value for key, value in recording.items() if value is not None}
-    if given and not file.lower().endswith(".csv"):
-        raise usage("applies only to a recording, a .csv file", f"--{next(iter(given)).removesuffix('_K')}")
+    if given and not is_table(file):
+        option = next(iter(given)).removesuffix("_K").replace("columns", "column")
+        raise usage("applies only to a recording, a .csv file or another table", f"--{option}")
     if tolerance is not None and not (math.isfinite(tolerance) and tolerance > 0):
         raise usage(f"{tolerance:g} is not a difference in K above 0", "--tolerance")
     if output == STDOUT:
@@ -60,16 +68,26 @@ def convert_command(
     write_text(text, output, f": {len(icons):,} icon{'' if len(icons) == 1 else 's'}")
 
 
+def is_table(file: str) -> bool:
+    """Whether a file is a recording, by its ending, and is not cue text."""
+    path = Path(file)
+    if path.suffix.lower() not in TABLES or not path.is_file():
+        return path.suffix.lower() in TABLES
+    with path.open("rb") as opened:
+        return not re.search(rb"(?m)^\s*cue\s+\d", opened.read(4000))
+
+
 def read(file: str, given: dict[str, Any]) -> IconSet:
-    """Return the icons of a file, or of a recording in CSV."""
-    if not file.lower().endswith(".csv"):
+    """Return the icons of a file, or of a recording in a table."""
+    if not is_table(file):
         return read_set([file])
     from thermicon.icons import IconSet
     from thermicon.icons.model.context import Metadata
     from thermicon.icons.recordings.recorded import from_csv
 
     try:
-        icon = from_csv(file, **given)
+        with noted():
+            icon = from_csv(file, **given)
     except ValueError as problem:
         fail(str(problem))
     corners = icon.corners()

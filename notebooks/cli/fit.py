@@ -11,7 +11,7 @@ from ..files.outputs import check_output, check_separate
 from ..messages import note, usage
 from ..report.fit_report import fit_report, plan_report
 from ..report.terminal import show
-from .options import FigureOptions, RigOptions, flag, opt, write_text
+from .options import FigureOptions, RigOptions, Theirs, flag, opt, theirs_of, write_text
 
 OFFSET_K, MOST_OFFSET_K = 0.1, 10.0
 """As in `thermicon.circuit.fitting.fit`, repeated here to avoid its imports."""
@@ -26,7 +26,7 @@ def fit_command(
         list[str] | None,
         typer.Argument(
             metavar="LOG",
-            help="Measured logs: .csv or .tsv. A file without a drive has a clock of its own and belongs to the "
+            help="Measured logs: tables or TDMS. A file without a drive has a clock of its own and belongs to the "
             "file before it.",
         ),
     ] = None,
@@ -57,6 +57,7 @@ def fit_command(
     offset: Annotated[
         float, opt("K", "What a temperature sensor may read off (standard deviation).", 0.0, MOST_OFFSET_K)
     ] = OFFSET_K,
+    column: Theirs = None,
     fixed_skin: Annotated[
         bool,
         flag(
@@ -67,7 +68,7 @@ def fit_command(
 ) -> None:
     """Fit parameters of a rig to measured logs: values with 95 % intervals, and what the logs do not identify.
 
-    A log has time_s, a drive (current_A or command_V), and what was measured:
+    A log is a table with time_s, a drive (current_A or command_V), and what was measured:
     display_C, skin_C, hot_plate_C, and voltage_V beside a current. The rig to begin with is that of --rig and --set.
     """
     keys = tuple(key for part in free or [] for key in part.split(","))
@@ -85,12 +86,14 @@ def fit_command(
     if not logs:
         raise usage("give a LOG, or --plan to see what a log would identify", "LOG")
     from thermicon.circuit import fit
+    from thermicon.circuit.fitting.log import read_log
 
     where = rig.load()
     if output is not None:
         check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
-    fitted = fit(list(logs), where, free=keys, offset_K=offset, fixed_skin=fixed_skin)
+    read = [read_log(log, theirs_of(column)) for log in logs]
+    fitted = fit(read, where, free=keys, offset_K=offset, fixed_skin=fixed_skin)
     if output is not None:
         write_text(fitted.rig_text(output.stem[:LONGEST_NAME]), output)
     if figure.figure is not None:

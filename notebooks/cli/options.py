@@ -58,6 +58,10 @@ IconName = Annotated[str | None, opt("NAME", "Only this icon of the file.", name
 Tail = Annotated[float, opt("S", "Seconds simulated after the last corner.", 0.0, LONGEST_TAIL_S)]
 Json = Annotated[Path | None, out("OUT", "Write every number as JSON; - prints it.", "--json")]
 Table = Annotated[Path | None, out("OUT", "Write the table to .csv or .parquet; - prints it.", "-o", "--output")]
+Theirs = Annotated[
+    list[str] | None,
+    opt("NAME=THEIRS", "What the table calls a column of ours, as in display_C=T1; several times.", name="--column"),
+]
 People = Annotated[int, opt("N", "Number of virtual people.", 1, MOST_PEOPLE)]
 Seed = Annotated[int, opt("SEED", "Seed of everything that is drawn.", 0, LARGEST_SEED)]
 Intervals = Annotated[
@@ -232,6 +236,14 @@ def read_set(files: Sequence[str], rig: Rig | None = None) -> IconSet:
     if rig is not None:
         warn_of_site(files[0], joined, rig)
     return joined
+
+
+def theirs_of(columns: Sequence[str] | None) -> dict[str, str]:
+    """What a table calls our columns, by ``--column NAME=THEIRS``."""
+    pairs = [column.partition("=") for column in columns or []]
+    if wrong := [name for name, equals, own in pairs if not (name.strip() and equals and own.strip())]:
+        raise usage(f"{wrong[0]!r} is not of the form NAME=THEIRS, for example display_C=T1", "--column")
+    return {name.strip(): own.strip() for name, _, own in pairs}
 
 
 def warn_of_site(file: str, icons: IconSet, rig: Rig) -> tuple[str, ...]:

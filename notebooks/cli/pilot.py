@@ -16,9 +16,11 @@ from .options import (
     Json,
     ObserverOptions,
     RigOptions,
+    Theirs,
     opt,
     out,
     read_set,
+    theirs_of,
     write_text,
 )
 from .ranking import command_text
@@ -51,6 +53,7 @@ def pilot_command(
             "--measurements",
         ),
     ] = None,
+    column: Theirs = None,
     keep: Annotated[
         Path | None,
         out(
@@ -94,13 +97,13 @@ def pilot_command(
     if answers is not None and len(answers) > 1:
         raise usage("give one file of answers or of measurements, not both", "--answers' / '--measurements")
     planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
-    for option, value in (planned if answers is not None else {"--keep": keep}).items():
+    for option, value in (planned if answers is not None else {"--keep": keep, "--column": column}).items():
         if value is not None:
             raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
     if json is not None:
         check_output(json, (".json",), "JSON")
     if answers is not None:
-        condition(answers[0], files, crowd, rig, keep, draws or USUAL_DRAWS, json)
+        condition(answers[0], theirs_of(column), files, crowd, rig, keep, draws or USUAL_DRAWS, json)
         return
     people = _numbers(participants or PARTICIPANTS, "--participants", 2, MOST_PARTICIPANTS)
     times = _numbers(trials or TRIALS, "--trials", 1, MOST_TRIALS)
@@ -138,6 +141,7 @@ def pilot_command(
 
 def condition(
     answers: Path,
+    theirs: dict[str, str],
     files: Sequence[str],
     crowd: ObserverOptions,
     rig: RigOptions,
@@ -166,10 +170,10 @@ def condition(
     icons, *others = (read_set([name], where) for name in files)
     model = crowd.load(where, NEEDS)
     data: Trials | Measurements
-    if is_measurements(answers):
-        data = read_measurements(answers, where)
+    if is_measurements(answers, theirs):
+        data = read_measurements(answers, where, theirs)
     else:
-        data = read_trials(answers, [icon.name for icon in icons])
+        data = read_trials(answers, [icon.name for icon in icons], theirs)
     with progress_bar("simulating laboratories") as progress:
         found = observed(
             data, icons, where, others=others, draws=draws, observer=model, progress=progress, **crowd.asked

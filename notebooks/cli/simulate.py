@@ -22,7 +22,7 @@ from ..files.outputs import (
     check_output,
     check_separate,
 )
-from ..messages import note, progress_bar, usage
+from ..messages import note, noted, progress_bar, usage
 from ..report.gate_words import CAUTION
 from ..report.run_report import describe, headline, session_report
 from ..report.terminal import show
@@ -33,12 +33,14 @@ from .options import (
     IconName,
     NoFile,
     RigOptions,
+    Theirs,
     flag,
     only,
     opt,
     out,
     pick,
     read_set,
+    theirs_of,
     write_text,
 )
 
@@ -65,6 +67,7 @@ def simulate_command(
     hold: Annotated[
         bool, flag("--hold", "With --current: hold each current until the next row instead of interpolating.")
     ] = False,
+    column: Theirs = None,
     order: Annotated[
         Path | None,
         out("FILE", "Play a session: icons in the order of this file, which has one name per line.", "--order"),
@@ -115,7 +118,7 @@ def simulate_command(
     needs_file = {"--icon": icon, "--tail": tail}
     alone = {"--rate": rate != 100.0, **needs_file}
     in_session = {"--gap": gap is not None, "--seed": seed is not None, "--tracking": tracking}
-    _refuse({"--hold": hold}, current is None, "belongs to --current, which plays a drive")
+    _refuse({"--hold": hold, "--column": column}, current is None, "belongs to --current, which plays a drive")
     _refuse(in_session, not session, "belongs to a session; give --order FILE or --random N")
     _refuse({"--seed": seed is not None}, random is None, "belongs to --random")
     _refuse({"--figure": figure.figure}, circuit, "belongs to a trace, not to a circuit")
@@ -124,7 +127,7 @@ def simulate_command(
     if (file is None) == (current is None):
         raise usage("give either a cue FILE or --current DRIVE.csv", "FILE")
     if current is not None:
-        simulate_drive(current, hold, rig.load(), rate, output, figure)
+        simulate_drive(current, hold, theirs_of(column), rig.load(), rate, output, figure)
     elif file is not None and circuit and output is not None:
         netlist_file(file, icon, rig.load(), tail or 0.0, output)
     elif file is not None and session:
@@ -166,14 +169,15 @@ def simulate_file(
 
 
 def simulate_drive(
-    drive: Path, hold: bool, rig: Rig, rate_Hz: float, output: Path | None, figure: FigureOptions
+    file: Path, hold: bool, theirs: dict[str, str], rig: Rig, rate_Hz: float, output: Path | None, figure: FigureOptions
 ) -> None:
     """Play a drive current from a CSV file on the rig; write the trace, or print a summary."""
     from thermicon.circuit.solver.drive import read_drive
     from thermicon.circuit.solver.simulate import simulate_current
 
-    _check_outputs(drive, output, [] if figure.figure is None else [figure.figure])
-    played = read_drive(drive, hold=hold)
+    _check_outputs(file, output, [] if figure.figure is None else [figure.figure])
+    with noted():
+        played = read_drive(file, hold=hold, columns=theirs)
     tell([simulate_current(played, rig, rate_Hz=rate_Hz)], rig, output, [None])
     if figure.figure is not None:
         figure.write(felt_overview(simulate_current(played, rig), rig.changes))

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -45,7 +44,8 @@ class Curves:
     time_s: Array
     columns: Mapping[str, Array]
     whole: bool
-    ignored: tuple[str, ...] = field(default=())
+    ignored: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,45 +69,33 @@ def curves_of(trace: Trace, name: str) -> Curves:
     return Curves(name, trace.time_s, columns, whole=True)
 
 
-def read_curves(path: str, icon: str | None = None) -> Curves:
+def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | None = None) -> Curves:
     """Return the curves in the file of a trace or log; of a file with several icons, those of `icon`.
 
-    Raises LogError that says what is wrong and where.
+    `theirs` says what the file calls our columns. Raises LogError that says what is wrong and where.
     """
-    from thermicon.circuit.inputs import read_text, table_fault
+    from thermicon.circuit.inputs import read_bytes, table_fault
     from thermicon.circuit.solver.trace import COLUMNS
+    from thermicon.icons.files.measured_table import measured, missing
     from thermicon.icons.files.table import read_table
 
-    where = Path(path)
-    table = read_table(
-        read_text(where, "trace or log", MOST_MB), table_fault(path, LogError), "time_s,display_C,skin_C", MOST_ROWS
-    )
-
-    def column(name: str) -> Array:
-        return table.numbers(name, CURE, gaps=Counter(), most=LARGEST)
-
-    known = [name for name in table.header if name in COLUMNS[2:] or EXTRA.fullmatch(name)]
-    _check_columns(table.header, known, path)
-    time = column("time_s")
-    icons = list(table.texts("icon")) if "icon" in table.header else None
-    rows = _rows_of(icons, path, icon) if icons else numpy.arange(len(time))
-    time = time[rows]
-    if len(time) < 2:
-        raise LogError(f"{path}: {len(time)} rows; at least two are needed")
-    if not numpy.isfinite(time).all():
-        raise LogError(f"{path}:{table.lines[rows[numpy.argmin(numpy.isfinite(time))]]}: time_s is empty")
-    if (back := numpy.flatnonzero(numpy.diff(time) <= 0)).size:
-        row = int(back[0]) + 1
-        raise LogError(
-            f"{path}:{table.lines[rows[row]]}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; "
-            f"times must increase"
-        )
-    whole = all(name in table.header for name in COLUMNS[1:])
-    ignored = tuple(name for name in table.header if name not in (*COLUMNS, *known))
-    return Curves(where.name, time, {name: column(name)[rows] for name in known}, whole, ignored)
+    where, example = Path(path), "time_s,display_C,skin_C"
+    data = read_bytes(where, "trace or log", MOST_MB, LogError)
+    table = read_table(data, table_fault(path, LogError), example, MOST_ROWS, COLUMNS[1:], theirs)
+    known = [name for name in dict.fromkeys(table.header) if name in COLUMNS[2:] or EXTRA.fullmatch(name)]
+    if not known:
+        raise missing(table, "display_C", "or another one of a trace, such as skin_C")
+    if "icon" in table.header:
+        rows = _rows_of(list(table.texts("icon")), path, icon)
+        kept = tuple(table.rows[row] for row in rows), tuple(table.lines[row] for row in rows)
+        table = replace(table, rows=kept[0], lines=kept[1])
+    whole = all(name in table.header and name not in table.names.renamed for name in COLUMNS[1:])
+    found = measured(table, known, CURE, most=LARGEST, ours=whole)
+    ignored = tuple(name for name in table.header if name and name not in (*COLUMNS, *known))
+    return Curves(where.name, found.time_s, found.columns, whole, ignored[:8], found.notes)
 
 
-def _rows_of(icons: list[str], path: str, icon: str | None) -> NDArray[numpy.intp]:
+def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:
     from ..messages import usage
 
     names = list(dict.fromkeys(icons))
@@ -115,21 +103,7 @@ def _rows_of(icons: list[str], path: str, icon: str | None) -> NDArray[numpy.int
         raise usage(f"{path} has traces of {len(names)} icons; name one of {', '.join(names)}", "--icon")
     if icon is not None and icon not in names:
         raise LogError(f"{path}: no trace of {icon}; {did_you_mean(icon, names)}")
-    return numpy.flatnonzero([icon in (None, name) for name in icons])
-
-
-def _check_columns(names: Sequence[str], known: Sequence[str], path: str) -> None:
-    from thermicon.circuit.solver.trace import COLUMNS
-
-    found = ", ".join(names[:8])
-    if "time_s" not in names:
-        raise LogError(f"{path}: the column time_s (time in s) is missing; found {found}")
-    if not known:
-        other = next((name for name in names if name not in ("time_s", "icon")), "")
-        raise LogError(
-            f"{path}: none of its columns is one of a trace, such as display_C or skin_C; found {found}"
-            f"{f'; {other}: {did_you_mean(other, COLUMNS[2:])}' if other else ''}"
-        )
+    return [row for row, name in enumerate(icons) if icon in (None, name)]
 
 
 def align(a: Curves, b: Curves) -> Aligned:

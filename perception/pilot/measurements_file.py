@@ -118,13 +118,14 @@ class Measurements:
         return f"Measurements({', '.join(words)})"
 
 
-def is_measurements(path: str | Path) -> bool:
+def is_measurements(path: str | Path, columns: Mapping[str, str] | None = None) -> bool:
     """Whether the header of a file is that of measurements, not of trials."""
-    header = {cell.lower() for cell in table_in(Path(path), (), EXAMPLE, "table of trials or measurements")[0].header}
+    table, _ = table_in(Path(path), (), EXAMPLE, "table of trials or measurements", columns)
+    header = {cell.lower() for cell in table.header}
     return "presented" not in header and any(mark in header for mark in MARKS_OF_KIND)
 
 
-def read_measurements(path: str | Path, rig: Rig) -> Measurements:
+def read_measurements(path: str | Path, rig: Rig, columns: Mapping[str, str] | None = None) -> Measurements:
     """Read thresholds, reaction times and ratings of participants; a `TrialsError` says what is wrong, and where.
 
     A CSV file has the columns participant, kind, channel, value, unit and, where they apply, method, size_K,
@@ -140,7 +141,7 @@ def read_measurements(path: str | Path, rig: Rig) -> Measurements:
     Measurements(1 participant, 1 value, 1 condition)
     """
     file = Path(path)
-    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT)
+    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT, columns)
     _check_columns(file, table.header)
     found: dict[tuple[str, Condition], tuple[float, float, float]] = {}
     first: dict[tuple[str, Condition], int] = {}

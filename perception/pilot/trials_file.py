@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault, text_of
+from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
 from thermicon.icons.files.table import Kind, Table, read_table
 from thermicon.icons.near_words import did_you_mean
 
@@ -34,14 +34,15 @@ class TrialsError(InputError):
     """A table of answers cannot be used; the message says what, where and the cure."""
 
 
-def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
+def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, str] | None = None) -> Trials:
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
     A CSV file has the columns participant, trial, presented and responded, where trials are numbered anew in each block
     also block; or one row a participant with icon_1, answer_1 and so on; or a matrix of counts, a row for each icon
     presented and a column for each answer, which is one group. Other columns are left alone, semicolons and tabs also
     separate them, and lines that begin with # are comments. Where nobody answered, the cell is empty or one of
-    `NOTHING`. Participants are in the order of the file. A `TrialsError` says what is wrong, where, and what helps.
+    `NOTHING`. `columns` says what the file calls ours. Participants are in the order of the file. A `TrialsError` says
+    what is wrong, where, and what helps.
 
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -51,7 +52,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     Trials(1 participant, 2 trials, 2 icons)
     """
     file = Path(path)
-    table, digest = table_in(file, (), EXAMPLE, WHAT)
+    table, digest = table_in(file, (), EXAMPLE, WHAT, columns)
     names, places = tuple(icons), {name: place for place, name in enumerate(icons)}
     if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
         matrix = _matrix(file, table, places)
@@ -59,7 +60,7 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     runs: dict[str, list[dict[tuple[str, str], tuple[int, int]]]] = {}
     lines: dict[tuple[str, tuple[str, str]], int] = {}
     passed = 0
-    for line, (participant, block, number, *cells) in _asked(file, table):
+    for line, (participant, block, number, *cells) in _asked(file, table, columns):
         where = f"{file}:{line}"
         icon, answer = (cell if cell in places or cell.casefold() not in NOTHING else "" for cell in cells)
         if not icon and answer not in places:
@@ -90,12 +91,12 @@ def read_trials(path: str | Path, icons: Sequence[str]) -> Trials:
     return Trials(names, tuple(runs), counts[..., :-1], file.name, digest, counts[..., -1], passed)
 
 
-def _asked(path: Path, table: Table) -> Iterator[tuple[int, list[str]]]:
+def _asked(path: Path, table: Table, columns: Mapping[str, str] | None) -> Iterator[tuple[int, list[str]]]:
     """Line, and participant, block, trial, icon and answer of each trial, from a row a trial or a row a participant."""
     found = {(m[1] or m[3], m[2].lower() in ASKED): m[0] for m in map(WIDE.fullmatch, table.header) if m}
     numbers = dict.fromkeys(number for number, asked in found if number and asked and "presented" not in table.header)
     if not numbers:
-        table_in(path, COLUMNS, f"{EXAMPLE}, or, one row a participant, {WIDE_EXAMPLE}", WHAT)
+        table_in(path, COLUMNS, f"{EXAMPLE}, or, one row a participant, {WIDE_EXAMPLE}", WHAT, columns)
         for line, row in table.records((*COLUMNS, "block")):
             yield line, [row["participant"], row.get("block", ""), *(row[column] for column in COLUMNS[1:])]
         return
@@ -131,7 +132,9 @@ def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
     return counts
 
 
-def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tuple[Table, str]:
+def table_in(
+    path: Path, needed: Sequence[str], example: str, what: str, columns: Mapping[str, str] | None = None
+) -> tuple[Table, str]:
     """Return the table in a file, and the first 16 digits of the file's SHA-256, by which a result names it.
 
     A TrialsError lists which columns of those `needed` are missing, and what was found.
@@ -142,7 +145,7 @@ def table_in(path: Path, needed: Sequence[str], example: str, what: str) -> tupl
     def fault(kind: Kind, line: int | None, wrong: str, cure: str) -> Exception:
         return said(kind, line, wrong, "one experiment a file is enough" if kind == "size" else cure)
 
-    table = read_table(text_of(data, path, what, TrialsError), fault, example, MOST_ROWS)
+    table = read_table(data, fault, example, MOST_ROWS, needed, columns)
     if missing := [name for name in needed if name not in table.header]:
         close = {cell.lower(): cell for cell in table.header}
         hints = [f"rename {close[name]!r} to {name}" for name in missing if name in close]

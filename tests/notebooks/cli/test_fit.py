@@ -63,7 +63,7 @@ def test_what_a_log_does_not_show_is_named_with_the_cure(cli: Cli, log: Path, tm
 @pytest.mark.parametrize(
     ("change", "more", "code", "words"),
     [
-        (("display_C", "Display_c"), RATE, 1, "Display_c: did you mean display_C?"),
+        (("display_C", "Displey_C"), RATE, 1, "Displey_C: did you mean display_C?"),
         ((r"\n(\d\.450000,[^,]*),[^,]*", r"\n\1,n/a"), RATE, 0, "display_C is 'n/a' in 10 of"),
         (("current_A", "amps"), RATE, 1, "no log has a drive: one of current_A or"),
         (("", ""), (*RATE, "rig.csv"), 1, ["has the same content as", "name it once"]),

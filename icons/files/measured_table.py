@@ -1,0 +1,108 @@
+"""What was measured over time, out of a table: times in s and columns in SI units, checked alike for every command."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from .clock import order_fault, seconds_of, spread
+from .table import Table
+from .units import POSSIBLE_C, SENSED_C, errors, like_units_of_time, unit_fault
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+TIME, CLOCK_CURE = "time_s", "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """Times (rows,) in s that do not fall, columns (rows,) with NaN in gaps, the line of each row, and notes."""
+
+    time_s: Array
+    columns: dict[str, Array]
+    lines: tuple[int, ...]
+    notes: tuple[str, ...]
+
+
+def missing(table: Table, name: str, what: str) -> Exception:
+    """The fault of a column that a table does not have, or may have twice, and how to say which it is."""
+    name, what = (name, what) if TIME in table.header else (TIME, "time in s")
+    name, several = next(iter(table.names.doubtful.items()), (name, ()))
+    others = [cell for cell in table.header if cell and cell not in (*table.names.renamed, TIME, "icon")]
+    close = [*several, *others, "THEIRS"][0]
+    said = f"{' and '.join(several)} may be {name}" if several else ""
+    said = said or f"the column {name} ({what}) is missing; found {table.found}"
+    quote = '"' if set(close) & set(" ()[]/&;*|<>$'°") else ""
+    cure = f'--column {quote}{name}={close}{quote} (in Python columns={{"{name}": "{close}"}})'
+    return table.fault("table", table.line, said, f"say which it is: {cure}")
+
+
+def measured(
+    table: Table, names: Sequence[str], cure: str, *, gaps: bool = True, steps: bool = False, most: float = math.inf,
+    ours: bool = False,
+) -> Measured:  # fmt: skip
+    """Return times and the columns called ``names``, in SI units; raises faults of the table with their cures.
+
+    Without ``gaps`` an empty cell is a fault, with this ``cure``, and rows with an error value are left out; with
+    ``steps`` two readings at one time are a step. What is ``ours``, a simulated trace, may have any value.
+    """
+    import numpy as np
+
+    if TIME not in table.header:
+        raise missing(table, TIME, "time in s")
+    time, lines, notes = _times(table), np.array(table.lines), list(table.notes)
+    counts = {name: Counter[str]() for name in names}
+    columns = {name: table.numbers(name, cure, gaps=counts[name] if gaps else None, most=most) for name in names}
+    for name, unit in table.names.units.items():
+        if name in columns:
+            columns[name] = columns[name] * unit.factor + unit.plus
+    if (few := len(time)) < 2:
+        what = f"{few or 'no'} row{'s' * (not few)} below the names of the columns"
+        raise table.fault("table", None, what, "at least two are needed, a start and an end")
+    rows = np.nan_to_num(np.stack([time, *columns.values()]), nan=-1e300)
+    kept = np.append(True, (np.diff(rows) != 0).any(axis=0))
+    if 0 < (twice := int((~kept).sum())) == int((np.diff(time) == 0).sum()) <= 0.1 * len(time):
+        notes.append(f"rows that stand twice count once: {twice}")
+    else:
+        kept[:] = True
+    for name, column in () if ours else columns.items():
+        wrong = errors(column, SENSED_C if name.startswith("hot_plate") else POSSIBLE_C) & name.endswith("_C")
+        counts[name].update(f"{value:g}" for value in column[wrong])
+        kept &= gaps | ~wrong
+        columns[name] = np.where(wrong, np.nan, column)
+    left = [f"{name} is {cell!r} in {count:,} of {len(time):,} rows"
+            for name, cells in counts.items() for cell, count in cells.most_common(3) if cell]  # fmt: skip
+    notes += [f"{', '.join(left)}, which are {'taken as gaps' if gaps else 'left out'}"] if left else []
+    time, lines, columns = time[kept], lines[kept], {name: column[kept] for name, column in columns.items()}
+    if found := order_fault(time):
+        row, why = found
+        what = f"time_s {time[row]:.9g} s does not come after {time[row - 1]:.9g} s; times must increase"
+        raise table.fault("time", int(lines[row]), what, why)
+    if not np.ptp(time):
+        raise table.fault("time", None, f"all rows are at {time[0]:g} s", "times must increase: write more decimals")
+    time, count = spread(time, steps)
+    if count:
+        notes.append(f"the clock has too few digits: {count:,} rows at the time of the row before were spread")
+    for name, column in () if ours else columns.items():
+        if (fault := unit_fault(name, column)) is not None:
+            raise table.fault("unit", None, *fault)
+    if not ours and (like := like_units_of_time(time)):
+        what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}"
+        notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
+    return Measured(time, columns, tuple(lines.tolist()), tuple(notes))
+
+
+def _times(table: Table) -> Array:
+    """The column of times, as numbers, or as times of day with or without dates."""
+    cells, unit = list(table.texts(TIME)), table.names.units.get(TIME)
+    if ":" in "".join(cells[:1]) and "" not in cells and (times := seconds_of(cells)) is not None:
+        return times
+    cure = CLOCK_CURE if ":" in "".join(cells) else "remove the row"
+    return table.numbers(TIME, cure) * (unit.factor if unit else 1.0)

@@ -1,0 +1,119 @@
+"""Whether the numbers of a column can be in the unit of its name, and readings that no sensor could have taken.
+
+The whole range of a column decides, and every unit that its numbers fit is named; nothing is converted.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..number_text import number
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+
+MOST_SIZE = 1e12
+"""What reads a wire that is off has fewer digits."""
+SENSED_C = (-40.0, 150.0)
+"""Outside, a sensor of a display on skin is unplugged or its wire broken."""
+ON_SKIN_C, HOT_PLATE_C, MEDIAN_C = (5.0, 55.0), (5.0, 100.0), 15.0
+"""Ranges of what touches skin and of other parts, in which a column of another unit must lie, and its least median."""
+BURNING_C = 65.0
+"""Medians of display or skin from here on would burn; 18 to 54 °C have these numbers in °F."""
+POSSIBLE_C, JUMP_K = (-10.0, 60.0), 20.0
+"""What touches skin is within; a reading beyond that jumps by more, from and to its neighbours, is an error."""
+MOST_LEFT_OUT = 0.2
+"""Larger shares of impossible readings are no single errors of a sensor."""
+LIMITS = {"A": (50.0, "milliamperes"), "V": (200.0, "millivolts")}
+"""Far above what any display on skin takes, and far below what it takes in milliamperes and millivolts."""
+STEPS_S, LENGTHS_S, LONG_S = (1e-4, 2.0), (1.0, 3600.0), 600.0
+"""Rows and lengths of what is recorded of a display in s, and the length from which whole seconds are doubted."""
+DAYS = (30_000.0, 60_000.0)
+"""Days from 1900 on to dates of today, in which spreadsheets count times."""
+TEMPERATURES = (
+    ("kelvin", 1.0, -273.15, "subtract 273.15"),
+    ("°F", 1 / 1.8, -32 / 1.8, "subtract 32 and divide by 1.8"),
+    *((f"{part} of °C", by, 0.0, f"divide by {1 / by:.0f}")
+      for part, by in (("tenths", 0.1), ("hundredths", 0.01), ("thousandths", 0.001))),
+)  # fmt: skip
+
+
+def errors(values: Array, possible: tuple[float, float], widest: tuple[float, float] = SENSED_C) -> NDArray[np.bool_]:
+    """Readings that no sensor took, such as −127, 85 or 999 among others: none where they are many.
+
+    They are beyond the widest range, or beyond what is possible by a jump from and to their neighbours.
+    """
+    import numpy as np
+
+    beyond = (values < widest[0]) | (values > widest[1])
+    doubtful = (values < possible[0]) | (values > possible[1])
+    sound, at = np.flatnonzero(~doubtful & np.isfinite(values)), np.flatnonzero(doubtful & ~beyond)
+    if sound.size:
+        after = np.searchsorted(sound, at)
+        near = sound[np.maximum(after - 1, 0)], sound[np.minimum(after, sound.size - 1)]
+        beyond[at] = np.min([np.abs(values[at] - values[place]) for place in near], axis=0) > JUMP_K
+    few = bool(beyond.sum() <= MOST_LEFT_OUT * np.isfinite(values).sum())
+    return np.asarray(beyond & few)
+
+
+def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
+    """What of a column's numbers cannot be in the unit of its name, and the cure; None where they may be."""
+    import numpy as np
+
+    there = values[np.isfinite(values)]
+    most, unit = float(np.abs(there).max(initial=0.0)), name.rpartition("_")[2]
+    limit, small = LIMITS.get(unit, (np.inf, ""))
+    if most > MOST_SIZE:
+        return f"{name} reaches {most:g}, beyond the {MOST_SIZE:g} that any instrument gives", "leave that row out"
+    if most > limit:
+        what = f"{name} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}"
+        return what, f"divide it by 1000, so that it is in {unit}"
+    return _temperature_fault(name, there) if unit == "C" and there.size else None
+
+
+def _either(fits: list[tuple[str, str]], at: int) -> str:
+    return " or ".join(each[at] for each in fits)
+
+
+def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
+    import numpy as np
+
+    middle, on_skin = float(np.median(there)), not name.startswith(("hot_plate", "probe_"))
+    outside = (there < SENSED_C[0]) | (there > SENSED_C[1])
+    low, high = ON_SKIN_C if on_skin else HOT_PLATE_C
+    plausible = SENSED_C[0] <= middle <= (BURNING_C if on_skin else SENSED_C[1])
+    fits = list[tuple[str, str]]()
+    for unit, factor, plus, how in () if plausible else TEMPERATURES:
+        scaled = there * factor + plus
+        kept = scaled[~errors(scaled, (low, high), (low - JUMP_K, high + JUMP_K))]
+        if low <= kept.min() and kept.max() <= high and np.median(kept) > MEDIAN_C:
+            fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", how))
+    if fits:
+        cure = f"{_either(fits, 1)}{', whichever they are,' if len(fits) > 1 else ''} to have °C"
+        return f"{name} has a median of {middle:g}: these look like {_either(fits, 0)}", cure
+    if not outside.any() or (plausible and outside.mean() <= MOST_LEFT_OUT):
+        return None
+    what = f"{name} reads {there[np.argmax(outside)]:g} °C in {100 * outside.mean():.0f} % of its rows"
+    return f"{what}: a sensor that is unplugged or shorted", "connect it, or remove the column"
+
+
+def like_units_of_time(time: Array, whole: bool = True) -> tuple[str, str] | None:
+    """Units that times fit better than s, and what makes s of them; with ``whole``, of whole numbers alone."""
+    import numpy as np
+
+    if len(time) < 2 + whole:
+        return None
+    length, step = float(time[-1] - time[0]), float(np.median(np.diff(time)))
+    if DAYS[0] < time[0] < DAYS[1] and 0 < length < 0.5:
+        return "days, as spreadsheets count", "multiply by 86,400"
+    if (whole and (np.abs(time - np.round(time)) > 1e-6).any()) or (step <= STEPS_S[1] and length <= LONG_S):
+        return None
+    fits = [
+        (f"{part}seconds", f"divide the column by {by}")
+        for part, by, size in (("milli", "1000", 1e-3), ("micro", "1,000,000", 1e-6), ("nano", "1,000,000,000", 1e-9))
+        if STEPS_S[0] <= step * size <= STEPS_S[1] and LENGTHS_S[0] <= length * size <= LENGTHS_S[1]
+    ]
+    return (_either(fits, 0), _either(fits, 1)) if fits else None
