@@ -37,6 +37,7 @@ FROZEN_S = {frozen_s!r}  # and for so long at least: raise it for a slow sensor
 SECOND_SENSOR = {second_sensor!r}  # the cut-off needs a sensor of its own
 TEST_POLARITY = {test_polarity!r}
 TEST_COMMAND_V, TEST_S, TEST_FALL_K = {test_command!r}, {test_s!r}, {test_fall_K!r}
+DRIVES = {drives}  # judged together with these numbers; no other file is played
 '''
 
 TAIL = '''
@@ -48,6 +49,12 @@ def _numbers():
 
 
 _guard = Guard(_numbers, lambda: time.monotonic(), lambda seconds: time.sleep(seconds))
+
+
+def _judged(drive_file):
+    if os.path.basename(drive_file) not in DRIVES:
+        raise Refused(f"{drive_file} was not exported with this script, which plays {', '.join(DRIVES)}")
+    return drive_file
 
 
 def abort():
@@ -65,13 +72,13 @@ NI = f'''
 
 def rest(drive_file, measured_C=None, second_C=None):
 {REST}
-    volts = columns_of(drive_file, "command_V")[1]
+    volts = columns_of(_judged(drive_file), "command_V")[1]
     _guard.rest(NiLine(CHANNEL, OFF_V, measured_C), volts[0], second_C)
 
 
 def play(drive_file, measured_C=None, second_C=None):
     """Put out the commands of a drive file in V, each held until the next; returns when the last was put out."""
-    times, volts = columns_of(drive_file, "command_V")
+    times, volts = columns_of(_judged(drive_file), "command_V")
     rate = (len(times) - 1) / times[-1]
     rows = [(0.0, (volts, rate)), (len(volts) / rate, None)]
     course = [(k * COURSE_EVERY_S, at_C) for k, at_C in enumerate(COURSES_C.get(os.path.basename(drive_file), ()))]
@@ -88,7 +95,7 @@ FUNCTION = f'''
 
 def rest(drive_file, send, off, measured_C=None, second_C=None):
 {REST}
-    _guard.rest(FunctionLine(send, off, measured_C), columns_of(drive_file, "display_C")[1][0], second_C)
+    _guard.rest(FunctionLine(send, off, measured_C), columns_of(_judged(drive_file), "display_C")[1][0], second_C)
 
 
 def play(drive_file, send, off, measured_C=None, second_C=None):
@@ -96,7 +103,7 @@ def play(drive_file, send, off, measured_C=None, second_C=None):
 
     Rows are sent at their times by this computer's clock, which may be late by some milliseconds.
     """
-    times, levels = columns_of(drive_file, "display_C")
+    times, levels = columns_of(_judged(drive_file), "display_C")
     rows = list(zip(times, levels))
     _guard.play(FunctionLine(send, off, measured_C), rows, levels[0], rows, second_C)
 '''
@@ -106,7 +113,7 @@ TCS2 = f'''
 def prepare(port, drive_file):
     """Send everything but the start, so that the trial begins with one short command; the baseline is held from now."""
     global _course
-    with open(drive_file) as file:
+    with open(_judged(drive_file)) as file:
         commands = file.read().split()
     _course = course_of(commands)
     for command in commands[:-1]:
@@ -145,11 +152,12 @@ COURSE_EVERY_S = 0.1
 def script(kind: str, on: str, numbers: Numbers, courses_C: Mapping[str, Sequence[float]], off_V: float = 0.0) -> str:
     """Return the script for a line; equal inputs give equal text.
 
-    `courses_C` has by the names of drive files the predicted display in °C, every `COURSE_EVERY_S`; an NI output needs
-    it, the others find it in their drives. `off_V` leaves a display on an NI output without power.
+    `courses_C` has by the names of drive files, which alone are played, the predicted display in °C every
+    `COURSE_EVERY_S`; an NI output needs it, the others find it in their drives. `off_V` leaves a display on an NI
+    output without power.
     """
     module, functions = LINES[kind]
-    names: dict[str, set[str]] = {"time": set(), **({"os": set()} if kind == "ni" else {})}
+    names: dict[str, set[str]] = {"time": set(), "os": set()}
     texts = [_parted(inspect.getsource(each), names) for each in (line, guard, module)]
     imports = [f"import {name}" for name, of in sorted(names.items()) if not of]
     imports += [f"from {name} import {', '.join(sorted(of))}" for name, of in sorted(names.items()) if of]
@@ -157,7 +165,8 @@ def script(kind: str, on: str, numbers: Numbers, courses_C: Mapping[str, Sequenc
         "ni": f'CHANNEL = "Dev1/ao0"\nOFF_V = {off_V!r}\n{_courses(courses_C)}',
         "tcs2": 'PORT = "COM3"\n_course = []\n',
     }
-    head = HEAD.format(on=on, imports="\n".join(imports), **numbers._asdict()) + top.get(kind, "")
+    drives = textwrap.fill(f"({', '.join(map(json.dumps, courses_C))},)", 112, subsequent_indent=" " * 4)
+    head = HEAD.format(on=on, imports="\n".join(imports), drives=drives, **numbers._asdict()) + top.get(kind, "")
     return "\n\n".join([head, *texts]) + TAIL + functions
 
 

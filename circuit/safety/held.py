@@ -32,8 +32,8 @@ Span = tuple[float, float]
 COLUMN_OF = {"skin surface": "skin_C", "cold-receptor depth": "cold_receptor_C"}
 
 STAYS = (
-    "the skin under a display that stays there passes its own limit, and no cut-off lets this play pass and stops a "
-    "driver that is stuck on the way: use a smaller or shorter change"
+    "beyond it the skin under a display that stays there passes its own limit, so that no cut-off both lets this play "
+    "pass and stops a display that gets stuck: use a smaller or shorter change"
 )
 
 

@@ -100,7 +100,7 @@ def _player(drives: Sequence[Played], must: MustPrevent) -> bytes:
         test_s=must.test_s,
         test_fall_K=must.test_fall_K,
     )
-    courses_C = {each.file: course_C(each.delivery, COURSE_EVERY_S).tolist() for each in drives if kind == "ni"}
+    courses_C = {each.file: course_C(each.delivery, COURSE_EVERY_S).tolist() for each in drives}
     return script(kind, on, numbers, courses_C, off_V).encode("utf-8")
 
 

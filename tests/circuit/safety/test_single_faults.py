@@ -232,7 +232,7 @@ def test_a_play_that_goes_where_a_display_may_not_stay_is_refused_with_that_sent
     assert passed.safe and passed.demands.cut_off_display_C.low == 14.8
     assert refused.colour == "red" and not refused.mended_by_pause
     assert str(refused.reason).startswith("display without a fault reaches 14."), refused.reason
-    assert "no cut-off lets this play pass" in str(refused.reason)
+    assert "no cut-off both lets this play pass" in str(refused.reason)
     hard = {check.quantity for check in refused.checks if check.severity == "hard" and not check.passed}
     assert hard == {"display without a fault"}, "the play itself is safe"
 

@@ -166,7 +166,7 @@ def test_what_it_demands_holds_when_simulated() -> None:
 
 def test_a_thermode_that_goes_where_it_may_not_stay_is_refused() -> None:
     (found,) = gate_shown([[course([32, 42.2, 32], [0, 1.6, 3.2])]], THENAR, stuck_C=STUCK, pause_s=300.0)
-    assert found.colour == "red" and "no cut-off lets this play pass" in str(found.reason)
+    assert found.colour == "red" and "no cut-off both lets this play pass" in str(found.reason)
 
 
 @pytest.mark.parametrize(("sink_C", "resistance"), [(48.0, 2.0), (60.0, 0.2)])

@@ -216,3 +216,15 @@ def test_in_c(device: str, tmp_path: Path, tool: Callable[[str], str]) -> None:
         if not again and story.get("kind") in (1, 3, 4) and at[1] < turns - 1:
             assert told["state"] == STOPPED, (story, told)
     assert RUNS < 200 or faults >= {0, LATE, LOST, FROZEN, STANDS}
+
+
+@pytest.mark.parametrize(("device", "how"), [("ni-analogue-output", "play"), ("closed-loop-controller", "rest")])
+def test_a_script_plays_no_drive_that_was_not_exported_with_it(device: str, how: str, tmp_path: Path) -> None:
+    """Its cut-off, rest and pause are those of other drives."""
+    files, drive, _ = exported(device)
+    script: dict[str, Any] = {}
+    exec(compile(files["play_icons.py"], "play_icons.py", "exec"), script)
+    (tmp_path / f"other-{drive}").write_bytes(files[drive])
+    out = [] if device == "ni-analogue-output" else [lambda level: None, lambda: None]
+    with pytest.raises(RuntimeError, match=f"was not exported with this script, which plays {drive}"):
+        script[how](str(tmp_path / f"other-{drive}"), *out)
