@@ -329,3 +329,11 @@ def test_a_loss_is_told_with_its_limit() -> None:
     assert (loss_limit("receptor difference"), loss_limit("relative d′ drop")) == (0.05, 0.10)
     apart = DeliveryDeviation((Deviation("skin", 0.3, 1.0, 0.2), Deviation("cold receptor", 0.1, 1.0, 0.0612)))
     assert lost_text(apart) == "the cold receptor differs by 0.061 K (rms) from the design, over the stated 0.05 K"
+
+
+def test_the_deviation_that_is_stated_is_the_largest_and_stands_at_its_time() -> None:
+    delivery = deliver(load_library("six-icons")["double-dip"], Rig.load("thenar"), Device.load("dac-12"))
+    skin, _, _ = delivery.deviation.places
+    away_K = delivery.trace.skin_C - delivery.designed_trace.skin_C
+    assert 0.0 < abs(skin.largest_K) == np.abs(away_K).max() > skin.rms_K
+    assert np.interp(skin.at_s, delivery.trace.time_s, away_K) == pytest.approx(skin.largest_K)

@@ -11,7 +11,7 @@ from thermicon.circuit import Drive, Rig, gate, simulate_current
 from thermicon.circuit.rig.rigfile import RigError
 from thermicon.circuit.safety.corners import corners_of, passes_most_cooling
 from thermicon.circuit.safety.current import ENDINGS
-from thermicon.circuit.safety.ensemble import Ensemble, row_of
+from thermicon.circuit.safety.ensemble import Ensemble, row_of, switching
 from thermicon.circuit.safety.tally import WATCHED
 from thermicon.circuit.solver.drive import DriveError, switched
 from thermicon.circuit.solver.network import network_of
@@ -186,3 +186,11 @@ def test_a_rest_that_cannot_be_is_refused() -> None:
         gate(CUE, THENAR, rest_A=0.0, bridge_A=0.0)
     with pytest.raises(RigError, match=r"rig thenar: -9 A has no steady state on this rig"):
         gate(CUE, THENAR, rest_A=-9.0)
+
+
+def test_what_stands_for_a_bridge_has_its_mean_and_its_heat() -> None:
+    """A bridge that is on for a share s of the time with a peak p has the mean s·p and heats with s·p²."""
+    shares, peak = np.array([[-0.4], [0.0], [0.1], [1.0]]), np.array([1.5])
+    begin, end = switching(shares * peak, peak)
+    assert 0.5 * (begin + end) == pytest.approx(shares * peak)
+    assert (begin**2 + begin * end + end**2) / 3.0 == pytest.approx(np.abs(shares) * peak**2)
