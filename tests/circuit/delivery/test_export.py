@@ -288,7 +288,7 @@ class TestSidecar:
 
     @pytest.mark.slow
     def test_soft_limits_are_in_it_word_for_word(self) -> None:
-        one = prepare(icon_of("warm by 7.5 °C at 3 °C/s; hold for 3 s; return at 3 °C/s"), RIG, DAC, CSV)
+        one = prepare(icon_of("cool by 8 °C at 3 °C/s; hold for 3 s; return at 3 °C/s"), RIG, DAC, CSV)
         assert one.verdict.colour == "amber"
         finding = sidecar_of(one)["safety"]["findings"][0]
         assert finding["text"] == one.verdict.cautions[0]
