@@ -16,7 +16,7 @@ CUES = """cue 1
 set two { site thenar; control display; baseline 32 °C }
 icon dip means "a dip" { cool by 2 °C at 2 °C/s; hold for 1 s; return at 2 °C/s }
 icon glow means "a glow" { warm by 2 °C at 2 °C/s; hold for 1 s; return at 2 °C/s }
-icon burn means "a burn" { warm by 9.5 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }
+icon burn means "a burn" { warm by 9 °C at 3 °C/s; hold for 20 s; return at 3 °C/s }
 """
 CHANGES = "rig_changes = [" + ", ".join(f"'{change}'" for change in SURE[1::2]) + "]"
 QUICK = f"""format = 1
