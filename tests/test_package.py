@@ -68,7 +68,7 @@ def test_the_source_archive_is_complete(archives: Archives) -> None:
         path.relative_to(ROOT).as_posix()
         for folder in ("tests", "docs", "images", ".ci", "conda-recipe")
         for path in (ROOT / folder).rglob("*")
-        if path.is_file() and path.suffix != ".pyc" and "_build" not in path.parts
+        if path.is_file() and not {"__pycache__", "_build"} & set(path.parts)
     }
     expected |= {"LICENSE", "README.md", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "SECURITY.md", "Dockerfile"}
     assert expected - names == set()
