@@ -26,9 +26,6 @@ LONGEST_REST_S = 600.0
 LONGER = 1.5
 """Factor between rests that are tried where one leaves too much."""
 
-BEGINNINGS = ("rest", "no power", "polarity check", "stop", "later play")
-"""Where plays begin, as the page on safety names them."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Starts(Generic[States]):

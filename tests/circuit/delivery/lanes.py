@@ -157,7 +157,7 @@ class Lanes:
         return Lanes(circuit, tuple(np.ascontiguousarray(part) for part in parts))
 
     def steady(self, flow: Array, square: Array) -> Array:
-        """States (worlds, n + 2) under flows (worlds,) held for ever; the last two are a loop's own."""
+        """States (worlds, n + 2) under flows (worlds,) held indefinitely; the last two are a loop's own."""
         rate, heat = self.circuit.system(flow, square)
         heat[:, 0] += self.circuit.display[:, 0] * flow / self.circuit.capacity[:, 0]
         found = np.linalg.solve(-rate, heat[:, :, None])

@@ -19,7 +19,7 @@ from thermicon.circuit.safety.gate import Gate
 from thermicon.circuit.safety.held import around_C, held_C
 from thermicon.circuit.safety.repeated import Repeating
 from thermicon.circuit.safety.single_faults import Faulty, Moments
-from thermicon.circuit.safety.starts import BEGINNINGS, Beginning, Starts
+from thermicon.circuit.safety.starts import Beginning, Starts
 from thermicon.circuit.safety.tally import WATCHED, Tally, cem43_min
 from thermicon.circuit.solver.batch_inputs import State
 
@@ -119,6 +119,8 @@ def test_right_wiring_passes_the_check_of_poles_in_every_corner_of_a_module_that
 
 WARM = Drive([0, 1.0, 4.0, 5.0], [REST, -0.22, -0.22, REST])
 PAUSE = 60.0
+BEGINNINGS = ("rest", "no power", "polarity check", "stop", "later play")
+"""Where plays begin, as the page on safety names them."""
 
 
 @cache
