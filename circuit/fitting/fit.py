@@ -9,7 +9,6 @@ from pathlib import Path
 from ..cores import quiet_blas
 from ..rig.faults import PARAMETERS
 from ..rig.rig import Rig
-from .forward import runs_of
 from .identify import identified
 from .keys import FitError, FitKey, free_keys
 from .log import Log, LogError, read_log
@@ -17,6 +16,7 @@ from .notes import beyond_noise, disagreement, far_off, kept, late_column, remar
 from .overlay import aligned, check_clocks, check_sensors
 from .problem import OFFSET_SD_K, Problem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
+from .runs import runs_of
 from .solve import Solution, fits_better, solve
 
 LAYER_DIGITS = 5
@@ -86,7 +86,7 @@ def fit(
     keys = free_keys(free, rig)
     read = _logs(logs)
     begin = _explicit(rig, keys)
-    problem = aligned(Problem.of(begin, keys, runs_of(read, held=True), offset_K, fixed_skin))
+    problem = aligned(Problem.of(begin, keys, runs_of(read, True, begin), offset_K, fixed_skin))
     check_sensors(problem)
     solution = solve(problem)
     linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs))
@@ -134,6 +134,8 @@ def _result(
     if far_off(problem, solution.theta):
         why = why or "a sensor is off by more than sensors are assumed to be"
     misfit = bool(why)
+    if any(run.points for run in problem.runs):
+        why = why or "the drive is known at points only"
     layers = changed_layers(problem.rig, problem.factors(solution.theta))
     fitted = problem.rig.with_(
         **{key: float(f"{value:.{LAYER_DIGITS}g}") for key, value in layers.items()},
@@ -142,13 +144,13 @@ def _result(
     measured = any(channel.column.endswith("_C") for _, _, channel in problem.channels())
     if not measured:  # a voltage alone cannot show what the rig leaves out
         notes = [*notes, "no temperature was logged: the uncertainty of the rig stays what it was"]
-    elif stated := uncertainties(keys, parameters, before=start.uncertainty, misfit=misfit):
+    elif stated := uncertainties(keys, parameters, before=start.uncertainty, misfit=bool(why)):
         changes: dict[str, object] = {f"uncertainty.{key}": value for key, value in stated.items()}
-        reason = {} if misfit else {"uncertainty.reason": reason_of(start, sources)}
+        reason = {} if why else {"uncertainty.reason": reason_of(start, sources)}
         fitted = fitted.with_(**changes, **reason)
     closing = (
         *kept(unknown),
-        *((f"{why}, {NOT_NARROWED}",) if misfit and measured else ()),
+        *((f"{why}, {NOT_NARROWED}",) if why and measured else ()),
         *too_narrow(fitted.uncertainty, start.uncertainty),
     )
     return RigFit(

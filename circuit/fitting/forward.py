@@ -7,7 +7,6 @@ thermistor of its controller, or else the plate itself.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +14,19 @@ import numpy as np
 from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
+from ..solver.displayed import trace_of_display
 from ..solver.drive import Drive
 from ..solver.network import network_of
 from ..solver.simulate import simulate_current
 from ..solver.steady import state_under_current
 from ..solver.trace import Trace
-from .log import DRIVES, Log, LogError
+from .runs import DISPLAY, Run
 
-RATE_HZ = 100.0
+RATE_HZ, MOST_ROWS = 100.0, 30_000
+"""Rows of a simulation a second, fewer in a run that would have more than so many."""
+
+START_ROWS, QUIETEST, QUIETEST_SD = 20, 0.1, 0.1257
+"""Of so many differences the smallest tenth is noise; a tenth of normal noise is within so many standard deviations."""
 
 STEADY_SPREAD = 6.0
 """Noise of a logged current, in its standard deviations, within which the first rows count as one level."""
@@ -57,27 +61,48 @@ class Prediction:
         return np.asarray(np.interp(time_s, self.trace.time_s, values), dtype=np.float64)
 
 
-def predict(rig: Rig, run: Run) -> Prediction:
-    """Simulate a run from rest under its first drive; RigError where it is not physical on this rig."""
+def predict(rig: Rig, run: Run, phase: float = 0.0) -> Prediction:
+    """Simulate a run from rest under its first drive; RigError where it is not physical on this rig.
+
+    `phase`: how many times what is wrong with all rows of a drive, if they were read at one phase, is taken from it.
+    """
+    rate = min(RATE_HZ, MOST_ROWS / float(run.time_s[-1]))
+    if run.driven_by == DISPLAY:
+        return _under_display(rig, run, rate)
     sensed, display_probe = _with_thermistor(rig)
     gain = rig.driver.transconductance_A_per_V if run.driven_by == "command_V" else 1.0
-    drive = Drive(run.time_s, gain * run.drive, run.held)
-    level, state = steady_level(drive.current_A), None
+    logged = Drive(run.time_s, gain * run.drive, run.held)
+    drive = logged if run.phase is None else Drive(run.time_s, gain * (run.drive - phase * run.phase), run.held)
+    level, state = steady_level(logged.current_A), None
     if level != drive.current_A[0]:
         try:
             state = state_under_current(network_of(sensed), level)
         except ArithmeticError as problem:
             raise RigError(f"rig {rig.name}: {problem}; begin the log with a smaller current") from None
-    trace = simulate_current(drive, sensed, rate_Hz=RATE_HZ, start_C=state)
-    return Prediction(trace, drive, rig.module.resistance_ohm, display_probe)
+    trace = simulate_current(drive, sensed, rate_Hz=rate, start_C=state)
+    return Prediction(trace, logged, rig.module.resistance_ohm, display_probe)
 
 
-def steady_level(current_A: Array) -> float:
-    """Return the current of the steady start: the mean of the first rows that differ by noise alone."""
-    noise = MAD_TO_SD * float(np.median(np.abs(np.diff(current_A)))) / np.sqrt(2.0)
-    away = np.abs(current_A - current_A[0]) > STEADY_SPREAD * noise
-    count = int(np.argmax(away)) if away.any() else len(current_A)
-    return float(current_A[0]) if noise == 0.0 else float(np.mean(current_A[: max(1, count)]))
+def _under_display(rig: Rig, run: Run, rate_Hz: float) -> Prediction:
+    """Skin and probes under a display that is known, linear between its rows, whatever moves it."""
+    rows = np.arange(int(run.time_s[-1] * rate_Hz) + 2) / rate_Hz
+    display = np.interp(rows, run.time_s, run.drive)
+    display[0] = steady_level(run.drive)
+    nothing = np.full(len(rows), np.nan)
+    trace = trace_of_display(rig, 1.0 / rate_Hz, display, rows, icon=None, control="display", target_C=nothing, outcome=None)
+    return Prediction(trace, Drive(run.time_s, np.zeros(len(run.time_s))), 0.0, None)
+
+
+def steady_level(drive: Array) -> float:
+    """Return the drive of the steady start: the mean of the first rows that differ by noise alone.
+
+    Noise is what the quietest of the first rows differ by, since a drive that moves in most rows is no noise.
+    """
+    quiet = np.abs(np.diff(drive[: START_ROWS + 1]))
+    noise = float(np.quantile(quiet, QUIETEST)) / (QUIETEST_SD * np.sqrt(2.0))
+    away = np.abs(drive - drive[0]) > STEADY_SPREAD * noise
+    count = int(np.argmax(away)) if away.any() else len(drive)
+    return float(drive[0]) if noise == 0.0 else float(np.mean(drive[: max(1, count)]))
 
 
 def _with_thermistor(rig: Rig) -> tuple[Rig, str | None]:
@@ -89,130 +114,3 @@ def _with_thermistor(rig: Rig) -> tuple[Rig, str | None]:
     others = json.loads(rig.document).get("probe", [])
     added = {"name": name, "place": "display", "lag_s": rig.controller.lag_s}
     return rig.with_(probe=[*others, added]), name
-
-
-MOST_GAP_S, MOST_GAP_ROWS = 0.5, 10
-"""A gap in the drive above both needs the same drive on both sides of it."""
-
-SAME_SHARE = 0.05
-"""Share of the drive's range within which both sides of a gap count as the same."""
-
-MAD_TO_SD = 1.4826
-"""Standard deviation of normal noise over its median absolute deviation: 1/Φ⁻¹(3/4)."""
-
-SHORTEST_S = 5.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Channel:
-    """A measured column: `file`, `clock` (0: that of the drive), `time_s` and `values` (rows,) without empty rows."""
-
-    column: str
-    file: str
-    clock: int
-    time_s: Array
-    values: Array
-
-    @property
-    def temperature(self) -> bool:
-        """Whether it is in °C; otherwise in V."""
-        return self.column.endswith("_C")
-
-    @property
-    def resolution(self) -> float:
-        """The sensor's step: the smallest difference between two of its values, 0 where it has none."""
-        steps = np.diff(np.unique(np.round(self.values, 9)))
-        return float(steps.min()) if len(steps) else 0.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Run:
-    """One run from its first row on: `drive` (rows,) of the column `driven_by` at `time_s`, and what was measured.
-
-    `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
-    first row by the drive's own clock; `clocks` names the files of the further clocks.
-    """
-
-    name: str
-    driven_by: str
-    time_s: Array
-    drive: Array
-    held: bool
-    begin_s: float
-    channels: tuple[Channel, ...]
-    clocks: tuple[str, ...] = ()
-
-
-def runs_of(logs: Sequence[Log], held: bool) -> tuple[Run, ...]:
-    """Return the runs of logs; a log without a drive goes with the one before it, or with the only one there is.
-
-    Raises LogError for logs without a drive, without a measured column, or with a drive that is not known throughout.
-    """
-    if not logs:
-        raise LogError("no log; name one or several files")
-    driven = [log for log in logs if log.drive is not None]
-    if not driven:
-        found = "; ".join(f"{log.name} has {', '.join(dict(log.columns))}" for log in logs)
-        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed ({found})")
-    groups: dict[int, list[Log]] = {id(log): [] for log in driven}
-    last = driven[0]
-    for log in logs:
-        if id(log) in groups:
-            last = log
-        else:
-            groups[id(last)].append(log)
-    runs = tuple(_run(log, groups[id(log)], held) for log in driven)
-    silent = [run.name for run in runs if not run.channels]
-    if silent:
-        raise LogError(
-            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, or name the "
-            f"file of the thermometer behind it"
-        )
-    return runs
-
-
-def _run(log: Log, sensors: Sequence[Log], held: bool) -> Run:
-    driven_by = log.drive
-    assert driven_by is not None
-    time, drive = log.time_s, log.column(driven_by)
-    known = np.isfinite(drive)
-    time, drive = time[known], drive[known]
-    _check_gaps(log.name, driven_by, time, drive, log.time_s)
-    if np.ptp(drive) == 0.0:
-        raise LogError(
-            f"{log.name}: {driven_by} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; "
-            f"log a run that warms and cools, such as the shipped cue calibration-drive"
-        )
-    begin = float(time[0])
-    channels = [_channel(log, name, 0) for name in log.measured]
-    for clock, sensor in enumerate(sensors, 1):
-        channels += [_channel(sensor, name, clock) for name in sensor.measured]
-    clocks = tuple(sensor.name for sensor in sensors)
-    return Run(log.name, driven_by, time - begin, drive, held, begin, tuple(channels), clocks)
-
-
-def _channel(log: Log, name: str, clock: int) -> Channel:
-    values = log.column(name)
-    there = np.isfinite(values)
-    return Channel(name, log.name, clock, log.time_s[there], values[there])
-
-
-def _check_gaps(name: str, column: str, time: Array, drive: Array, rows: Array) -> None:
-    if len(time) < 2 or time[-1] - time[0] < SHORTEST_S:
-        span = time[-1] - time[0] if len(time) else 0.0
-        raise LogError(f"{name}: {column} is known for {span:g} s; a fit needs at least {SHORTEST_S:g} s")
-    if time[0] > rows[0] + MOST_GAP_S:
-        raise LogError(
-            f"{name}: {column} is empty until {time[0]:g} s; cut the rows before, since the drive must be known from "
-            f"the first row on"
-        )
-    steps = np.diff(time)
-    most = max(MOST_GAP_S, MOST_GAP_ROWS * float(np.median(steps)))
-    near = SAME_SHARE * max(float(np.ptp(drive)), 1e-9)
-    wide = np.flatnonzero((steps > most) & (np.abs(np.diff(drive)) > near))
-    if wide.size:
-        k = int(wide[0])
-        raise LogError(
-            f"{name}: {column} is not known from {time[k]:g} to {time[k + 1]:g} s, and differs on both sides "
-            f"({drive[k]:.4g} and {drive[k + 1]:.4g}); cut the log there into two files, or log it again"
-        )

@@ -9,9 +9,9 @@ import numpy as np
 from ..arrays import Array
 from ..rig.faults import unit_of
 from ..rig.rig import Rig
-from .forward import Channel, Run
 from .keys import value_of
 from .problem import Problem
+from .runs import Channel, Run
 from .solve import Solution, covariance_of
 
 T95 = 1.96

@@ -10,11 +10,11 @@ from thermicon.icons import Icon, load_library
 
 from ..rig.rig import Rig
 from ..solver.simulate import simulate
-from .forward import runs_of
 from .identify import NOISE_K, NOISE_V, expected_sd, half_width, is_identified, with_channels
 from .keys import FitKey, free_keys
 from .log import Log
 from .problem import OFFSET_SD_K, Problem
+from .runs import runs_of
 
 COLUMNS = ("display_C", "voltage_V")
 CHOICES = (

@@ -11,15 +11,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..rig.uncertainty import Uncertainty
-from .forward import MAD_TO_SD, Channel
+from .between import MAD_TO_SD
 from .identify import Parameter
 from .keys import fittable, free_keys, value_of
 from .problem import Problem, Unknown
 from .rig_fit import LARGEST, channel_fits
-from .solve import Solution, covariance_of, huber, solve
-
-MOST_UPDATES = 1.5
-"""Rows farther apart than 1.5 updates of the driver miss some of them."""
+from .runs import Channel
+from .solve import Solution, covariance_of, huber, parts_of, solve
 
 EARLY_S, EARLY_TIMES, EARLY_NOISE = 2.0, 1.2, 5.0
 """A start that is not steady shows in the first seconds: residuals well above noise, and above those of the rest."""
@@ -104,15 +102,13 @@ def _offset(channel: Channel, offset_K: float, usual_K: float, misfit: bool) -> 
 
 def _slow_drives(problem: Problem) -> list[str]:
     """Logs slower than the driver: what it did between the rows is not known."""
-    sentences = []
-    for run in problem.runs:
-        step, update = float(np.median(np.diff(run.time_s))), 1.0 / problem.rig.update_Hz
-        if step > MOST_UPDATES * update:
-            sentences.append(
-                f"{run.name}: rows are {1e3 * step:.0f} ms apart, and the rig's driver may change every "
-                f"{1e3 * update:.0f} ms: what it did in between is not in the log; log the drive at its own rate"
-            )
-    return sentences
+    return [
+        f"{run.name}: rows are {1e3 * run.step_s:.0f} ms apart, and the rig's driver may change every "
+        f"{1e3 / problem.rig.update_Hz:.0f} ms: what it did in between is not in the log, and intervals allow for it; "
+        f"log the drive at its own rate, or state that rate where it is slower (driver.update_Hz)"
+        for run in problem.runs
+        if run.points
+    ]
 
 
 def unsteady(problem: Problem, theta: Array) -> list[str]:
@@ -167,14 +163,15 @@ def beyond_noise(problem: Problem, theta: Array, inflation: Sequence[float] = ()
 
     With the `inflation` of a solution, also on those whose residuals are within the noise, but have a structure.
     """
-    sentences = []
-    for place, (each, (_, _, channel)) in enumerate(zip(channel_fits(problem, theta), problem.channels(), strict=True)):
-        noise, factor = noise_of(channel), inflation[place] if inflation else 1.0
+    sentences, noises = list[str](), [channel.noise for _, _, channel in problem.channels()]
+    sizes = parts_of(problem, problem.residuals(theta, [max(noise, 1e-9) for noise in noises]))
+    for place, (each, part) in enumerate(zip(channel_fits(problem, theta), sizes, strict=True)):
+        factor = inflation[place] if inflation else 1.0
         structure = "neighbouring residuals are alike, so that the rig leaves something out"
-        if each.difference.size and MAD_TO_SD * float(np.median(np.abs(each.difference))) > BEYOND * noise:
+        if each.difference.size and MAD_TO_SD * float(np.median(np.abs(part))) > BEYOND:
             sentences.append(
                 f"{each.file}: {each.column}: residuals of {milli(each.rms, each.unit)} rms exceed the log's own noise "
-                f"of {milli(noise, each.unit)}{f'; {structure}' if factor > ALIKE else ''}"
+                f"of {milli(noises[place], each.unit)}{f'; {structure}' if factor > ALIKE else ''}"
             )
         elif factor > ALIKE:
             sentences.append(
@@ -210,13 +207,6 @@ def late_column(problem: Problem, solution: Solution) -> str:
                 f"makes values and intervals wrong: save it with time_s as a file of its own; its clock is then fitted"
             )
     return sentence
-
-
-def noise_of(channel: Channel) -> float:
-    """SD of what changes from row to row, by second differences, which leave slow changes out."""
-    bends = np.diff(channel.values, 2)
-    own = MAD_TO_SD * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
-    return float(max(own, channel.resolution / np.sqrt(12.0)))
 
 
 def explaining(problem: Problem, solution: Solution) -> list[str]:

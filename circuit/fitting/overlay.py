@@ -6,9 +6,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..solver.trace import Trace
-from .forward import Channel
 from .log import Log, LogError
 from .problem import Problem
+from .runs import Channel
 
 SHIFTED_BY = ("display_C", "skin_C", "voltage_V", "current_A", "hot_plate_C")
 """Columns that a shift is found from, the best first."""

@@ -21,8 +21,10 @@ from ..arrays import Array
 from ..rig.rig import Rig
 from ..rig.rigfile import RigError
 from ..rig.skin import layer_spreads
-from .forward import Channel, Prediction, Run, predict
+from .forward import Prediction, predict
 from .keys import FitError, FitKey, value_of
+from .runs import DISPLAY, Channel, Run
+from .whiten import Shared, shared
 
 OFFSET_SD_K = 0.1
 """Standard deviation of a thermistor's zero: interchangeable ones are sold as ±0.1 to ±0.2 K."""
@@ -36,6 +38,9 @@ SHIFT_SD_S, DRIFT_SD = 30.0, 0.02
 ROW_SHARE = 0.5
 """A row's temperature may belong half a row earlier or later than its drive (standard deviation): a logged current is
 held from its row on, lasted until it, or is a mean."""
+
+PHASES = 4.0
+"""Standard deviations of what one phase makes wrong, within which a fit looks for it."""
 
 IMPOSSIBLE = 1e3
 """Residual, in standard deviations, of a rig that cannot exist: the fit turns back."""
@@ -55,8 +60,8 @@ Factors = Mapping[tuple[str, int], float]
 class Unknown:
     """One number of a fit: a key of the rig, a scale as its logarithm, or something fitted along with the keys.
 
-    A kind is key, offset, row, shift, drift, one of LAYER_KINDS, whose place is the layer, or, where a column is
-    tried to be late, late. The fit begins at `first` and stays between `low` and `high`; `sd` is that of the prior
+    A kind is key, offset, row, phase, shift, drift, one of LAYER_KINDS, whose place is the layer, or, where a column
+    is tried to be late, late. The fit begins at `first` and stays between `low` and `high`; `sd` is that of the prior
     about 0, of a key, which has none, a usual change; `step` is that of the derivative.
     """
 
@@ -81,6 +86,8 @@ class Problem:
     fixed_skin: bool
     unknowns: tuple[Unknown, ...]
     _kept: dict[bytes, tuple[Prediction, ...]] = field(init=False, default_factory=dict)
+    _shared: list[Shared | None] = field(init=False, default_factory=list)
+    _factors: dict[tuple[float, ...], list[tuple[Array, ...]]] = field(init=False, default_factory=dict)
 
     @staticmethod
     def of(
@@ -136,13 +143,15 @@ class Problem:
 
     def simulated(self, theta: Array) -> tuple[Prediction, ...]:
         """All runs at a point; raises RigError where the rig cannot exist. Depends on keys and skin alone."""
-        moving = [k for k, item in enumerate(self.unknowns) if item.kind in ("key", *LAYER_KINDS)]
+        moving = [k for k, item in enumerate(self.unknowns) if item.kind in ("key", "phase", *LAYER_KINDS)]
         token = theta[moving].tobytes()
         if token not in self._kept:
             if len(self._kept) > 4 * (len(moving) + 1):
                 self._kept.clear()
             rig = self.rig_at(theta)
-            self._kept[token] = tuple(predict(rig, run) for run in self.runs)
+            self._kept[token] = tuple(
+                predict(rig, run, self.nuisance(theta, "phase", r, 0)) for r, run in enumerate(self.runs)
+            )
         return self._kept[token]
 
     def predictions(self, theta: Array) -> tuple[Prediction, ...] | None:
@@ -194,11 +203,38 @@ class Problem:
             count = sum(len(channel.values) for _, _, channel in self.channels())
             return np.full(count + len(self.along), IMPOSSIBLE)
         parts = [
-            np.where(self.inside(theta, r, channel), (self.modelled(theta, r, c, found[r]) - channel.values) / sd, 0.0)
-            for (r, c, channel), sd in zip(self.channels(), sigma, strict=True)
+            np.where(self.inside(theta, r, channel), self.modelled(theta, r, c, found[r]) - channel.values, 0.0)
+            for r, c, channel in self.channels()
         ]
         prior = [value / item.sd for item, value in zip(self.along, theta[len(self.keys) :], strict=True)]
-        return np.concatenate([*parts, np.array(prior)])
+        return np.concatenate([*self._independent(parts, tuple(sigma)), np.array(prior)])
+
+    def _independent(self, parts: Sequence[Array], sigma: tuple[float, ...]) -> list[Array]:
+        """Differences of each channel in SDs of its noise; where the drive is not known between rows, made independent.
+
+        How rows err alike is that of the rig to begin with.
+        """
+        if not self._shared:
+            for r, run in enumerate(self.runs):
+                times = [self.run_time_s(self.first, r, channel) for channel in run.channels]
+                self._shared.append(shared(self.rig, run, times))
+        out, first = list[Array](), 0
+        for place, (alike, run) in enumerate(zip(self._shared, self.runs, strict=True)):
+            last = first + len(run.channels)
+            mine, sds = parts[first:last], sigma[first:last]
+            if alike is None:
+                out += [part / sd for part, sd in zip(mine, sds, strict=True)]
+            else:
+                counts = [len(part) for part in mine]
+                if sigma not in self._factors:
+                    self._factors.clear()
+                    self._factors[sigma] = [()] * len(self.runs)
+                if not self._factors[sigma][place]:
+                    self._factors[sigma][place] = alike.factors(np.repeat(sds, counts))
+                white = alike.whitened(self._factors[sigma][place], np.concatenate(mine))
+                out += np.split(white, np.cumsum(counts)[:-1])
+            first = last
+        return out
 
     def jacobian(self, theta: Array, sigma: Sequence[float]) -> Array:
         """Derivatives of `residuals`, by differences forward (backward at an upper bound)."""
@@ -214,14 +250,18 @@ class Problem:
     def with_unknown(self, item: Unknown) -> Problem:
         """The problem with something more fitted along that changes how a run is read, and not the run."""
         wide = replace(self, unknowns=(*self.unknowns, item))
-        wide._kept = self._kept
+        wide._kept, wide._shared = self._kept, self._shared
         return wide
 
     def mesh_error(self, theta: Array, sigma: Sequence[float]) -> Array:
         """What a fine mesh of the skin would change in `residuals`."""
         fine = finely_divided(self.rig)
         here = self.residuals(theta, sigma)
-        return 0.0 * here if fine is None else replace(self, rig=fine).residuals(theta, sigma) - here
+        if fine is None:
+            return 0.0 * here
+        other = replace(self, rig=fine)
+        other._shared = self._shared
+        return other.residuals(theta, sigma) - here
 
 
 def _key(rig: Rig, key: FitKey, place: int) -> Unknown:
@@ -240,15 +280,19 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
     extra = []
     for r, run in enumerate(runs):
         if any(not channel.clock for channel in run.channels):
-            extra.append(Unknown("row", r, 0, ROW_SHARE * float(np.median(np.diff(run.time_s))), step=1e-3))
+            step = run.step_s or float(np.median(np.diff(run.time_s)))
+            extra.append(Unknown("row", r, 0, ROW_SHARE * step, step=1e-3))
+        if run.phase is not None:
+            extra.append(Unknown("phase", r, 0, 1.0, low=-PHASES, high=PHASES, step=1e-2))
         for clock in range(1, len(run.clocks) + 1):
             extra += [
                 Unknown("shift", r, clock, SHIFT_SD_S),
                 Unknown("drift", r, clock, DRIFT_SD, low=-0.2, high=0.2, step=1e-6),
             ]
         if offset_sd_K > 0:
+            sd = offset_sd_K * (np.sqrt(2.0) if run.driven_by == DISPLAY else 1.0)  # its display is off, too
             extra += [
-                Unknown("offset", r, c, offset_sd_K) for c, channel in enumerate(run.channels) if channel.temperature
+                Unknown("offset", r, c, sd) for c, channel in enumerate(run.channels) if channel.temperature
             ]
     return extra
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..rig.rigfile import RigError
-from .forward import MAD_TO_SD
+from .between import MAD_TO_SD
 from .keys import FitError
 from .problem import Problem
 
@@ -24,6 +24,7 @@ OUTLIER = 3.0
 LEAST_SD = {True: 1e-4, False: 1e-5}
 """Least standard deviation of a temperature in K and of a voltage in V, below any instrument."""
 
+NOISE_STEPS = 4
 MOST_EVALUATIONS = 30
 FEWEST_INDEPENDENT = 8.0
 """However alike neighbouring residuals are, a channel counts as at least so many independent rows."""
@@ -64,7 +65,7 @@ def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_
             loss=loss, f_scale=OUTLIER, xtol=1e-5, ftol=close, gtol=None, max_nfev=evaluations,
         )  # fmt: skip
         theta, converged = np.asarray(answer.x, dtype=np.float64), bool(answer.success)
-        before, sigma = sigma, spreads(problem, theta)
+        before, sigma = sigma, spreads(problem, theta, sigma)
         if loss == "huber" and np.allclose(before, sigma, rtol=SAME_NOISE):
             break
     inflation = tuple(alike(part) for part in parts_of(problem, problem.residuals(theta, sigma)))
@@ -95,18 +96,25 @@ def parts_of(problem: Problem, residuals: Array) -> list[Array]:
     return list(np.split(residuals, ends))[:-1]
 
 
-def spreads(problem: Problem, theta: Array) -> tuple[float, ...]:
-    """Robust standard deviation of each channel's residuals, at least that of its sensor's rounding."""
-    ones = [1.0] * len(problem.channels())
-    parts = parts_of(problem, problem.residuals(theta, ones))
-    return tuple(
-        max(
-            MAD_TO_SD * float(np.median(np.abs(part - np.median(part)))),
-            channel.resolution / np.sqrt(12.0),
-            LEAST_SD[channel.temperature],
+def spreads(problem: Problem, theta: Array, before: Sequence[float] = ()) -> tuple[float, ...]:
+    """Robust standard deviation of each channel's residuals, at least that of its sensor's rounding.
+
+    Where rows err alike, it is found in some steps, from what changes from row to row or from that `before`.
+    """
+    channels = [channel for _, _, channel in problem.channels()]
+    known = all(run.unknown is None for run in problem.runs)
+    sigma = tuple(1.0 if known else channel.noise for channel in channels) if known or not before else tuple(before)
+    for _ in range(1 if known else NOISE_STEPS):
+        parts = parts_of(problem, problem.residuals(theta, sigma))
+        sigma = tuple(
+            max(
+                sd * MAD_TO_SD * float(np.median(np.abs(part - np.median(part)))),
+                channel.resolution / np.sqrt(12.0),
+                LEAST_SD[channel.temperature],
+            )
+            for sd, part, channel in zip(sigma, parts, channels, strict=True)
         )
-        for part, (_, _, channel) in zip(parts, problem.channels(), strict=True)
-    )
+    return sigma
 
 
 def alike(residuals: Array) -> float:

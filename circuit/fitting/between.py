@@ -1,0 +1,78 @@
+"""What the rows of a log do not tell of its drive, and the drive of a long log in fewer rows."""
+
+import numpy as np
+
+from ..arrays import Array
+
+MOST_UPDATES, WHOLE, FINE = 1.5, 0.02, 0.25
+"""Rows farther apart than 1.5 updates of the driver miss some of them; closer ones meet every update where so many
+make a whole one, within this share, and where they are so close that it does not matter."""
+
+SMOOTH_S = 0.2
+"""Over so long a display's noise is averaged where its rate is asked."""
+
+MAD_TO_SD = 1.4826
+"""Standard deviation of normal noise over its median absolute deviation: 1/Φ⁻¹(3/4)."""
+
+
+def tells_all(time_s: Array, update_Hz: float) -> bool:
+    """Whether rows (rows,) tell every update of a driver.
+
+    >>> [tells_all(np.arange(9) / rate, 80.0) for rate in (10, 40, 80, 100, 160, 1000)]
+    [False, False, True, False, True, True]
+    """
+    share = float(np.median(np.diff(time_s))) * update_Hz
+    if share >= 1.0 - WHOLE:
+        return share <= MOST_UPDATES
+    return share < FINE or abs(1.0 / share - round(1.0 / share)) < WHOLE / share
+
+
+def noise_sd(values: Array, resolution: float) -> float:
+    """SD of what changes from row to row, by second differences, which leave slow changes out."""
+    bends = np.diff(values, 2)
+    own = MAD_TO_SD * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
+    return float(max(own, resolution / np.sqrt(12.0)))
+
+
+def unknown_current(current: Array) -> Array:
+    """SD (rows − 1,) of the mean of a current between two rows: half the difference of the readings."""
+    return np.asarray(0.5 * np.abs(np.diff(current)))
+
+
+def unknown_display(display_C: Array) -> Array:
+    """SD (rows − 1,) of the mean of a display between two rows: the noise of both readings, and what bends there."""
+    bends = np.abs(np.diff(display_C, 2, prepend=display_C[0], append=display_C[-1]))
+    bends = np.append(bends, 0.0)[: len(display_C)]
+    return np.asarray(np.hypot(noise_sd(display_C, 0.0) / np.sqrt(2.0), 0.125 * (bends[:-1] + bends[1:])))
+
+
+def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
+    """What (rows,) a current is wrong by, as one SD, if a control loop was always read at one phase of its steps.
+
+    A loop whose set-points are held answers each step with the same course, as large as the step; a step is what the
+    display moves by. Hence it is a share of the display's rate, and where that is greatest half the greatest difference
+    between neighbouring readings.
+    """
+    there = np.isfinite(display_C)
+    smooth = np.interp(time_s, time_s[there], display_C[there])
+    width = max(1, round(SMOOTH_S / float(np.median(np.diff(time_s)))))
+    padded = np.pad(smooth, (width // 2, width - 1 - width // 2), mode="edge")
+    smooth = np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
+    rate = np.append(np.diff(smooth) / np.diff(time_s), 0.0)
+    return np.asarray(-rate / max(float(np.abs(rate).max()), 1e-12) * unknown_current(current).max())
+
+
+def fewer(time_s: Array, drive: Array, unknown: Array | None, most: int) -> tuple[Array, Array, Array | None, int]:
+    """Means of a drive over so many rows that at most so many are left: times, drive, SDs of it, rows in each."""
+    many = -(-len(time_s) // most)
+    at = np.unique(np.append(np.arange(0, len(time_s), many), len(time_s) - 1))
+    if many == 1:
+        return time_s, drive, unknown, 1
+
+    def total(values: Array) -> Array:
+        return np.diff(np.append(0.0, np.cumsum(values))[at])
+
+    each, whole = np.diff(time_s), np.diff(time_s[at])
+    mean = np.append(total(drive[:-1] * each) / whole, drive[-1])
+    spread = None if unknown is None else np.sqrt(total((unknown * each) ** 2)) / whole
+    return time_s[at], mean, spread, many

@@ -1,0 +1,181 @@
+"""Runs of logs: what drives each, what is not known of it between rows, and what was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arrays import Array
+from .between import MOST_UPDATES, fewer, noise_sd, one_phase, tells_all, unknown_current, unknown_display
+from .log import DRIVES, Log, LogError
+
+if TYPE_CHECKING:
+    from ..rig.rig import Rig
+
+DISPLAY = "display_C"
+"""What drives a run where no current is known: skin and probes follow the display, whatever moves it."""
+
+MOST_STEPS, MOST_READINGS = 30_000, 8_000
+"""Rows of a drive beyond which means of several are taken, and readings of a column beyond which some are left out."""
+
+MOST_GAP_S, MOST_GAP_ROWS = 0.5, 10
+"""A gap in the drive above both needs the same drive on both sides of it."""
+
+SAME_SHARE = 0.05
+"""Share of the drive's range within which both sides of a gap count as the same."""
+
+SHORTEST_S = 5.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Channel:
+    """A measured column: `file`, `clock` (0: that of the drive), `time_s` and `values` (rows,) without empty rows."""
+
+    column: str
+    file: str
+    clock: int
+    time_s: Array
+    values: Array
+
+    @property
+    def temperature(self) -> bool:
+        """Whether it is in °C; otherwise in V."""
+        return self.column.endswith("_C")
+
+    @property
+    def resolution(self) -> float:
+        """The sensor's step: the smallest difference between two of its values, 0 where it has none."""
+        steps = np.diff(np.unique(np.round(self.values, 9)))
+        return float(steps.min()) if len(steps) else 0.0
+
+    @property
+    def noise(self) -> float:
+        """SD of what changes from row to row, by second differences, which leave slow changes out."""
+        return noise_sd(self.values, self.resolution)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Run:
+    """One run from its first row on: `drive` (rows,) of the column `driven_by` at `time_s`, and what was measured.
+
+    `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
+    first row by the drive's own clock; `clocks` names the files of the further clocks. `unknown` (rows − 1,) is the SD
+    of the drive's mean between rows, None where the rows tell it; `phase` (rows,) what every row is wrong by, as one SD,
+    if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
+    """
+
+    name: str
+    driven_by: str
+    time_s: Array
+    drive: Array
+    held: bool
+    begin_s: float
+    channels: tuple[Channel, ...]
+    clocks: tuple[str, ...] = ()
+    unknown: Array | None = None
+    phase: Array | None = None
+    step_s: float = 0.0
+    points: bool = False
+    notes: tuple[str, ...] = ()
+
+
+def runs_of(logs: Sequence[Log], held: bool, rig: Rig | None = None) -> tuple[Run, ...]:
+    """Return the runs of logs; a log without a drive goes with the one before it, or with the only one there is.
+
+    Without a current, and on a thermode, the display drives what is deeper. A `rig` says how often its driver changes;
+    without one, the rows tell the drive. Raises LogError for logs without a drive, without a measured column, or with a
+    drive that is not known throughout.
+    """
+    if not logs:
+        raise LogError("no log; name one or several files")
+    thermode = rig is not None and rig.thermode is not None
+    drives = {} if thermode else {id(log): log.drive for log in logs if log.drive is not None}
+    if not drives and any(_deeper(name) for log in logs for name in log.measured):
+        drives = {id(log): DISPLAY for log in logs if DISPLAY in log.measured}
+    if not drives:
+        found = "; ".join(f"{log.name} has {', '.join(dict(log.columns))}" for log in logs)
+        current = f"one of {' or '.join(DRIVES)} is needed, or {DISPLAY} with skin_C or a probe in the skin"
+        raise LogError(f"no log has a drive: {current} ({found})")
+    driven = [log for log in logs if id(log) in drives]
+    groups: dict[int, list[Log]] = {id(log): [] for log in driven}
+    last = driven[0]
+    for log in logs:
+        if id(log) in groups:
+            last = log
+        else:
+            groups[id(last)].append(log)
+    runs = tuple(_run(log, drives[id(log)], groups[id(log)], held, rig) for log in driven)
+    silent = [run.name for run in runs if not run.channels]
+    if silent:
+        raise LogError(
+            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, or name the "
+            f"file of the thermometer behind it"
+        )
+    return runs
+
+
+def _deeper(name: str) -> bool:
+    """Whether a column follows a display without a current: skin and probes do."""
+    return name == "skin_C" or name.startswith("probe_")
+
+
+def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig | None) -> Run:
+    time, drive = log.time_s, log.column(driven_by)
+    known = np.isfinite(drive)
+    time, drive = time[known], drive[known]
+    _check_gaps(log.name, driven_by, time, drive, log.time_s)
+    if np.ptp(drive) == 0.0:
+        raise LogError(
+            f"{log.name}: {driven_by} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; "
+            f"log a run that warms and cools, such as the shipped cue calibration-drive"
+        )
+    begin, step, alone = float(time[0]), float(np.median(np.diff(time))), driven_by == DISPLAY
+    columns = [(each, name, clock) for clock, each in enumerate((log, *sensors)) for name in each.measured]
+    channels = [_channel(*each) for each in columns if _deeper(each[1]) or not alone]
+    unknown, phase, points = None, None, False
+    if alone:
+        unknown = unknown_display(drive)
+    elif rig is not None and not tells_all(time, rig.update_Hz):
+        unknown, points = unknown_current(drive), step * rig.update_Hz > MOST_UPDATES
+        display = dict(log.columns).get(DISPLAY)
+        if display is not None and np.isfinite(display[known]).any():
+            phase = fewer(time, one_phase(time, drive, display[known]), None, MOST_STEPS)[1]
+    time, drive, unknown, many = fewer(time, drive, unknown, MOST_STEPS)
+    notes = [f"the drive is taken as the mean of every {many} rows"] if many > 1 else []
+    if any(np.isfinite(each.column(name)).sum() > MOST_READINGS for each, name, _ in columns):
+        notes.append(f"at most {MOST_READINGS:,} readings of a column are fitted")
+    notes = [f"{log.name}: is long: {', and '.join(notes)}"] if notes else []
+    return Run(
+        log.name, driven_by, time - begin, drive, held and not alone, begin, tuple(channels),
+        tuple(sensor.name for sensor in sensors), unknown, phase, step, points, tuple(notes),
+    )  # fmt: skip
+
+
+def _channel(log: Log, name: str, clock: int) -> Channel:
+    there = np.flatnonzero(np.isfinite(log.column(name)))
+    there = there[:: max(1, -(-len(there) // MOST_READINGS))]
+    return Channel(name, log.name, clock, log.time_s[there], log.column(name)[there])
+
+
+def _check_gaps(name: str, column: str, time: Array, drive: Array, rows: Array) -> None:
+    if len(time) < 2 or time[-1] - time[0] < SHORTEST_S:
+        span = time[-1] - time[0] if len(time) else 0.0
+        raise LogError(f"{name}: {column} is known for {span:g} s; a fit needs at least {SHORTEST_S:g} s")
+    if time[0] > rows[0] + MOST_GAP_S:
+        raise LogError(
+            f"{name}: {column} is empty until {time[0]:g} s; cut the rows before, since the drive must be known from "
+            f"the first row on"
+        )
+    steps = np.diff(time)
+    most = max(MOST_GAP_S, MOST_GAP_ROWS * float(np.median(steps)))
+    near = SAME_SHARE * max(float(np.ptp(drive)), 1e-9)
+    wide = np.flatnonzero((steps > most) & (np.abs(np.diff(drive)) > near))
+    if wide.size:
+        k = int(wide[0])
+        raise LogError(
+            f"{name}: {column} is not known from {time[k]:g} to {time[k + 1]:g} s, and differs on both sides "
+            f"({drive[k]:.4g} and {drive[k + 1]:.4g}); cut the log there into two files, or log it again"
+        )

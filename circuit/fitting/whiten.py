@@ -1,0 +1,93 @@
+"""Residuals of a run whose drive is not known between rows, made independent of one another.
+
+What the drive did between two rows goes on in all rows after it, by the response of the circuit. Rows err alike by that,
+with a covariance K; residuals r become L⁻¹·r, where L·Lᵀ = K + σ² of the sensors. Long runs are parted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..arrays import Array, Index
+from ..rig.rig import Rig
+from .forward import predict
+from .runs import DISPLAY, Run
+
+MOST_ALIKE = 500
+"""Rows in one part of a run, of all columns together; between parts, rows are taken as independent."""
+
+MEMORY_S = 30.0
+"""So long a drive is remembered: what it did before is the same to all rows of a part, to within their noise."""
+
+STEP = {DISPLAY: 0.5}
+OTHER_STEP = 0.02
+"""Step in K, else in A or V, of which the response is taken: small, so that it is linear."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shared:
+    """What rows of a run err alike: the rows (n,) of each part among the run's, and their covariance (n, n)."""
+
+    rows: tuple[Index, ...]
+    covariance: tuple[Array, ...]
+
+    def factors(self, sigma: Array) -> tuple[Array, ...]:
+        """Cholesky factors of the parts with the SD of each row's own noise (rows,)."""
+        pairs = zip(self.rows, self.covariance, strict=True)
+        return tuple(np.linalg.cholesky(alike + np.diag(sigma[rows] ** 2)) for rows, alike in pairs)
+
+    def whitened(self, factors: Sequence[Array], residuals: Array) -> Array:
+        """Residuals (rows,) as independent ones of SD 1; those of a column still stand in its own rows."""
+        from scipy.linalg import solve_triangular
+
+        out = np.empty_like(residuals)
+        for rows, lower in zip(self.rows, factors, strict=True):
+            out[rows] = solve_triangular(lower, residuals[rows], lower=True, check_finite=False)
+        return out
+
+
+def shared(rig: Rig, run: Run, times: Sequence[Array]) -> Shared | None:
+    """What rows of a run at `times` of each channel, on the drive's clock, err alike; None where the drive is known."""
+    if run.unknown is None or not run.unknown.any():
+        return None
+    responses = _responses(rig, run)
+    time = np.concatenate(times)
+    channel = np.repeat(np.arange(len(times)), [len(each) for each in times])
+    parts = -(-len(time) // MOST_ALIKE)
+    edges = np.quantile(time, np.linspace(0.0, 1.0, parts + 1))[1:-1]
+    place = np.searchsorted(edges, time, side="right")
+    rows = tuple(np.flatnonzero(place == part) for part in range(parts))
+    return Shared(rows, tuple(_covariance(run, responses, time[each], channel[each]) for each in rows))
+
+
+def _responses(rig: Rig, run: Run) -> tuple[Array, list[Array]]:
+    """Times (n,) in s after a step of the drive, and what a step of one does to each channel (n,), but I·R."""
+    size, level = STEP.get(run.driven_by, OTHER_STEP), float(np.median(run.drive))
+    end = min(MEMORY_S, float(run.time_s[-1]))
+    time, begin = np.arange(0.0, end, 0.01), 0.02
+    drive = level + size * np.array([0.0, 1.0, 1.0, 1.0, 1.0])
+    step = replace(run, time_s=np.array([0.0, begin, begin + 0.01, end / 2, end + 0.1]), drive=drive, phase=None,
+                   held=run.driven_by != DISPLAY)  # fmt: skip
+    found, out = predict(rig, step), []
+    for each in run.channels:
+        after = found.at(each.column, time + begin) - found.at(each.column, np.zeros(1))
+        jump = found.drive.at(time + begin) - level if each.column == "voltage_V" else 0.0
+        out.append((after - found.resistance_ohm * jump) / size)
+    return time, out
+
+
+def _covariance(run: Run, responses: tuple[Array, list[Array]], time: Array, channel: Index) -> Array:
+    assert run.unknown is not None
+    since, each = responses
+    near = (run.time_s[1:] > time.min() - MEMORY_S) & (run.time_s[:-1] < time.max()) & (run.unknown > 0.0)
+    begin, end, spread = run.time_s[:-1][near], run.time_s[1:][near], run.unknown[near]
+    effect = np.zeros((len(time), len(begin)))
+    for place, response in enumerate(each):
+        mine = channel == place
+        for edge, sign in ((begin, 1.0), (end, -1.0)):
+            effect[mine] += sign * np.interp(time[mine, np.newaxis] - edge, since, response, left=0.0)
+    effect *= spread
+    return np.asarray(effect @ effect.T)
