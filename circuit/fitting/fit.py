@@ -9,14 +9,14 @@ from pathlib import Path
 from ..cores import quiet_blas
 from ..rig.faults import PARAMETERS
 from ..rig.rig import Rig
-from .identify import identified
-from .keys import FitError, FitKey, free_keys
+from .identify import identified, in_series, tellable
+from .keys import FitError, FitKey, free_keys, possible_keys
 from .log import Log, LogError, read_log
 from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow, unsteady
 from .overlay import aligned, check_clocks, check_sensors
 from .problem import OFFSET_SD_K, Problem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
-from .runs import runs_of
+from .runs import DISPLAY, Run, runs_of
 from .solve import Solution, fits_better, solve
 
 LAYER_DIGITS = 5
@@ -33,7 +33,7 @@ def fit(
     logs: Log | str | Path | Sequence[Log | str | Path],
     rig: Rig,
     *,
-    free: Sequence[str],
+    free: Sequence[str] | None = None,
     offset_K: float = OFFSET_SD_K,
     fixed_skin: bool = False,
 ) -> RigFit:
@@ -47,7 +47,7 @@ def fit(
     rig
         The rig to begin with; what is not free stays as it is.
     free
-        Dotted keys to fit, such as `contact.resistance_m2K_per_W`.
+        Dotted keys to fit, such as `contact.resistance_m2K_per_W`; None for those that the logs can tell together.
     offset_K
         Standard deviation in K of what every temperature sensor may read off; 0 for calibrated sensors.
     fixed_skin
@@ -83,10 +83,16 @@ def fit(
     """
     if not (math.isfinite(offset_K) and 0 <= offset_K <= MOST_OFFSET_K):
         raise FitError(f"an offset of {offset_K:g} K is not possible for a sensor; give 0 to {MOST_OFFSET_K:g} K")
-    keys = free_keys(free, rig)
     read = _logs(logs)
+    runs = runs_of(read, True, rig)
+    alone = all(run.driven_by == DISPLAY for run in runs)
+    notes = [note for log in read for note in log.notes] + [note for run in runs for note in run.notes]
+    if free is None:
+        free = _told(rig, runs, alone, offset_K, fixed_skin)
+        notes.insert(0, f"no keys were named; the logs can tell {', '.join(free)}")
+    keys = free_keys(free, rig, alone)
     begin = _explicit(rig, keys)
-    problem = aligned(Problem.of(begin, keys, runs_of(read, True, begin), offset_K, fixed_skin))
+    problem = aligned(Problem.of(begin, keys, runs, offset_K, fixed_skin))
     check_sensors(problem)
     solution = solve(problem)
     linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs))
@@ -94,8 +100,16 @@ def fit(
         problem, solution = linear, solve(linear, solution.theta)
     check_clocks(problem, solution.theta)
     sources = tuple((log.name, log.sha256) for log in read)
-    notes = [note for log in read for note in log.notes]
     return _result(problem, solution, rig, keys, sources, notes)
+
+
+def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_skin: bool) -> tuple[str, ...]:
+    """The keys that runs can tell together; FitError where there is none."""
+    keys = possible_keys(rig, alone)
+    told = tellable(aligned(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)))
+    if not told:
+        raise FitError(f"{', '.join(run.name for run in runs)}: tells no key of rig {rig.name}; name keys to try them")
+    return told
 
 
 def _logs(logs: Log | str | Path | Sequence[Log | str | Path]) -> list[Log]:
@@ -149,6 +163,7 @@ def _result(
         reason = {} if why else {"uncertainty.reason": reason_of(start, sources)}
         fitted = fitted.with_(**changes, **reason)
     closing = (
+        *in_series(problem, solution),
         *kept(unknown),
         *((f"{why}, {NOT_NARROWED}",) if why and measured else ()),
         *too_narrow(fitted.uncertainty, start.uncertainty),

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..arrays import Array
-from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM
+from ..solver.draw import COOL, DISPLAY, PROBE, SKIN, WARM, new_axes, tidy
 from .rig_fit import ChannelFit, RigFit
 
 if TYPE_CHECKING:
@@ -45,6 +46,16 @@ def fit_figure(fit: RigFit, across: int = 2) -> Figure:
         loc="outside lower center", ncols=2, frameon=False, fontsize=9,
     )  # fmt: skip
     return figure
+
+
+def plot_residuals(channels: Sequence[ChannelFit], ax: Axes | None = None) -> Axes:
+    """Draw measured minus fitted of columns against time, in K or V; returns the Axes."""
+    ax = new_axes(ax, (7.0, 2.6))
+    ax.axhline(0.0, color="#999999", lw=0.8)
+    for each in channels:
+        label, color = f"{_words(each.column)} ({each.unit})", COLORS.get(each.column, PROBE)
+        ax.plot(*_few(each.time_s, each.difference), ".", ms=2.0, color=color, label=label)
+    return tidy(ax, channels[0].time_s, "measured − fitted")
 
 
 def _pair(above: Axes, below: Axes, each: ChannelFit, named: bool) -> None:

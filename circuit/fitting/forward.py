@@ -25,11 +25,9 @@ from .runs import DISPLAY, Run
 RATE_HZ, MOST_ROWS = 100.0, 30_000
 """Rows of a simulation a second, fewer in a run that would have more than so many."""
 
-START_ROWS, QUIETEST, QUIETEST_SD = 20, 0.1, 0.1257
-"""Of so many differences the smallest tenth is noise; a tenth of normal noise is within so many standard deviations."""
-
-STEADY_SPREAD = 6.0
-"""Noise of a logged current, in its standard deviations, within which the first rows count as one level."""
+START_ROWS, QUIETEST, STEADY_SPREAD = 100, 0.1, 6.0
+"""A start has at most so many rows; the second differs from the first by no more than so many times what the quietest
+tenth of them differs by, each further one from those before by so many times what they differ by."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,20 +87,25 @@ def _under_display(rig: Rig, run: Run, rate_Hz: float) -> Prediction:
     display = np.interp(rows, run.time_s, run.drive)
     display[0] = steady_level(run.drive)
     nothing = np.full(len(rows), np.nan)
-    trace = trace_of_display(rig, 1.0 / rate_Hz, display, rows, icon=None, control="display", target_C=nothing, outcome=None)
+    trace = trace_of_display(
+        rig, 1.0 / rate_Hz, display, rows, icon=None, control="display", target_C=nothing, outcome=None
+    )
     return Prediction(trace, Drive(run.time_s, np.zeros(len(run.time_s))), 0.0, None)
 
 
 def steady_level(drive: Array) -> float:
     """Return the drive of the steady start: the mean of the first rows that differ by noise alone.
 
-    Noise is what the quietest of the first rows differ by, since a drive that moves in most rows is no noise.
+    Noise is what the rows before differ by, since a drive that moves in most rows is no noise.
     """
-    quiet = np.abs(np.diff(drive[: START_ROWS + 1]))
-    noise = float(np.quantile(quiet, QUIETEST)) / (QUIETEST_SD * np.sqrt(2.0))
-    away = np.abs(drive - drive[0]) > STEADY_SPREAD * noise
-    count = int(np.argmax(away)) if away.any() else len(drive)
-    return float(drive[0]) if noise == 0.0 else float(np.mean(drive[: max(1, count)]))
+    steps = np.abs(np.diff(drive[:START_ROWS]))
+    first, count = float(np.quantile(steps, QUIETEST)), 1
+    while count <= len(steps):
+        noise = float(np.median(steps[: count - 1])) if count > 1 else first
+        if abs(drive[count] - np.mean(drive[:count])) > STEADY_SPREAD * noise:
+            break
+        count += 1
+    return float(np.mean(drive[:count]))
 
 
 def _with_thermistor(rig: Rig) -> tuple[Rig, str | None]:

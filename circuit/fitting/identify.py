@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..rig.faults import unit_of
 from ..rig.rig import Rig
-from .keys import value_of
+from .keys import CONTACT, value_of
 from .problem import Problem
 from .runs import Channel, Run
 from .solve import Solution, covariance_of
@@ -26,6 +26,9 @@ FURTHER = ("display_C", "voltage_V", "hot_plate_C", "skin_C")
 """Columns that a log without them may be advised to have."""
 CLOSE = 0.9
 """Correlation from which on two parameters are named as a pair that the log does not separate."""
+
+WORSE = 1.5
+"""A key is not told along with others if one of them is then known so many times worse."""
 
 LATE_FIRST = "first give the late column a file of its own, and fit again"
 
@@ -137,12 +140,57 @@ def expected_sd(problem: Problem, theta: Array) -> Array:
     return np.sqrt(np.diag(covariance)[:count])
 
 
+def tellable(problem: Problem) -> tuple[str, ...]:
+    """The keys, of those that are free, that the channels will tell together, judged at the rig to begin with.
+
+    In the order of the circuit a key is taken along if all stay better known than they are assumed anyway, and none is
+    told much worse than without it. Noise is that of ten independent readings a second.
+    """
+    count, sigma = len(problem.keys), list[float]()
+    for _, _, channel in problem.channels():
+        share = 0.1 / max(float(np.median(np.diff(channel.time_s))), 1e-6)
+        sigma.append((NOISE_K if channel.temperature else NOISE_V) * math.sqrt(max(1.0, share)))
+    jacobian = problem.jacobian(problem.first, sigma)
+    information, along = jacobian.T @ jacobian, range(count, len(problem.unknowns))
+    told = dict[int, float]()
+    for place in range(count):
+        columns = [*told, place, *along]
+        deviations = np.sqrt(np.abs(np.diag(np.linalg.pinv(information[np.ix_(columns, columns)], hermitian=True))))
+        keys = [problem.keys[k] for k in (*told, place)]
+        wide = [half_width(key.log, float(sd)) for key, sd in zip(keys, deviations, strict=False)]
+        good = all(width < key.usual for key, width in zip(keys, wide, strict=True))
+        if (
+            good
+            and jacobian[:, place].any()
+            and all(new <= WORSE * old for new, old in zip(wide, told.values(), strict=False))
+        ):
+            told = dict(zip((*told, place), wide, strict=True))
+    return tuple(problem.keys[k].key for k in told)
+
+
+def in_series(problem: Problem, solution: Solution) -> tuple[str, ...]:
+    """A sentence on contact and outermost layer in series, which a display without a current tells best."""
+    contact = [k for k, key in enumerate(problem.keys) if key.key == CONTACT]
+    if not (contact and problem.alone):
+        return ()
+    layer, rates = problem.rig.skin.layers[0], np.zeros(len(solution.theta))
+    factors, first = problem.factors(solution.theta), layer.thickness_m / layer.conductivity_W_per_mK
+    outer = first * math.exp(factors.get(("thickness", 0), 0.0) - factors.get(("conductivity", 0), 0.0))
+    rates[contact[0]] = math.exp(solution.theta[contact[0]])
+    for k, item in enumerate(problem.unknowns):
+        if item.place == 0 and item.kind in ("thickness", "conductivity"):
+            rates[k] = outer if item.kind == "thickness" else -outer
+    both, sd = float(rates[contact[0]]) + outer, float(np.sqrt(rates @ solution.covariance @ rates))
+    what = f"contact and {layer.name} in series have {both:.4g} m²·K/W ±{100 * T95 * sd / both:.2g} %"
+    return (f"the display is the drive: {what}",)
+
+
 def cures(problem: Problem, theta: Array, wanting: Sequence[int], correlation: Array) -> dict[int, str]:
     """Return for each parameter that is not identified which measurement would identify it."""
     if not wanting:
         return {}
     logged = {channel.column for _, _, channel in problem.channels()}
-    options = [name for name in FURTHER if name not in logged]
+    options = [name for name in (("skin_C",) if problem.alone else FURTHER) if name not in logged]
     gains = {name: expected_sd(with_channels(problem, theta, [name]), theta) for name in options}
     return {place: _cure(problem, place, gains, correlation) for place in wanting}
 

@@ -60,26 +60,37 @@ COMMON = (CONTACT, "module.seebeck_V_per_K", "module.resistance_ohm")
 """What a log of display and voltage identifies on every rig with a module."""
 
 
-def fittable(rig: Rig) -> tuple[str, ...]:
-    """Return the keys that can be fitted on a rig, in the order of the circuit."""
+UNDER_DISPLAY = (CONTACT, "skin.rest_C")
+"""What a display tells that drives the skin without a known current, as on a thermode."""
+
+
+def fittable(rig: Rig, alone: bool = False) -> tuple[str, ...]:
+    """Return the keys that can be fitted on a rig, in the order of the circuit; `alone`: without a known current."""
     known = [
         key
-        for key in _table()
+        for key in (UNDER_DISPLAY if alone or rig.thermode else _table())
         if value_of(rig, key) is not None and (rig.controller or not key.startswith("controller."))
     ]
     return (*known, *(f"probe.{probe.name}.lag_s" for probe in rig.probes))
 
 
-def free_keys(keys: Sequence[str], rig: Rig) -> tuple[FitKey, ...]:
-    """Return the parameters to fit; raises FitError for none, one twice, and one that cannot be fitted."""
-    if rig.thermode is not None:
-        raise FitError(f"rig {rig.name} is a thermode: it has no module to fit; use a rig with a module")
+def possible_keys(rig: Rig, alone: bool = False) -> tuple[FitKey, ...]:
+    """Return all keys that a fit can begin from, what most logs tell first; a lag of 0 has a bound there."""
+    known = [key for key in fittable(rig, alone) if value_of(rig, key)]
+    return free_keys(sorted(known, key=lambda key: key not in COMMON), rig, alone)
+
+
+def free_keys(keys: Sequence[str], rig: Rig, alone: bool = False) -> tuple[FitKey, ...]:
+    """Return the parameters to fit; raises FitError for none, one twice, and one that cannot be fitted.
+
+    `alone`: under a display without a known current.
+    """
     names = [key.strip() for key in keys if key.strip()]
     if not names:
         raise FitError(f"no key to fit; name one or several, such as {COMMON[0]}")
     if twice := [name for place, name in enumerate(names) if name in names[:place]]:
         raise FitError(f"{twice[0]}: is given twice; name each key once")
-    known = fittable(rig)
+    known = fittable(rig, alone)
     if faults := [_fault(name, rig, known) for name in names if name not in known]:
         raise FitError("\n".join(faults))
     lag = "lag of the thermistor {}"
@@ -90,6 +101,9 @@ def free_keys(keys: Sequence[str], rig: Rig) -> tuple[FitKey, ...]:
 
 def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
     """Why a key cannot be fitted, with the nearest one that can."""
+    if name in _table() and set(known) <= {*UNDER_DISPLAY, *(key for key in known if _PROBE.fullmatch(key))}:
+        why = f"rig {rig.name} is a thermode" if rig.thermode else "no log has a current"
+        return f"{name}: {why}, so that the display is the drive, and only {', '.join(known)} can be fitted"
     if name in _table():
         table = name.partition(".")[0]
         return f"{name}: rig {rig.name} has no {table.replace('_', ' ')} with this key; it has {', '.join(known)}"

@@ -10,8 +10,8 @@ from thermicon.icons import Icon, load_library
 
 from ..rig.rig import Rig
 from ..solver.simulate import simulate
-from .identify import NOISE_K, NOISE_V, expected_sd, half_width, is_identified, with_channels
-from .keys import FitKey, free_keys
+from .identify import NOISE_K, NOISE_V, expected_sd, half_width, is_identified, tellable, with_channels
+from .keys import FitError, FitKey, free_keys, possible_keys
 from .log import Log
 from .problem import OFFSET_SD_K, Problem
 from .runs import runs_of
@@ -25,6 +25,8 @@ CHOICES = (
     ("display_C", "voltage_V", "hot_plate_C", "skin_C"),
 )
 """Sets of sensors, the least first."""
+
+PLAN_HZ = 10.0
 
 DRIVE_SET, DRIVE_ICON = "calibration-drive", "calibration"
 
@@ -83,16 +85,23 @@ class Expected:
 
 
 def plan(
-    rig: Rig, free: Sequence[str], *, offset_K: float = OFFSET_SD_K, fixed_skin: bool = False
+    rig: Rig, free: Sequence[str] | None = None, *, offset_K: float = OFFSET_SD_K, fixed_skin: bool = False
 ) -> tuple[Expected, ...]:
     """Return how well each choice of sensors, the least first, will identify keys of a rig by the calibration drive.
 
     From the curvature of the sum of squares at the rig as given, with ten rows a second of white noise: what is left
-    out of the rig adds to it. `offset_K` is the SD of a sensor's zero; `fixed_skin` takes the layers as known.
+    out of the rig adds to it. Without `free`, it is of what all sensors together tell. `offset_K` is the SD of a
+    sensor's zero; `fixed_skin` takes the layers as known. Raises FitError for a thermode.
     """
-    keys = free_keys(free, rig)
-    log = synthetic_log(rig, seed=0, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=10.0)
-    problem = Problem.of(rig, keys, runs_of([log], held=False), offset_K, fixed_skin)
+    if rig.thermode is not None:
+        raise FitError(f"rig {rig.name} is a thermode, and a plan is of the calibration drive of a module")
+    rig = rig.with_(**{"driver.update_Hz": PLAN_HZ})  # so that the drive is known
+    log = synthetic_log(rig, seed=0, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=PLAN_HZ)
+    runs = runs_of([log], held=False)
+    if free is None:
+        problem = Problem.of(rig, possible_keys(rig), runs, offset_K, fixed_skin)
+        free = tellable(with_channels(problem, problem.first, CHOICES[-1], only=True))
+    problem = Problem.of(rig, free_keys(free, rig), runs, offset_K, fixed_skin)
     return tuple(_expected(problem, columns) for columns in CHOICES)
 
 

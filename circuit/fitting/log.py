@@ -30,6 +30,10 @@ SHORTEST_S, SLOWEST_S = 1e-4, 2.0
 """Rows farther apart than 2 s show nothing of a display; closer than 0.1 ms they count days, as a rule."""
 
 
+LONGEST_S = 3600.0
+"""A log of whole numbers that is longer is asked for its unit of time."""
+
+
 class LogError(FitError):
     """A log that cannot be used: file, row or column, what is wrong with it, and the cure."""
 
@@ -155,12 +159,16 @@ def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
             f"{_place(name, row, rows)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
             f"increase: sort the rows, or give each recording its own file"
         )
+    length, whole = float(time[-1] - time[0]), like_units_of_time(time)
     step, like = float(np.median(np.diff(time))), like_units_of_time(time, whole=False)
     if step > SLOWEST_S or (like and step < SHORTEST_S):
         cure = f"s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
         if like:
-            cure = f"over {time[-1] - time[0]:g}: these look like {like[0]}; {like[1]} to have s"
+            cure = f"over {length:g}: these look like {like[0]}; {like[1]} to have s"
         raise LogError(f"{name}: time_s goes in steps of {step:g} {cure}")
+    if whole and length > LONGEST_S:
+        what = f"time_s goes in steps of {step:g} over {length:g}: these look like {whole[0]}"
+        raise LogError(f"{name}: {what}; {whole[1]} to have s; of a run that is as long in s, keep an hour")
 
 
 MOST_MB = 200.0

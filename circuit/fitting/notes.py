@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..rig.uncertainty import Uncertainty
 from .between import MAD_TO_SD
 from .identify import Parameter
-from .keys import fittable, free_keys, value_of
+from .keys import free_keys, possible_keys
 from .problem import Problem, Unknown
 from .rig_fit import LARGEST, channel_fits
 from .runs import Channel
@@ -200,7 +200,10 @@ def late_column(problem: Problem, solution: Solution) -> str:
         late, sd = float(found.theta[-1]), float(np.sqrt(found.covariance[-1, -1]))
         left = huber(wide.residuals(found.theta, solution.sigma))
         explained = not beyond_noise(wide, found.theta, found.inflation)
-        if explained and abs(late) > max(LEAST_LATE_S, LATE_SDS * sd) and left < best:
+        least = (
+            LEAST_LATE_S if problem.runs[r].unknown is None else problem.runs[r].step_s
+        )  # columns may share no instant
+        if explained and abs(late) > max(least, LATE_SDS * sd) and left < best:
             best, word = left, "late" if late > 0 else "early"
             sentence = (
                 f"{channel.column} of {channel.file} is {abs(late):.2g} s {word} against the other columns, which "
@@ -216,8 +219,8 @@ def explaining(problem: Problem, solution: Solution) -> list[str]:
     """
     rig = problem.rig.with_(**problem.values(solution.theta))
     own = [key.key for key in problem.keys]
-    others = [key for key in fittable(rig) if key not in own and value_of(rig, key)]  # a lag of 0 has a bound there
-    wide = problem.again(rig, free_keys([*own, *others], rig), problem.runs)
+    others = [key.key for key in possible_keys(rig, problem.alone) if key.key not in own]
+    wide = problem.again(rig, free_keys([*own, *others], rig, problem.alone), problem.runs)
     theta = np.concatenate([wide.first[: len(wide.keys)], solution.theta[len(own) :]])
     residuals = wide.residuals(theta, solution.sigma)
     if wide.predictions(theta) is None:

@@ -121,6 +121,11 @@ class Problem:
         """What is fitted along with the keys."""
         return self.unknowns[len(self.keys) :]
 
+    @property
+    def alone(self) -> bool:
+        """Whether no run has a known current, so that the display is the drive."""
+        return all(run.driven_by == DISPLAY for run in self.runs)
+
     def again(self, rig: Rig, keys: tuple[FitKey, ...], runs: tuple[Run, ...]) -> Problem:
         """Another rig, keys or runs, with the same fitted along."""
         return Problem.of(rig, keys, runs, self.offset_sd_K, self.fixed_skin)
@@ -291,9 +296,7 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
             ]
         if offset_sd_K > 0:
             sd = offset_sd_K * (np.sqrt(2.0) if run.driven_by == DISPLAY else 1.0)  # its display is off, too
-            extra += [
-                Unknown("offset", r, c, sd) for c, channel in enumerate(run.channels) if channel.temperature
-            ]
+            extra += [Unknown("offset", r, c, sd) for c, channel in enumerate(run.channels) if channel.temperature]
     return extra
 
 

@@ -24,6 +24,7 @@ from .problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +84,12 @@ class RigFit:
 
         names = ("key", "unit", "start", "value", "low", "high", "identified", "cure")
         return pd.DataFrame([{name: getattr(item, name) for name in names} for item in self.parameters])
+
+    def plot(self, ax: Axes | None = None, column: str | None = None) -> Axes:
+        """Draw the residuals of every column, or of one, in K (voltages in V) against time; returns the Axes."""
+        from .fit_figure import plot_residuals
+
+        return plot_residuals([each for each in self.channels if column in (None, each.column)], ax)
 
     def rig_text(self, name: str) -> str:
         """Return the rig file of the fitted rig, every fitted value with interval and logs, under a name."""

@@ -63,8 +63,8 @@ class Run:
 
     `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
     first row by the drive's own clock; `clocks` names the files of the further clocks. `unknown` (rows − 1,) is the SD
-    of the drive's mean between rows, None where the rows tell it; `phase` (rows,) what every row is wrong by, as one SD,
-    if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
+    of the drive's mean between rows, None where the rows tell it; `phase` (rows,) is the SD of what all rows are wrong
+    by if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
     """
 
     name: str
@@ -132,6 +132,9 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
             f"{log.name}: {driven_by} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; "
             f"log a run that warms and cools, such as the shipped cue calibration-drive"
         )
+    if rig is not None:
+        for each in (log, *sensors):
+            _check_probes(each, rig)
     begin, step, alone = float(time[0]), float(np.median(np.diff(time))), driven_by == DISPLAY
     columns = [(each, name, clock) for clock, each in enumerate((log, *sensors)) for name in each.measured]
     channels = [_channel(*each) for each in columns if _deeper(each[1]) or not alone]
@@ -152,6 +155,20 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
         log.name, driven_by, time - begin, drive, held and not alone, begin, tuple(channels),
         tuple(sensor.name for sensor in sensors), unknown, phase, step, points, tuple(notes),
     )  # fmt: skip
+
+
+def _check_probes(log: Log, rig: Rig) -> None:
+    """Raise LogError for the reading of a probe that the rig does not have."""
+    there = [f"probe_{probe.name}_C" for probe in rig.probes]
+    for column in log.measured:
+        if column.startswith("probe_") and column not in there:
+            name = column.removeprefix("probe_").removesuffix("_C")
+            probe = f'probe=[{{name="{name}", place="skin", depth_mm=0.5}}]'
+            has = f" (it has {', '.join(there)})" if there else ""
+            raise LogError(
+                f"{log.name}: {column}: rig {rig.name} has no such probe{has}; say where it is, as with --set "
+                f"'{probe}', or remove the column"
+            )
 
 
 def _channel(log: Log, name: str, clock: int) -> Channel:

@@ -1,7 +1,7 @@
 """Residuals of a run whose drive is not known between rows, made independent of one another.
 
-What the drive did between two rows goes on in all rows after it, by the response of the circuit. Rows err alike by that,
-with a covariance K; residuals r become L⁻¹·r, where L·Lᵀ = K + σ² of the sensors. Long runs are parted.
+What the drive did between two rows goes on in all rows after it, by the response of the circuit. Rows err alike by
+that, with a covariance K; residuals r become L⁻¹·r, where L·Lᵀ = K + σ² of the sensors. Long runs are parted.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Shared:
     def factors(self, sigma: Array) -> tuple[Array, ...]:
         """Cholesky factors of the parts with the SD of each row's own noise (rows,)."""
         pairs = zip(self.rows, self.covariance, strict=True)
-        return tuple(np.linalg.cholesky(alike + np.diag(sigma[rows] ** 2)) for rows, alike in pairs)
+        return tuple(np.asarray(np.linalg.cholesky(alike + np.diag(sigma[rows] ** 2))) for rows, alike in pairs)
 
     def whitened(self, factors: Sequence[Array], residuals: Array) -> Array:
         """Residuals (rows,) as independent ones of SD 1; those of a column still stand in its own rows."""

@@ -34,11 +34,11 @@ def fit_command(
         list[str] | None,
         opt(
             "KEY,KEY",
-            "Required: keys of the rig to fit. contact.resistance_m2K_per_W, contact.area_cm2; module. with "
+            "Keys of the rig to fit. contact.resistance_m2K_per_W, contact.area_cm2; module. with "
             "seebeck_V_per_K, resistance_ohm, thermal_resistance_K_per_W, hot_plate_J_per_K, cold_plate_J_per_K; "
             "heat_sink. with temperature_C, resistance_K_per_W, capacity_J_per_K; driver.transconductance_A_per_V; "
             "ambient.temperature_C; skin.rest_C; "
-            "lags: controller.lag_s, probe.NAME.lag_s.",
+            "lags: controller.lag_s, probe.NAME.lag_s.  [default: what the log can tell]",
             name="--free",
         ),
     ] = None,
@@ -69,11 +69,12 @@ def fit_command(
     """Fit parameters of a rig to measured logs: values with 95 % intervals, and what the logs do not identify.
 
     A log is a table with time_s, a drive (current_A or command_V), and what was measured:
-    display_C, skin_C, hot_plate_C, and voltage_V beside a current. The rig to begin with is that of --rig and --set.
+    display_C, skin_C, hot_plate_C, and voltage_V beside a current. Without a current, display_C is the drive of skin_C
+    or a probe in the skin, and contact is fitted. The rig to begin with is that of --rig and --set.
     """
-    keys = tuple(key for part in free or [] for key in part.split(","))
-    if not any(key.strip() for key in keys):
-        raise usage("name the keys to fit, such as --free contact.resistance_m2K_per_W", "--free")
+    keys = [key for part in free or [] for key in part.split(",")] if free else None
+    if keys is not None and not any(key.strip() for key in keys):
+        raise usage("names no key; name some, such as contact.resistance_m2K_per_W, or leave it out", "--free")
     if plan and logs:
         raise usage("is for the time before there is a log; leave out LOG, or --plan", "--plan")
     if plan and (output or figure.figure):
@@ -93,6 +94,9 @@ def fit_command(
         check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
     read = [read_log(log, theirs_of(column)) for log in logs]
+    early = [sentence for log in read for sentence in log.notes]
+    for sentence in early:
+        note(f"note: {sentence}")
     fitted = fit(read, where, free=keys, offset_K=offset, fixed_skin=fixed_skin)
     if output is not None:
         write_text(fitted.rig_text(output.stem[:LONGEST_NAME]), output)
@@ -102,4 +106,5 @@ def fit_command(
         figure.write(fit_figure(fitted, 1 if figure.look.narrow else 2))
     show(fit_report(fitted, where))
     for sentence in fitted.notes:
-        note(f"note: {sentence}")
+        if sentence not in early:
+            note(f"note: {sentence}")

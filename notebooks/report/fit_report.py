@@ -94,7 +94,7 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     ]
     if not changed:
         return None
-    if fitted.misfit:
+    if all(getattr(fitted.rig.uncertainty, key) >= getattr(before.uncertainty, key) for key in WORDS):
         most = any(getattr(fitted.rig.uncertainty, key) == limit for key, limit in LARGEST.items())
         how = "as far as a rig file may state" if most else "to hold all that the rig before held"
         return f"uncertainty of the fitted rig, widened {how}: {', '.join(changed)}"

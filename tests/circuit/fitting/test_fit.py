@@ -6,14 +6,15 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, Trace, fit, simulate
-from thermicon.circuit.fitting.forward import Channel, steady_level
+from thermicon.circuit.fitting.forward import steady_level
 from thermicon.circuit.fitting.identify import half_width
 from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
-from thermicon.circuit.fitting.notes import milli, noise_of
+from thermicon.circuit.fitting.notes import milli
 from thermicon.circuit.fitting.overlay import best_shift_s, overlay
 from thermicon.circuit.fitting.rig_fit import RigFit
+from thermicon.circuit.fitting.runs import Channel
 from thermicon.circuit.fitting.solve import alike
 
 from .conftest import TRUTH, altered
@@ -204,7 +205,7 @@ def test_noise_and_likeness_of_rows_are_those_of_known_series() -> None:
     random, time = np.random.default_rng(0), np.arange(600) / 10
     assert (alike(random.normal(size=500)), round(alike(np.sin(np.arange(500) / 30)), -1)) == (1.0, 60.0)
     slow = Channel("display_C", "a.csv", 0, time, np.sin(time / 5) + 0.02 * random.standard_normal(600))
-    assert noise_of(slow) == pytest.approx(0.02, rel=0.1)
+    assert slow.noise == pytest.approx(0.02, rel=0.1)
     assert steady_level(np.array([0.1, 0.1, 0.5, 0.5])) == 0.1
     assert round(steady_level(np.array([0.1, 0.11, 0.1, 0.5, 0.51])), 3) == 0.103
     shift, same = best_shift_s(time[:300], np.sin(time[:300] / 3), time[:300], np.sin((time[:300] + 1.3) / 3))

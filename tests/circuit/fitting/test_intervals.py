@@ -11,12 +11,12 @@ from thermicon.circuit.cores import quiet_blas
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
-from thermicon.circuit.fitting.forward import runs_of
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys, value_of
 from thermicon.circuit.fitting.laboratory import calibration_icon, plan, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
 from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
 from thermicon.circuit.fitting.rig_fit import RigFit
+from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import spreads
 from thermicon.circuit.rig.rig import rig_names
 
