@@ -10,7 +10,7 @@ from ..cores import quiet_blas
 from ..rig.faults import PARAMETERS
 from ..rig.rig import Rig
 from .identify import identified, in_series, tellable
-from .keys import FitError, FitKey, free_keys, possible_keys
+from .keys import CONTACT, FitError, FitKey, free_keys, possible_keys
 from .log import Log, LogError, read_log
 from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow, unsteady
 from .overlay import aligned, check_clocks, check_sensors
@@ -107,6 +107,8 @@ def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_s
     """The keys that runs can tell together; FitError where there is none."""
     keys = possible_keys(rig, alone)
     told = tellable(aligned(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)))
+    if not told and alone:  # with the outermost layer, in series
+        return (CONTACT,)
     if not told:
         raise FitError(f"{', '.join(run.name for run in runs)}: tells no key of rig {rig.name}; name keys to try them")
     return told

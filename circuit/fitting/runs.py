@@ -91,14 +91,16 @@ def runs_of(logs: Sequence[Log], held: bool, rig: Rig | None = None) -> tuple[Ru
     """
     if not logs:
         raise LogError("no log; name one or several files")
-    thermode = rig is not None and rig.thermode is not None
+    thermode = None if rig is None else rig.thermode
     drives = {} if thermode else {id(log): log.drive for log in logs if log.drive is not None}
     if not drives and any(_deeper(name) for log in logs for name in log.measured):
         drives = {id(log): DISPLAY for log in logs if DISPLAY in log.measured}
     if not drives:
         found = "; ".join(f"{log.name} has {', '.join(dict(log.columns))}" for log in logs)
-        current = f"one of {' or '.join(DRIVES)} is needed, or {DISPLAY} with skin_C or a probe in the skin"
-        raise LogError(f"no log has a drive: {current} ({found})")
+        deeper = f"{DISPLAY} with skin_C or a probe in the skin"
+        if rig is not None and thermode:
+            raise LogError(f"rig {rig.name} is a thermode, whose display is the drive: {deeper} is needed ({found})")
+        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed, or {deeper} ({found})")
     driven = [log for log in logs if id(log) in drives]
     groups: dict[int, list[Log]] = {id(log): [] for log in driven}
     last = driven[0]
