@@ -62,17 +62,8 @@ def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
     return np.asarray(-rate / max(float(np.abs(rate).max()), 1e-12) * unknown_current(current).max())
 
 
-def fewer(time_s: Array, drive: Array, unknown: Array | None, most: int) -> tuple[Array, Array, Array | None, int]:
-    """Means of a drive over so many rows that at most so many are left: times, drive, SDs of it, rows in each."""
-    many = -(-len(time_s) // most)
+def means(time_s: Array, drive: Array, many: int) -> tuple[Array, Array]:
+    """A held drive as its means over so many rows: times and drive (fewer rows,), the last as it is."""
     at = np.unique(np.append(np.arange(0, len(time_s), many), len(time_s) - 1))
-    if many == 1:
-        return time_s, drive, unknown, 1
-
-    def total(values: Array) -> Array:
-        return np.diff(np.append(0.0, np.cumsum(values))[at])
-
-    each, whole = np.diff(time_s), np.diff(time_s[at])
-    mean = np.append(total(drive[:-1] * each) / whole, drive[-1])
-    spread = None if unknown is None else np.sqrt(total((unknown * each) ** 2)) / whole
-    return time_s[at], mean, spread, many
+    total = np.append(0.0, np.cumsum(drive[:-1] * np.diff(time_s)))[at]
+    return time_s[at], np.append(np.diff(total) / np.diff(time_s[at]), drive[-1])

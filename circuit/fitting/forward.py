@@ -32,12 +32,13 @@ tenth of them differs by, each further one from those before by so many times wh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Prediction:
-    """What a run should have measured: columns at rows, and the current at any time."""
+    """What a run should have measured: columns at rows, and the drive at any time, which times `gain` is the current."""
 
     trace: Trace
     drive: Drive
     resistance_ohm: float
     display_probe: str | None
+    gain: float = 1.0
 
     def at(self, column: str, drive_s: Array, late_s: float = 0.0) -> Array:
         """Values of a column of a log (rows,) at times in s from the first row of the drive.
@@ -47,7 +48,7 @@ class Prediction:
         """
         time_s = drive_s + late_s
         if column == "voltage_V":
-            jump = self.drive.at(np.clip(drive_s, 0.0, self.trace.time_s[-1])) * self.resistance_ohm
+            jump = self.drive.at(np.clip(drive_s, 0.0, self.trace.time_s[-1])) * self.gain * self.resistance_ohm
             return self._smooth(self.trace.voltage_V - self.resistance_ohm * self.trace.current_A, time_s) + jump
         if column == "display_C" and self.display_probe is not None:
             return self._smooth(self.trace.probe(self.display_probe), time_s)
@@ -69,16 +70,17 @@ def predict(rig: Rig, run: Run, phase: float = 0.0) -> Prediction:
         return _under_display(rig, run, rate)
     sensed, display_probe = _with_thermistor(rig)
     gain = rig.driver.transconductance_A_per_V if run.driven_by == "command_V" else 1.0
-    logged = Drive(run.time_s, gain * run.drive, run.held)
-    drive = logged if run.phase is None else Drive(run.time_s, gain * (run.drive - phase * run.phase), run.held)
-    level, state = steady_level(logged.current_A), None
+    change = 0.0 if run.phase is None else phase * run.phase
+    drive = Drive(run.time_s, gain * (run.drive - change), run.held)
+    level, state = gain * steady_level(run.drive), None
     if level != drive.current_A[0]:
         try:
             state = state_under_current(network_of(sensed), level)
         except ArithmeticError as problem:
             raise RigError(f"rig {rig.name}: {problem}; begin the log with a smaller current") from None
     trace = simulate_current(drive, sensed, rate_Hz=rate, start_C=state)
-    return Prediction(trace, logged, rig.module.resistance_ohm, display_probe)
+    logged = run.logged or Drive(run.time_s, run.drive, run.held)
+    return Prediction(trace, logged, rig.module.resistance_ohm, display_probe, gain)
 
 
 def _under_display(rig: Rig, run: Run, rate_Hz: float) -> Prediction:

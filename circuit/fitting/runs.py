@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arrays import Array
-from .between import MOST_UPDATES, fewer, noise_sd, one_phase, tells_all, unknown_current, unknown_display
+from ..solver.drive import Drive
+from .between import MOST_UPDATES, means, noise_sd, one_phase, tells_all, unknown_current, unknown_display
 from .log import DRIVES, Log, LogError
 
 if TYPE_CHECKING:
@@ -18,8 +19,11 @@ if TYPE_CHECKING:
 DISPLAY = "display_C"
 """What drives a run where no current is known: skin and probes follow the display, whatever moves it."""
 
-MOST_STEPS, MOST_READINGS = 30_000, 8_000
-"""Rows of a drive beyond which means of several are taken, and readings of a column beyond which some are left out."""
+LONG_S, LONG_ROWS, REST_S = 300.0, 1500, 10.0
+"""A log that is longer than both is fitted for so long, from so much rest on before its drive changes first."""
+
+FINEST_S, MOST_READINGS = 0.01, 8_000
+"""A drive that is known is simulated by its means over so long, and of more readings of a column some are fitted."""
 
 MOST_GAP_S, MOST_GAP_ROWS = 0.5, 10
 """A gap in the drive above both needs the same drive on both sides of it."""
@@ -65,6 +69,7 @@ class Run:
     first row by the drive's own clock; `clocks` names the files of the further clocks. `unknown` (rows − 1,) is the SD
     of the drive's mean between rows, None where the rows tell it; `phase` (rows,) is the SD of what all rows are wrong
     by if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
+    `logged`: the drive of each row, where `drive` has means of several.
     """
 
     name: str
@@ -80,6 +85,7 @@ class Run:
     step_s: float = 0.0
     points: bool = False
     notes: tuple[str, ...] = ()
+    logged: Drive | None = None
 
 
 def runs_of(logs: Sequence[Log], held: bool, rig: Rig | None = None) -> tuple[Run, ...]:
@@ -125,10 +131,11 @@ def _deeper(name: str) -> bool:
 
 
 def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig | None) -> Run:
-    time, drive = log.time_s, log.column(driven_by)
+    part = _part(log.time_s, log.column(driven_by), alone=not sensors)
+    time, drive = log.time_s[part], log.column(driven_by)[part]
     known = np.isfinite(drive)
     time, drive = time[known], drive[known]
-    _check_gaps(log.name, driven_by, time, drive, log.time_s)
+    _check_gaps(log.name, driven_by, time, drive, log.time_s[part])
     if np.ptp(drive) == 0.0:
         raise LogError(
             f"{log.name}: {driven_by} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; "
@@ -139,24 +146,42 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
             _check_probes(each, rig)
     begin, step, alone = float(time[0]), float(np.median(np.diff(time))), driven_by == DISPLAY
     columns = [(each, name, clock) for clock, each in enumerate((log, *sensors)) for name in each.measured]
-    channels = [_channel(*each) for each in columns if _deeper(each[1]) or not alone]
+    channels = [
+        _channel(each, name, clock, part if not clock else slice(None))
+        for each, name, clock in columns
+        if _deeper(name) or not alone
+    ]
     unknown, phase, points = None, None, False
     if alone:
         unknown = unknown_display(drive)
     elif rig is not None and not tells_all(time, rig.update_Hz):
         unknown, points = unknown_current(drive), step * rig.update_Hz > MOST_UPDATES
         display = dict(log.columns).get(DISPLAY)
-        if display is not None and np.isfinite(display[known]).any():
-            phase = fewer(time, one_phase(time, drive, display[known]), None, MOST_STEPS)[1]
-    time, drive, unknown, many = fewer(time, drive, unknown, MOST_STEPS)
-    notes = [f"the drive is taken as the mean of every {many} rows"] if many > 1 else []
-    if any(np.isfinite(each.column(name)).sum() > MOST_READINGS for each, name, _ in columns):
-        notes.append(f"at most {MOST_READINGS:,} readings of a column are fitted")
-    notes = [f"{log.name}: is long: {', and '.join(notes)}"] if notes else []
+        if display is not None and np.isfinite(display[part][known]).any():
+            phase = one_phase(time, drive, display[part][known])
+    logged, many = None, int(FINEST_S / step + 1e-6)
+    if unknown is None and many > 1:
+        logged = Drive(time - begin, drive, held)
+        time, drive = means(time, drive, many)
+    notes = []
+    if part.stop is not None:
+        what = f"{time[0] - log.time_s[0]:.0f} to {time[-1] - log.time_s[0]:.0f} s are fitted"
+        notes.append(f"{log.name}: is long: {what}; to fit another part, cut it out")
     return Run(
         log.name, driven_by, time - begin, drive, held and not alone, begin, tuple(channels),
-        tuple(sensor.name for sensor in sensors), unknown, phase, step, points, tuple(notes),
+        tuple(sensor.name for sensor in sensors), unknown, phase, step, points, tuple(notes), logged,
     )  # fmt: skip
+
+
+def _part(time: Array, drive: Array, alone: bool) -> slice:
+    """The rows that are fitted: of a long log without further clocks, from some rest before its first change on."""
+    length = max(LONG_S, LONG_ROWS * float(np.median(np.diff(time))))
+    if not alone or time[-1] - time[0] <= length:
+        return slice(None)
+    there = np.flatnonzero(np.isfinite(drive))
+    moved = there[np.abs(drive[there] - drive[there[:1]]) > SAME_SHARE * np.ptp(drive[there])]
+    begin = time[moved[0]] - REST_S if moved.size else time[0]
+    return slice(int(np.searchsorted(time, begin)), int(np.searchsorted(time, begin + length)))
 
 
 def _check_probes(log: Log, rig: Rig) -> None:
@@ -173,10 +198,11 @@ def _check_probes(log: Log, rig: Rig) -> None:
             )
 
 
-def _channel(log: Log, name: str, clock: int) -> Channel:
-    there = np.flatnonzero(np.isfinite(log.column(name)))
+def _channel(log: Log, name: str, clock: int, part: slice) -> Channel:
+    time, values = log.time_s[part], log.column(name)[part]
+    there = np.flatnonzero(np.isfinite(values))
     there = there[:: max(1, -(-len(there) // MOST_READINGS))]
-    return Channel(name, log.name, clock, log.time_s[there], log.column(name)[there])
+    return Channel(name, log.name, clock, time[there], values[there])
 
 
 def _check_gaps(name: str, column: str, time: Array, drive: Array, rows: Array) -> None:

@@ -69,13 +69,13 @@ def _responses(rig: Rig, run: Run) -> tuple[Array, list[Array]]:
     end = min(MEMORY_S, float(run.time_s[-1]))
     time, begin = np.arange(0.0, end, 0.01), 0.02
     drive = level + size * np.array([0.0, 1.0, 1.0, 1.0, 1.0])
-    step = replace(run, time_s=np.array([0.0, begin, begin + 0.01, end / 2, end + 0.1]), drive=drive, phase=None,
-                   held=run.driven_by != DISPLAY)  # fmt: skip
+    times, held = np.array([0.0, begin, begin + 0.01, end / 2, end + 0.1]), run.driven_by != DISPLAY
+    step = replace(run, time_s=times, drive=drive, phase=None, logged=None, held=held)
     found, out = predict(rig, step), []
     for each in run.channels:
         after = found.at(each.column, time + begin) - found.at(each.column, np.zeros(1))
         jump = found.drive.at(time + begin) - level if each.column == "voltage_V" else 0.0
-        out.append((after - found.resistance_ohm * jump) / size)
+        out.append((after - found.gain * found.resistance_ohm * jump) / size)
     return time, out
 
 

@@ -13,6 +13,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -84,6 +85,11 @@ class Table:
         """
         import numpy as np
 
+        with suppress(ValueError):  # a column of plain numbers, as most are, is read at once
+            texts = list(self.texts(name))
+            plain = np.array(list(map(float, texts)))
+            if (np.abs(plain) <= min(most, OVERLOADS[-1] / 2)).all() and "_" not in "".join(texts):
+                return plain
         values = np.empty(len(self.rows))
         for row, cell in enumerate(self.texts(name)):
             value = as_number(cell, self.mark) if cell else math.nan
@@ -144,6 +150,15 @@ def read_table(
         raise fault("table", line, "this line holds numbers, not the names of columns", f"put {put} above it")
     rows, places = list[list[str]](), list[int]()
     for place, row in lines:
+        if (
+            rows
+            and row[0][:1].isdigit() > header[0][:1].isdigit()
+            and len(row) <= len(header)
+            and len(rows) < most_rows
+        ):
+            rows.append(row)  # neither names again nor a rule
+            places.append(place)
+            continue
         bare = [cell.strip() for cell in row[: len(header)]]
         if row[0].startswith(ASIDE) or bare == header or all(set(cell) <= {"-", "=", "*"} for cell in bare):
             continue  # names that stand again, and rules between pages
