@@ -8,29 +8,43 @@ MOST_UPDATES, WHOLE, FINE = 1.5, 0.02, 0.25
 """Rows farther apart than 1.5 updates of the driver miss some of them; closer ones meet every update where so many
 make a whole one, within this share, and where they are so close that it does not matter."""
 
+STEEP, REPEATS = 0.05, 10
+"""Rows that repeat count between steps of at least this share of the largest; so many are no chance."""
+
 SMOOTH_S = 0.2
 """Over so long a display's noise is averaged where its rate is asked."""
+
+NORMAL = {0.5: 0.6745, 0.25: 0.3186}
+"""Within so many standard deviations lies that share of normal noise."""
 
 MAD_TO_SD = 1.4826
 """Standard deviation of normal noise over its median absolute deviation: 1/Φ⁻¹(3/4)."""
 
 
-def tells_all(time_s: Array, update_Hz: float) -> bool:
-    """Whether rows (rows,) tell every update of a driver.
+def tells_all(time_s: Array, drive: Array, update_Hz: float) -> bool:
+    """Whether rows (rows,) tell every update of a driver; rows that repeat in steep stretches show another rate.
 
-    >>> [tells_all(np.arange(9) / rate, 80.0) for rate in (10, 40, 80, 100, 160, 1000)]
+    >>> [tells_all(np.arange(9) / rate, np.arange(9.0), 80.0) for rate in (10, 40, 80, 100, 160, 1000)]
     [False, False, True, False, True, True]
     """
-    share = float(np.median(np.diff(time_s))) * update_Hz
+    share, steps = float(np.median(np.diff(time_s))) * update_Hz, np.abs(np.diff(drive))
+    if share < FINE:
+        return True
+    steep = steps > STEEP * steps.max(initial=0.0)
+    if (steep[:-2] & (steps[1:-1] == 0.0) & steep[2:]).sum() >= REPEATS:
+        return False
     if share >= 1.0 - WHOLE:
         return share <= MOST_UPDATES
-    return share < FINE or abs(1.0 / share - round(1.0 / share)) < WHOLE / share
+    return abs(1.0 / share - round(1.0 / share)) < WHOLE / share
 
 
-def noise_sd(values: Array, resolution: float) -> float:
-    """SD of what changes from row to row, by second differences, which leave slow changes out."""
-    bends = np.diff(values, 2)
-    own = MAD_TO_SD * float(np.median(np.abs(bends))) / np.sqrt(6.0) if bends.size else 0.0
+def noise_sd(values: Array, resolution: float, share: float = 0.5) -> float:
+    """SD of what changes from row to row, by second differences, which leave slow changes out.
+
+    The `share` of the smallest counts: the half, or less, where most rows move.
+    """
+    bends = np.abs(np.diff(values, 2))
+    own = float(np.quantile(bends, share)) / NORMAL[share] / np.sqrt(6.0) if bends.size else 0.0
     return float(max(own, resolution / np.sqrt(12.0)))
 
 
@@ -47,19 +61,28 @@ def unknown_display(display_C: Array) -> Array:
 
 
 def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
-    """What (rows,) a current is wrong by, as one SD, if a control loop was always read at one phase of its steps.
+    """What (2, rows) a current is wrong by, each as one SD, if a control loop was always read at one phase of its steps.
 
-    A loop whose set-points are held answers each step with the same course, as large as the step; a step is what the
-    display moves by. Hence it is a share of the display's rate, and where that is greatest half the greatest difference
-    between neighbouring readings.
+    A loop whose set-points are held answers each step with the same course, as large as the step. Steps are what the
+    display moves by, and, as it follows them late, a share of how its rate changes. Both are greatest at half of the
+    greatest difference between neighbouring readings.
     """
     there = np.isfinite(display_C)
-    smooth = np.interp(time_s, time_s[there], display_C[there])
-    width = max(1, round(SMOOTH_S / float(np.median(np.diff(time_s)))))
-    padded = np.pad(smooth, (width // 2, width - 1 - width // 2), mode="edge")
-    smooth = np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
-    rate = np.append(np.diff(smooth) / np.diff(time_s), 0.0)
-    return np.asarray(-rate / max(float(np.abs(rate).max()), 1e-12) * unknown_current(current).max())
+    step, rows = float(np.median(np.diff(time_s))), np.interp(time_s, time_s[there], display_C[there])
+    rate = _slope(_smooth(rows, SMOOTH_S / step))
+    change = _slope(_smooth(rate, 2 * SMOOTH_S / step))
+    most = float(unknown_current(current).max())
+    return np.array([most * each / max(float(np.abs(each).max()), 1e-12) for each in (rate, change)])
+
+
+def _smooth(values: Array, rows: float) -> Array:
+    width = max(1, round(rows))
+    padded = np.pad(values, (width // 2, width - 1 - width // 2), mode="edge")
+    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
+
+
+def _slope(values: Array) -> Array:
+    return np.append(np.diff(values), 0.0)
 
 
 def means(time_s: Array, drive: Array, many: int) -> tuple[Array, Array]:

@@ -60,6 +60,11 @@ class Channel:
         """SD of what changes from row to row, by second differences, which leave slow changes out."""
         return noise_sd(self.values, self.resolution)
 
+    @property
+    def quiet(self) -> float:
+        """As `noise`, of the quietest rows: no more than the noise of a sensor that moves in most rows."""
+        return noise_sd(self.values, self.resolution, 0.25)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Run:
@@ -67,7 +72,7 @@ class Run:
 
     `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
     first row by the drive's own clock; `clocks` names the files of the further clocks. `unknown` (rows − 1,) is the SD
-    of the drive's mean between rows, None where the rows tell it; `phase` (rows,) is the SD of what all rows are wrong
+    of the drive's mean between rows, None where the rows tell it; `phase` (2, rows) is the SD of what all rows are wrong
     by if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
     `logged`: the drive of each row, where `drive` has means of several.
     """
@@ -154,7 +159,7 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
     unknown, phase, points = None, None, False
     if alone:
         unknown = unknown_display(drive)
-    elif rig is not None and not tells_all(time, rig.update_Hz):
+    elif rig is not None and not tells_all(time, drive, rig.update_Hz):
         unknown, points = unknown_current(drive), step * rig.update_Hz > MOST_UPDATES
         display = dict(log.columns).get(DISPLAY)
         if display is not None and np.isfinite(display[part][known]).any():

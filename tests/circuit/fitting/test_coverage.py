@@ -1,0 +1,115 @@
+"""What fits say of logs that laboratories have: coarser than the driver, of control loops, of means, of slow sensors."""
+
+import math
+import os
+from collections import defaultdict
+
+import numpy as np
+import pytest
+
+from thermicon.circuit import Drive, Rig, fit, simulate_current
+from thermicon.circuit.fitting.identify import half_width
+from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
+from thermicon.circuit.fitting.laboratory import calibration_icon
+from thermicon.circuit.fitting.log import Log
+from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
+from thermicon.circuit.fitting.runs import runs_of
+from thermicon.circuit.fitting.solve import covariance_of
+from thermicon.circuit.solver.batch_inputs import bank_of, run_regulate
+from thermicon.circuit.solver.inverse import target_at
+from thermicon.circuit.solver.steady import steady_state
+
+LOGS = int(os.environ.get("THERMICON_FIT_LOGS", "18"))
+KINDS, RATES_HZ = ("held set-points", "ramps", "currents"), (100, 50, 20, 10, 5, 2)
+LOOP_HZ, FINE_HZ, END_S, NOISE = 80.0, 400.0, 60.0, {"C": 0.02, "V": 0.005, "A": 0.0}
+SPREADS = dict(zip(COMMON, (0.15, 0.025, 0.05), strict=True))
+"""SD of the logarithm: half of what the rig's own uncertainty states."""
+
+
+def person(rig: Rig, random: np.random.Generator) -> tuple[Rig, dict[str, float]]:
+    """A rig with the skin, contact and module of one laboratory, and its truth."""
+    skin = {}
+    for (kind, k), sd in layer_priors(rig).items():
+        layer, place = rig.skin.layers[k], LAYER_KINDS.index(kind)
+        key = ("thickness_mm", "conductivity_W_per_mK", "heat_capacity_J_per_kgK")[place]
+        value = (layer.thickness_m * 1e3, layer.conductivity_W_per_mK, layer.heat_capacity_J_per_kgK)[place]
+        skin[f"skin.layer.{k}.{key}"] = value * math.exp(sd * random.normal())
+    known = (rig.contact.resistance_m2K_per_W, rig.module.seebeck_V_per_K, rig.module.resistance_ohm)
+    pairs = zip(SPREADS.items(), known, strict=True)
+    truth = {key: value * math.exp(sd * random.normal()) for (key, sd), value in pairs}
+    return rig.with_(**skin, **truth), truth
+
+
+def played(rig: Rig, kind: str, random: np.random.Generator) -> Drive:
+    """The current of a loop at 80 Hz that follows the calibration drive, or of levels at random times."""
+    time, (rest, state) = np.arange(round(END_S * LOOP_HZ)) / LOOP_HZ, steady_state(rig, "display", 32.0)
+    if kind == "currents":
+        begin = np.cumsum(random.uniform(2.0, 6.0, 12)) + 2.0
+        current = np.r_[rest, rest, random.uniform(-0.4, 0.6, 10), rest][np.searchsorted(begin, time)]
+    else:
+        stairs = random.choice([10.0, 20.0])
+        asked = np.floor(time * stairs + 1e-9) / stairs if kind == "held set-points" else time
+        gain = math.exp(random.uniform(math.log(0.3), 0.0))
+        gains = np.array([[0.0, gain, gain * random.uniform(0.5, 2.0), 0.0, 0.0]])
+        bank, lane = bank_of(rig), np.zeros(1, dtype=np.int64)
+        target = target_at(calibration_icon(), 32.0, asked)[np.newaxis]
+        current = run_regulate(bank, lane, lane, 1 / LOOP_HZ, target, gains, np.array([rest]), bank.states([state]))[0][0]
+    return Drive(np.append(time, END_S), np.append(current, current[-1]), held=True)
+
+
+def logged(rig: Rig, seed: int, kind: str, means: bool, rate_Hz: int, slow_Hz: int, skin: bool) -> tuple[Log, Rig, dict]:
+    """A log, the rig it is of, and the truth; `slow_Hz` is the rate of the sensors beside the current."""
+    random = np.random.default_rng(seed)
+    true, truth = person(rig, random)
+    trace = simulate_current(played(true, kind, random), true, rate_Hz=FINE_HZ)
+    many = round(FINE_HZ / rate_Hz)
+    rows = np.arange(int(random.integers(many)) + many, len(trace.time_s) - 1, many)
+    columns = {}
+    for name in ("current_A", "display_C", "voltage_V", *(["skin_C"] if skin else [])):
+        exact = getattr(trace, name)
+        total = np.append(0.0, np.cumsum(exact))
+        values = (total[rows + 1] - total[rows + 1 - many]) / many if means else exact[rows]
+        values = values + NOISE[name[-1]] * random.normal(size=len(rows)) + 0.1 * random.normal() * (name[-1] == "C")
+        between = np.arange(len(rows)) % round(rate_Hz / slow_Hz) > 0
+        columns[name] = values if name == "current_A" else np.where(between, np.nan, values)
+    return Log.of("log.csv", {"time_s": trace.time_s[rows], **columns}), true, truth
+
+
+def bound(log: Log, rig: Rig, truth: dict[str, float]) -> float:
+    """Half width of contact that the log allows at best, at the truth and with the noise that is true."""
+    start = rig.with_(**truth)
+    problem = Problem.of(start, free_keys(COMMON, start), runs_of([log], False, start))
+    sigma = [NOISE[channel.column[-1]] for _, _, channel in problem.channels()]
+    deviations = covariance_of(problem, problem.jacobian(problem.first, sigma), [1.0] * len(sigma))
+    return half_width(True, math.sqrt(deviations[0, 0]))
+
+
+@pytest.mark.slow
+def test_the_truth_lies_in_what_is_printed_and_written_for_logs_of_every_kind() -> None:
+    rig, table = Rig.load("thenar"), defaultdict[str, list[tuple[float, ...]]](list)
+    cases = [(kind, means, rate) for kind in KINDS for means in (False, True) for rate in RATES_HZ]
+    order = np.random.default_rng(7).permutation(len(cases))
+    for seed in range(LOGS):
+        kind, means, rate = cases[order[seed % len(cases)]]
+        slow, skin = seed // len(cases) % 4 == 1 and rate <= 10, seed % 3 == 0
+        log, true, truth = logged(rig, seed, kind, means, 100 if slow else rate, rate, skin)
+        found, best = fit(log, rig, free=COMMON), bound(log, rig, truth)
+        contact = found[CONTACT]
+        printed = [item.low <= truth[item.key] <= item.high for item in found.parameters if item.identified]
+        written = [
+            abs(truth[CONTACT] / found.rig.contact.resistance_m2K_per_W - 1) <= found.rig.uncertainty.contact_resistance_relative,
+            abs(truth[COMMON[1]] / found.rig.module.seebeck_V_per_K - 1) <= found.rig.uncertainty.seebeck_relative,
+        ]  # fmt: skip
+        points = any("is not in the log" in note for note in found.notes)
+        narrowed = points and found.rig.uncertainty.contact_resistance_relative < rig.uncertainty.contact_resistance_relative
+        row = (contact.identified, contact.low <= truth[CONTACT] <= contact.high, np.mean(printed), np.mean(written),
+               contact.half_width / best, (not contact.identified) and best <= 0.4, narrowed, best)  # fmt: skip
+        name = f"{kind}, {'means' if means else 'samples'}"
+        for key in ("all", name, f"{rate} Hz", "fast current" if slow else "", "skin" if skin else "no skin"):
+            table[key].append(row)
+        print(seed, name, rate, slow, skin, f"{contact.value / truth[CONTACT] - 1:+.2f}", np.round(row, 2).tolist(), flush=True)
+    for key, rows in table.items():
+        print(key, len(rows), np.round([*np.nanmean(np.array(rows, dtype=float), axis=0)[:4], np.median([r[4] for r in rows])], 3))
+    every = np.array(table["all"], dtype=float)
+    assert np.nanmean(every[:, 2]) >= 0.92 and np.mean(every[:, 3]) >= 0.95
+    assert not every[:, 5].any() and not every[:, 6].any() and np.median(every[:, 4]) <= 2.0
