@@ -61,7 +61,7 @@ def unknown_display(display_C: Array) -> Array:
 
 
 def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
-    """What (2, rows) a current is wrong by, each as one SD, if a control loop was always read at one phase of its steps.
+    """What (2, rows) a current is wrong by, each as one SD, if a loop was always read at one phase of its steps.
 
     A loop whose set-points are held answers each step with the same course, as large as the step. Steps are what the
     display moves by, and, as it follows them late, a share of how its rate changes. Both are greatest at half of the

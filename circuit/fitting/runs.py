@@ -72,8 +72,8 @@ class Run:
 
     `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
     first row by the drive's own clock; `clocks` names the files of the further clocks. `unknown` (rows − 1,) is the SD
-    of the drive's mean between rows, None where the rows tell it; `phase` (2, rows) is the SD of what all rows are wrong
-    by if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
+    of the drive's mean between rows, None where the rows tell it; `phase` (2, rows) what all rows are wrong by, as
+    SDs, if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
     `logged`: the drive of each row, where `drive` has means of several.
     """
 
@@ -156,6 +156,7 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
         for each, name, clock in columns
         if _deeper(name) or not alone
     ]
+    channels = [each for each in channels if each.values.size]
     unknown, phase, points = None, None, False
     if alone:
         unknown = unknown_display(drive)

@@ -1,6 +1,7 @@
 """What a log knows: said before measuring, of skin that is not the rig's, and of the truth in 200 logs."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +12,14 @@ from thermicon.circuit.cores import quiet_blas
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
+from thermicon.circuit.fitting.identify import Parameter, cures, identified
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys, value_of
 from thermicon.circuit.fitting.laboratory import calibration_icon, plan, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
 from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import runs_of
-from thermicon.circuit.fitting.solve import spreads
+from thermicon.circuit.fitting.solve import Solution, spreads
 from thermicon.circuit.rig.rig import rig_names
 
 from .conftest import TRUTH, altered
@@ -177,6 +179,30 @@ def test_a_plan_is_what_a_fit_then_finds() -> None:
     found = fit(log, rig, free=COMMON)
     for item, width in zip(found.parameters, planned.half_widths, strict=True):
         assert item.half_width == pytest.approx(width, rel=0.25)
+
+
+def test_rounding_is_noise_and_a_truth_out_of_reach_is_not_known(log: Log, thenar: Rig, true_rig: Rig) -> None:
+    rounded = altered(log, display_C=np.round(2 * log.column("display_C")) / 2)
+    coarse, fine = (fit(each, thenar, free=list(TRUTH), fixed_skin=True) for each in (rounded, log))
+    assert coarse[CONTACT].low < TRUTH[CONTACT] < coarse[CONTACT].high
+    assert coarse[CONTACT].half_width > 2 * fine[CONTACT].half_width
+    far = Problem.of(true_rig, free_keys(["skin.rest_C"], true_rig), runs_of([log], held=True))
+    for share, known in ((0.999, False), (0.99, True), (-0.999, False), (-0.99, True)):
+        theta = far.first.copy()
+        theta[0] += share * (far.bounds[1][0] - theta[0])
+        small = Solution(theta, 1e-6 * np.eye(len(theta)), (0.02, 0.005), (1.0, 1.0), True)
+        (item,), _ = identified(far, small, true_rig)
+        assert item.identified is known and bool(item.cure) is not known, share
+    wide = Parameter("a", "a", "", 1.0, 1.0, 0.5, 2.0, True, True)
+    assert (wide.half_width, replace(wide, low=0.9, high=1.05).half_width) == pytest.approx((1.0, 0.1))
+
+
+def test_a_pair_is_named_from_a_correlation_of_nine_tenths_on(log: Log, thenar: Rig) -> None:
+    keys = free_keys(["ambient.temperature_C", "skin.rest_C"], thenar)
+    problem = Problem.of(thenar, keys, runs_of([log], held=True))
+    for size, named in ((0.85, False), (0.95, True), (-0.95, True)):
+        pair = np.array([[1.0, size], [size, 1.0]])
+        assert ("cannot be separated from skin at rest" in cures(problem, problem.first, [0], pair)[0]) is named
 
 
 def test_the_calibration_drive_is_reached_on_every_rig_with_a_module() -> None:

@@ -67,7 +67,7 @@ def test_what_a_log_does_not_show_is_named_with_the_cure(cli: Cli, log: Path, tm
         ((r"\n(\d\.450000,[^,]*),[^,]*", r"\n\1,n/a"), RATE, 0, "display_C is 'n/a' in 10 of"),
         (("current_A", "amps"), RATE, 1, "no log has a drive: one of current_A or"),
         (("", ""), (*RATE, "rig.csv"), 1, ["has the same content as", "name it once"]),
-        (("", ""), ("--rig", "tcs2"), 1, "is a thermode: it has no module to fit"),
+        (("", ""), ("--rig", "tcs2"), 1, "rig tcs2 is a thermode, whose display is the drive: display_C with skin_C"),
     ],
     ids=["column", "cells", "drive", "twice", "thermode"],
 )
