@@ -14,8 +14,8 @@ STEEP, REPEATS = 0.05, 10
 SMOOTH_S = 0.2
 """Over so long a display's noise is averaged where its rate is asked."""
 
-NORMAL = {0.5: 0.6745, 0.25: 0.3186}
-"""Within so many standard deviations lies that share of normal noise."""
+QUARTILE_SD = 0.3186
+"""Within so many standard deviations lies a quarter of normal noise: rows that move do not count as noise."""
 
 MAD_TO_SD = 1.4826
 """Standard deviation of normal noise over its median absolute deviation: 1/Φ⁻¹(3/4)."""
@@ -38,19 +38,11 @@ def tells_all(time_s: Array, drive: Array, update_Hz: float) -> bool:
     return abs(1.0 / share - round(1.0 / share)) < WHOLE / share
 
 
-def noise_sd(values: Array, resolution: float, share: float = 0.5) -> float:
-    """SD of what changes from row to row, by second differences, which leave slow changes out.
-
-    The `share` of the smallest counts: the half, or less, where most rows move.
-    """
+def noise_sd(values: Array, resolution: float) -> float:
+    """SD of what changes from row to row, by second differences, which leave slow changes out, of the quietest rows."""
     bends = np.abs(np.diff(values, 2))
-    own = float(np.quantile(bends, share)) / NORMAL[share] / np.sqrt(6.0) if bends.size else 0.0
+    own = float(np.quantile(bends, 0.25)) / QUARTILE_SD / np.sqrt(6.0) if bends.size else 0.0
     return float(max(own, resolution / np.sqrt(12.0)))
-
-
-def unknown_current(current: Array) -> Array:
-    """SD (rows − 1,) of the mean of a current between two rows: half the difference of the readings."""
-    return np.asarray(0.5 * np.abs(np.diff(current)))
 
 
 def unknown_display(display_C: Array) -> Array:
@@ -71,7 +63,7 @@ def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
     step, rows = float(np.median(np.diff(time_s))), np.interp(time_s, time_s[there], display_C[there])
     rate = _slope(_smooth(rows, SMOOTH_S / step))
     change = _slope(_smooth(rate, 2 * SMOOTH_S / step))
-    most = float(unknown_current(current).max())
+    most = 0.5 * float(np.abs(np.diff(current)).max())
     return np.array([most * each / max(float(np.abs(each).max()), 1e-12) for each in (rate, change)])
 
 

@@ -89,7 +89,7 @@ def fit(
     notes = [note for log in read for note in log.notes] + [note for run in runs for note in run.notes]
     if free is None:
         free = _told(rig, runs, alone, offset_K, fixed_skin)
-        notes.insert(0, f"no keys were named; the logs can tell {', '.join(free)}")
+        notes.insert(0, f"no keys were named; the logs tell best {', '.join(free)}")
     keys = free_keys(free, rig, alone)
     begin = _explicit(rig, keys)
     problem = aligned(Problem.of(begin, keys, runs, offset_K, fixed_skin))

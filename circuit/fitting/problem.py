@@ -87,7 +87,6 @@ class Problem:
     unknowns: tuple[Unknown, ...]
     _kept: dict[bytes, tuple[Prediction, ...]] = field(init=False, default_factory=dict)
     _shared: list[Shared | None] = field(init=False, default_factory=list)
-    _factors: dict[tuple[float, ...], list[tuple[Array, ...]]] = field(init=False, default_factory=dict)
 
     @staticmethod
     def of(
@@ -224,22 +223,11 @@ class Problem:
             for r, run in enumerate(self.runs):
                 times = [self.run_time_s(self.first, r, channel) for channel in run.channels]
                 self._shared.append(shared(self.rig, run, times))
-        out, first = list[Array](), 0
-        for place, (alike, run) in enumerate(zip(self._shared, self.runs, strict=True)):
-            last = first + len(run.channels)
-            mine, sds = parts[first:last], sigma[first:last]
-            if alike is None:
-                out += [part / sd for part, sd in zip(mine, sds, strict=True)]
-            else:
-                counts = [len(part) for part in mine]
-                if sigma not in self._factors:
-                    self._factors.clear()
-                    self._factors[sigma] = [()] * len(self.runs)
-                if not self._factors[sigma][place]:
-                    self._factors[sigma][place] = alike.factors(np.repeat(sds, counts))
-                white = alike.whitened(self._factors[sigma][place], np.concatenate(mine))
-                out += np.split(white, np.cumsum(counts)[:-1])
-            first = last
+        out = list[Array]()
+        for alike, run in zip(self._shared, self.runs, strict=True):
+            mine = slice(len(out), len(out) + len(run.channels))
+            pairs = zip(parts[mine], sigma[mine], strict=True)
+            out += [part / sd for part, sd in pairs] if alike is None else alike.independent(parts[mine], sigma[mine])
         return out
 
     def jacobian(self, theta: Array, sigma: Sequence[float]) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..solver.drive import Drive
-from .between import MOST_UPDATES, means, noise_sd, one_phase, tells_all, unknown_current, unknown_display
+from .between import MOST_UPDATES, means, noise_sd, one_phase, tells_all, unknown_display
 from .log import DRIVES, Log, LogError
 
 if TYPE_CHECKING:
@@ -57,13 +57,8 @@ class Channel:
 
     @property
     def noise(self) -> float:
-        """SD of what changes from row to row, by second differences, which leave slow changes out."""
+        """SD of what changes from row to row, in the quietest rows."""
         return noise_sd(self.values, self.resolution)
-
-    @property
-    def quiet(self) -> float:
-        """As `noise`, of the quietest rows: no more than the noise of a sensor that moves in most rows."""
-        return noise_sd(self.values, self.resolution, 0.25)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,7 +156,7 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
     if alone:
         unknown = unknown_display(drive)
     elif rig is not None and not tells_all(time, drive, rig.update_Hz):
-        unknown, points = unknown_current(drive), step * rig.update_Hz > MOST_UPDATES
+        unknown, points = 0.5 * np.abs(np.diff(drive)), step * rig.update_Hz > MOST_UPDATES
         display = dict(log.columns).get(DISPLAY)
         if display is not None and np.isfinite(display[part][known]).any():
             phase = one_phase(time, drive, display[part][known])

@@ -109,7 +109,7 @@ def spreads(problem: Problem, theta: Array, before: Sequence[float] = ()) -> tup
         sigma = tuple(
             max(
                 sd * MAD_TO_SD * float(np.median(np.abs(part - np.median(part)))),
-                channel.resolution / np.sqrt(12.0) if known else channel.quiet,
+                channel.resolution / np.sqrt(12.0) if known else channel.noise,
                 LEAST_SD[channel.temperature],
             )
             for sd, part, channel in zip(sigma, parts, channels, strict=True)

@@ -7,7 +7,7 @@ that, with a covariance K; residuals r become L⁻¹·r, where L·Lᵀ = K + σ�
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,20 +33,21 @@ class Shared:
 
     rows: tuple[Index, ...]
     covariance: tuple[Array, ...]
+    kept: dict[tuple[float, ...], list[Array]] = field(default_factory=dict)
 
-    def factors(self, sigma: Array) -> tuple[Array, ...]:
-        """Cholesky factors of the parts with the SD of each row's own noise (rows,)."""
-        pairs = zip(self.rows, self.covariance, strict=True)
-        return tuple(np.asarray(np.linalg.cholesky(alike + np.diag(sigma[rows] ** 2))) for rows, alike in pairs)
-
-    def whitened(self, factors: Sequence[Array], residuals: Array) -> Array:
-        """Residuals (rows,) as independent ones of SD 1; those of a column still stand in its own rows."""
+    def independent(self, parts: Sequence[Array], sigma: tuple[float, ...]) -> list[Array]:
+        """Differences (rows,) of each channel, whose own noise has the SD `sigma`, as independent ones of SD 1."""
         from scipy.linalg import solve_triangular
 
-        out = np.empty_like(residuals)
-        for rows, lower in zip(self.rows, factors, strict=True):
-            out[rows] = solve_triangular(lower, residuals[rows], lower=True, check_finite=False)
-        return out
+        counts = [len(part) for part in parts]
+        if sigma not in self.kept:
+            self.kept.clear()
+            noise, pairs = np.repeat(sigma, counts) ** 2, zip(self.rows, self.covariance, strict=True)
+            self.kept[sigma] = [np.asarray(np.linalg.cholesky(alike + np.diag(noise[rows]))) for rows, alike in pairs]
+        differences = np.concatenate(parts)
+        for rows, lower in zip(self.rows, self.kept[sigma], strict=True):
+            differences[rows] = solve_triangular(lower, differences[rows], lower=True, check_finite=False)
+        return list(np.split(differences, np.cumsum(counts)[:-1]))
 
 
 def shared(rig: Rig, run: Run, times: Sequence[Array]) -> Shared | None:
