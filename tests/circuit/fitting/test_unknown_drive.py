@@ -56,6 +56,8 @@ def test_what_rows_tell_of_a_driver() -> None:
         assert tells_all(time, climb, rate) is told, rate
     assert not tells_all(time, np.floor(0.8 * climb), 100.0)  # a loop at 80 Hz repeats every fifth row
     assert tells_all(time, np.floor(climb / 50), 100.0)  # levels stand still
+    for jump, told in ((15.0, False), (25.0, True)):  # beside a jump, steps of a twentieth are steep
+        assert tells_all(time, np.floor(0.8 * climb) + jump * (climb > 100), 100.0) is told
     noise, bend = np.random.default_rng(1).normal(0.0, 0.02, 4000), 3.0 * np.sin(np.arange(4000) / 40)
     assert noise_sd(bend + noise, 0.0) == pytest.approx(0.02, rel=0.1)
     assert noise_sd(np.zeros(50), 0.5) == pytest.approx(0.5 / 12**0.5)
