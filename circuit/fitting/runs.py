@@ -22,8 +22,8 @@ DISPLAY = "display_C"
 LONG_S, LONG_ROWS, REST_S = 300.0, 1500, 10.0
 """A log that is longer than both is fitted for so long, from so much rest on before its drive changes first."""
 
-FINEST_S, MOST_READINGS = 0.01, 8_000
-"""A drive that is known is simulated by its means over so long, and of more readings of a column some are fitted."""
+FINEST_S, MOST_STEPS, MOST_READINGS = 0.01, 30_000, 8_000
+"""A drive that is known is simulated by means over so long or of so many steps; of more readings some are fitted."""
 
 MOST_GAP_S, MOST_GAP_ROWS = 0.5, 10
 """A gap in the drive above both needs the same drive on both sides of it."""
@@ -160,7 +160,7 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
         display = dict(log.columns).get(DISPLAY)
         if display is not None and np.isfinite(display[part][known]).any():
             phase = one_phase(time, drive, display[part][known])
-    logged, many = None, int(FINEST_S / step + 1e-6)
+    logged, many = None, max(int(FINEST_S / step + 1e-6), len(time) // MOST_STEPS)
     if unknown is None and many > 1:
         logged = Drive(time - begin, drive, held)
         time, drive = means(time, drive, many)
