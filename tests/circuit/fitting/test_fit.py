@@ -15,7 +15,7 @@ from thermicon.circuit.fitting.notes import milli
 from thermicon.circuit.fitting.overlay import best_shift_s, overlay
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import Channel
-from thermicon.circuit.fitting.solve import alike
+from thermicon.circuit.fitting.solve import alike, huber
 
 from .conftest import TRUTH, altered
 
@@ -204,6 +204,11 @@ def test_a_shift_can_be_given_and_must_overlap(log: Log, trace: Trace) -> None:
 def test_noise_and_likeness_of_rows_are_those_of_known_series() -> None:
     random, time = np.random.default_rng(0), np.arange(600) / 10
     assert (alike(random.normal(size=500)), round(alike(np.sin(np.arange(500) / 30)), -1)) == (1.0, 60.0)
+    row = np.zeros(500)
+    for k, noise in enumerate(random.normal(size=499), 1):
+        row[k] = 0.25 * row[k - 1] + noise
+    assert alike(row) == pytest.approx(1.25 / 0.75, rel=0.15)
+    assert np.diff([huber(np.array([size])) for size in (0.0, 2.0, 3.0, 4.0, 9.0)]).tolist() == [4.0, 5.0, 6.0, 30.0]
     slow = Channel("display_C", "a.csv", 0, time, np.sin(time / 5) + 0.02 * random.standard_normal(600))
     assert slow.noise == pytest.approx(0.02, rel=0.1)
     assert steady_level(np.array([0.1, 0.1, 0.5, 0.5])) == 0.1

@@ -16,7 +16,7 @@ from thermicon.circuit.fitting.identify import Parameter, cures, identified
 from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys, value_of
 from thermicon.circuit.fitting.laboratory import calibration_icon, plan, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
-from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
+from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, changed_layers, layer_priors
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import Solution, spreads
@@ -61,6 +61,21 @@ def test_fixed_skin_is_what_the_rig_has(true_rig: Rig, thenar: Rig) -> None:
 def test_every_layer_has_a_prior(thenar: Rig) -> None:
     priors = layer_priors(thenar)
     assert (len(priors), round(priors["thickness", 0], 3)) == (15, 0.182)
+
+
+def test_layers_times_factors_are_what_a_log_sees_of_other_layers(thenar: Rig, log: Log) -> None:
+    layer, factors = (
+        thenar.skin.layers[1],
+        dict(zip(((kind, 1) for kind in LAYER_KINDS), np.log([1.3, 1.2, 1.25]), strict=True)),
+    )
+    other = {"thickness_mm": 1.3e3 * layer.thickness_m, "conductivity_W_per_mK": 1.2 * layer.conductivity_W_per_mK,
+             "heat_capacity_J_per_kgK": 1.25 * layer.heat_capacity_J_per_kgK}  # fmt: skip
+    drive, mesh = Drive(log.time_s, log.column("current_A"), True), {"skin.elements": [40] * len(thenar.skin.layers)}
+    rigs = (thenar.with_(**mesh, **changed_layers(thenar, factors)),
+            thenar.with_(**mesh, **{f"skin.layer.1.{key}": value for key, value in other.items()}))  # fmt: skip
+    mine, theirs = (simulate_current(drive, rig, rate_Hz=20.0).display_C for rig in rigs)
+    plain = simulate_current(drive, thenar, rate_Hz=20.0).display_C
+    assert np.abs(mine - theirs).max() < 2e-3 < 0.02 < np.abs(plain - theirs).max()
 
 
 def test_the_error_of_the_mesh_is_some_millikelvin(thenar: Rig, log: Log) -> None:

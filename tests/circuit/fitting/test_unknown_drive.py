@@ -6,9 +6,10 @@ import pytest
 from thermicon.circuit import Rig, fit
 from thermicon.circuit.fitting.between import noise_sd, one_phase, tells_all, unknown_display
 from thermicon.circuit.fitting.forward import steady_level
-from thermicon.circuit.fitting.keys import COMMON, CONTACT, FitError
+from thermicon.circuit.fitting.keys import COMMON, CONTACT, FitError, free_keys
 from thermicon.circuit.fitting.laboratory import synthetic_log
 from thermicon.circuit.fitting.log import Log, LogError
+from thermicon.circuit.fitting.problem import Problem
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.whiten import shared
 
@@ -108,6 +109,8 @@ def test_without_a_current_the_display_is_the_drive(skin: Log, thenar: Rig) -> N
     assert found.notes[0] == "no keys were named; the logs tell best contact.resistance_m2K_per_W"
     assert found[CONTACT].low < TRUTH[CONTACT] < found[CONTACT].high and found[CONTACT].half_width < 0.3
     assert any(note.startswith("the display is the drive: contact and") for note in found.notes)
+    problem = Problem.of(thenar, free_keys([CONTACT], thenar, True), runs_of([alone], True, thenar))
+    assert [item.sd for item in problem.unknowns if item.kind == "offset"] == pytest.approx([0.1 * 2**0.5])  # of both
     with pytest.raises(FitError, match=r"seebeck_V_per_K: no log has a current, so that the display is the drive, and"):
         fit(alone, thenar, free=[COMMON[1]])
     with pytest.raises(
@@ -155,6 +158,7 @@ def test_of_a_long_log_five_minutes_with_a_change_are_fitted(log: Log, true_rig:
     (run,) = runs_of([Log.of("long.csv", {"time_s": time, **columns})], True, true_rig)
     assert (run.begin_s, run.time_s[-1], len(run.time_s)) == pytest.approx((931.95, 68.0, 1361), abs=0.3)
     assert run.notes[0].endswith("to fit another part, cut it out")
+    assert (run.channels[0].time_s[0], len(run.channels[0].values)) == (run.begin_s, len(run.time_s))
     fine = Log.of(
         "fine.csv",
         {
