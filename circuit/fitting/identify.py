@@ -86,10 +86,12 @@ def identified(
     count, theta = len(problem.keys), solution.theta
     deviation = np.sqrt(np.diag(solution.covariance)[:count])
     correlation = solution.covariance[:count, :count] / np.outer(deviation, deviation)
+    # a scale that is fitted smaller is known as a share of what the rig had
+    share = [math.exp(min(0.0, theta[k] - problem.first[k])) if key.log else 1.0 for k, key in enumerate(problem.keys)]
     wanting = [
         k
         for k, key in enumerate(problem.keys)
-        if not is_identified(key.log, float(deviation[k]), key.usual) or _at_bound(problem, theta, k)
+        if not is_identified(key.log, share[k] * float(deviation[k]), key.usual) or _at_bound(problem, theta, k)
     ]
     advice = dict.fromkeys(wanting, LATE_FIRST) if late else cures(problem, theta, wanting, correlation)
     parameters = []

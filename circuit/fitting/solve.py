@@ -24,7 +24,9 @@ OUTLIER = 3.0
 LEAST_SD = {True: 1e-4, False: 1e-5}
 """Least standard deviation of a temperature in K and of a voltage in V, below any instrument."""
 
-NOISE_STEPS = 4
+NOISE_STEPS, ROUGH = 4, 1.7
+"""Steps in which noise is found where rows err alike; there as many rows count as one at least, since half a difference
+says only roughly what a drive does between rows."""
 MOST_EVALUATIONS = 30
 FEWEST_INDEPENDENT = 8.0
 """However alike neighbouring residuals are, a channel counts as at least so many independent rows."""
@@ -68,7 +70,9 @@ def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_
         before, sigma = sigma, spreads(problem, theta, sigma)
         if loss == "huber" and np.allclose(before, sigma, rtol=SAME_NOISE):
             break
-    inflation = tuple(alike(part) for part in parts_of(problem, problem.residuals(theta, sigma)))
+    parts = parts_of(problem, problem.residuals(theta, sigma))
+    least = [1.0 if run.unknown is None else ROUGH for run in problem.runs for _ in run.channels]
+    inflation = tuple(max(alike(part), each) for part, each in zip(parts, least, strict=True))
     mesh = problem.mesh_error(theta, sigma)
     covariance = covariance_of(problem, problem.jacobian(theta, sigma), inflation, mesh)
     return Solution(theta, covariance, sigma, inflation, converged)
