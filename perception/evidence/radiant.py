@@ -16,7 +16,7 @@ from ..observer.channels import Variable
 from ..observer.observer import Observer, load_thresholds
 from ..sensation.sensation import receptor_drive, sensation
 from .baseline import noticed_K
-from .predicted import DRAWS, Asked, Predicted, Subject, predict
+from .predicted import DRAWS, Asked, Predicted, predict
 
 RADIANT_S, DT_S = 3.0, 0.01
 
@@ -104,9 +104,9 @@ def whole_body_warmth(
     return predict("whole-body warmth", asked, variable, draws, seed)
 
 
-def _flux_felt(area_m2: float | None, subject: Subject) -> float:
+def _flux_felt(area_m2: float | None, observer: Observer) -> float:
     """Flux whose largest warm sensation is 1, by bisection of its logarithm."""
-    (rig, warmed), observer = _forearm(), subject.observer
+    rig, warmed = _forearm()
     rest, change = rig.skin.rest_C, warmed.warm_receptor_K
     if observer.variable == "heat flow":
         rest, change = rig.resting_flux_W_per_m2, warmed.warm_receptor_W_per_m2

@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, Channel, Variable, sign_of
-from ..observer.observer import load_thresholds
-from ..observer.parts import Transducer, conduction_s
-from ..observer.people import YOUNG_YEARS
+from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.constants import Both
+from ..observer.observer import Observer
 from ..sensation.detection import quarters
-from ..sensation.sensation import NO_LIMIT_C, area_factor
+from ..sensation.sensation import area_factor
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
 
 DT_S = 0.025
@@ -92,10 +91,10 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """Constants by name, as `priors.toml` names them, for one sensory variable; `people` of a seed take part."""
+    """Constants, and how much more sensitive (ln) its people are under each name; `people` of a seed take part."""
 
-    values: Mapping[str, float]
-    variable: Variable = "temperature"
+    constants: Observer
+    offsets: Mapping[str, Both[float]]
     people: int = PEOPLE
     seed: int = SEED
 
@@ -108,24 +107,19 @@ class Laboratory:
     def sensitivity(self) -> dict[Channel, Array]:
         """Sensitivity of each person (people,) over the median person's, by channel."""
         normal = self._correlated(0)
-        return {c: np.exp(self.values[f"{c} sensitivity between people"] * normal[c]) for c in CHANNELS}
+        return {c: np.exp(self.constants.sensitivity_between.of(c) * normal[c]) for c in CHANNELS}
 
     @cached_property
     def caution(self) -> dict[Channel, Array]:
         """Criterion of each person (people,) over the median person's, by channel."""
         normal = self._correlated(2)
-        return {c: np.exp(self.values["criterion between people"] * normal[c]) for c in CHANNELS}
+        return {c: np.exp(self.constants.criterion_between * normal[c]) for c in CHANNELS}
 
     def _correlated(self, column: int) -> dict[Channel, Array]:
         """Standard normal numbers of both channels, correlated as people's sensitivities and criteria are."""
-        shared, z = self.values["correlation of cold and warm"], self.crowd.people
+        shared, z = self.constants.correlation, self.crowd.people
         warm: Array = shared * z[:, column] + math.sqrt(1.0 - shared**2) * z[:, column + 1]
         return {"cold": z[:, column], "warm": warm}
-
-    @cached_property
-    def transducer(self) -> Transducer:
-        """How drive becomes sensation."""
-        return Transducer(self.values["slope of sensation"], self.values["transducer exponent"])
 
     @cached_property
     def _lanes(self) -> dict[Channel, tuple[Array, Array, Samples]]:
@@ -136,7 +130,7 @@ class Laboratory:
         lanes = {}
         for channel in CHANNELS:
             order = np.argsort(self.caution[channel])
-            gains = np.log(self.sensitivity[channel][order])[:, None] + self.values["gain noise"] * self.crowd.gains
+            gains = np.log(self.sensitivity[channel][order])[:, None] + self.constants.gain_noise * self.crowd.gains
             cautions = np.repeat(self.caution[channel][order], self.crowd.gains.size)
             lanes[channel] = gains.ravel(), cautions, np.argsort(order)
         return lanes
@@ -151,8 +145,8 @@ class Laboratory:
     ) -> tuple[Array, float]:
         known = self._responses.get((site_rig, channel))
         if known is None or known[0].size < rows:
-            ramp = skin.ramp_response(depth_m, DT_S, max(rows, LEAST_ROWS), self.variable)
-            known = ramp, skin.at(depth_m, self.variable)[0]
+            ramp = skin.ramp_response(depth_m, DT_S, max(rows, LEAST_ROWS), self.constants.variable)
+            known = ramp, skin.at(depth_m, self.constants.variable)[0]
             self._responses[site_rig, channel] = known
         return known
 
@@ -161,7 +155,7 @@ class Laboratory:
         from ..kernels import passage as first_passage
 
         logs = first_passage.LOG_U_FROM + first_passage.LOG_U_STEP * np.arange(first_passage.LOG_U_POINTS)
-        return self.transducer.psi(np.exp(logs))
+        return self.constants.psi(np.exp(logs))
 
     def drive(
         self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], end_s: float
@@ -169,29 +163,27 @@ class Laboratory:
         """Receptor drive (rows,) of one channel, every DT_S, under a thermode that goes from corner to corner."""
         from ..kernels.kernels import adapted_drive
 
-        values = self.values
-        skin = skin_modes(site_rig, values["contact resistance of a thermode"], values["effusivity of living skin"])
-        depth = skin.corneum_m + 1e-3 * values[f"{channel} receptor depth"]
+        constants = self.constants
+        skin = skin_modes(site_rig, constants.contact_m2K_per_W, constants.effusivity)
+        depth = skin.corneum_m + constants.depth_m.of(channel)
         rows = round(end_s / DT_S) + 1
         ramp, steady = self._response(site_rig, channel, skin, depth, rows)
-        baseline = skin.resting(baseline_C, steady, self.variable)
+        baseline = skin.resting(baseline_C, steady, constants.variable)
         received = course_of(ramp, baseline, corners, DT_S, rows)
-        neutral = _published().neutral_C
-        if self.variable == "heat flow":  # whose limits are so far away that they do nothing
+        neutral = constants.neutral_C
+        if constants.variable == "heat flow":
             flows = sorted(skin.baseline(level, depth, "heat flow") for level in neutral)
-            limit, neutral = -NO_LIMIT_C * sign_of(channel), (flows[0], flows[1])
-        else:
-            limit = values[f"{channel} limit"]
+            neutral = flows[0], flows[1]
         drive = np.empty((1, rows))
         adapted_drive(
             received[None],
             DT_S,
             sign_of(channel),
-            limit,
-            values["softness of the limits"],
+            constants.limit_C.of(channel),
+            constants.softness_K,
             *neutral,
-            values["integration time"],
-            values["slow adaptation time"],
+            constants.integration_s,
+            constants.adaptation_s,
             drive,
         )
         row: Array = drive[0]
@@ -199,18 +191,15 @@ class Laboratory:
 
     def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:
         """Multiples of threshold per unit of drive of the median person of a laboratory at a site, area and age."""
-        values = self.values
-        gain = area_factor(area_cm2, _published().area_cm2, values[f"{channel} area exponent"])
-        gain /= values[f"{channel} threshold drive"]
-        if site == "forearm":
-            gain /= values[f"{channel} threshold on the forearm"]
-        gain *= math.exp(values["sensitivity between laboratories"] * values[f"{laboratory} {channel}"])
-        decades = (age_years - YOUNG_YEARS) / 10.0
-        return gain * math.exp(-values[f"{channel} sensitivity lost per decade"] * decades)
+        constants = self.constants
+        gain = area_factor(area_cm2, constants.reference_area_m2 * 1e4, constants.area_exponent.of(channel))
+        gain /= constants.threshold_drive.of(channel) * constants.site_factor(channel, site)
+        gain *= math.exp(self.offsets[laboratory].of(channel))
+        return gain / constants.age_factor(age_years, channel)
 
     def delay_s(self, channel: Channel, site: str) -> float:
         """Conduction from a site to the brain, s."""
-        return float(conduction_s(channel, self.values[f"{channel} conduction velocity"], _published().path_m[site]))
+        return float(self.constants.delay_s(channel, self.constants.path_m(site)))
 
     def passages(
         self, drive: Array, samples: Samples, channel: Channel, gain: float, criterion: float
@@ -225,7 +214,7 @@ class Laboratory:
             DT_S * samples,
             log_gains + math.log(gain),
             criterion * cautions,
-            self.values["noise correlation time"],
+            self.constants.noise_correlation_s,
             self._psi_table,
             SHARES,
             times,
@@ -234,9 +223,9 @@ class Laboratory:
 
     def decision_s(self, *, choice: bool) -> Array:
         """Decision times (people, TRIALS) in s, with the time that a choice takes where there is one."""
-        middle = self.values["decision time"] + (self.values["choice time"] if choice else 0.0)
-        between = self.values["decision time between people"] * self.crowd.people[:, 4]
-        within = self.values["decision time between trials"] * self.crowd.decisions
+        middle = self.constants.decision_s + (self.constants.choice_s if choice else 0.0)
+        between = self.constants.decision_between * self.crowd.people[:, 4]
+        within = self.constants.decision_noise * self.crowd.decisions
         times: Array = middle * np.exp(between[:, None] + within)
         return times
 
@@ -252,25 +241,6 @@ class Laboratory:
         caution: float = 1.0,
     ) -> Array:
         """Times (people, TRIALS) in s from the first sample of a drive to the answer; inf where there is none."""
-        criterion = caution * self.values["criterion of speeded answers"]
+        criterion = caution * self.constants.criterion
         crossed, _ = self.passages(drive, samples, channel, gain, criterion)
         return crossed + self.delay_s(channel, site) + self.decision_s(choice=choice)
-
-
-@dataclass(frozen=True, slots=True)
-class _Published:
-    """Numbers of thresholds.toml that are not inferred: reference area, neutral zone, paths to the cord by site."""
-
-    area_cm2: float
-    neutral_C: tuple[float, float]
-    path_m: Mapping[str, float]
-
-
-@lru_cache(maxsize=1)
-def _published() -> _Published:
-    known = load_thresholds()
-    return _Published(
-        known.one("thermode area of the forced-choice thresholds").central,
-        known.one("complete adaptation").interval,
-        {site: known.one("path length to the cord", site=site).central for site in ("hand", "forearm")},
-    )

@@ -79,7 +79,7 @@ class Played:
     def reported(self, gain: float) -> Array:
         """Share of trials (people,) in which it is reported to a question without haste."""
         samples = samples_of(self.ramp.corners, self.ramp.end_s)
-        criterion = self.laboratory.values["criterion of yes and no"]
+        criterion = self.laboratory.constants.unhurried
         passed = self.laboratory.passages(self.drive, samples, self.ramp.channel, gain, criterion)[1]
         found: Array = passed.mean(axis=1)
         return found

@@ -19,18 +19,17 @@ from thermicon.circuit.records import Table
 from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import Norm, Variable
+from ..observer.constants import name_of
 from ..observer.draws import laboratory_with
+from ..observer.mechanisms.memory import MEMORY_NAMES, MISSING
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
-from ..observer.parts import MEMORY_NAMES, NOISE
 from ..observer.people import People
 from ..sensation.detection import pooled
 from .measures import information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
 from .task import USUAL, Task
 
-NAMED_ALONE = "cost of a missing episode"
-"""The constant of memory that the norm `naming` alone makes use of."""
 LOG_FROM = 1.5
 """An interval whose ends are in a larger ratio than this is drawn in its logarithm."""
 
@@ -84,9 +83,9 @@ def memory_parameters(norm: Norm, records: Table | None = None) -> tuple[Uncerta
     """
     found = []
     for record in variant_records() if records is None else records:
-        name = NOISE if record.quantity == "memory noise" else record.quantity
+        name = name_of(record)
         low, high = record.interval
-        if name in MEMORY_NAMES and (name != NAMED_ALONE or norm == "naming") and low < high:
+        if name in MEMORY_NAMES and (name != MISSING or norm == "naming") and low < high:
             found.append(Uncertain(name, low, high, record.unit))
     return tuple(found)
 

@@ -75,8 +75,7 @@ def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> floa
     wanted = math.sqrt(2.0) * NormalDist().inv_cdf(proportion)
 
     def missed(log_noise: float) -> float:
-        memory = replace(observer.memory, timing=math.exp(log_noise), share=0.0)
-        person = replace(observer, memory=memory)
+        person = replace(observer, timing_noise=math.exp(log_noise), rated_share=0.0)
         return float(episode_distances(episodes, episodes, person, "episodes")[0, 0, 1]) - wanted
 
     low, high = LOG_NOISE

@@ -16,15 +16,13 @@ from thermicon.circuit.records import Record
 from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
-from .channels import CHANNELS, Channel
-from .observer import load_thresholds, observer_records
+from .channels import CHANNELS
+from .observer import Observer, load_thresholds, observer_records
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 STANDARD = NormalDist()
-YOUNG_YEARS, OLD_YEARS = 25.0, 65.0
-"""Age at which thresholds are the observer's, and an age at which they are old."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +59,7 @@ class People:
     def nominal(cls, n: int = 1) -> People:
         """The nominal person, n times: every multiplier 1, decision time and lapse as the observer has them."""
         record = people_records()
-        own = {"decision_s": observer_records().one("decision time").central, "lapse": record["lapse"].central}
+        own = {"decision_s": Observer.load().decision_s, "lapse": record["lapse"].central}
         return cls(**{field.name: np.full(n, own.get(field.name, 1.0)) for field in fields(cls)})
 
     def part(self, start: int, stop: int) -> People:
@@ -92,7 +90,7 @@ def draw_people(
     seed: int = 0,
     *,
     age_years: float | None = None,
-    spreads: Mapping[str, float] | None = None,
+    observer: Observer | None = None,
 ) -> People:
     """Draw n virtual people; person i is the same whatever n is.
 
@@ -108,9 +106,8 @@ def draw_people(
     age_years
         Age of all of them, which multiplies thresholds as `age_factor` says; None leaves age out, which is people of 20
         to 30 years.
-    spreads
-        Other inferred constants of people by name, such as one draw of the posterior; those left out, or None: the
-        shipped ones.
+    observer
+        The median person, whose constants say how people differ; None: the shipped one.
 
     Returns
     -------
@@ -127,25 +124,20 @@ def draw_people(
     >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
     >>> bool((a.memory == b.memory[:3]).all())
     True
-    >>> draw_people(3, spreads={"criterion between people": 0.0}).criterion_cold.tolist()
-    [1.0, 1.0, 1.0]
     """
     if n < 1:
         raise ValueError(f"at least one person is needed, not {n}")
     record = people_records()
     column, normal = _columns(n, seed)
-    constants, inferred = {} if spreads is None else spreads, observer_records()
-    shared = constants.get("correlation of cold and warm", inferred.one("correlation of cold and warm").central)
+    median = Observer.load() if observer is None else observer
+    shared = median.correlation
 
     def lognormal(name: str, sd: float) -> Array:
         return np.exp(sd * normal[name])
 
-    def both(what: str) -> tuple[Array, Array]:
+    def both(what: str, sd_cold: float, sd_warm: float) -> tuple[Array, Array]:
         cold, own = (normal[f"{what}_{channel}"] for channel in CHANNELS)
         warm = shared * cold + math.sqrt(1.0 - shared**2) * own
-        sd_cold, sd_warm = (
-            constants.get(SPREADS[what].format(channel), record[f"{what}_{channel}"].central) for channel in CHANNELS
-        )
         return np.exp(sd_cold * cold), np.exp(sd_warm * warm)
 
     def triangular(name: str) -> Array:
@@ -154,9 +146,9 @@ def draw_people(
         right = high - np.sqrt((1.0 - uniform) * (high - low) * (high - mode))
         return np.where(uniform < (mode - low) / (high - low), left, right)
 
-    aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
-    threshold_cold, threshold_warm = both("threshold")
-    criterion_cold, criterion_warm = both("criterion")
+    aged = [1.0 if age_years is None else median.age_factor(age_years, channel) for channel in CHANNELS]
+    threshold_cold, threshold_warm = both("threshold", *median.sensitivity_between)
+    criterion_cold, criterion_warm = both("criterion", median.criterion_between, median.criterion_between)
     least, most = record["memory"].interval
     return People(
         threshold_cold=aged[0] * threshold_cold,
@@ -167,8 +159,7 @@ def draw_people(
         contact_resistance=lognormal("contact_resistance", math.log1p(record["contact_resistance"].central)),
         outer_layer=lognormal("outer_layer", math.log1p(record["outer_layer"].central)),
         path=triangular("path") / record["path"].central,
-        decision_s=constants.get("decision time", inferred.one("decision time").central)
-        * lognormal("decision_s", constants.get("decision time between people", record["decision_s"].central)),
+        decision_s=median.decision_s * lognormal("decision_s", median.decision_between),
         lapse=triangular("lapse"),
     )
 
@@ -190,8 +181,6 @@ NORMAL = (
     *("contact_resistance", "outer_layer", "decision_s"),
 )
 """Fields whose logarithm is normal."""
-SPREADS = {"threshold": "{} sensitivity between people", "criterion": "criterion between people"}
-"""Inferred constants behind the columns of both channels."""
 
 
 @lru_cache(maxsize=1)
@@ -212,14 +201,6 @@ def people_records() -> Mapping[str, Record]:
         "lapse": table.one("lapse rate"),
     }
     return MappingProxyType(records)
-
-
-def age_factor(age_years: float, channel: Channel) -> float:
-    """Threshold of a channel at an age over that at 25 years."""
-    if not 18.0 <= age_years <= 100.0:
-        raise ValueError(f"an age of {age_years:g} years is not covered: give 18 to 100")
-    lost = observer_records().one("sensitivity lost per decade", channel=channel).central
-    return math.exp(lost * (age_years - YOUNG_YEARS) / 10.0)
 
 
 def _normal(uniform: Array) -> Array:

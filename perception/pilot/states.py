@@ -20,7 +20,8 @@ from thermicon.circuit.records import Table
 from ..arrays import Array
 from ..identification.laboratory_draws import Uncertain, latin, memory_parameters
 from ..observer.channels import CHANNELS, Norm
-from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws, laboratory_with
+from ..observer.constants import BETWEEN_LABORATORIES
+from ..observer.draws import PosteriorDraws, laboratory_with
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People

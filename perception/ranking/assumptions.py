@@ -22,7 +22,8 @@ import numpy as np
 from ..arrays import Array
 from ..identification.laboratory_draws import LaboratoryDraws
 from ..observer.channels import CHANNELS
-from ..observer.observer import Observer, on_forearm
+from ..observer.mechanisms.site import on_forearm
+from ..observer.observer import Observer
 from ..observer.people import People, people_records
 from ..sensation.coverage import nearest_site, outside_site
 from ..sensation.sensation import sensitivity

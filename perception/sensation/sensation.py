@@ -31,8 +31,6 @@ FIELD_CM2 = 0.25
 """Area of a receptive field 5 mm wide, as a square (Campero et al. 2001)."""
 END_CM2 = 200.0
 """Area where summation ends; between 100 and 400 (Hardy & Oppel 1937)."""
-NO_LIMIT_C = 1e6
-"""So far away that a limit does nothing."""
 
 
 def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer: Observer) -> Array:
@@ -46,14 +44,11 @@ def receptor_drive(received: ArrayLike, dt_s: float, channel: Channel, observer:
 
     rows, shape = as_rows(received)
     drive = np.empty_like(rows)
-    receptor, sign = observer.receptor(channel), sign_of(channel)
-    limit = -NO_LIMIT_C * sign if receptor.limit_C is None else receptor.limit_C
-    low, high = observer.neutral(channel)
-
-    times = observer.integration_s, receptor.adaptation_s
+    sign, limit, (low, high) = sign_of(channel), observer.limit_C.of(channel), observer.neutral(channel)
+    times = observer.integration_s, observer.adaptation_s
 
     def work(part: slice) -> None:
-        adapted_drive(rows[part], dt_s, sign, limit, receptor.softness_K, low, high, *times, drive[part])
+        adapted_drive(rows[part], dt_s, sign, limit, observer.softness_K, low, high, *times, drive[part])
 
     over_rows(work, rows.shape[0], rows.size)
     return drive.reshape(shape)
@@ -80,12 +75,12 @@ def sensation(
     rows, shape = as_rows(drive)
     psi = np.empty(shape) if out is None else out
     felt = psi.reshape(rows.shape)
-    unit = observer.receptor(channel).threshold_drive / sensitivity(channel, observer, area_m2, site)
+    unit = observer.threshold_drive.of(channel) / sensitivity(channel, observer, area_m2, site)
     multiples = np.broadcast_to(np.asarray(threshold, dtype=np.float64), shape[:-1])
     scale = np.ascontiguousarray(1.0 / (unit * multiples)).reshape(-1)
 
     def work(part: slice) -> None:
-        kernels.sensation(rows[part], scale[part], observer.a, observer.p, observer.transducer.b, felt[part])
+        kernels.sensation(rows[part], scale[part], observer.a, observer.p, observer.b, felt[part])
 
     over_rows(work, rows.shape[0], rows.size)
     return psi
@@ -98,7 +93,7 @@ def sensitivity(channel: Channel, observer: Observer, area_m2: float | None, sit
         return 1.0 / factor
     if not area_m2 > 0.0:
         raise ValueError(f"the area of contact must be above 0 m², not {area_m2:g} m²")
-    exponent = observer.receptor(channel).area_exponent
+    exponent = observer.area_exponent.of(channel)
     return area_factor(area_m2 / CM2, observer.reference_area_m2 / CM2, exponent) / factor
 
 

@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermicon.perception.arrays import Array, own_arrays
-from thermicon.perception.evidence.results import Constant, load_constants
 from thermicon.perception.experiments.skin_modes import Corner, SkinModes, skin_modes
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
+from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
-from thermicon.perception.observer.parts import Transducer
 from thermicon.perception.sensation.detection import detect
 from thermicon.perception.sensation.sensation import receptor_drive, sensation, sensitivity
 
@@ -61,7 +60,7 @@ class Effect:
 def limits_effect() -> Effect:
     """A slow fall from 38 to 31 °C: cold with its limit and without, and warmth, which is what fades first."""
     time, whole = _clock(12.0), Observer.load()
-    free = replace(whole, cold=replace(whole.cold, limit_C=None))
+    free = replace(whole, limit_C=NO_LIMIT_C)
     corners: list[Corner] = [(1.0, 0.0), (8.0, -7.0)]
     curves = [
         Curve("warm", "warm", time, _felt(corners, "warm", whole, time, baseline_C=38.0)),
@@ -91,7 +90,7 @@ def adaptation_effect() -> Effect:
 
 def depth_effect() -> Effect:
     """A fall by 5 K in 0.5 s at the cold receptors of thenar and forearm, for both ways to count their depth."""
-    time, depth = _clock(4.0), 1e-3 * _value("cold receptor depth")
+    time, depth = _clock(4.0), Observer.load().depth_m.cold
     sites: tuple[tuple[str, Look, Look], ...] = (("forearm", "cold", "off"), ("thenar", "reference", "other"))
     curves = []
     for site, below, surface in sites:
@@ -115,7 +114,7 @@ def summation_effect() -> Effect:
         curves.append(Curve(channel, channel, area, ratio))
     ends_off: tuple[tuple[Channel, Look], ...] = (("cold", "off"), ("warm", "other"))
     for channel, look in ends_off:
-        power = (area / (observer.reference_area_m2 * 1e4)) ** observer.receptor(channel).area_exponent
+        power = (area / (observer.reference_area_m2 * 1e4)) ** observer.area_exponent.of(channel)
         curves.append(Curve(f"{channel}, no ends", look, area, power))
     title = "Sensitivity by area of contact (1 at 9 cm²)"
     return Effect("summation", title, "area of contact (cm²)", "sensitivity", tuple(curves), log_x=True, log_y=True)
@@ -125,9 +124,9 @@ def transducer_effect() -> Effect:
     """Sensation against drive for the inferred exponent, a linear observer and the square law."""
     drive, whole = np.geomspace(0.2, 60.0, 120), Observer.load()
     curves = [
-        Curve(f"p = {whole.p:.2g} (inferred)", "cold", drive, whole.transducer.psi(drive)),
-        Curve("p = 1 (linear near threshold)", "reference", drive, Transducer(whole.a, 1.0).psi(drive)),
-        Curve("p = 2 (square law)", "off", drive, Transducer(whole.a, 2.0).psi(drive)),
+        Curve(f"p = {whole.p:.2g} (inferred)", "cold", drive, whole.psi(drive)),
+        Curve("p = 1 (linear near threshold)", "reference", drive, replace(whole, p=1.0).psi(drive)),
+        Curve("p = 2 (square law)", "off", drive, replace(whole, p=2.0).psi(drive)),
     ]
     title = "Sensation by receptor drive"
     return Effect(
@@ -151,10 +150,10 @@ def criteria_effect() -> Effect:
     """The same for people with a low, a middle and a high criterion."""
     from scipy.special import ndtri
 
-    sizes, observer, spread = np.linspace(0.02, 3.0, 60), Observer.load(), _value("criterion between people")
+    sizes, observer = np.linspace(0.02, 3.0, 60), Observer.load()
 
     def noticed(share: float) -> Array:
-        return _noticed(sizes, observer, float(np.exp(spread * ndtri(share))))
+        return _noticed(sizes, observer, float(np.exp(observer.criterion_between * ndtri(share))))
 
     words = ("lax (5th percentile)", "middle", "cautious (95th percentile)")
     looks: tuple[Look, ...] = ("other", "cold", "reference")
@@ -183,16 +182,8 @@ def _clock(end_s: float) -> Array:
     return clock
 
 
-def _value(name: str) -> float:
-    return _constants()[name].value
-
-
-def _constants() -> dict[str, Constant]:
-    return {each.name: each for each in load_constants()}
-
-
 def _skin(site: str) -> SkinModes:
-    return skin_modes(site, _value("contact resistance of a thermode"), _value("effusivity of living skin"))
+    return skin_modes(site, Observer.load().contact_m2K_per_W, Observer.load().effusivity)
 
 
 def _felt(
@@ -200,7 +191,7 @@ def _felt(
 ) -> Array:
     """Sensation (n_time,) of a thermode on the forearm that goes from corner to corner."""
     skin = _skin("forearm")
-    depth = skin.corneum_m + 1e-3 * _value(f"{channel} receptor depth")
+    depth = skin.corneum_m + observer.depth_m.of(channel)
     received = skin.course(depth, baseline_C, corners, DT_S, time.size)
     drive = receptor_drive(received, DT_S, channel, observer)
     return sensation(drive, channel, observer, area_m2=STRIPS_CM2 * 1e-4, site="forearm")

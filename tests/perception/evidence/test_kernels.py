@@ -8,15 +8,15 @@ import pytest
 
 from tests.perception.survival import log_survival
 from thermicon.perception import Observer
-from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samples_of
 from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.passage import psychometric
-from thermicon.perception.observer.parts import Transducer, conduction_s
+from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.mechanisms.transducer import Transducer
 from thermicon.perception.sensation.sensation import area_factor, summed_area_cm2
 
 DT = 0.025
-TRANSDUCER = Transducer(11.0, 1.2)
+TRANSDUCER = Transducer(a=11.0, p=1.2)
 TABLE = TRANSDUCER.psi(np.exp(kernels.LOG_U_FROM + kernels.LOG_U_STEP * np.arange(kernels.LOG_U_POINTS)))
 
 
@@ -90,7 +90,7 @@ def test_sizes_at_shares_are_read_between_and_beyond() -> None:
 
 @pytest.mark.parametrize(("a", "p"), [(12.0, 1.0), (6.0, 2.0), (30.0, 0.7)])
 def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: float, p: float) -> None:
-    transducer = Transducer(a, p)
+    transducer = Transducer(a=a, p=p)
     assert float(transducer.psi(1.0)) == pytest.approx(1.0)
     low = float(transducer.psi(2e-4) / transducer.psi(1e-4))
     assert math.log2(low) == pytest.approx(p, abs=0.01)
@@ -111,13 +111,12 @@ def test_summation_has_two_ends() -> None:
 
 
 def test_the_spine_adds_to_the_nerve() -> None:
-    assert conduction_s("cold", 6.0, 0.7) == pytest.approx(0.7 / 6.0 + 0.225 / 12.0)
-    assert conduction_s("warm", 1.0, [0.7, 0.4]) == pytest.approx([0.7 + 0.225 / 2.0, 0.4 + 0.225 / 2.0])
+    nerves = replace(Observer.load(), velocity_m_per_s=Both(6.0, 1.0))
+    assert nerves.delay_s("cold", 0.7) == pytest.approx(0.7 / 6.0 + 0.225 / 12.0)
+    assert nerves.delay_s("warm", [0.7, 0.4]) == pytest.approx([0.7 + 0.225 / 2.0, 0.4 + 0.225 / 2.0])
 
 
 def test_a_later_decade_raises_thresholds() -> None:
-    posterior = Posterior()
-    laboratory = Laboratory(posterior.values(np.zeros(len(posterior.priors))))
+    laboratory = Laboratory(Observer.load(), {"E3": Both(0.0, 0.0)})
     young, old = (laboratory.gain("cold", 9.0, "E3", "hand", years) for years in (25.0, 65.0))
-    lost = laboratory.values["cold sensitivity lost per decade"]
-    assert math.log(young / old) == pytest.approx(4.0 * lost)
+    assert math.log(young / old) == pytest.approx(4.0 * Observer.load().lost_per_decade.cold)

@@ -20,20 +20,21 @@ from thermicon.perception.experiments import published as experiments
 from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.published import PEAKS_C, STRIP_CM2, TWO_STRIPS_CM2, Predictions
 from thermicon.perception.observer.channels import CHANNELS, Channel
+from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.priors import LABORATORIES
 from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
 from thermicon.perception.sensation.detection import detect, time_of
 from thermicon.perception.sensation.sensation import receptor_drive, sensitivity
 
-NOBODY_DIFFERS = (
-    *(f"{channel} sensitivity {among}" for channel in CHANNELS for among in ("between people", "lost per decade")),
-    *("criterion between people", "decision time between people", "sensitivity between laboratories"),
-)
 VALUES = {each.name: each.value for each in load_constants()}
 
 
 @pytest.fixture(scope="module")
 def predicted() -> Predictions:
-    laboratory = Laboratory({**VALUES, **dict.fromkeys(NOBODY_DIFFERS, 1e-9)})
+    nobody = Both(1e-9, 1e-9)
+    alike = {"sensitivity_between": nobody, "lost_per_decade": nobody, "decision_between": 1e-9}
+    person = replace(Observer.from_values(VALUES), criterion_between=1e-9, **alike)
+    laboratory = Laboratory(person, dict.fromkeys(LABORATORIES, nobody))
     with np.errstate(divide="ignore", invalid="ignore"):  # correlations of people who do not differ
         return experiments.predict(laboratory)
 
@@ -80,7 +81,7 @@ def multiple(stimulus: Stimulus, channel: Channel, person: Observer) -> float:
     """Largest drive in multiples of threshold."""
     drive = receptor_drive(stimulus.received("temperature", channel)[0], stimulus.dt_s, channel, person).max()
     sensitive = sensitivity(channel, person, stimulus.area_m2, stimulus.site)
-    return float(drive * sensitive / person.receptor(channel).threshold_drive)
+    return float(drive * sensitive / person.threshold_drive.of(channel))
 
 
 def rating(on: Bench, channel: Channel, person: Observer) -> tuple[float, float]:

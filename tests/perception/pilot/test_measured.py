@@ -11,6 +11,7 @@ from thermicon.icons import read_cue
 from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.experiments.tasks import DISCREPANCY
+from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import Measured, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
@@ -58,10 +59,10 @@ def test_the_likelihood_is_that_of_one_normal_vector(prior: LaboratoryPrior) -> 
 
 
 def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPrior) -> None:
-    values = {**prior.draws.draw(0), "thenar cold": 0.0}
-    setting = Setting("thenar", values["contact resistance of a thermode"], 9.0)
-    logs, _ = logs_of(setting.laboratory(values, (0.0, 0.0), "temperature"), setting, CHOICE)
-    plain = Laboratory(values)
+    person = prior.draws.observer(0)
+    setting = Setting("thenar", person.contact_m2K_per_W, 9.0)
+    logs, _ = logs_of(setting.laboratory(person, (0.0, 0.0)), setting, CHOICE)
+    plain = Laboratory(person, {"thenar": Both(0.0, 0.0)})
     size = float(np.exp(logs.mean()))
     drive = plain.drive("thenar", "cold", 32.0, [(size, -size)], size + 3.0).max()
     assert drive * plain.gain("cold", 9.0, "thenar", "hand", 25.0) == pytest.approx(1.0, rel=0.03)

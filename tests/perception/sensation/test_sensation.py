@@ -8,6 +8,7 @@ import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.observer.channels import Channel, Variable
+from thermicon.perception.observer.constants import Both
 from thermicon.perception.sensation.sensation import area_factor, receptor_drive, sensation
 
 
@@ -18,7 +19,7 @@ def low_pass_of_ramp(t: np.ndarray, slope: float, tau: float) -> np.ndarray:
 @pytest.mark.parametrize("dt", [0.01, 0.1, 0.5])
 def test_drive_of_a_ramp_is_exact_at_any_step(observer: Observer, dt: float) -> None:
     t = np.arange(0.0, 4.0 + dt / 2, dt)
-    warm = low_pass_of_ramp(t, 0.7, 0.1) - low_pass_of_ramp(t, 0.7, 14.0)
+    warm = low_pass_of_ramp(t, 0.7, 0.1) - low_pass_of_ramp(t, 0.7, 20.0)
     assert receptor_drive(32.0 + 0.7 * t, dt, "warm", observer) == pytest.approx(np.maximum(warm, 0.0), abs=1e-12)
     cold = low_pass_of_ramp(t, 0.4, 0.1) - low_pass_of_ramp(t, 0.4, 20.0)
     assert receptor_drive(32.0 - 0.4 * t, dt, "cold", observer) == pytest.approx(np.maximum(cold, 0.0), abs=1e-12)
@@ -30,8 +31,8 @@ def test_filters_agree_with_scipy_on_noise(observer: Observer) -> None:
     rng = np.random.default_rng(3)
     t = np.arange(400) * 0.05
     change = np.concatenate([[0.0], np.cumsum(rng.normal(0, 0.02, t.size - 1))])
-    # 1/(1 + 0.1 s) − 1/(1 + 14 s): integration less adaptation.
-    system = ([14.0 - 0.1, 0.0], np.polymul([14.0, 1.0], [0.1, 1.0]))
+    # 1/(1 + 0.1 s) − 1/(1 + 20 s): integration less adaptation.
+    system = ([20.0 - 0.1, 0.0], np.polymul([20.0, 1.0], [0.1, 1.0]))
     _, expected, _ = lsim(system, change, t)
     warm = receptor_drive(32.0 + change, 0.05, "warm", observer)
     assert warm == pytest.approx(np.maximum(expected, 0.0), abs=1e-9)
@@ -44,8 +45,8 @@ def test_filters_agree_with_scipy_on_noise(observer: Observer) -> None:
 def test_adaptation_is_complete_inside_the_neutral_zone_only(
     observer: Observer, variable: Variable, before: float, inside: float, outside: float, left: float
 ) -> None:
-    cold, warm = (replace(each, neutral_flux=(-140.0, 40.0)) for each in (observer.cold, observer.warm))
-    person, t = replace(observer, variable=variable, cold=cold, warm=warm), np.arange(0.0, 300.0, 0.05)
+    flux = Both((-140.0, 40.0), (-140.0, 40.0))
+    person, t = replace(observer, variable=variable, neutral_flux=flux), np.arange(0.0, 300.0, 0.05)
     near, far = (receptor_drive(np.where(t > 1.0, x, before), 0.05, "cold", person) for x in (inside, outside))
     assert near.max() > 0.7 * (before - inside)
     assert near[-1] == pytest.approx(0.0, abs=1e-5 * left)
@@ -58,8 +59,7 @@ def test_a_baseline_outside_the_zone_starts_with_its_residue(observer: Observer)
 
 
 def limited(observer: Observer, softness_K: float = 0.1) -> Observer:
-    cold = replace(observer.cold, limit_C=33.0, softness_K=softness_K)
-    return replace(observer, cold=cold, warm=replace(observer.warm, limit_C=31.0, softness_K=softness_K))
+    return replace(observer, limit_C=Both(33.0, 31.0), softness_K=softness_K)
 
 
 def test_there_is_no_cold_above_its_limit_and_no_warmth_below(observer: Observer) -> None:
@@ -95,7 +95,7 @@ def test_sensation_is_a_power_then_logarithmic(observer: Observer, channel: Chan
     assert psi[3] == pytest.approx(1.0, rel=1e-12)
     assert psi[2] / psi[1] == pytest.approx(4.0, rel=1e-3)
     assert psi[5] - psi[4] == pytest.approx(2 * 12.0 * math.log(2.0), rel=1e-2)
-    assert psi == pytest.approx(observer.transducer.psi(u), rel=1e-12)
+    assert psi == pytest.approx(observer.psi(u), rel=1e-12)
 
 
 def test_area_and_person_scale_the_drive(observer: Observer) -> None:

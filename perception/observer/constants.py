@@ -1,0 +1,155 @@
+"""Names of constants: the one place that knows how files, draws and priors call the fields of the mechanisms.
+
+A mechanism declares its constants as fields with `constant`. From these declarations an observer is built, a file of
+records is read, and a table of draws is checked.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import MISSING, Field, field, fields
+from typing import Any, Generic, NamedTuple, TypeVar
+
+from thermicon.circuit.records import Record, Table
+
+from .channels import CHANNELS, Channel, Variable, source_of
+
+T = TypeVar("T")
+Range = tuple[float, float]
+ABOVE_0: Range = (math.nextafter(0.0, 1.0), math.inf)
+FROM_0: Range = (0.0, math.inf)
+SHARE: Range = (0.0, 1.0)
+CORRELATION: Range = (-1.0, 1.0)
+ANY: Range = (-math.inf, math.inf)
+QUANTITIES: Mapping[str, str] = {
+    "memory noise (episodes)": "memory noise",
+    "path of the hand": "path length to the cord",
+    "path of the forearm": "path length to the cord",
+}
+"""Quantities of records, where they are not the constant's name without its channel."""
+
+
+class Both(NamedTuple, Generic[T]):
+    """A constant of which each channel has its own."""
+
+    cold: T
+    warm: T
+
+    def of(self, channel: Channel) -> T:
+        """The channel's."""
+        return self.cold if channel == "cold" else self.warm
+
+
+def constant(
+    name: str,
+    within: Range = ABOVE_0,
+    *,
+    default: Any = MISSING,
+    scale: float = 1.0,
+    only: Variable | None = None,
+    task: bool = False,
+    span: bool = False,
+    **keys: str,
+) -> Any:
+    """A field of a mechanism by the `name` of its prior, with {} for the channel where each has its own.
+
+    Its value is `scale` times that of files, and lies `within` a range. `only` is the variant that has it, `keys` are
+    those of its record in an observer file. One of laboratory tasks alone (`task`) may be missing there; of one that is
+    a `span`, the ends are the value.
+    """
+    about = {"name": name, "within": within, "scale": scale, "only": only, "task": task, "span": span, "keys": keys}
+    return field(default=default, metadata=about)
+
+
+def constants_of(kind: Any, variable: Variable | None = None) -> Iterator[Field[Any]]:
+    """The declared constants of an observer or a mechanism, those of other variants left out."""
+    for each in fields(kind):
+        if each.metadata and (variable is None or each.metadata["only"] in (None, variable)):
+            yield each
+
+
+def names_of(kind: Any, *chosen: str) -> tuple[str, ...]:
+    """Names of some fields, or of all constants, in their order."""
+    held = [each for each in constants_of(kind) if not chosen or each.name in chosen]
+    return tuple(name for each in held for name in _names(each))
+
+
+def ranges_of(kind: Any) -> dict[str, Range]:
+    """Where values of the constants lie, by name."""
+    return {name: each.metadata["within"] for each in constants_of(kind) for name in _names(each)}
+
+
+def _names(each: Field[Any]) -> list[str]:
+    name = each.metadata["name"]
+    return [name.format(channel) for channel in CHANNELS] if "{}" in name else [name]
+
+
+def name_of(record: Record) -> str:
+    """Name of the constant that a record of an observer file holds."""
+    name = f"{record.channel} {record.quantity}" if record.channel in CHANNELS else record.quantity
+    return next((own for own, quantity in QUANTITIES.items() if quantity == name), name)
+
+
+def values_in(table: Table, kind: Any, variable: Variable, shipped: Table) -> dict[str, Any]:
+    """Values of a table by name; a variant's own number stands under the quantity's name with the variant's ending.
+
+    Constants of laboratory tasks that it lacks are the shipped ones, what has a default is left out. Any other missing
+    quantity is a `RecordError`.
+    """
+    ending, there, found = source_of(variable), {record.quantity for record in table}, {}
+    for each in constants_of(kind, variable):
+        about = each.metadata
+        quantity = QUANTITIES.get(about["name"], about["name"].removeprefix("{} "))
+        if each.default is not MISSING and about["only"] is None and quantity not in there:
+            continue
+        for name, channel in zip(_names(each), CHANNELS, strict=False):
+            held = shipped if about["task"] and quantity not in there else table
+            own = f"{quantity}{ending}"
+            own = own if any(record.quantity == own for record in held) else quantity
+            record = held.one(own, **about["keys"], **({"channel": channel} if "{}" in about["name"] else {}))
+            found[name] = record.interval if about["span"] else record.central
+    return found
+
+
+def fields_from(kind: Any, values: Mapping[str, Any], variable: Variable) -> dict[str, Any]:
+    """Fields of an observer from values by name; what is missing keeps its default, further values are left alone."""
+    found: dict[str, Any] = {"variable": variable}
+    for each in constants_of(kind, variable):
+        names, scale = _names(each), each.metadata["scale"]
+        if each.default is not MISSING and names[0] not in values:
+            continue
+        numbers = [values[name] if scale == 1.0 else scale * values[name] for name in names]
+        found[each.name] = Both(*numbers) if len(numbers) > 1 else numbers[0]
+    return found
+
+
+def values_of(held: Any) -> Iterator[tuple[str, Range, Any]]:
+    """Name, range and value of every constant that an observer or a mechanism has; a span is a tuple."""
+    for each in constants_of(held):
+        own, names = getattr(held, each.name), _names(each)
+        if own is not None:
+            yield from (
+                (name, each.metadata["within"], v)
+                for name, v in zip(names, own if len(names) > 1 else (own,), strict=True)
+            )
+
+
+BETWEEN_LABORATORIES = "sensitivity between laboratories"
+"""The spread (ln) of offsets, which is a prior of its own: no constant of a person."""
+
+
+def offsets_in(values: Mapping[str, float], places: Sequence[str]) -> dict[str, Both[float]]:
+    """How much more sensitive (ln) the people of laboratories are, from values by name."""
+    spread = values[BETWEEN_LABORATORIES]
+    return {place: Both(*(spread * values[f"{place} {channel}"] for channel in CHANNELS)) for place in places}
+
+
+def objection_to(within: Range, value: float) -> str | None:
+    """Why a constant cannot have a value; None where it can."""
+    low, high = within
+    if low <= value <= high:
+        return None
+    if within == ABOVE_0:
+        return "must be above 0"
+    return f"must lie in {low:g} to {high:g}" if math.isfinite(high) else f"must be {low:g} or more"
