@@ -79,7 +79,7 @@ class Posterior:
     def predictions(self, vector: Array) -> Predictions:
         """Predictions of every row, left out or not."""
         values = self.values(vector)
-        return predict(Laboratory(Observer.from_values(values, self.variable), offsets_in(values, LABORATORIES)))
+        return predict(Laboratory.of(Observer.from_values(values, self.variable), offsets_in(values, LABORATORIES)))
 
     def residuals(self, vector: Array) -> Array:
         """Misses of rows and distances from the priors' middles, in SDs: half their squares are −log posterior."""

@@ -24,6 +24,7 @@ from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
+from ..observer.people import People
 
 DRAWS = 24
 """Observers drawn for an interval: enough to see its size, not its second digit."""
@@ -53,21 +54,17 @@ class Predicted:
     baseline: float | None = None
 
 
-NOBODY = Both(0.0, 0.0)
-
-
 def laboratory_of(
     person: Observer, setting: Setting, *, people: int | None = None, seed: int = SEED, age_years: float = YOUNG_YEARS
 ) -> Laboratory:
     """A laboratory without an offset that asks this person alone, or `people` of an age, on the skin of a rig."""
-    if people is None:
-        person = replace(person, sensitivity_between=NOBODY, criterion_between=0.0, decision_between=0.0)
     # The skin is the rig's own; age is an offset of sensitivity, in natural logarithms.
     skin = Rig.load(setting.site_rig).skin
     depth_m = Both(*(each - skin.layers[0].thickness_m for each in (skin.cold_receptor_m, skin.warm_receptor_m)))
     met = replace(person, depth_m=depth_m, effusivity=1.0)
     older = [-math.log(person.age_factor(age_years, channel)) for channel in CHANNELS]
-    return setting.laboratory(met, older, people or PEOPLE, seed)
+    made = setting.laboratory(met, older, people or PEOPLE, seed)
+    return made if people is not None else replace(made, people=People.nominal(PEOPLE, person))
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from statistics import NormalDist
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +20,7 @@ from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.constants import Both
 from ..observer.observer import Observer
+from ..observer.people import People, draw_people
 from ..sensation.detection import quarters
 from ..sensation.sensation import area_factor
 from .skin_modes import Corner, SkinModes, course_of, skin_modes
@@ -40,32 +43,11 @@ Samples = NDArray[np.int64]
 """Numbers of the samples of a drive that are enough to count passages."""
 
 
-@dataclass(frozen=True, slots=True)
-class Crowd:
-    """Standard normal numbers: `people` (people, 5) for cold and warm sensitivity, cold and warm criterion, and
-    decision; `decisions` (people, TRIALS) for decision times; `gains` (4,) for the gain of a presentation.
-    """
-
-    people: Array
-    decisions: Array
-    gains: Array
-
-    def __len__(self) -> int:
-        return int(self.people.shape[0])
-
-
 @lru_cache(maxsize=4)
-def draw_crowd(people: int = PEOPLE, seed: int = SEED) -> Crowd:
-    """A crowd whose columns have mean 0 and SD 1."""
-    from scipy.special import ndtri
-    from scipy.stats import qmc
-
-    points = qmc.Sobol(5, seed=seed).random_base2(int(np.ceil(np.log2(people))))[:people]
-    normal = ndtri(np.clip(points, 1e-6, 1.0 - 1e-6))
-    normal = (normal - normal.mean(axis=0)) / normal.std(axis=0)
-    middles = ndtri((np.arange(TRIALS) + 0.5) / TRIALS)
-    decisions = np.random.default_rng(seed).permuted(np.tile(middles, (people, 1)), axis=1)
-    return Crowd(normal, decisions, quarters(1.0))
+def trials_of(people: int, seed: int) -> Array:
+    """Standard normal numbers (people, TRIALS), the same for every person, in an order of each person's own."""
+    middles = [NormalDist().inv_cdf((trial + 0.5) / TRIALS) for trial in range(TRIALS)]
+    return np.random.default_rng(seed).permuted(np.tile(middles, (people, 1)), axis=1)
 
 
 @lru_cache(maxsize=64)
@@ -91,35 +73,19 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
 
 @dataclass(frozen=True)
 class Laboratory:
-    """Constants, and how much more sensitive (ln) its people are under each name; `people` of a seed take part."""
+    """Constants, and how much more sensitive (ln) its people are under each name."""
 
     constants: Observer
     offsets: Mapping[str, Both[float]]
-    people: int = PEOPLE
+    people: People
     seed: int = SEED
 
-    @property
-    def crowd(self) -> Crowd:
-        """The people that take part in every experiment."""
-        return draw_crowd(self.people, self.seed)
-
-    @cached_property
-    def sensitivity(self) -> dict[Channel, Array]:
-        """Sensitivity of each person (people,) over the median person's, by channel."""
-        normal = self._correlated(0)
-        return {c: np.exp(self.constants.sensitivity_between.of(c) * normal[c]) for c in CHANNELS}
-
-    @cached_property
-    def caution(self) -> dict[Channel, Array]:
-        """Criterion of each person (people,) over the median person's, by channel."""
-        normal = self._correlated(2)
-        return {c: np.exp(self.constants.criterion_between * normal[c]) for c in CHANNELS}
-
-    def _correlated(self, column: int) -> dict[Channel, Array]:
-        """Standard normal numbers of both channels, correlated as people's sensitivities and criteria are."""
-        shared, z = self.constants.correlation, self.crowd.people
-        warm: Array = shared * z[:, column] + math.sqrt(1.0 - shared**2) * z[:, column + 1]
-        return {"cold": z[:, column], "warm": warm}
+    @classmethod
+    def of(
+        cls, constants: Observer, offsets: Mapping[str, Both[float]], people: int = PEOPLE, seed: int = SEED
+    ) -> Self:
+        """A laboratory with so many quasi-random people."""
+        return cls(constants, offsets, draw_people(people, seed, observer=constants, how="sobol"), seed)
 
     @cached_property
     def _lanes(self) -> dict[Channel, tuple[Array, Array, Samples]]:
@@ -129,9 +95,10 @@ class Laboratory:
         """
         lanes = {}
         for channel in CHANNELS:
-            order = np.argsort(self.caution[channel])
-            gains = np.log(self.sensitivity[channel][order])[:, None] + self.constants.gain_noise * self.crowd.gains
-            cautions = np.repeat(self.caution[channel][order], self.crowd.gains.size)
+            caution, middles = self.people.criterion(channel), quarters(1.0)
+            order = np.argsort(caution)
+            gains = self.constants.gain_noise * middles - np.log(self.people.threshold(channel)[order])[:, None]
+            cautions = np.repeat(caution[order], middles.size)
             lanes[channel] = gains.ravel(), cautions, np.argsort(order)
         return lanes
 
@@ -223,11 +190,10 @@ class Laboratory:
 
     def decision_s(self, *, choice: bool) -> Array:
         """Decision times (people, TRIALS) in s, with the time that a choice takes where there is one."""
-        middle = self.constants.decision_s + (self.constants.choice_s if choice else 0.0)
-        between = self.constants.decision_between * self.crowd.people[:, 4]
-        within = self.constants.decision_noise * self.crowd.decisions
-        times: Array = middle * np.exp(between[:, None] + within)
-        return times
+        constants, own = self.constants, self.people.decision_s[:, None]
+        longer = 1.0 + (constants.choice_s / constants.decision_s if choice else 0.0)
+        trials = trials_of(len(self.people), self.seed)
+        return np.asarray(longer * own * np.exp(constants.decision_noise * trials))
 
     def answers_s(
         self,

@@ -152,7 +152,7 @@ class Setting:
     ) -> Laboratory:
         """A laboratory that measures here; its people are so much more sensitive (ln), by `offsets`."""
         met = replace(constants, contact_m2K_per_W=self.contact_m2K_per_W)
-        return Laboratory(met, {OWN: Both(*offsets)}, people=people, seed=seed)
+        return Laboratory.of(met, {OWN: Both(*offsets)}, people, seed)
 
 
 def logs_of(
@@ -175,7 +175,7 @@ def logs_of(
         peaks = [Played.of(laboratory, ramp(size, condition.hold_s)).peak for size in sizes_K.tolist()]
         logs = np.maximum.accumulate(np.log(peaks))
         rising = np.append(True, np.diff(logs) > 0.0)
-        wanted = -np.log(gain * laboratory.sensitivity[channel])
+        wanted = np.log(laboratory.people.threshold(channel) / gain)
         return np.interp(wanted, logs[rising], np.log(sizes_K)[rising]), UNSTATED
     assert condition.size_K is not None
     timed = condition.kind == "reaction_time"
@@ -190,7 +190,7 @@ def logs_of(
         return np.median(logs, axis=1), float(np.median(logs.std(axis=1)))
     constants = laboratory.constants
     exponent, unit = constants.rating_exponent.of(channel), constants.rating_at_threshold.of(channel)
-    logs = math.log(unit) + exponent * (math.log(played.peak * gain) + np.log(laboratory.sensitivity[channel]))
+    logs = math.log(unit) + exponent * (math.log(played.peak * gain) - np.log(laboratory.people.threshold(channel)))
     scatter = constants.rating_scatter / math.exp(float(logs.mean()))
     return logs, math.hypot(scatter, exponent * constants.gain_noise)
 

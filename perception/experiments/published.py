@@ -101,7 +101,7 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         yield ("E4", "sigma_gm_age30", channel), float(log_width.mean())
         yield ("E4", "sigma_between_sd_log10_noise_removed", channel), float(log_width.std()) / LN10
         # Age acts on sensitivity alone; people show how a threshold follows sensitivity.
-        log_sensitivity = np.log(laboratory.sensitivity[channel])
+        log_sensitivity = -np.log(laboratory.people.threshold(channel))
         slope = -float(np.cov(log_sensitivity, log_half)[0, 1]) / max(float(log_sensitivity.var(ddof=1)), 1e-9)
         lost = laboratory.constants.lost_per_decade.of(channel)
         yield ("E4", "threshold50_ln_per_decade", channel), slope * lost

@@ -20,11 +20,10 @@ from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import Norm, Variable
 from ..observer.constants import name_of
-from ..observer.draws import laboratory_with
 from ..observer.mechanisms.memory import MEMORY_NAMES, MISSING
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People
+from ..observer.people import People, draw_people
 from ..sensation.detection import pooled
 from .measures import information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
@@ -135,7 +134,8 @@ class DrawnLaboratories:
         """The observer and the people of a laboratory with these values of the constants (constants,)."""
         named = dict(zip(self.names, values.tolist(), strict=True))
         offsets = named[OFFSETS[0]], named[OFFSETS[1]]
-        return laboratory_with(self.variable, named, offsets, people, self.seed, self.age_years)
+        observer = Observer.from_values(named, self.variable)
+        return observer, draw_people(people, self.seed, age_years=self.age_years, observer=observer, offsets=offsets)
 
     def invited(self, people: int) -> NDArray[np.int64]:
         """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""

@@ -7,7 +7,6 @@ inference and stays that of the shipped observer, except in draws of one laborat
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -24,7 +23,6 @@ from .channels import CHANNELS, Variable, check_variable
 from .constants import BETWEEN_LABORATORIES, name_of
 from .draws_file import DrawsHeader, read_draws, shipped_file
 from .observer import Observer, variant_records
-from .people import People, draw_people
 
 NEGLIGIBLE = 1e-3
 """Spread between laboratories (ln) below which draws are those of one: published ones differ by some tenths."""
@@ -142,21 +140,3 @@ class PosteriorDraws:
 def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
     header, (names, draws), (memory_names, memory) = read_draws(file)
     return PosteriorDraws(header, names, draws, memory_names, memory)
-
-
-def laboratory_with(
-    variable: Variable,
-    values: Mapping[str, float],
-    offsets: tuple[float, float],
-    people: int,
-    seed: int,
-    age_years: float | None = None,
-) -> tuple[Observer, People]:
-    """The observer and people of a laboratory with these constants, those of memory among them, and else the shipped.
-
-    Cold and warm `offsets` are how much more sensitive (ln) its people are.
-    """
-    observer = Observer.from_values(values, variable)
-    drawn = draw_people(people, seed, age_years=age_years, observer=observer)
-    cold, warm = math.exp(-offsets[0]) * drawn.threshold_cold, math.exp(-offsets[1]) * drawn.threshold_warm
-    return observer, replace(drawn, threshold_cold=cold, threshold_warm=warm)

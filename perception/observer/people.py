@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from statistics import NormalDist
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from thermicon.circuit.records import Record
 from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
-from .channels import CHANNELS
+from .channels import CHANNELS, Channel
 from .observer import Observer, load_thresholds, observer_records
 
 if TYPE_CHECKING:
@@ -56,11 +56,19 @@ class People:
         return int(self.threshold_cold.size)
 
     @classmethod
-    def nominal(cls, n: int = 1) -> People:
+    def nominal(cls, n: int = 1, observer: Observer | None = None) -> People:
         """The nominal person, n times: every multiplier 1, decision time and lapse as the observer has them."""
-        record = people_records()
-        own = {"decision_s": Observer.load().decision_s, "lapse": record["lapse"].central}
+        median = Observer.load() if observer is None else observer
+        own = {"decision_s": median.decision_s, "lapse": median.lapse}
         return cls(**{field.name: np.full(n, own.get(field.name, 1.0)) for field in fields(cls)})
+
+    def threshold(self, channel: Channel) -> Array:
+        """Multipliers (n,) of a channel's thresholds."""
+        return self.threshold_cold if channel == "cold" else self.threshold_warm
+
+    def criterion(self, channel: Channel) -> Array:
+        """Multipliers (n,) of a channel's criterion."""
+        return self.criterion_cold if channel == "cold" else self.criterion_warm
 
     def part(self, start: int, stop: int) -> People:
         """The persons from one number up to another."""
@@ -91,6 +99,8 @@ def draw_people(
     *,
     age_years: float | None = None,
     observer: Observer | None = None,
+    offsets: Sequence[float] = (0.0, 0.0),
+    how: Literal["random", "sobol"] = "random",
 ) -> People:
     """Draw n virtual people; person i is the same whatever n is.
 
@@ -108,6 +118,11 @@ def draw_people(
         to 30 years.
     observer
         The median person, whose constants say how people differ; None: the shipped one.
+    offsets
+        How much more sensitive (ln) all of them are to cold and to warmth, as people of one laboratory may be.
+    how
+        ``random``, or ``sobol``: people of quasi-random sensitivity, criterion and decision time, evenly spread, who
+        differ in nothing else.
 
     Returns
     -------
@@ -128,7 +143,7 @@ def draw_people(
     if n < 1:
         raise ValueError(f"at least one person is needed, not {n}")
     record = people_records()
-    column, normal = _columns(n, seed)
+    column, normal = _columns(n, seed) if how == "random" else _sobol(n, seed)
     median = Observer.load() if observer is None else observer
     shared = median.correlation
 
@@ -147,12 +162,13 @@ def draw_people(
         return np.where(uniform < (mode - low) / (high - low), left, right)
 
     aged = [1.0 if age_years is None else median.age_factor(age_years, channel) for channel in CHANNELS]
+    cold, warm = (math.exp(-offset) for offset in offsets)
     threshold_cold, threshold_warm = both("threshold", *median.sensitivity_between)
     criterion_cold, criterion_warm = both("criterion", median.criterion_between, median.criterion_between)
     least, most = record["memory"].interval
     return People(
-        threshold_cold=aged[0] * threshold_cold,
-        threshold_warm=aged[1] * threshold_warm,
+        threshold_cold=cold * (aged[0] * threshold_cold),
+        threshold_warm=warm * (aged[1] * threshold_warm),
         criterion_cold=criterion_cold,
         criterion_warm=criterion_warm,
         memory=(least + (most - least) * column["memory"]) / record["memory"].central,
@@ -176,10 +192,23 @@ def _columns(n: int, seed: int) -> tuple[dict[str, Array], dict[str, Array]]:
     return column, normal
 
 
-NORMAL = (
-    *(f"{what}_{channel}" for what in ("threshold", "criterion") for channel in CHANNELS),
-    *("contact_resistance", "outer_layer", "decision_s"),
-)
+@lru_cache(maxsize=8)
+def _sobol(n: int, seed: int) -> tuple[dict[str, Array], dict[str, Array]]:
+    """The same from a Sobol sequence, in columns of mean 0 and SD 1; what else differs is in the middle."""
+    from scipy.special import ndtri
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(len(SPREAD), seed=seed).random_base2(math.ceil(math.log2(n)))[:n]
+    normal = ndtri(np.clip(points, 1e-6, 1.0 - 1e-6))
+    normal = (normal - normal.mean(axis=0)) / normal.std(axis=0)
+    normal[:, :2] *= -1.0  # a high number is a sensitive person
+    middle = {name: np.full(n, 0.5) for name in people_records()}
+    return middle, {name: np.zeros(n) for name in NORMAL} | dict(zip(SPREAD, normal.T, strict=True))
+
+
+SPREAD = (*(f"{what}_{channel}" for what in ("threshold", "criterion") for channel in CHANNELS), "decision_s")
+"""Fields in which people of a Sobol sequence differ."""
+NORMAL = (*SPREAD, "contact_resistance", "outer_layer")
 """Fields whose logarithm is normal."""
 
 

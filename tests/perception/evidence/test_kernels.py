@@ -117,6 +117,6 @@ def test_the_spine_adds_to_the_nerve() -> None:
 
 
 def test_a_later_decade_raises_thresholds() -> None:
-    laboratory = Laboratory(Observer.load(), {"E3": Both(0.0, 0.0)})
+    laboratory = Laboratory.of(Observer.load(), {"E3": Both(0.0, 0.0)})
     young, old = (laboratory.gain("cold", 9.0, "E3", "hand", years) for years in (25.0, 65.0))
     assert math.log(young / old) == pytest.approx(4.0 * Observer.load().lost_per_decade.cold)

@@ -34,7 +34,7 @@ def predicted() -> Predictions:
     nobody = Both(1e-9, 1e-9)
     alike = {"sensitivity_between": nobody, "lost_per_decade": nobody, "decision_between": 1e-9}
     person = replace(Observer.from_values(VALUES), criterion_between=1e-9, **alike)
-    laboratory = Laboratory(person, dict.fromkeys(LABORATORIES, nobody))
+    laboratory = Laboratory.of(person, dict.fromkeys(LABORATORIES, nobody))
     with np.errstate(divide="ignore", invalid="ignore"):  # correlations of people who do not differ
         return experiments.predict(laboratory)
 

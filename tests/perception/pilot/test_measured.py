@@ -62,7 +62,7 @@ def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPri
     person = prior.draws.observer(0)
     setting = Setting("thenar", person.contact_m2K_per_W, 9.0)
     logs, _ = logs_of(setting.laboratory(person, (0.0, 0.0)), setting, CHOICE)
-    plain = Laboratory(person, {"thenar": Both(0.0, 0.0)})
+    plain = Laboratory.of(person, {"thenar": Both(0.0, 0.0)})
     size = float(np.exp(logs.mean()))
     drive = plain.drive("thenar", "cold", 32.0, [(size, -size)], size + 3.0).max()
     assert drive * plain.gain("cold", 9.0, "thenar", "hand", 25.0) == pytest.approx(1.0, rel=0.03)
