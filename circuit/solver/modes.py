@@ -30,6 +30,10 @@ from .network import (
     SKIN,
     Network,
     skin_network_of,
+    smooth_flow_weights,
+    stacked,
+    temperature_weights,
+    thermode_network,
 )
 
 READ = RECORDED[:5]
@@ -218,6 +222,23 @@ class SkinModes:
         rest = self.steady(display_C)
         return np.asarray(rest + (modes - rest) * np.exp(-self.rate_per_s * time_s))
 
+    def per_K(self, row: int) -> float:
+        """Steady change of a reading for each K of the display."""
+        return float(self.direct[row] + self.reading[row] @ (self.drive_per_s / self.rate_per_s))
+
+    def rest(self, row: int, display_C: float) -> float:
+        """A reading under a display held at a temperature in °C for long."""
+        return self.per_K(row) * (display_C - self.deep_C) + float(self.offset_C[row])
+
+    def rise(self, row: int, step_s: float, rows: int) -> Array:
+        """Change (rows,) of a reading, `step_s` apart, under a display that rises by 1 K/s from the first on."""
+        from . import kernel_modes
+
+        response = np.empty(rows)
+        weight = self.reading[row] * self.drive_per_s / self.rate_per_s
+        kernel_modes.rise(float(self.direct[row]), weight, self.rate_per_s, step_s, response)
+        return response
+
     def display_for_skin(
         self, target_C: Array, step_s: float, start_C: float, slew_K_per_s: float, limits_C: tuple[float, float]
     ) -> Array:
@@ -256,15 +277,44 @@ def modes_of(rig: Rig, insulated: bool = False) -> SkinModes:
     return modes_on(skin_network_of(rig), insulated)
 
 
-def modes_on(network: Network, insulated: bool = False, readings: tuple[Index, Array] | None = None) -> SkinModes:
-    """Return the modes of a network's skin; its plates play no part. `readings` are recorded after FELT."""
+@lru_cache(maxsize=64)
+def thermode_modes(
+    rig: Rig, depths_m: tuple[float, ...], contact_m2K_per_W: float, effusivity: float = 1.0
+) -> SkinModes:
+    """Modes of a rig's skin under a thermode of another contact, with so many times the effusivity of living layers.
+
+    After FELT, °C and then W/m² into the skin are read at depths below the face.
+
+    >>> modes = thermode_modes(Rig.load("forearm"), (0.15e-3,), 2.5e-4)
+    >>> modes.rise(len(FELT), 0.5, 3).round(2)
+    array([0.  , 0.11, 0.33])
+    """
+    network = thermode_network(rig, contact_m2K_per_W, effusivity)
+    skin = rig.skin.with_effusivity(effusivity)
+    place = np.concatenate([[0.0], np.cumsum(rig.contact.area_m2 / network.conductance_W_per_K)])
+    at = [contact_m2K_per_W + skin.resistance_to_m2K_per_W(depth) for depth in depths_m]
+    weights = [read(each, place) for read in (temperature_weights, smooth_flow_weights) for each in at]
+    return modes_on(network, readings=stacked(weights), banded=True)
+
+
+def modes_on(
+    network: Network, insulated: bool = False, readings: tuple[Index, Array] | None = None, banded: bool = False
+) -> SkinModes:
+    """Return the modes of a network's skin; its plates play no part. `readings` are recorded after FELT.
+
+    `banded` takes a solver that is quicker for one skin, and rounds otherwise.
+    """
+    from scipy.linalg import eigh_tridiagonal
+
     capacity, g, perfusion = network.capacity_J_per_K, network.conductance_W_per_K, network.perfusion_W_per_K
     first = 0.0 if insulated else float(g[0])
     matrix = np.diag(np.concatenate([[first], g[1:-1]]) + g[1:] + perfusion)
     inner = np.arange(len(capacity) - 1)
     matrix[inner, inner + 1] = matrix[inner + 1, inner] = -g[1:-1]
     root = np.sqrt(capacity)
-    rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
+    matrix /= np.outer(root, root)
+    found = eigh_tridiagonal(np.diag(matrix), np.diag(matrix, 1)) if banded else np.linalg.eigh(matrix)
+    rates, vectors = (np.asarray(each, dtype=np.float64) for each in found)
     shape = vectors / root[:, np.newaxis]  # lumps = shape @ modes
     felt = [RECORDED.index(probe) for probe in FELT]
     rows = list(zip(network.probe_start[felt], network.probe_weight[felt], strict=True))

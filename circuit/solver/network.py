@@ -19,7 +19,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
-from ..rig.skin import Column
+from ..rig.skin import Column, column_of
 
 ALPHA, RESISTANCE, CONDUCTANCE, HOT_J_PER_K, COLD_J_PER_K, SINK_C, SINK_W_PER_K, DEEP_C = range(8)
 """Places in `Network.plates` of the module's α V/K, R Ω and 1/Θ W/K, of both heat capacities, of the heat sink's
@@ -208,6 +208,16 @@ def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
     return _network(rig, column, plates)
 
 
+def thermode_network(rig: Rig, contact_m2K_per_W: float, effusivity: float) -> Network:
+    """Return the lumps of a rig's skin under another contact, with so many times the effusivity of living layers."""
+    skin = rig.skin.with_effusivity(effusivity)
+    column = column_of(skin, rig.column.blood_capacity_J_per_m3K)
+    met = replace(rig, skin=skin, column=column, contact=replace(rig.contact, resistance_m2K_per_W=contact_m2K_per_W))
+    plates = np.full(PLATE_NUMBERS, np.nan)
+    plates[DEEP_C] = rig.deep_C
+    return _network(met, column, plates)
+
+
 def unpowered(network: Network, sink_C: float) -> Network:
     """Return a network whose controlled heat sink is at a temperature in °C and has lost its power."""
     plates = network.plates.copy()
@@ -268,6 +278,15 @@ def temperature_weights(at: float, place: Array) -> Weights:
     if share:
         weight[above + COLD - start + 1] += share
     return start, (weight[0], weight[1], weight[2])
+
+
+def smooth_flow_weights(at: float, place: Array) -> Weights:
+    """Reading of the heat flow in W/m² there, linear between the middles of cells, so that it moves with the place."""
+    middles, conductance = 0.5 * (place[:-1] + place[1:]), 1.0 / np.diff(place)
+    above = int(np.clip(np.searchsorted(middles, at) - 1, 0, middles.size - 2))
+    share = (at - middles[above]) / (middles[above + 1] - middles[above])
+    upper, lower = (1.0 - share) * conductance[above], share * conductance[above + 1]
+    return above + COLD, (float(upper), float(lower - upper), float(-lower))
 
 
 def flow_weights(at: float, place: Array) -> Weights:

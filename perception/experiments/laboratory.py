@@ -16,6 +16,9 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from thermicon.circuit import Rig
+from thermicon.circuit.solver.modes import FELT, SkinModes, thermode_modes
+
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.constants import Both
@@ -23,7 +26,6 @@ from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..sensation.detection import quarters
 from ..sensation.sensation import area_factor
-from .skin_modes import Corner, SkinModes, course_of, skin_modes
 
 DT_S = 0.025
 """Step of drives: times of answers are interpolated within it."""
@@ -39,6 +41,8 @@ SHARES = np.array([0.125, 0.375, 0.625, 0.875])
 """Middles of four equal parts of a distribution: sizes of gain, and shares of trials that have answered."""
 TRIALS = SHARES.size**2
 SHARES.setflags(write=False)
+Corner = tuple[float, float]
+"""A corner of a stimulus: time in s and change of the display from the baseline in K."""
 Samples = NDArray[np.int64]
 """Numbers of the samples of a drive that are enough to count passages."""
 
@@ -48,6 +52,9 @@ def trials_of(people: int, seed: int) -> Array:
     """Standard normal numbers (people, TRIALS), the same for every person, in an order of each person's own."""
     middles = [NormalDist().inv_cdf((trial + 0.5) / TRIALS) for trial in range(TRIALS)]
     return np.random.default_rng(seed).permuted(np.tile(middles, (people, 1)), axis=1)
+
+
+load_rig = lru_cache(maxsize=16)(Rig.load)
 
 
 @lru_cache(maxsize=64)
@@ -69,6 +76,22 @@ def samples_of(corners: tuple[Corner, ...], end_s: float) -> Samples:
     samples = np.array(chosen, dtype=np.int64)
     samples.setflags(write=False)
     return samples
+
+
+def course_of(rise: Array, rest: float, corners: Sequence[Corner], dt_s: float, rows: int) -> Array:
+    """A course (rows,) from rest by corners of the display, for skin with a response `rise` (rows or more,) to 1 K/s.
+
+    It is a sum of ramps, one from every corner on, by how much the slope changes there.
+    """
+    course, clock, known = np.full(rows, rest), np.arange(rows), np.arange(rise.size)
+    slope, start = 0.0, (0.0, 0.0)
+    for corner in (*corners, None):
+        rate = 0.0 if corner is None else (corner[1] - start[1]) / (corner[0] - start[0])
+        if rate != slope:
+            course += (rate - slope) * np.interp(clock - start[0] / dt_s, known, rise)
+        if corner is not None:
+            slope, start = rate, corner
+    return course
 
 
 @dataclass(frozen=True)
@@ -102,20 +125,30 @@ class Laboratory:
             lanes[channel] = gains.ravel(), cautions, np.argsort(order)
         return lanes
 
+    def _skin(self, site_rig: str) -> SkinModes:
+        """Skin of a shipped rig under the laboratory's thermode."""
+        constants, rig = self.constants, load_rig(site_rig)
+        depths_m = constants.depths_m(rig.skin.corneum_m)
+        return thermode_modes(rig, depths_m, constants.contact_m2K_per_W, constants.effusivity)
+
     @cached_property
-    def _responses(self) -> dict[tuple[str, Channel], tuple[Array, float]]:
-        """What each site's receptors respond to a unit ramp, as long as was needed, and to a unit step in the end."""
+    def _rises(self) -> dict[tuple[str, int], Array]:
+        """What each site's receptors respond to a unit ramp, as long as was needed."""
         return {}
 
-    def _response(
-        self, site_rig: str, channel: Channel, skin: SkinModes, depth_m: float, rows: int
-    ) -> tuple[Array, float]:
-        known = self._responses.get((site_rig, channel))
-        if known is None or known[0].size < rows:
-            ramp = skin.ramp_response(depth_m, DT_S, max(rows, LEAST_ROWS), self.constants.variable)
-            known = ramp, skin.at(depth_m, self.constants.variable)[0]
-            self._responses[site_rig, channel] = known
-        return known
+    def received(
+        self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], rows: int
+    ) -> Array:
+        """What receptors go by (rows,), every DT_S, under a thermode that goes from corner to corner."""
+        skin, row = self._skin(site_rig), self._row(channel)
+        rise = self._rises.get((site_rig, row))
+        if rise is None or rise.size < rows:
+            rise = self._rises[site_rig, row] = skin.rise(row, DT_S, max(rows, LEAST_ROWS))
+        return course_of(rise, skin.rest(row, baseline_C), corners, DT_S, rows)
+
+    def _row(self, channel: Channel) -> int:
+        """The reading of a receptor: those of temperature come after FELT, then those of heat flow."""
+        return len(FELT) + CHANNELS.index(channel) + (0 if self.constants.variable == "temperature" else len(CHANNELS))
 
     @cached_property
     def _psi_table(self) -> Array:
@@ -130,16 +163,12 @@ class Laboratory:
         """Receptor drive (rows,) of one channel, every DT_S, under a thermode that goes from corner to corner."""
         from ..kernels.kernels import adapted_drive
 
-        constants = self.constants
-        skin = skin_modes(site_rig, constants.contact_m2K_per_W, constants.effusivity)
-        depth = skin.corneum_m + constants.depth_m.of(channel)
-        rows = round(end_s / DT_S) + 1
-        ramp, steady = self._response(site_rig, channel, skin, depth, rows)
-        baseline = skin.resting(baseline_C, steady, constants.variable)
-        received = course_of(ramp, baseline, corners, DT_S, rows)
+        constants, rows = self.constants, round(end_s / DT_S) + 1
+        received = self.received(site_rig, channel, baseline_C, corners, rows)
         neutral = constants.neutral_C
         if constants.variable == "heat flow":
-            flows = sorted(skin.baseline(level, depth, "heat flow") for level in neutral)
+            skin, place = self._skin(site_rig), self._row(channel)
+            flows = sorted(skin.rest(place, level) for level in neutral)
             neutral = flows[0], flows[1]
         drive = np.empty((1, rows))
         adapted_drive(

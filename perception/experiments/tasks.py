@@ -12,8 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..observer.channels import Channel, sign_of
-from .laboratory import FEEBLE, Laboratory, samples_of
-from .skin_modes import Corner
+from .laboratory import FEEBLE, Corner, Laboratory, samples_of
 
 DISCREPANCY = 0.05
 """What a model of this kind may miss a published or measured value by, as a share; assumed."""

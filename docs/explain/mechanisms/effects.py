@@ -1,6 +1,6 @@
 """What each mechanism does to a cue: the same stimulus with it and without it, as curves to draw.
 
-Skin is the skin of the inference (`skin_modes`) under its own thermode, receptors and sensation are the shipped
+Skin is the skin of the inference under its own thermode, receptors and sensation are the shipped
 observer's. Nothing here is conditioned on or predicted for an experiment: it shows what an equation means.
 """
 
@@ -13,8 +13,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.circuit.solver.modes import FELT, thermode_modes
 from thermicon.perception.arrays import Array, own_arrays
-from thermicon.perception.experiments.skin_modes import Corner, SkinModes, skin_modes
+from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
 from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
@@ -94,12 +95,11 @@ def depth_effect() -> Effect:
     sites: tuple[tuple[str, Look, Look], ...] = (("forearm", "cold", "off"), ("thenar", "reference", "other"))
     curves = []
     for site, below, surface in sites:
-        skin = _skin(site)
         for counted, at, look in (
-            ("below the stratum corneum", skin.corneum_m + depth, below),
+            ("below the stratum corneum", load_rig(site).skin.corneum_m + depth, below),
             ("0.15 mm from the surface", 0.15e-3, surface),
         ):
-            change = skin.course(at, 32.0, [(0.5, -5.0)], DT_S, time.size)
+            change = _course(site, at, 32.0, [(0.5, -5.0)], time.size)
             curves.append(Curve(f"{site}, {counted}", look, time, change - change[0]))
     title = "A fall by 5 K in 0.5 s at the cold receptors"
     return Effect("depth", title, "time (s)", "change of temperature (K)", tuple(curves))
@@ -182,17 +182,20 @@ def _clock(end_s: float) -> Array:
     return clock
 
 
-def _skin(site: str) -> SkinModes:
-    return skin_modes(site, Observer.load().contact_m2K_per_W, Observer.load().effusivity)
+def _course(site: str, depth_m: float, baseline_C: float, corners: Sequence[Corner], rows: int) -> Array:
+    """Temperature (rows,) at a depth below the face of a site's skin under the thermode, °C."""
+    whole = Observer.load()
+    skin = thermode_modes(load_rig(site), (depth_m,), whole.contact_m2K_per_W, whole.effusivity)
+    row = len(FELT)
+    return course_of(skin.rise(row, DT_S, rows), skin.rest(row, baseline_C), corners, DT_S, rows)
 
 
 def _felt(
     corners: Sequence[Corner], channel: Channel, observer: Observer, time: Array, *, baseline_C: float = 32.0
 ) -> Array:
     """Sensation (n_time,) of a thermode on the forearm that goes from corner to corner."""
-    skin = _skin("forearm")
-    depth = skin.corneum_m + observer.depth_m.of(channel)
-    received = skin.course(depth, baseline_C, corners, DT_S, time.size)
+    depth = observer.depths_m(load_rig("forearm").skin.corneum_m).of(channel)
+    received = _course("forearm", depth, baseline_C, corners, time.size)
     drive = receptor_drive(received, DT_S, channel, observer)
     return sensation(drive, channel, observer, area_m2=STRIPS_CM2 * 1e-4, site="forearm")
 

@@ -15,3 +15,7 @@ class Skin(Mechanism):
     depth_m: Both[float] = constant("{} receptor depth", scale=1e-3, task=True)
     contact_m2K_per_W: float = constant("contact resistance of a thermode", task=True)
     effusivity: float = constant("effusivity of living skin", task=True)
+
+    def depths_m(self, corneum_m: float) -> Both[float]:
+        """Depths of the receptors below the face of skin with a stratum corneum so thick."""
+        return Both(corneum_m + self.depth_m.cold, corneum_m + self.depth_m.warm)
