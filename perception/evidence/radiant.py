@@ -89,7 +89,7 @@ def whole_body_warmth(
     """
     rig, warmed = _forearm()
     body = load_thresholds().one("area of the body").central
-    factor = Observer.load(variable=variable).site_factor("warm", rig.site)
+    factor = 1.0 / Observer.load(variable=variable).sensitivity("warm", None, rig.site)
     said = (
         f"{RADIANT_S:g} s of radiant heat on bare skin of the forearm, absorbed at the surface, d′ = 1, "
         f"thresholds {factor:.3g} times those of the thenar"

@@ -22,10 +22,10 @@ from thermicon.circuit.solver.modes import FELT, SkinModes, thermode_modes
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel, sign_of
 from ..observer.constants import Both
+from ..observer.mechanisms.summation import CM2
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..sensation.detection import quarters
-from ..sensation.sensation import area_factor
 
 DT_S = 0.025
 """Step of drives: times of answers are interpolated within it."""
@@ -188,8 +188,7 @@ class Laboratory:
     def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:
         """Multiples of threshold per unit of drive of the median person of a laboratory at a site, area and age."""
         constants = self.constants
-        gain = area_factor(area_cm2, constants.reference_area_m2 * 1e4, constants.area_exponent.of(channel))
-        gain /= constants.threshold_drive.of(channel) * constants.site_factor(channel, site)
+        gain = constants.sensitivity(channel, area_cm2 * CM2, site) / constants.threshold_drive.of(channel)
         gain *= math.exp(self.offsets[laboratory].of(channel))
         return gain / constants.age_factor(age_years, channel)
 

@@ -20,7 +20,7 @@ from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
 from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.sensation.detection import detect
-from thermicon.perception.sensation.sensation import receptor_drive, sensation, sensitivity
+from thermicon.perception.sensation.sensation import receptor_drive, sensation
 
 Look = Literal["cold", "warm", "reference", "off", "other"]
 """How a curve is drawn: in a channel's colour, thin for a reference, dashed grey for a mechanism turned off."""
@@ -110,7 +110,7 @@ def summation_effect() -> Effect:
     area = np.geomspace(0.02, 5000.0, 120)
     observer, curves = Observer.load(), []
     for channel in CHANNELS:
-        ratio = np.array([sensitivity(channel, observer, a * 1e-4) for a in area.tolist()])
+        ratio = np.array([observer.sensitivity(channel, a * 1e-4, None) for a in area.tolist()])
         curves.append(Curve(channel, channel, area, ratio))
     ends_off: tuple[tuple[Channel, Look], ...] = (("cold", "off"), ("warm", "other"))
     for channel, look in ends_off:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ..channels import Variable
+from ..channels import Channel, Variable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,3 +19,7 @@ class Mechanism:
     equation: ClassVar[str] = ""
     source: ClassVar[str] = ""
     variable: Variable = "temperature"
+
+    def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
+        """How much smaller thresholds are than on the hand at the reference area; None: that area, or the hand."""
+        return 1.0

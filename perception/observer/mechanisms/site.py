@@ -17,9 +17,10 @@ class Site(Mechanism):
     source = "published thresholds of hand and forearm"
     forearm_factor: Both[float] = constant("{} threshold on the forearm")
 
-    def site_factor(self, channel: Channel, site: str | None) -> float:
-        """How much larger thresholds are at a site than on the thenar; 1 where nothing is known of the site."""
-        return self.forearm_factor.of(channel) if site is not None and on_forearm(site) else 1.0
+    def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
+        """The site's part of it: none where nothing is known of the site."""
+        whole = super().sensitivity(channel, area_m2, site)
+        return whole / self.forearm_factor.of(channel) if site is not None and on_forearm(site) else whole
 
 
 def on_forearm(site: str) -> bool:

@@ -12,8 +12,8 @@ from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samp
 from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.passage import psychometric
 from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.mechanisms.summation import Summation, summed_area_cm2
 from thermicon.perception.observer.mechanisms.transducer import Transducer
-from thermicon.perception.sensation.sensation import area_factor, summed_area_cm2
 
 DT = 0.025
 TRANSDUCER = Transducer(a=11.0, p=1.2)
@@ -101,13 +101,17 @@ def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: f
 
 
 def test_summation_has_two_ends() -> None:
+    def area_factor(area_cm2: float, reference_cm2: float, exponent: float) -> float:
+        only = Summation(area_exponent=Both(exponent, exponent), reference_area_m2=1e-4 * reference_cm2)
+        return only.sensitivity("cold", 1e-4 * area_cm2, None)
+
     assert summed_area_cm2(0.001) == pytest.approx(summed_area_cm2(0.0001), rel=0.2)
     assert area_factor(400.0, 225.0, 0.9) < 1.2 < 1.4 < area_factor(225.0, 100.0, 0.9)
     assert area_factor(18000.0, 9.0, 0.9) < 20.0 < (18000.0 / 9.0) ** 0.9
     middle = math.log(area_factor(20.0, 10.0, 0.7)) / math.log(2.0)
     assert middle == pytest.approx(0.7, abs=0.12)
-    with pytest.raises(ValueError, match="above 0 cm²"):
-        summed_area_cm2(0.0)
+    with pytest.raises(ValueError, match="above 0 m²"):
+        area_factor(0.0, 9.0, 0.7)
 
 
 def test_the_spine_adds_to_the_nerve() -> None:

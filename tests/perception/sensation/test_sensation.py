@@ -9,7 +9,7 @@ import pytest
 from thermicon.perception import Observer
 from thermicon.perception.observer.channels import Channel, Variable
 from thermicon.perception.observer.constants import Both
-from thermicon.perception.sensation.sensation import area_factor, receptor_drive, sensation
+from thermicon.perception.sensation.sensation import receptor_drive, sensation
 
 
 def low_pass_of_ramp(t: np.ndarray, slope: float, tau: float) -> np.ndarray:
@@ -101,7 +101,7 @@ def test_sensation_is_a_power_then_logarithmic(observer: Observer, channel: Chan
 def test_area_and_person_scale_the_drive(observer: Observer) -> None:
     drive = np.array([0.0, 0.16])
     quarter = sensation(drive, "cold", observer, area_m2=9e-4 / 4)
-    smaller = area_factor(9.0 / 4, 9.0, 0.7)
+    smaller = observer.sensitivity("cold", 9e-4 / 4, None)
     assert quarter[1] == pytest.approx(sensation(drive * smaller, "cold", observer)[1], rel=1e-12)
     rows = sensation(np.stack([drive, drive]), "cold", observer, threshold=[1.0, 2.0])
     assert rows[1, 1] == pytest.approx(1.0, rel=1e-12)
