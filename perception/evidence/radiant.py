@@ -14,7 +14,6 @@ from thermicon.circuit import Rig
 from ..arrays import Array
 from ..observer.channels import Variable
 from ..observer.observer import Observer, load_thresholds
-from ..sensation.sensation import receptor_drive, sensation
 from .baseline import noticed_K
 from .predicted import DRAWS, Asked, Predicted, predict
 
@@ -113,8 +112,8 @@ def _flux_felt(area_m2: float | None, observer: Observer) -> float:
     low, high = 1e-4, 1e6
     for _ in range(60):
         middle = float(np.sqrt(low * high))
-        drive = receptor_drive(rest + middle * change, DT_S, "warm", observer)
-        felt = sensation(drive, "warm", observer, area_m2=area_m2, site=rig.site).max() >= 1.0
+        drive = observer.drive(rest + middle * change, DT_S, "warm")
+        felt = observer.sensation(drive, "warm", area_m2=area_m2, site=rig.site).max() >= 1.0
         low, high = (low, middle) if felt else (middle, high)
     return float(np.sqrt(low * high))
 

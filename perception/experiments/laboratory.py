@@ -8,7 +8,7 @@ search for a maximum needs.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from statistics import NormalDist
 from typing import Self
@@ -20,7 +20,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.solver.modes import FELT, SkinModes, thermode_modes
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, Channel, sign_of
+from ..observer.channels import CHANNELS, Channel
 from ..observer.constants import Both
 from ..observer.mechanisms.summation import CM2
 from ..observer.observer import Observer
@@ -161,29 +161,13 @@ class Laboratory:
         self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], end_s: float
     ) -> Array:
         """Receptor drive (rows,) of one channel, every DT_S, under a thermode that goes from corner to corner."""
-        from ..kernels.kernels import adapted_drive
-
         constants, rows = self.constants, round(end_s / DT_S) + 1
         received = self.received(site_rig, channel, baseline_C, corners, rows)
-        neutral = constants.neutral_C
         if constants.variable == "heat flow":
             skin, place = self._skin(site_rig), self._row(channel)
-            flows = sorted(skin.rest(place, level) for level in neutral)
-            neutral = flows[0], flows[1]
-        drive = np.empty((1, rows))
-        adapted_drive(
-            received[None],
-            DT_S,
-            sign_of(channel),
-            constants.limit_C.of(channel),
-            constants.softness_K,
-            *neutral,
-            constants.integration_s,
-            constants.adaptation_s,
-            drive,
-        )
-        row: Array = drive[0]
-        return row
+            low, high = sorted(skin.rest(place, level) for level in constants.neutral_C)
+            constants = replace(constants, neutral_flux=Both((low, high), (low, high)))
+        return constants.drive(received, DT_S, channel)
 
     def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:
         """Multiples of threshold per unit of drive of the median person of a laboratory at a site, area and age."""

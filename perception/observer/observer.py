@@ -55,8 +55,8 @@ CURE = (
 
 @dataclass(frozen=True, kw_only=True)
 class Observer(
-    Skin, Adaptation, Limits, Site, Summation, Age, Memory, Ratings, Gain,
-    Transducer, Criterion, Conduction, Decision, Labels, Spreads, Mechanism,
+    Skin, Adaptation, Limits, Site, Summation, Age, Memory, Ratings, Transducer, Gain,
+    Criterion, Conduction, Decision, Labels, Spreads, Mechanism,
 ):  # fmt: skip
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 

@@ -20,7 +20,6 @@ from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
 from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.sensation.detection import detect
-from thermicon.perception.sensation.sensation import receptor_drive, sensation
 
 Look = Literal["cold", "warm", "reference", "off", "other"]
 """How a curve is drawn: in a channel's colour, thin for a reference, dashed grey for a mechanism turned off."""
@@ -196,8 +195,8 @@ def _felt(
     """Sensation (n_time,) of a thermode on the forearm that goes from corner to corner."""
     depth = observer.depths_m(load_rig("forearm").skin.corneum_m).of(channel)
     received = _course("forearm", depth, baseline_C, corners, time.size)
-    drive = receptor_drive(received, DT_S, channel, observer)
-    return sensation(drive, channel, observer, area_m2=STRIPS_CM2 * 1e-4, site="forearm")
+    drive = observer.drive(received, DT_S, channel)
+    return observer.sensation(drive, channel, area_m2=STRIPS_CM2 * 1e-4, site="forearm")
 
 
 def _noticed(sizes_K: Array, observer: Observer, criterion: ArrayLike = 1.0) -> Array:

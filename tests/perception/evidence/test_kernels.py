@@ -13,10 +13,9 @@ from thermicon.perception.kernels import passage as kernels
 from thermicon.perception.kernels.passage import psychometric
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.mechanisms.summation import Summation, summed_area_cm2
-from thermicon.perception.observer.mechanisms.transducer import Transducer
 
 DT = 0.025
-TRANSDUCER = Transducer(a=11.0, p=1.2)
+TRANSDUCER = replace(Observer.load(), a=11.0, p=1.2)
 TABLE = TRANSDUCER.psi(np.exp(kernels.LOG_U_FROM + kernels.LOG_U_STEP * np.arange(kernels.LOG_U_POINTS)))
 
 
@@ -90,7 +89,7 @@ def test_sizes_at_shares_are_read_between_and_beyond() -> None:
 
 @pytest.mark.parametrize(("a", "p"), [(12.0, 1.0), (6.0, 2.0), (30.0, 0.7)])
 def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: float, p: float) -> None:
-    transducer = Transducer(a=a, p=p)
+    transducer = replace(Observer.load(), a=a, p=p)
     assert float(transducer.psi(1.0)) == pytest.approx(1.0)
     low = float(transducer.psi(2e-4) / transducer.psi(1e-4))
     assert math.log2(low) == pytest.approx(p, abs=0.01)

@@ -24,7 +24,6 @@ from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.priors import LABORATORIES
 from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
 from thermicon.perception.sensation.detection import detect, time_of
-from thermicon.perception.sensation.sensation import receptor_drive
 
 VALUES = {each.name: each.value for each in load_constants()}
 
@@ -79,7 +78,7 @@ def answers(
 
 def multiple(stimulus: Stimulus, channel: Channel, person: Observer) -> float:
     """Largest drive in multiples of threshold."""
-    drive = receptor_drive(stimulus.received("temperature", channel)[0], stimulus.dt_s, channel, person).max()
+    drive = person.drive(stimulus.received("temperature", channel)[0], stimulus.dt_s, channel).max()
     sensitive = person.sensitivity(channel, stimulus.area_m2, stimulus.site)
     return float(drive * sensitive / person.threshold_drive.of(channel))
 
