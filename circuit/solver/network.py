@@ -19,7 +19,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
-from ..rig.skin import Column, column_of
+from ..rig.skin import Column
 
 ALPHA, RESISTANCE, CONDUCTANCE, HOT_J_PER_K, COLD_J_PER_K, SINK_C, SINK_W_PER_K, DEEP_C = range(8)
 """Places in `Network.plates` of the module's α V/K, R Ω and 1/Θ W/K, of both heat capacities, of the heat sink's
@@ -206,16 +206,6 @@ def network_on(rig: Rig, column: Column, deep_C: float) -> Network:
         plates[[SINK_AIR_W_PER_K, SINK_POWER_W]] = conductance, np.inf
         plates[SINK_START_C] = np.nan if passive.steady else rig.heat_sink.temperature_C
     return _network(rig, column, plates)
-
-
-def thermode_network(rig: Rig, contact_m2K_per_W: float, effusivity: float) -> Network:
-    """Return the lumps of a rig's skin under another contact, with so many times the effusivity of living layers."""
-    skin = rig.skin.with_effusivity(effusivity)
-    column = column_of(skin, rig.column.blood_capacity_J_per_m3K)
-    met = replace(rig, skin=skin, column=column, contact=replace(rig.contact, resistance_m2K_per_W=contact_m2K_per_W))
-    plates = np.full(PLATE_NUMBERS, np.nan)
-    plates[DEEP_C] = rig.deep_C
-    return _network(met, column, plates)
 
 
 def unpowered(network: Network, sink_C: float) -> Network:

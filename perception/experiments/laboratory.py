@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermicon.circuit import Rig
-from thermicon.circuit.solver.modes import FELT, SkinModes, thermode_modes
+from thermicon.circuit.solver.modes import thermode_modes
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, Channel
@@ -111,62 +111,41 @@ class Laboratory:
         return cls(constants, offsets, draw_people(people, seed, observer=constants, how="sobol"), seed)
 
     @cached_property
-    def _lanes(self) -> dict[Channel, tuple[Array, Array, Samples]]:
-        """Gains (ln) and criteria (people x gains) over the median person's, and which row is each person's.
-
-        People stand in the order of their criteria, since the kernel is fastest where neighbours are alike.
-        """
-        lanes = {}
+    def _lanes(self) -> dict[Channel, tuple[Array, Array]]:
+        """Gains, raised to the power p, and criteria (people x gains,) over the median person's."""
+        gains, lanes = np.exp(quarters(self.constants.gain_noise)), {}
         for channel in CHANNELS:
-            caution, middles = self.people.criterion(channel), quarters(1.0)
-            order = np.argsort(caution)
-            gains = self.constants.gain_noise * middles - np.log(self.people.threshold(channel)[order])[:, None]
-            cautions = np.repeat(caution[order], middles.size)
-            lanes[channel] = gains.ravel(), cautions, np.argsort(order)
+            own = gains / self.people.threshold(channel)[:, None]
+            lanes[channel] = own.ravel() ** self.constants.p, np.repeat(self.people.criterion(channel), gains.size)
         return lanes
 
-    def _skin(self, site_rig: str) -> SkinModes:
-        """Skin of a shipped rig under the laboratory's thermode."""
-        constants, rig = self.constants, load_rig(site_rig)
-        depths_m = constants.depths_m(rig.skin.corneum_m)
-        return thermode_modes(rig, depths_m, constants.contact_m2K_per_W, constants.effusivity)
-
     @cached_property
-    def _rises(self) -> dict[tuple[str, int], Array]:
-        """What each site's receptors respond to a unit ramp, as long as was needed."""
+    def _receptors(self) -> dict[tuple[str, Channel], tuple[Array, float, float]]:
+        """What a site's receptors respond to a unit ramp, as long as was needed, rest at over 0 °C, and for each K."""
         return {}
 
-    def received(
-        self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], rows: int
-    ) -> Array:
-        """What receptors go by (rows,), every DT_S, under a thermode that goes from corner to corner."""
-        skin, row = self._skin(site_rig), self._row(channel)
-        rise = self._rises.get((site_rig, row))
-        if rise is None or rise.size < rows:
-            rise = self._rises[site_rig, row] = skin.rise(row, DT_S, max(rows, LEAST_ROWS))
-        return course_of(rise, skin.rest(row, baseline_C), corners, DT_S, rows)
-
-    def _row(self, channel: Channel) -> int:
-        """The reading of a receptor: those of temperature come after FELT, then those of heat flow."""
-        return len(FELT) + CHANNELS.index(channel) + (0 if self.constants.variable == "temperature" else len(CHANNELS))
-
-    @cached_property
-    def _psi_table(self) -> Array:
-        from ..kernels import passage as first_passage
-
-        logs = first_passage.LOG_U_FROM + first_passage.LOG_U_STEP * np.arange(first_passage.LOG_U_POINTS)
-        return self.constants.psi(np.exp(logs))
+    def _receptor(self, site_rig: str, channel: Channel, rows: int) -> tuple[Array, float, float]:
+        known = self._receptors.get((site_rig, channel))
+        if known is None or known[0].size < rows:
+            constants, rig, row = self.constants, load_rig(site_rig), CHANNELS.index(channel)
+            row += 0 if constants.variable == "temperature" else len(CHANNELS)
+            depths_m = constants.depths_m(rig.skin.corneum_m)
+            skin = thermode_modes(rig, depths_m, constants.contact_m2K_per_W, constants.effusivity)
+            at_0, at_1 = skin.rest(row, 0.0), skin.rest(row, 1.0)
+            known = skin.rise(row, DT_S, max(rows, LEAST_ROWS)), at_0, at_1 - at_0
+            self._receptors[site_rig, channel] = known
+        return known
 
     def drive(
         self, site_rig: str, channel: Channel, baseline_C: float, corners: Sequence[Corner], end_s: float
     ) -> Array:
         """Receptor drive (rows,) of one channel, every DT_S, under a thermode that goes from corner to corner."""
         constants, rows = self.constants, round(end_s / DT_S) + 1
-        received = self.received(site_rig, channel, baseline_C, corners, rows)
+        rise, at_0, per_K = self._receptor(site_rig, channel, rows)
         if constants.variable == "heat flow":
-            skin, place = self._skin(site_rig), self._row(channel)
-            low, high = sorted(skin.rest(place, level) for level in constants.neutral_C)
+            low, high = sorted(at_0 + per_K * level for level in constants.neutral_C)
             constants = replace(constants, neutral_flux=Both((low, high), (low, high)))
+        received = course_of(rise, at_0 + per_K * baseline_C, corners, DT_S, rows)
         return constants.drive(received, DT_S, channel)
 
     def gain(self, channel: Channel, area_cm2: float, laboratory: str, site: str, age_years: float) -> float:
@@ -184,21 +163,15 @@ class Laboratory:
         self, drive: Array, samples: Samples, channel: Channel, gain: float, criterion: float
     ) -> tuple[Array, Array]:
         """Times (people, TRIALS) at which sensation passes the criterion; probabilities (people, 4) that it does."""
-        from ..kernels import passage as first_passage
+        from ..kernels.crossing import passage
 
-        log_gains, cautions, back = self._lanes[channel]
-        times = np.empty((log_gains.size, SHARES.size))
-        passed = first_passage.passage(
-            np.log(np.maximum(drive[samples], FEEBLE)),
-            DT_S * samples,
-            log_gains + math.log(gain),
-            criterion * cautions,
-            self.constants.noise_correlation_s,
-            self._psi_table,
-            SHARES,
-            times,
-        )
-        return times.reshape(-1, TRIALS)[back], passed.reshape(back.size, -1)[back]
+        constants, (raised, cautions) = self.constants, self._lanes[channel]
+        times, risen = np.empty((raised.size, SHARES.size)), drive[samples] ** constants.p / constants.b
+        passed = passage(
+            risen, DT_S * samples, gain**constants.p * raised, constants.a, criterion * cautions,
+            constants.noise_correlation_s, SHARES, times,
+        )  # fmt: skip
+        return times.reshape(-1, TRIALS), passed.reshape(-1, SHARES.size)
 
     def decision_s(self, *, choice: bool) -> Array:
         """Decision times (people, TRIALS) in s, with the time that a choice takes where there is one."""

@@ -86,7 +86,7 @@ class Played:
 
 def yes_no_logs(laboratory: Laboratory, ramps: Sequence[Ramp], gain: float) -> tuple[Array, Array]:
     """Logs (people,) of the size that is reported in half of the trials, and of the SD of the function, guesses out."""
-    from ..kernels.passage import psychometric
+    from ..kernels.crossing import psychometric
 
     reported = np.stack([Played.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
     logs = np.empty((reported.shape[0], len(HALVES)))

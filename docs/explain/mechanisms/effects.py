@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from thermicon.circuit.solver.modes import FELT, thermode_modes
+from thermicon.circuit.solver.modes import thermode_modes
 from thermicon.perception.arrays import Array, own_arrays
 from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
@@ -185,8 +185,7 @@ def _course(site: str, depth_m: float, baseline_C: float, corners: Sequence[Corn
     """Temperature (rows,) at a depth below the face of a site's skin under the thermode, °C."""
     whole = Observer.load()
     skin = thermode_modes(load_rig(site), (depth_m,), whole.contact_m2K_per_W, whole.effusivity)
-    row = len(FELT)
-    return course_of(skin.rise(row, DT_S, rows), skin.rest(row, baseline_C), corners, DT_S, rows)
+    return course_of(skin.rise(0, DT_S, rows), skin.rest(0, baseline_C), corners, DT_S, rows)
 
 
 def _felt(

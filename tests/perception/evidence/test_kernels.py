@@ -9,20 +9,20 @@ import pytest
 from tests.perception.survival import log_survival
 from thermicon.perception import Observer
 from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samples_of
-from thermicon.perception.kernels import passage as kernels
-from thermicon.perception.kernels.passage import psychometric
+from thermicon.perception.kernels import crossing as kernels
+from thermicon.perception.kernels.crossing import psychometric
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.mechanisms.summation import Summation, summed_area_cm2
 
 DT = 0.025
 TRANSDUCER = replace(Observer.load(), a=11.0, p=1.2)
-TABLE = TRANSDUCER.psi(np.exp(kernels.LOG_U_FROM + kernels.LOG_U_STEP * np.arange(kernels.LOG_U_POINTS)))
 
 
-def passage(log_drive, log_gain, criterion, tau=0.3):
-    times = np.empty((log_gain.size, SHARES.size))
-    passed = kernels.passage(log_drive, DT * np.arange(log_drive.size), log_gain, criterion, tau, TABLE, SHARES, times)
-    return times, passed
+def passage(drive, gain, criterion, tau=0.3, time=None):
+    times, risen = np.empty((gain.size, SHARES.size)), drive**TRANSDUCER.p / TRANSDUCER.b
+    clock = DT * np.arange(drive.size) if time is None else time
+    raised = gain**TRANSDUCER.p
+    return times, kernels.passage(risen, clock, raised, TRANSDUCER.a, criterion, tau, SHARES, times)
 
 
 def test_first_passage_of_a_lane_agrees_with_that_of_a_course() -> None:
@@ -30,7 +30,7 @@ def test_first_passage_of_a_lane_agrees_with_that_of_a_course() -> None:
     course = 0.02 + 2.0 * np.clip(time - 0.5, 0.0, 2.0)
     observer = replace(Observer.load(), noise_correlation_s=0.3)
     gains, criteria = np.array([0.5, 1.0, 2.0, 4.0]), np.array([2.5, 2.5, 3.5, 2.0])
-    times, passed = passage(np.log(course), np.log(gains), criteria)
+    times, passed = passage(course, gains, criteria)
     for lane, (gain, criterion) in enumerate(zip(gains.tolist(), criteria.tolist(), strict=True)):
         psi = TRANSDUCER.psi(gain * course)
         # A course counts the change from its first sample; here that is as good as none.
@@ -47,7 +47,7 @@ def test_first_passage_agrees_with_drawn_noise() -> None:
     tau, criterion = 0.3, 3.0
     time = DT * np.arange(160)
     course = np.maximum(1.5 * time, 1e-9)
-    times, _ = passage(np.log(course), np.zeros(1), np.array([criterion]), tau)
+    times, _ = passage(course, np.ones(1), np.array([criterion]), tau)
     rng = np.random.default_rng(3)
     lags = np.abs(time[:, None] - time[None, :])
     factor = np.linalg.cholesky(np.exp(-(lags**2) / (2.0 * tau**2)) + 1e-8 * np.eye(time.size))
@@ -57,7 +57,7 @@ def test_first_passage_agrees_with_drawn_noise() -> None:
 
 
 def test_no_drive_gives_false_alarms_alone() -> None:
-    _, passed = passage(np.full(200, -30.0), np.zeros(1), np.array([3.0]))
+    _, passed = passage(np.full(200, 1e-13), np.ones(1), np.array([3.0]))
     rate = math.exp(-4.5) / (2.0 * math.pi * 0.3)
     below = 0.5 * math.erfc(-3.0 / math.sqrt(2.0))
     assert passed[0] == pytest.approx(1.0 - below * math.exp(-rate / below * 199 * DT), rel=0.01)
@@ -65,18 +65,17 @@ def test_no_drive_gives_false_alarms_alone() -> None:
 
 def test_lanes_and_steps_can_be_chosen_freely() -> None:
     time = DT * np.arange(400)
-    log_drive = np.log(np.maximum(0.8 * time, 1e-9))
+    drive = 0.8 * time
     rng = np.random.default_rng(5)
-    gains, criteria = rng.normal(0.0, 0.5, 37), np.exp(rng.normal(1.3, 0.7, 37))
-    times, passed = passage(log_drive, gains, criteria)
+    gains, criteria = np.exp(rng.normal(0.0, 0.5, 37)), np.exp(rng.normal(1.3, 0.7, 37))
+    times, passed = passage(drive, gains, criteria)
     order = rng.permutation(37)
-    shuffled, passed_too = passage(log_drive, gains[order], criteria[order])
+    shuffled, passed_too = passage(drive, gains[order], criteria[order])
     np.testing.assert_allclose(shuffled, times[order], rtol=1e-6)
     np.testing.assert_allclose(passed_too, passed[order], atol=1e-6)
     few = samples_of(((10.0, 8.0),), 9.975)
     assert few.size < 0.4 * time.size
-    sparse = np.empty_like(times)
-    kernels.passage(log_drive[few], time[few], gains, criteria, 0.3, TABLE, SHARES, sparse)
+    sparse, _ = passage(drive[few], gains, criteria, time=time[few])
     np.testing.assert_allclose(sparse, times, rtol=1e-3)
 
 

@@ -10,7 +10,7 @@ import pytest
 from thermicon.perception import Observer
 from thermicon.perception.arrays import Array
 from thermicon.perception.kernels import alignment, episodes, kernels, reports
-from thermicon.perception.kernels.passage import (
+from thermicon.perception.kernels.crossing import (
     CERTAIN,
     GAP_FROM,
     GAP_STEP,
