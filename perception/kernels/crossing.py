@@ -39,8 +39,8 @@ def _survive(
     `risen` (n_time,) is e^(ψ/a) − 1 of a sensation that matters from the sample `begin` to `end`, `raised` how much
     larger its drive is, `steps` (n_time,) the times in s since the sample before. `log_left[0]` is what it starts from.
     `alone` is the share of the crossings of noise alone that is left out: 1 makes it relative to no change at all. What
-    comes after it is `certain` that the criterion was passed is not computed: that is looked at when the `room` (2, n + 1)
-    for samples that go through the processor's vectors is full.
+    comes after it is `certain` that the criterion was passed is not computed; it is asked after every n samples, which
+    go through the processor's vectors in `room` (2, n + 1).
     """
     silent = RISE[Z_MIDDLE] / tau * between(MILLS, (criterion - GAP_FROM) / GAP_STEP)
     left, psi, fall, at_once = log_left[0], room[0], room[1], room.shape[1] - 1
