@@ -13,7 +13,6 @@ import numpy as np
 
 from thermicon.circuit import Rig
 
-from ..experiments.laboratory import Laboratory
 from ..experiments.measure import ADAPTIVE, Condition, Setting, logs_of
 from ..observer.channels import CHANNELS, Channel, Variable, sign_of
 from ..observer.mechanisms.age import YOUNG_YEARS
@@ -43,15 +42,10 @@ STEEP_K, STEEP_K_PER_S = 4.0, 3.0
 STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percept clock"
 
 
-@lru_cache(maxsize=8)
-def _laboratory(person: Observer, setting: Setting) -> Laboratory:
-    return laboratory_of(person, setting)
-
-
 @lru_cache(maxsize=2048)
 def measured(setting: Setting, condition: Condition, person: Observer) -> float:
     """What one person gives in a task, in the unit of the condition; inf where the largest change is not felt."""
-    value = float(np.exp(logs_of(_laboratory(person, setting), setting, condition, SIZES_K)[0].mean()))
+    value = float(np.exp(logs_of(laboratory_of(person, setting), setting, condition, SIZES_K)[0].mean()))
     return value if condition.method not in ADAPTIVE or value < 0.999 * SIZES_K[-1] else np.inf
 
 

@@ -54,6 +54,7 @@ class Predicted:
     baseline: float | None = None
 
 
+@lru_cache(maxsize=8)
 def laboratory_of(
     person: Observer, setting: Setting, *, people: int | None = None, seed: int = SEED, age_years: float = YOUNG_YEARS
 ) -> Laboratory:

@@ -113,7 +113,7 @@ class Laboratory:
     @cached_property
     def _lanes(self) -> dict[Channel, tuple[Array, Array]]:
         """Gains, raised to the power p, and criteria (people x gains,) over the median person's."""
-        gains, lanes = np.exp(quarters(self.constants.gain_noise)), {}
+        gains, lanes = np.exp(self.constants.gain_noise * quarters(1.0)), {}
         for channel in CHANNELS:
             own = gains / self.people.threshold(channel)[:, None]
             lanes[channel] = own.ravel() ** self.constants.p, np.repeat(self.people.criterion(channel), gains.size)
@@ -155,10 +155,6 @@ class Laboratory:
         gain *= math.exp(self.offsets[laboratory].of(channel))
         return gain / constants.age_factor(age_years, channel)
 
-    def delay_s(self, channel: Channel, site: str) -> float:
-        """Conduction from a site to the brain, s."""
-        return float(self.constants.delay_s(channel, self.constants.path_m(site)))
-
     def passages(
         self, drive: Array, samples: Samples, channel: Channel, gain: float, criterion: float
     ) -> tuple[Array, Array]:
@@ -173,13 +169,6 @@ class Laboratory:
         )  # fmt: skip
         return times.reshape(-1, TRIALS), passed.reshape(-1, SHARES.size)
 
-    def decision_s(self, *, choice: bool) -> Array:
-        """Decision times (people, TRIALS) in s, with the time that a choice takes where there is one."""
-        constants, own = self.constants, self.people.decision_s[:, None]
-        longer = 1.0 + (constants.choice_s / constants.decision_s if choice else 0.0)
-        trials = trials_of(len(self.people), self.seed)
-        return np.asarray(longer * own * np.exp(constants.decision_noise * trials))
-
     def answers_s(
         self,
         drive: Array,
@@ -192,6 +181,9 @@ class Laboratory:
         caution: float = 1.0,
     ) -> Array:
         """Times (people, TRIALS) in s from the first sample of a drive to the answer; inf where there is none."""
-        criterion = caution * self.constants.criterion
-        crossed, _ = self.passages(drive, samples, channel, gain, criterion)
-        return crossed + self.delay_s(channel, site) + self.decision_s(choice=choice)
+        constants = self.constants
+        crossed, _ = self.passages(drive, samples, channel, gain, caution * constants.criterion)
+        longer = 1.0 + (constants.choice_s / constants.decision_s if choice else 0.0)
+        decided = longer * np.exp(constants.decision_noise * trials_of(len(self.people), self.seed))
+        late = constants.delay_s(channel, constants.path_m(site))
+        return np.asarray(crossed + late + decided * self.people.decision_s[:, None])

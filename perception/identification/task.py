@@ -19,6 +19,8 @@ from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, source_of
+from ..observer.constants import QUANTITIES
+from ..observer.mechanisms.memory import NOISE
 from ..observer.observer import NORMS, Norm, Observer
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.percept import perceive_many
@@ -52,7 +54,7 @@ def memory_noise(known: Table, observer: Observer) -> Record:
 def memory_record(variant: str, value: float, low: float, high: float) -> Record:
     """A record of the memory noise of a variant, by the ending of its names; not calibrated yet."""
     return Record(
-        quantity=f"memory noise{variant}",
+        quantity=f"{QUANTITIES[NOISE]}{variant}",
         unit="log units",
         source="not calibrated yet",
         value=value,

@@ -70,9 +70,9 @@ def constants_of(kind: Any, variable: Variable | None = None) -> Iterator[Field[
 
 
 def names_of(kind: Any, *chosen: str) -> tuple[str, ...]:
-    """Names of some fields, or of all constants, in their order."""
-    held = [each for each in constants_of(kind) if not chosen or each.name in chosen]
-    return tuple(name for each in held for name in _names(each))
+    """Names of some fields, in this order, or of all constants."""
+    held = {each.name: each for each in constants_of(kind)}
+    return tuple(name for own in chosen or held if own in held for name in _names(held[own]))
 
 
 def ranges_of(kind: Any) -> dict[str, Range]:
@@ -91,6 +91,22 @@ def name_of(record: Record) -> str:
     return next((own for own, quantity in QUANTITIES.items() if quantity == name), name)
 
 
+def quantity_of(name: str) -> tuple[str, str]:
+    """Channel, or `both`, and quantity of a constant by its name."""
+    channel, _, rest = name.partition(" ")
+    return (channel, rest) if channel in CHANNELS else ("both", QUANTITIES.get(name, name))
+
+
+def record_of(table: Table, kind: Any, field: str, channel: Channel | None = None) -> Record:
+    """The record of a field, or of its part for one channel; a `RecordError` names what is missing."""
+    (each,) = (one for one in constants_of(kind) if one.name == field)
+    return table.one(_quantity(each), **each.metadata["keys"], **({} if channel is None else {"channel": channel}))
+
+
+def _quantity(each: Field[Any]) -> str:
+    return QUANTITIES.get(each.metadata["name"], each.metadata["name"].removeprefix("{} "))
+
+
 def values_in(table: Table, kind: Any, variable: Variable, shipped: Table) -> dict[str, Any]:
     """Values of a table by name; a variant's own number stands under the quantity's name with the variant's ending.
 
@@ -100,7 +116,7 @@ def values_in(table: Table, kind: Any, variable: Variable, shipped: Table) -> di
     ending, there, found = source_of(variable), {record.quantity for record in table}, {}
     for each in constants_of(kind, variable):
         about = each.metadata
-        quantity = QUANTITIES.get(about["name"], about["name"].removeprefix("{} "))
+        quantity = _quantity(each)
         if each.default is not MISSING and about["only"] is None and quantity not in there:
             continue
         for name, channel in zip(_names(each), CHANNELS, strict=False):

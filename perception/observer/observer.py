@@ -61,8 +61,35 @@ class Observer(
     """A nominal person: SI units inside, sensation in units of the sensory noise (d′).
 
     An observer is loaded with `Observer.load`, which takes a variant. Its fields are the constants of its mechanisms,
-    which are its bases, from receptor to answer; those of which each channel has its own are a pair. Each has its
-    source in the parameter file. `variable` is what the receptors go by, `temperature` or `heat flow`.
+    which are its bases (one that goes on from others stands before them); those of which each channel has its own are
+    a pair. Each has its source in the parameter file, and its equation in the module of its mechanism.
+
+    Attributes
+    ----------
+    variable
+        What the receptors go by, `temperature` or `heat flow`.
+    sensitivity_between, criterion_between, correlation
+        Spreads between people (ln), and the correlation of cold and warm.
+    wrong_labels, lingering
+        Share of coolings that are called warm, and what warmth adds to it, ln per d′.
+    decision_s, choice_s, decision_noise, decision_between
+        Time to an answer and what a choice adds, s, and their SDs (ln) between trials and people.
+    velocity_m_per_s, path_hand_m, path_forearm_m
+        Conduction in nerves, m/s, over paths to the cord, m.
+    criterion, unhurried, caution_after_pulse, noise_correlation_s
+        Change that is answered in haste and without, d′, how much more after a pulse, and the noise's correlation, s.
+    threshold_drive, gain_noise, a, p
+        Drive that feels like a threshold, SD (ln) of the gain, slope of sensation in d′ and its exponent.
+    rating_at_threshold, rating_exponent, mean_rating, rating_scatter
+        Ratings, points of 100.
+    timing_noise, rated_share, missing_cost, episode_bar, lapse
+        Memory: noise of rates (ln), λ, cost of a missing episode, the bar in d′, share of trials with any name.
+    lost_per_decade, area_exponent, reference_area_m2, forearm_factor
+        What sensitivity depends on: age (ln), area in m², and site.
+    limit_C, softness_K, integration_s, adaptation_s, neutral_C, neutral_flux
+        Limits of quality in °C and their softness in K; time constants, s; range of complete adaptation, °C and W/m².
+    depth_m, contact_m2K_per_W, effusivity
+        Skin of laboratories: depths of receptors, m, contact resistance, and a multiple.
 
     Raises
     ------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import lru_cache
+from functools import lru_cache, partial
 from statistics import NormalDist
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
@@ -17,6 +17,7 @@ from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
+from .constants import record_of
 from .observer import Observer, load_thresholds, observer_records
 
 if TYPE_CHECKING:
@@ -215,19 +216,18 @@ NORMAL = (*SPREAD, "contact_resistance", "outer_layer")
 @lru_cache(maxsize=1)
 def people_records() -> Mapping[str, Record]:
     """The record behind every field of `People`; `use` says whether it is data or assumed."""
-    table, inferred = load_thresholds(), observer_records()
-    criterion = inferred.one("criterion between people")
+    table, own = load_thresholds(), partial(record_of, observer_records(), Observer)
     records = {
-        "threshold_cold": inferred.one("sensitivity between people", channel="cold"),
-        "threshold_warm": inferred.one("sensitivity between people", channel="warm"),
-        "criterion_cold": criterion,
-        "criterion_warm": criterion,
+        "threshold_cold": own("sensitivity_between", "cold"),
+        "threshold_warm": own("sensitivity_between", "warm"),
+        "criterion_cold": own("criterion_between"),
+        "criterion_warm": own("criterion_between"),
         "memory": table.one("spread of memory noise between people"),
         "contact_resistance": table.one("contact resistance spread"),
         "outer_layer": layer_spreads().one("outermost layer thickness spread"),
-        "path": table.one("path length to the cord", site="hand"),
-        "decision_s": inferred.one("decision time between people"),
-        "lapse": table.one("lapse rate"),
+        "path": own("path_hand_m"),
+        "decision_s": own("decision_between"),
+        "lapse": own("lapse"),
     }
     return MappingProxyType(records)
 

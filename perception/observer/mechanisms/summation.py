@@ -30,14 +30,13 @@ class Summation(Mechanism):
     reference_area_m2: float = constant("reference area", scale=CM2)
 
     def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
-        """The area's part of it; a ValueError for an area of 0."""
-        whole = super().sensitivity(channel, area_m2, site)
+        """The area's part of it, on which the others go on; a ValueError for an area of 0."""
         if area_m2 is None:
-            return whole
+            return 1.0
         if not area_m2 > 0.0:
             raise ValueError(f"the area of contact must be above 0 m², not {area_m2:g} m²")
         ratio = summed_area_cm2(area_m2 / CM2) / summed_area_cm2(self.reference_area_m2 / CM2)
-        return whole * math.pow(ratio, self.area_exponent.of(channel))
+        return math.pow(ratio, self.area_exponent.of(channel))
 
 
 def summed_area_cm2(area_cm2: float) -> float:

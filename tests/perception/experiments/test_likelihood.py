@@ -23,7 +23,7 @@ from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.priors import LABORATORIES
 from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
-from thermicon.perception.sensation.detection import detect, time_of
+from thermicon.perception.sensation.detection import time_of
 
 VALUES = {each.name: each.value for each in load_constants()}
 
@@ -76,48 +76,6 @@ def answers(
     return lambda share: time_of(given, time, share)
 
 
-def multiple(stimulus: Stimulus, channel: Channel, person: Observer) -> float:
-    """Largest drive in multiples of threshold."""
-    drive = person.drive(stimulus.received("temperature", channel)[0], stimulus.dt_s, channel).max()
-    sensitive = person.sensitivity(channel, stimulus.area_m2, stimulus.site)
-    return float(drive * sensitive / person.threshold_drive.of(channel))
-
-
-def rating(on: Bench, channel: Channel, person: Observer) -> tuple[float, float]:
-    """Mean rating and SD within a person of a ramp to 11 K, held for 0.7 s."""
-    rate, size = experiments.RATED[channel]
-    exponent = VALUES[f"{channel} rating exponent"]
-    raised = multiple(played(on, channel, size, rate, 0.7), channel, person) ** exponent
-    mean = VALUES[f"{channel} rating at threshold"] * raised
-    return mean, math.hypot(VALUES["scatter of ratings"], exponent * mean * person.gain_noise)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_reaction_times(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """E1: times within 1 %, the exponent of area within 0.01."""
-    rate, size = experiments.RAMPS[channel]
-    medians = []
-    for strips in (1, 5):
-        stimulus = played(bench(strips * STRIP_CM2, 31.0), channel, size, rate, 2.0)
-        cold, warm = (psi[0] for psi in stimulus.felt(person))
-        medians.append(answers(cold, warm, stimulus.dt_s, person, choice_s=person.choice_s)(0.5))
-    one, five = medians
-    assert five == pytest.approx(math.exp(predicted["E1", "rt_gm_5strip_onset_clock", channel]), rel=0.01)
-    by_area = math.log(five / one) / math.log(5.0)
-    assert by_area == pytest.approx(predicted["E1", "rt_area_exponent_onset_clock", channel], abs=0.01)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_ratings(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """E2: means within 1 %, their SD within 5 %, the exponent of area within 0.01."""
-    one, five = (rating(bench(strips * STRIP_CM2, 31.0), channel, person) for strips in (1, 5))
-    assert five[0] == pytest.approx(math.exp(predicted["E2", "rating_mean_5strip", channel]), rel=0.01)
-    by_area = math.log(five[0] / one[0]) / math.log(5.0)
-    assert by_area == pytest.approx(predicted["E2", "rating_area_exponent_group", channel], abs=0.01)
-    scatter = math.sqrt(one[1] * five[1])
-    assert scatter == pytest.approx(math.exp(predicted["E2", "rating_within_sd_pooled", channel]), rel=0.05)
-
-
 @pytest.mark.parametrize("channel", CHANNELS)
 def test_limits(channel: Channel, predicted: Predictions, person: Observer) -> None:
     """E3: the geometric mean within 3 %, scatter of trials within 15 %: 500 parts of their distribution, 16 there."""
@@ -131,22 +89,6 @@ def test_limits(channel: Channel, predicted: Predictions, person: Observer) -> N
     logs = np.log10(pressed[pressed > experiments.ANTICIPATION_K])
     assert 10.0 ** logs.mean() == pytest.approx(mean, rel=0.03)
     assert logs.std() == pytest.approx(predicted["E3", "within_sd_log10_median_person", channel], rel=0.15)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_yes_no(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """E4: threshold and width within 2 %; the likelihood has nine sizes, and so has this."""
-    on, sizes = bench(TWO_STRIPS_CM2, 30.0), experiments.SIZES_K[channel]
-    cautious = replace(person, criterion=VALUES["criterion of yes and no"])
-    reported = []
-    for size in sizes.tolist():
-        stimulus = played(on, channel, size, experiments.DETECTION_K_PER_S, experiments.PLATEAU_S)
-        cold, warm = (psi[0] for psi in stimulus.felt(cautious))
-        reported.append(float(detect(cold, warm, stimulus.dt_s, cautious, times=False).probability))
-    own = np.maximum.accumulate(reported) + 1e-9 * np.arange(sizes.size)
-    low, half, high = np.exp(np.interp([0.1587, 0.5, 0.8413], own, np.log(sizes)))
-    assert half == pytest.approx(math.exp(predicted["E4", "threshold50_gm_age30", channel]), rel=0.02)
-    assert 0.5 * (high - low) == pytest.approx(math.exp(predicted["E4", "sigma_gm_age30", channel]), rel=0.02)
 
 
 def test_cooling_after_warmth(predicted: Predictions, person: Observer) -> None:
@@ -170,14 +112,6 @@ def test_cooling_after_warmth(predicted: Predictions, person: Observer) -> None:
         wrong, lingering = VALUES["wrong labels"], VALUES["warmth that lingers"] * float(warm[:start].max())
         share = predicted["E5", f"share_called_warm_peak{level}_age_lt36", "cold"]
         assert wrong + (0.5 - wrong) * -math.expm1(-lingering) == pytest.approx(share, abs=0.001)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_forced_choice_at_the_wrist(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """How many times threshold the published one is, within 1 %."""
-    published = experiments.FORCED_CHOICE[1][3][channel]
-    found = multiple(played(bench(9.0, 32.0), channel, published, 1.0, 3.0), channel, person)
-    assert found == pytest.approx(math.exp(-predicted["wrist", "detection threshold", channel]), rel=0.01)
 
 
 def test_the_lag_of_a_thermode_is_that_of_the_published_one() -> None:
