@@ -75,7 +75,7 @@ class Observer(
     decision_s, choice_s, decision_noise, decision_between
         Time to an answer and what a choice adds, s, and their SDs (ln) between trials and people.
     velocity_m_per_s, path_hand_m, path_forearm_m
-        Conduction in nerves, m/s, over paths to the cord, m.
+        Conduction in nerves, m per s, over paths to the cord, m.
     criterion, unhurried, caution_after_pulse, noise_correlation_s
         Change that is answered in haste and without, d′, how much more after a pulse, and the noise's correlation, s.
     threshold_drive, gain_noise, a, p
