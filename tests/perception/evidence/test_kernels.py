@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.perception.survival import log_survival
 from thermicon.perception import Observer
 from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samples_of
 from thermicon.perception.kernels import crossing as kernels
@@ -23,24 +22,6 @@ def passage(drive, gain, criterion, tau=0.3, time=None):
     clock = DT * np.arange(drive.size) if time is None else time
     raised = gain**TRANSDUCER.p
     return times, kernels.passage(risen, clock, raised, TRANSDUCER.a, criterion, tau, SHARES, times)
-
-
-def test_first_passage_of_a_lane_agrees_with_that_of_a_course() -> None:
-    time = DT * np.arange(200)
-    course = 0.02 + 2.0 * np.clip(time - 0.5, 0.0, 2.0)
-    observer = replace(Observer.load(), noise_correlation_s=0.3)
-    gains, criteria = np.array([0.5, 1.0, 2.0, 4.0]), np.array([2.5, 2.5, 3.5, 2.0])
-    times, passed = passage(course, gains, criteria)
-    for lane, (gain, criterion) in enumerate(zip(gains.tolist(), criteria.tolist(), strict=True)):
-        psi = TRANSDUCER.psi(gain * course)
-        # A course counts the change from its first sample; here that is as good as none.
-        change = np.concatenate([[0.0], psi - psi[0]])[None, 1:]
-        logs = log_survival(change, DT, criterion - float(psi[0]), observer)[0]
-        answered = 1.0 - np.exp(logs)
-        assert passed[lane] == pytest.approx(answered[-1], abs=0.01)
-        for share, when in zip(SHARES.tolist(), times[lane].tolist(), strict=True):
-            if answered[-1] > share + 0.02:
-                assert when == pytest.approx(float(np.interp(share, answered, time)), abs=0.03)
 
 
 def test_first_passage_agrees_with_drawn_noise() -> None:
