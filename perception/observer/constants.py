@@ -107,23 +107,20 @@ def _quantity(each: Field[Any]) -> str:
     return QUANTITIES.get(each.metadata["name"], each.metadata["name"].removeprefix("{} "))
 
 
-def values_in(table: Table, kind: Any, variable: Variable, shipped: Table) -> dict[str, Any]:
+def values_in(table: Table, kind: Any, variable: Variable) -> dict[str, Any]:
     """Values of a table by name; a variant's own number stands under the quantity's name with the variant's ending.
 
-    Constants of laboratory tasks that it lacks are the shipped ones, what has a default is left out. Any other missing
-    quantity is a `RecordError`.
+    Constants of laboratory tasks and those with a default may be missing. Any other is a `RecordError`.
     """
     ending, there, found = source_of(variable), {record.quantity for record in table}, {}
     for each in constants_of(kind, variable):
-        about = each.metadata
-        quantity = _quantity(each)
-        if each.default is not MISSING and about["only"] is None and quantity not in there:
+        about, quantity = each.metadata, _quantity(each)
+        optional = about["task"] or (each.default is not MISSING and about["only"] is None)
+        if optional and quantity not in there:
             continue
+        own = f"{quantity}{ending}" if f"{quantity}{ending}" in there else quantity
         for name, channel in zip(_names(each), CHANNELS, strict=False):
-            held = shipped if about["task"] and quantity not in there else table
-            own = f"{quantity}{ending}"
-            own = own if any(record.quantity == own for record in held) else quantity
-            record = held.one(own, **about["keys"], **({"channel": channel} if "{}" in about["name"] else {}))
+            record = table.one(own, **about["keys"], **({"channel": channel} if "{}" in about["name"] else {}))
             found[name] = record.interval if about["span"] else record.central
     return found
 

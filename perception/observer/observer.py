@@ -128,7 +128,7 @@ class Observer(
     def from_table(cls, table: Table, *, variable: Variable = "temperature") -> Observer:
         """Build from calibrated records; a missing one is a `RecordError` that names it."""
         try:
-            return cls.from_values(values_in(table, cls, check_variable(variable), observer_records()), variable)
+            return cls.from_values(values_in(table, cls, check_variable(variable)), variable)
         except RecordError as wrong:
             raise RecordError(f"{wrong}. Cure: {CURE}") from None
 
@@ -196,7 +196,7 @@ def variant_records(variable: Variable = "temperature") -> Table:
 @lru_cache(maxsize=2)
 def shipped_values(variable: Variable) -> Mapping[str, Any]:
     """Constants of the shipped observer in a variant, by name."""
-    return MappingProxyType(values_in(observer_records(), Observer, variable, observer_records()))
+    return MappingProxyType(values_in(observer_records(), Observer, variable))
 
 
 @lru_cache(maxsize=2)

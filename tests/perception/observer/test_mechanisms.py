@@ -10,9 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from thermicon.circuit import Rig
+from thermicon.icons import load_library
+from thermicon.perception import rank
+from thermicon.perception.experiments.measure import Condition, measure
 from thermicon.perception.observer.constants import names_of
 from thermicon.perception.observer.observer import MECHANISMS, Observer
-from thermicon.perception.observer.priors import load_priors
+from thermicon.perception.observer.priors import load_priors, priors_of
 
 ROOT = Path(__file__).resolve().parents[3]
 TOY = """
@@ -44,6 +48,7 @@ high = 4.0
 mechanism = "toy"
 source = "nobody"
 """
+CHOICE = Condition("threshold", "forced_choice", "cold", 32.0, None, 1.0, 3.0)
 ASKED = """
 import json, sys
 import thermicon.perception
@@ -82,12 +87,12 @@ def test_a_toy_mechanism_is_felt_measured_inferred_and_listed(tmp_path: Path) ->
     table.write_text(text.replace("\n\n__all__", "\nfrom .mechanisms.toy import Toy\n\n__all__"), encoding="utf-8")
     with (tmp_path / "data" / "priors.toml").open("a", encoding="utf-8") as priors:
         priors.write(PRIOR)
-    usual, toy = asked(ROOT / "perception"), asked(tmp_path)
-    assert toy["threshold"] == pytest.approx(0.5 * usual["threshold"], rel=0.1)
-    assert (np.array(toy["onsets"]) < np.array(usual["onsets"])).all()
-    assert set(toy["priors"]) - set(usual["priors"]) == {"toy gain"}
+    toy = asked(tmp_path)
+    assert toy["threshold"] == pytest.approx(0.5 * measure(CHOICE, Rig.load("forearm"), draws=2).value, rel=0.1)
+    usual = rank(load_library("six-icons"), Rig.load("thenar"), people=4, parameters=0)
+    assert (np.array(toy["onsets"]) < [icon.onset_s for icon in usual.icons]).all()
+    assert set(toy["priors"]) - set(priors_of("temperature").names) == {"toy gain"}
     assert "Everything is felt twice as strongly. | sensitivity times toy | toy gain | nobody" in toy["page"]
-    assert "toy" not in usual["page"]
 
 
 def test_every_prior_is_a_constant_of_a_mechanism_and_every_mechanism_says_what_it_is() -> None:
