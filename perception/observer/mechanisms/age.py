@@ -16,7 +16,7 @@ class Age(Mechanism):
     """Thresholds at an age over those at 25 years."""
 
     equation = "threshold × e^(lost · (age − 25)/10)"
-    source = "regressions of limits and yes/no on age"
+    source = "QST norms (Magerl et al. 2010)"
     lost_per_decade: Both[float] = constant("{} sensitivity lost per decade", ANY)
 
     def age_factor(self, age_years: float, channel: Channel) -> float:

@@ -11,7 +11,7 @@ class Criterion(Mechanism):
     """Criteria in d′ of speeded answers and of questions without haste, and the correlation time of the noise."""
 
     equation = "rate = (φ(z) + z·Φ(z))/τ · φ(g)/Φ(g), z = τ·dψ/dt, g = c − ψ"
-    source = "Rice 1945 for the rate of crossings"
+    source = "Rice's rate of crossings; no source of the criteria"
     criterion: float = constant("criterion of speeded answers")
     unhurried: float = constant("criterion of yes and no", task=True)
     caution_after_pulse: float = constant("caution after a pre-pulse", task=True)

@@ -11,6 +11,6 @@ class Gain(Mechanism):
     """Multiples of threshold per unit of drive; a gain for each presentation widens the psychometric function."""
 
     equation = "u = drive · sensitivity / threshold drive · e^(gain noise · z)"
-    source = "inferred; no source of its own"
+    source = "no source: scatter of repeated thresholds and ratings asks for it"
     threshold_drive: Both[float] = constant("{} threshold drive")
     gain_noise: float = constant("gain noise", FROM_0)

@@ -12,7 +12,7 @@ class Labels(Mechanism):
     """Share of wrong names of a cooling, at rest and after warmth."""
 
     equation = "wrong + (½ − wrong)·(1 − e^(−lingering · ψ_warm))"
-    source = "answers after a warm pulse"
+    source = "no source: names of a cooling after a warm pulse ask for it"
     wrong_labels: float = constant("wrong labels", SHARE, task=True)
     lingering: float = constant("warmth that lingers", task=True)
 

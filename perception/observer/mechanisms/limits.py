@@ -14,6 +14,6 @@ class Limits(Mechanism):
     """Hardly any cold above its limit, no warmth below its own: a fall from 36 to 34 °C is less warm, not cold."""
 
     equation = "q = L + s·δ·ln(1 + e^(s·(T − L)/δ))"
-    source = "Campero et al. 2001; Konietzny & Hensel 1977"
+    source = "Campero et al. 2001 for cold; Konietzny & Hensel 1977 for warmth"
     limit_C: Both[float] = constant("{} limit", ANY, only="temperature", default=NO_LIMIT_C)
     softness_K: float = constant("softness of the limits")

@@ -11,7 +11,7 @@ class Ratings(Mechanism):
     """A rating is a power of drive in multiples of threshold; repeated ratings scatter."""
 
     equation = "rating = g·u^n"
-    source = "Stevens' power law; scatter of open trial data"
+    source = "Stevens for the exponents; repeated ratings for their scatter"
     rating_at_threshold: Both[float] = constant("{} rating at threshold")
     rating_exponent: Both[float] = constant("{} rating exponent")
     mean_rating: Both[float] = constant("{} mean rating")

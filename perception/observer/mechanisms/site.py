@@ -14,7 +14,7 @@ class Site(Mechanism):
     """Sites of the forearm have thresholds and nerve paths of their own; every other site has those of the hand."""
 
     equation = "sensitivity ÷ forearm factor at forearm, wrist and arm"
-    source = "published thresholds of hand and forearm"
+    source = "Jamal et al. 1985 at the wrist over Stevens & Choo 1998 at the thenar"
     forearm_factor: Both[float] = constant("{} threshold on the forearm")
 
     def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:

@@ -11,7 +11,7 @@ class Skin(Mechanism):
     """Skin of laboratories: depth of receptors below the stratum corneum, contact, effusivity. Rigs have their own."""
 
     equation = "depth = stratum corneum + own depth; √(kρc) of living layers × effusivity"
-    source = "Ho 2018; Ho & Jones; contact with glass 1957"
+    source = "Ho 2018 for depths; Ho & Jones for contact; contact with glass (1957) for effusivity"
     depth_m: Both[float] = constant("{} receptor depth", scale=1e-3, task=True)
     contact_m2K_per_W: float = constant("contact resistance of a thermode", task=True)
     effusivity: float = constant("effusivity of living skin", task=True)

@@ -11,7 +11,7 @@ class Spreads(Mechanism):
     """SDs (ln) of sensitivity and criterion between people, correlated over the channels."""
 
     equation = "threshold × e^(SD · z), z of cold and warm correlated"
-    source = "spreads of published thresholds"
+    source = "QST norms (Magerl et al. 2010); no source of the criterion's"
     sensitivity_between: Both[float] = constant("{} sensitivity between people", FROM_0)
     criterion_between: float = constant("criterion between people", FROM_0)
     correlation: float = constant("correlation of cold and warm", CORRELATION)

@@ -22,7 +22,7 @@ class Transducer(Gain):
     """
 
     equation = "ψ = a·ln(1 + u^p/b), b = 1/(e^(1/a) − 1), so that ψ(1) = 1"
-    source = "inferred; no thermal source"
+    source = "amplitude differences and steps to pain for a; no thermal source of p"
     a: float = constant("slope of sensation")
     p: float = constant("transducer exponent")
 
