@@ -58,8 +58,10 @@ def constant(
     those of its record in an observer file. One of laboratory tasks alone (`task`) may be missing there; of one that is
     a `span`, the ends are the value.
     """
-    about = {"name": name, "within": within, "scale": scale, "only": only, "task": task, "span": span, "keys": keys}
-    return field(default=default, metadata=about)
+    names = tuple(name.format(channel) for channel in CHANNELS) if "{}" in name else (name,)
+    quantity = QUANTITIES.get(name, name.removeprefix("{} "))
+    own = {"names": names, "quantity": quantity, "within": within, "scale": scale, "only": only}
+    return field(default=default, metadata={**own, "task": task, "span": span, "keys": keys})
 
 
 def constants_of(kind: Any, variable: Variable | None = None) -> Iterator[Field[Any]]:
@@ -72,17 +74,12 @@ def constants_of(kind: Any, variable: Variable | None = None) -> Iterator[Field[
 def names_of(kind: Any, *chosen: str) -> tuple[str, ...]:
     """Names of some fields, in this order, or of all constants."""
     held = {each.name: each for each in constants_of(kind)}
-    return tuple(name for own in chosen or held if own in held for name in _names(held[own]))
+    return tuple(name for own in chosen or held if own in held for name in held[own].metadata["names"])
 
 
 def ranges_of(kind: Any) -> dict[str, Range]:
     """Where values of the constants lie, by name."""
-    return {name: each.metadata["within"] for each in constants_of(kind) for name in _names(each)}
-
-
-def _names(each: Field[Any]) -> list[str]:
-    name = each.metadata["name"]
-    return [name.format(channel) for channel in CHANNELS] if "{}" in name else [name]
+    return {name: each.metadata["within"] for each in constants_of(kind) for name in each.metadata["names"]}
 
 
 def name_of(record: Record) -> str:
@@ -100,11 +97,9 @@ def quantity_of(name: str) -> tuple[str, str]:
 def record_of(table: Table, kind: Any, field: str, channel: Channel | None = None) -> Record:
     """The record of a field, or of its part for one channel; a `RecordError` names what is missing."""
     (each,) = (one for one in constants_of(kind) if one.name == field)
-    return table.one(_quantity(each), **each.metadata["keys"], **({} if channel is None else {"channel": channel}))
-
-
-def _quantity(each: Field[Any]) -> str:
-    return QUANTITIES.get(each.metadata["name"], each.metadata["name"].removeprefix("{} "))
+    return table.one(
+        each.metadata["quantity"], **each.metadata["keys"], **({} if channel is None else {"channel": channel})
+    )
 
 
 def values_in(table: Table, kind: Any, variable: Variable) -> dict[str, Any]:
@@ -114,13 +109,13 @@ def values_in(table: Table, kind: Any, variable: Variable) -> dict[str, Any]:
     """
     ending, there, found = source_of(variable), {record.quantity for record in table}, {}
     for each in constants_of(kind, variable):
-        about, quantity = each.metadata, _quantity(each)
+        about, quantity = each.metadata, each.metadata["quantity"]
         optional = about["task"] or (each.default is not MISSING and about["only"] is None)
         if optional and quantity not in there:
             continue
         own = f"{quantity}{ending}" if f"{quantity}{ending}" in there else quantity
-        for name, channel in zip(_names(each), CHANNELS, strict=False):
-            record = table.one(own, **about["keys"], **({"channel": channel} if "{}" in about["name"] else {}))
+        for name, channel in zip(about["names"], CHANNELS, strict=False):
+            record = table.one(own, **about["keys"], **({"channel": channel} if len(about["names"]) > 1 else {}))
             found[name] = record.interval if about["span"] else record.central
     return found
 
@@ -129,7 +124,7 @@ def fields_from(kind: Any, values: Mapping[str, Any], variable: Variable) -> dic
     """Fields of an observer from values by name; what is missing keeps its default, further values are left alone."""
     found: dict[str, Any] = {"variable": variable}
     for each in constants_of(kind, variable):
-        names, scale = _names(each), each.metadata["scale"]
+        names, scale = each.metadata["names"], each.metadata["scale"]
         if each.default is not MISSING and names[0] not in values:
             continue
         numbers = [values[name] if scale == 1.0 else scale * values[name] for name in names]
@@ -140,7 +135,7 @@ def fields_from(kind: Any, values: Mapping[str, Any], variable: Variable) -> dic
 def values_of(held: Any) -> Iterator[tuple[str, Range, Any]]:
     """Name, range and value of every constant that an observer or a mechanism has; a span is a tuple."""
     for each in constants_of(held):
-        own, names = getattr(held, each.name), _names(each)
+        own, names = getattr(held, each.name), each.metadata["names"]
         if own is not None:
             yield from (
                 (name, each.metadata["within"], v)
