@@ -165,8 +165,8 @@ def runs_of(logs: Sequence[Log], held: bool) -> tuple[Run, ...]:
     silent = [run.name for run in runs if not run.channels]
     if silent:
         raise LogError(
-            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, or name the "
-            f"file of the thermometer behind it"
+            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, say what the "
+            f"file calls it by --column display_C=THEIRS, or name the file of the thermometer behind it"
         )
     return runs
 

@@ -202,11 +202,11 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
 
 def _check_columns(table: Table) -> None:
     """Refuse a table without any column of a log, and a column that looks like a misspelt one."""
-    known = {name.lower(): name for name in NAMES}
+    known = {name.lower(): name for name in NAMES if name not in table.header}
     for cell in table.header:
         close = known.get("".join(nearest_words(cell.lower(), known, 1, MISSPELT)))
-        if close and close not in table.header and cell not in NAMES:
+        if close and cell.lower().rpartition("_")[2] in (cell.lower(), close.lower().rpartition("_")[2]):
             what = f"{cell}: did you mean {close}? Found {table.found}"
-            raise table.fault("table", table.line, what, "rename the column, or remove it")
+            raise table.fault("table", table.line, what, f"say so by --column {close}={cell}, or remove the column")
     if table.names.doubtful or not any(map(is_known, table.header)):
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..number_text import number
+from .table import LARGEST
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-MOST_SIZE = 1e12
-"""What reads a wire that is off has fewer digits."""
 SENSED_C = (-40.0, 150.0)
 """Outside, a sensor of a display on skin is unplugged or its wire broken."""
 ON_SKIN_C, HOT_PLATE_C, MEDIAN_C = (5.0, 55.0), (5.0, 100.0), 15.0
@@ -66,8 +65,8 @@ def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
     there = values[np.isfinite(values)]
     most, unit = float(np.abs(there).max(initial=0.0)), name.rpartition("_")[2]
     limit, small = LIMITS.get(unit, (np.inf, ""))
-    if most > MOST_SIZE:
-        return f"{name} reaches {most:g}, beyond the {MOST_SIZE:g} that any instrument gives", "leave that row out"
+    if most > LARGEST:
+        return f"{name} reaches {most:g}, beyond the {LARGEST:g} that any instrument gives", "leave that row out"
     if most > limit:
         what = f"{name} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}"
         return what, f"divide it by 1000, so that it is in {unit}"

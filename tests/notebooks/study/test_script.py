@@ -87,9 +87,9 @@ def test_what_is_done_is_not_overwritten_and_is_joined(script: Runner, done: Pat
     before, files = answers(done), sorted(done.rglob("*"))
     again = script("--participant", "A", "--simulate", output=done)
     assert again.returncode == 1
-    assert "has 8 answers already: --resume goes on after them" in again.stderr
+    assert "has 8 trials already: --resume goes on after them" in again.stderr
     again = script("--participant", "A", "--simulate", "--resume", output=done)
-    assert again.returncode == 0 and "A: done before, 8 answers; there is nothing to resume" in again.stdout
+    assert again.returncode == 0 and "A: done before, 8 trials; there is nothing to resume" in again.stdout
     assert (answers(done), sorted(done.rglob("*"))) == (before, files)
     assert "16 answers of 2 participants\n" in script("--collect", output=done).stdout
     joined = rows_of(done / "answers.csv")
