@@ -65,19 +65,18 @@ class Log:
         *,
         sha256: str = "",
         notes: Sequence[str] = (),
-        rows: Sequence[str] | None = None,
         unused: str = "",
     ) -> Log:
         """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log.
 
-        `rows` are the places of the rows in a file, and `unused` its other columns, for messages.
+        `unused` are other columns of its file, for messages.
         """
         values = {key: np.asarray(column, dtype=np.float64) for key, column in columns.items()}
         if "time_s" not in values:
             raise LogError(f"{name}: the column time_s (time in s) is missing; found {', '.join(values) or 'nothing'}")
         _check_lengths(name, values)
         time = values.pop("time_s")
-        _check_times(name, time, rows)
+        _check_times(name, time)
         for key in (*DRIVES, *TEMPERATURES):
             if key in values and not np.isfinite(values[key]).any():
                 raise LogError(f"{name}: {key} holds no number at all; remove the column, or connect the sensor")
@@ -140,19 +139,15 @@ def _check_lengths(name: str, values: Mapping[str, Array]) -> None:
             )
 
 
-def _place(name: str, row: int, rows: Sequence[str] | None) -> str:
-    return rows[row] if rows else f"{name}, row {row + 1}"
-
-
-def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
+def _check_times(name: str, time: Array) -> None:
     if not np.isfinite(time).all():
         row = int(np.argmin(np.isfinite(time)))
-        raise LogError(f"{_place(name, row, rows)}: time_s is empty; remove the row")
+        raise LogError(f"{name}, row {row + 1}: time_s is empty; remove the row")
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
         row = int(back[0]) + 1
         raise LogError(
-            f"{_place(name, row, rows)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
+            f"{name}, row {row + 1}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
             f"increase: sort the rows, or give each recording its own file"
         )
     step, like = float(np.median(np.diff(time))), like_units_of_time(time, whole=False)
@@ -193,11 +188,8 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     found = measured(table, wanted, CURE)
     unused = ", ".join([name for name in table.header if name not in ("time_s", "icon", "", *wanted)][:8])
     notes = [f"{where.name}: {note}" for note in found.notes]
-    places = [f"{where}:{line}" for line in found.lines]
     digest = hashlib.sha256(data).hexdigest()
-    return Log.of(
-        where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes, rows=places, unused=unused
-    )
+    return Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes, unused=unused)
 
 
 def _check_columns(table: Table) -> None:

@@ -53,6 +53,7 @@ OTHERS = {
 BRACKET = re.compile(r"(.*?)[\s_]*[(\[{<]([^)\]}>]*)[)\]}>].*")
 BEHIND = re.compile(r"(.*?)(?:\s*[/,|]\s*|\s+in\s+|[\s_]+)([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?")
 SPICE = re.compile(r"([vi])\((.+)\)", re.IGNORECASE)
+LONGEST_NAME = 200
 HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
@@ -63,7 +64,7 @@ def unit_of(text: str) -> Unit | None:
 
 def parted(cell: str) -> tuple[str, Unit | None]:
     """The words of a name without its unit, and the unit."""
-    for text in (cell, HUMP.sub(" ", cell)):
+    for text in (cell, HUMP.sub(" ", cell)) if len(cell) <= LONGEST_NAME else ():
         for pattern in (BRACKET, BEHIND):
             if (found := pattern.fullmatch(text)) and (unit := unit_of(found[2])):
                 return found[1], unit

@@ -41,8 +41,8 @@ QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
 """Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
 WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
-FEW, LONGEST_CELL, MOST_ABOVE, MOST_NAMES = 8, 60, 200, 200
-"""Columns that a message lists, characters of a cell that it quotes; lines, and cells of each, to find names."""
+FEW, LONGEST_CELL, MOST_ABOVE, LONGEST_LINE = 8, 60, 200, 10_000
+"""Columns that a message lists, characters of a cell that it quotes; lines, and of each how much, to find names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,8 +169,9 @@ def read_table(
             raise fault("size", None, f"more than {most_rows:,} rows", "keep every tenth row, or cut the file")
     if not header[0] and rows and ":" in rows[0][0]:
         header[0] = "Time"  # PicoLog leaves the name of its clock empty
+    firsts = dict[str, int]()
     for at, name in enumerate(header):
-        first = header.index(name)
+        first = firsts.setdefault(name, at)
         if name and rows and first < at and all(row[first : first + 1] == row[at : at + 1] for row in rows):
             header[at] = ""  # SPICE programs and LabVIEW may write their times beside each column
     ours = named(header, names, theirs)
@@ -190,7 +191,7 @@ def read_table(
 
 def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
     """How many lines stand above the names, what separates the cells, and how many of those lines say something."""
-    lines = list(itertools.islice(io.StringIO(text), MOST_ABOVE))
+    lines = [line[:LONGEST_LINE] for line in itertools.islice(io.StringIO(text), MOST_ABOVE)]
     head = max((at for at, line in enumerate(lines) if line.startswith("***End_of_Header***")), default=-1)
     first = next((at for at, line in enumerate(lines) if line.strip() and not line.startswith(ASIDE)), len(lines))
     best, place, mark = 0.0, first, ""
@@ -200,7 +201,7 @@ def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -
             rows.extend(_cells((line.lstrip("# ") for line in lines), each))
         for (at, cells), (_, below) in itertools.pairwise([*rows, (0, [])]):
             known = {cell for cell in cells if cell in names or cell in theirs.values()}
-            words = [cell for cell in cells[:MOST_NAMES] if len(cell) <= LONGEST_CELL]
+            words = [cell for cell in cells if len(cell) <= LONGEST_CELL]
             score = float(len(known.union(found[0] for cell in words if (found := meant(cell, names)))))
             numbers = any(map(NUMBER.fullmatch, words))
             fits = not numbers and len(below) - len(cells) in (0, 1) and len(below) > 1

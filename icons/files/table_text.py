@@ -59,15 +59,11 @@ def _tdms_text(data: bytes, fault: Fault) -> str:
         cure = 'pip install "thermicon[hardware]", or save it as CSV'
         raise fault("binary", None, "TDMS needs npTDMS, which is not installed", cure) from None
     try:
-        channels = [channel for group in TdmsFile.read(io.BytesIO(data)).groups() for channel in group.channels()]
-        columns = {channel.name: channel[:].tolist() for channel in channels}
-        if not any(name.lower().startswith("time") for name in columns):
-            clocks = {tuple(channel.time_track().round(9).tolist()) for channel in channels}
-            if len(clocks) != 1:
-                raise ValueError("its channels have different clocks; save each clock as a file of its own")
-            columns = {"time_s": list(clocks.pop()), **columns}
-        rows = [*zip(*columns.values(), strict=True)]
+        file = TdmsFile.read(io.BytesIO(data))
+        clocked = not any(c.name.lower().startswith("time") for group in file.groups() for c in group.channels())
+        frame = file.as_dataframe(time_index=clocked)
+        frame.columns = [re.findall("'(.*?)'", name)[-1] for name in frame.columns]
+        return str(frame.to_csv(sep="\t", index=clocked, index_label="time_s", lineterminator="\n"))
     except Exception as problem:  # npTDMS raises whatever a broken file leads it to
         why = "no wf_increment" if isinstance(problem, KeyError) else str(problem) or type(problem).__name__
         raise fault("binary", None, f"cannot be read as TDMS ({why})", "save it as CSV") from None
-    return "\n".join(["\t".join(columns), *("\t".join(map(str, row)) for row in rows)])

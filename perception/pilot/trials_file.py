@@ -24,7 +24,7 @@ LONGEST_LABEL = 100
 MOST, PER_CENT = 1e6, "write numbers of answers (a per cent of a row times its number of trials)"
 ALIKE = 0.55
 """A cell that is so much alike an icon is a slip of the pen, not an instruction."""
-NOTHING = ("", "no answer", "no response", "missing", "–", "timeout", *NOTHINGS)
+NOTHING = ("", "no answer", "no response", "no_response", "missing", "–", "timeout", *NOTHINGS)
 """What experiments write where nobody answered."""
 WIDE = re.compile(
     r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|responded|response|trial)(?:[_ .-]?(\d+))?", re.I
@@ -69,9 +69,7 @@ def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, st
     folded = [name.casefold() for name in names]
     for line, (participant, block, number, *cells) in _asked(file, table):
         where = f"{file}:{line}"
-        icon, answer = (
-            cell if cell in places or cell.casefold().replace("_", " ") not in NOTHING else "" for cell in cells
-        )
+        icon, answer = ("" if cell not in places and cell.casefold() in NOTHING else cell for cell in cells)
         if answer not in places and icon not in places and not nearest_words(icon.casefold(), folded, 1, ALIKE):
             passed, strange = passed + 1, strange if strange[0] else (icon, where)
             continue
@@ -133,9 +131,7 @@ def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
         if counts[shown].any() or shown not in said:
             raise TrialsError(f"{where}: {row[first]} has two rows, or no column; an icon has one of each")
         numbers = [as_number(cell, table.mark) for cell in cells]
-        if wrong := [
-            cell for cell, size in zip(cells, numbers, strict=True) if not (0 <= size < MOST and size % 1 == 0)
-        ]:
+        if wrong := [cell for cell, size in zip(cells, numbers, strict=True) if size % 1 or not 0 <= size < MOST]:
             raise TrialsError(f"{where}: {quoted(wrong[0])} is not a count; {PER_CENT}")
         counts[shown, said] = numbers
     sums = counts.sum(axis=1)
@@ -149,7 +145,7 @@ def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
 def table_in(
     path: Path, names: Sequence[str], example: str, what: str, columns: Mapping[str, str] | None = None
 ) -> tuple[Table, str]:
-    """Return the table in a file, whose line of names has some of those `names`, and 16 digits of the file's SHA-256."""
+    """Return the table in a file, whose line of names has some of `names`, and 16 digits of the file's SHA-256."""
     data = read_bytes(path, what, MOST_MB, TrialsError)
     said = table_fault(path, TrialsError)
 
