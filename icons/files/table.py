@@ -220,7 +220,7 @@ def _cells(lines: Iterator[str], mark: str) -> Iterator[tuple[int, list[str]]]:
         lines, mark = ("\t".join(line.split()) for line in lines), "\t"
     reader, above = csv.reader(lines, delimiter=mark), 0
     for row in reader:
-        cells = [" ".join(cell.split()) for cell in row]
+        cells = [" ".join(cell.split()) if "\n" in cell else cell.strip() for cell in row]
         if any(cells):
             yield above, cells
         above = reader.line_num

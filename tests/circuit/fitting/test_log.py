@@ -139,19 +139,6 @@ def saved(folder: Path, text: str) -> Path:
     return folder / "rig.csv"
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        GOOD, GOOD.replace(",", ";").replace(".", ","), GOOD.replace(",", "\t"), GOOD.replace("\n", "\r\n"),
-        "\ufeff" + GOOD, "# logged on Monday\nsep=,\n" + GOOD, GOOD + "\n\n",
-    ],
-)  # fmt: skip
-def test_a_table_is_read_whatever_separates_its_cells(text: str, tmp_path: Path) -> None:
-    log = read_log(saved(tmp_path, text))
-    assert (len(log.time_s), log.time_s[-1], log.column("display_C")[3]) == (40, 3.9, 32.03)
-    assert len(log.sha256) == 64
-
-
 @pytest.mark.parametrize(("change", "message"), MESSAGES["table"].items())
 def test_a_table_that_is_no_log_is_refused_with_its_line(change: str, message: str, tmp_path: Path) -> None:
     text = GOOD.replace(*json.loads(change)) if change.startswith("[") else change
