@@ -116,11 +116,11 @@ def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str])
     """
     units, renamed, doubtful = dict[str, Unit](), dict[str, str](), dict[str, tuple[str, ...]]()
     places = {name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells}
-    new = [f"({cell})" if cell in places else cell for cell in cells]
+    new, said = [f"({cell})" if cell in places else cell for cell in cells], set(places)
     for at, cell in enumerate(cells):
         if cell not in names and cell not in theirs.values() and not re.fullmatch("probe_.+_C", cell):
             found = meant(cell, names)
-            if found and found[0] not in {*cells, *theirs}:
+            if found and found[0] not in said.union(cells):
                 places.setdefault(found[0], []).append((at, found[1]))
     for name, several in places.items():
         best = [one for one in several if one[1] or len(several) == 1]
