@@ -153,7 +153,8 @@ def runs_of(logs: Sequence[Log], held: bool) -> tuple[Run, ...]:
     driven = [log for log in logs if log.drive is not None]
     if not driven:
         found = "; ".join(f"{log.name} has {', '.join(dict(log.columns))}" for log in logs)
-        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed ({found})")
+        cure = f"say what the file calls it by --column {DRIVES[0]}=THEIRS"
+        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed ({found}); {cure}")
     groups: dict[int, list[Log]] = {id(log): [] for log in driven}
     last = driven[0]
     for log in logs:

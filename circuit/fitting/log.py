@@ -11,9 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.icons.files.measured_table import measured, missing
-from thermicon.icons.files.table import Table, read_table
+from thermicon.icons.files.table import read_table
 from thermicon.icons.files.units import like_units_of_time, unit_fault
-from thermicon.icons.near_words import nearest_words
 
 from ..arrays import Array
 from ..inputs import read_bytes, table_fault
@@ -65,12 +64,8 @@ class Log:
         *,
         sha256: str = "",
         notes: Sequence[str] = (),
-        unused: str = "",
     ) -> Log:
-        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log.
-
-        `unused` are other columns of its file, for messages.
-        """
+        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log."""
         values = {key: np.asarray(column, dtype=np.float64) for key, column in columns.items()}
         if "time_s" not in values:
             raise LogError(f"{name}: the column time_s (time in s) is missing; found {', '.join(values) or 'nothing'}")
@@ -89,7 +84,7 @@ class Log:
         for key, column in {"time_s": time, **used}.items():
             if fault := unit_fault(key, column):
                 raise LogError(f"{name}: {'; '.join(fault)}")
-        unused = unused or ", ".join(key for key in values if key not in used)
+        unused = ", ".join(key for key in values if key not in used)
         more = (f"{name}: columns that are not used: {unused}",) if unused else ()
         for array in (time, *used.values()):
             array.setflags(write=False)
@@ -162,9 +157,6 @@ MOST_MB = 200.0
 NAMES = ("time_s", *DRIVES, *MEASURED)
 CURE = "leave the cell empty"
 
-MISSPELT = 0.85
-"""A name of a column that is so much alike a known one is taken for a slip of the pen."""
-
 
 def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     r"""Read a measured log: a table with a line of names, its cells separated by commas, semicolons or tabs.
@@ -183,22 +175,12 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     where = Path(path)
     data = read_bytes(where, "log", MOST_MB, LogError)
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
-    _check_columns(table)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
+    if table.names.doubtful or not wanted:
+        raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)
     unused = ", ".join([name for name in table.header if name not in ("time_s", "icon", "", *wanted)][:8])
-    notes = [f"{where.name}: {note}" for note in found.notes]
+    said = (*found.notes, *([f"columns that are not used: {unused}"] if unused else []))
+    notes = [f"{where.name}: {note}" for note in said]
     digest = hashlib.sha256(data).hexdigest()
-    return Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes, unused=unused)
-
-
-def _check_columns(table: Table) -> None:
-    """Refuse a table without any column of a log, and a column that looks like a misspelt one."""
-    known = {name.lower(): name for name in NAMES if name not in table.header}
-    for cell in table.header:
-        close = known.get("".join(nearest_words(cell.lower(), known, 1, MISSPELT)))
-        if close and cell.lower().rpartition("_")[2] in (cell.lower(), close.lower().rpartition("_")[2]):
-            what = f"{cell}: did you mean {close}? Found {table.found}"
-            raise table.fault("table", table.line, what, f"say so by --column {close}={cell}, or remove the column")
-    if table.names.doubtful or not any(map(is_known, table.header)):
-        raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
+    return Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes)

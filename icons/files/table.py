@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-Kind = Literal["table", "size", "cell", "empty", "binary", "coding", "time", "unit"]
+Kind = Literal["table", "size", "cell", "empty", "binary", "time", "unit"]
 Fault = Callable[[Kind, int | None, str, str], Exception]
 """Makes the error for a fault: its kind, the line in the file, what is wrong, and the cure."""
 
@@ -166,7 +166,7 @@ def read_table(
         rows.append(row)
         places.append(place)
         if len(rows) > most_rows:
-            raise fault("size", None, f"more than {most_rows:,} rows", "keep every tenth row, or cut the file")
+            raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
     if not header[0] and rows and ":" in rows[0][0]:
         header[0] = "Time"  # PicoLog leaves the name of its clock empty
     firsts = dict[str, int]()

@@ -15,7 +15,6 @@ TABLES = (".csv", ".tsv", ".txt", ".dat", ".log", ".lvm", ".prn", ".raw", ".tdms
 
 OTHERS = {
     b"PK\3\4": ("a workbook of Excel or LibreOffice, or a zip archive", "save the sheet as CSV, or unpack the archive"),
-    b"\xd0\xcf\x11\xe0": ("a workbook of an old Excel", "save the sheet as CSV"),
     b"\x1f\x8b": ("compressed by gzip", "unpack it, and give the table in it"),
     b"<": ("a page of HTML or XML", "open it in a spreadsheet, and save the sheet as CSV"),
     b"{": ("JSON", "write its records as CSV"),

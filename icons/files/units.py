@@ -73,10 +73,6 @@ def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
     return _temperature_fault(name, there) if unit == "C" and there.size else None
 
 
-def _either(fits: list[tuple[str, str]], at: int) -> str:
-    return " or ".join(each[at] for each in fits)
-
-
 def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
     import numpy as np
 
@@ -85,14 +81,15 @@ def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
     low, high = ON_SKIN_C if on_skin else HOT_PLATE_C
     plausible = SENSED_C[0] <= middle <= (BURNING_C if on_skin else SENSED_C[1])
     fits = list[tuple[str, str]]()
-    for unit, factor, plus, how in () if plausible else TEMPERATURES:
+    for unit, factor, plus, cure in () if plausible else TEMPERATURES:
         scaled = there * factor + plus
         kept = scaled[~errors(scaled, (low, high), (low - JUMP_K, high + JUMP_K))]
         if low <= kept.min() and kept.max() <= high and np.median(kept) > MEDIAN_C:
-            fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", how))
+            fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", cure))
     if fits:
-        cure = f"{_either(fits, 1)}{', whichever they are,' if len(fits) > 1 else ''} to have °C"
-        return f"{name} has a median of {middle:g}: these look like {_either(fits, 0)}", cure
+        like, how = (" or ".join(each) for each in zip(*fits, strict=True))
+        cure = f"{how}{', whichever they are,' if len(fits) > 1 else ''} to have °C"
+        return f"{name} has a median of {middle:g}: these look like {like}", cure
     if not outside.any() or (plausible and outside.mean() <= MOST_LEFT_OUT):
         return None
     what = f"{name} reads {there[np.argmax(outside)]:g} °C in {100 * outside.mean():.0f} % of its rows"
@@ -115,4 +112,4 @@ def like_units_of_time(time: Array, whole: bool = True) -> tuple[str, str] | Non
         for part, by, size in (("milli", "1000", 1e-3), ("micro", "1,000,000", 1e-6), ("nano", "1,000,000,000", 1e-9))
         if STEPS_S[0] <= step * size <= STEPS_S[1] and LENGTHS_S[0] <= length * size <= LENGTHS_S[1]
     ]
-    return (_either(fits, 0), _either(fits, 1)) if fits else None
+    return (" or ".join(like for like, _ in fits), " or ".join(how for _, how in fits)) if fits else None

@@ -35,7 +35,7 @@ MOST_ROWS, MOST_MB = 1_000_000, 200
 """Rows of a recording, about five minutes at 3 kHz, and room for them with many further columns."""
 EXAMPLE = f"{TIME},temperature_C"
 _CURE = "fill it in, or remove the row; between readings the course is taken as linear"
-_CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "binary": "E006", "coding": "E007",
+_CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "binary": "E006",
           "time": "E015", "unit": "E219"}  # fmt: skip
 
 

@@ -29,8 +29,6 @@ COLUMNS = ("participant", "kind", "channel", "value", "unit")
 OPTIONAL = ("method", "size_K", "rate_K_per_s", "hold_s", "baseline_C", "standard_error", "trials")
 EXAMPLE = ",".join((*COLUMNS, "method", "size_K", "standard_error"))
 WHAT = "table of measurements"
-MARKS_OF_KIND = ("kind", "value")
-"""Columns by which a table of measurements is recognised."""
 MOST_CONDITIONS = 40
 
 FACTORS: Mapping[Kind, Mapping[str, float]] = {
@@ -122,7 +120,7 @@ def is_measurements(path: str | Path, columns: Mapping[str, str] | None = None) 
     """Whether the header of a file is that of measurements, not of trials."""
     names = ("presented", *COLUMNS)
     table, _ = table_in(Path(path), names, EXAMPLE, "table of trials or measurements", columns)
-    return "presented" not in table.header and any(mark in table.header for mark in MARKS_OF_KIND)
+    return "presented" not in table.header and any(mark in table.header for mark in ("kind", "value"))
 
 
 def read_measurements(path: str | Path, rig: Rig, columns: Mapping[str, str] | None = None) -> Measurements:

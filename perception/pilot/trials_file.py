@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
-from thermicon.icons.files.table import NOTHINGS, Kind, Table, as_number, read_table
+from thermicon.icons.files.table import NOTHINGS, Table, as_number, read_table
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from ..arrays import Array
@@ -147,12 +147,8 @@ def table_in(
 ) -> tuple[Table, str]:
     """Return the table in a file, whose line of names has some of `names`, and 16 digits of the file's SHA-256."""
     data = read_bytes(path, what, MOST_MB, TrialsError)
-    said = table_fault(path, TrialsError)
-
-    def fault(kind: Kind, line: int | None, wrong: str, cure: str) -> Exception:
-        return said(kind, line, wrong, "one experiment a file is enough" if kind == "size" else cure)
-
-    return read_table(data, fault, example, MOST_ROWS, names, columns), hashlib.sha256(data).hexdigest()[:16]
+    table = read_table(data, table_fault(path, TrialsError), example, MOST_ROWS, names, columns)
+    return table, hashlib.sha256(data).hexdigest()[:16]
 
 
 def require(path: Path, table: Table, needed: Sequence[str], example: str) -> None:

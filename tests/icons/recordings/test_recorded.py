@@ -115,7 +115,7 @@ def test_files_that_are_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
             from_csv(place)
     path = written(tmp_path, DIP)
     monkeypatch.setattr("thermicon.icons.recordings.recorded.MOST_ROWS", 4)
-    with pytest.raises(ValueError, match="E004 file too large\n  more than 4 rows\n  keep every tenth row"):
+    with pytest.raises(ValueError, match="E004 file too large\n  more than 4 rows\n  split the file, or keep every"):
         from_csv(path)
 
     def refuse(*_: object, **__: object) -> bytes:

@@ -252,7 +252,7 @@ REFUSED: dict[str, tuple[str | bytes, str, Cure]] = {
         lambda text: f"{HEAD.replace(',', ' ')}\n{text}"),
     "unknown names": ("\n".join(["clock,x1,x2", *ROWS]), "--column", {"time_s": "clock", "current_A": "x1",
         "display_C": "x2"}),
-    "no unit": ("\n".join(["time_s,Current,display_C", *ROWS]), "did you mean current_A|--column current_A=Current",
+    "no unit": ("\n".join(["time_s,Current,display_C", *ROWS]), "--column current_A=Current",
         {"current_A": "Current"}),
     "milliseconds": (written(time=number(1000)), "milliseconds[;,] .*divide the column by 1000", scaled(0, 1e-3)),
     "epoch in ms": (written(time=number(1000, 1772495998000, ".13g")), "milliseconds[;,] .*by 1000", scaled(0, 1e-3,

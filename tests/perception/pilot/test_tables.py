@@ -140,7 +140,7 @@ def test_empty_absent_binary_and_large_files_are_refused(tmp_path: Path, monkeyp
         read_trials(path, ICONS)
     written(tmp_path, *(f"P1,{k},dip,dip" for k in range(5)))
     monkeypatch.setattr(trials_file, "MOST_ROWS", 4)
-    with pytest.raises(TrialsError, match="more than 4 rows; one experiment a file"):
+    with pytest.raises(TrialsError, match="more than 4 rows; split the file"):
         read_trials(path, ICONS)
     monkeypatch.setattr(trials_file, "MOST_MB", 1e-5)
     with pytest.raises(TrialsError, match="too large for a table of trials; the limit is 1e-05 MB"):
