@@ -56,7 +56,7 @@ def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, st
     """
     file = Path(path)
     names, places = tuple(icons), {name: place for place, name in enumerate(icons)}
-    table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT, columns)
+    table, digest = table_in(file, (*COLUMNS, "block"), EXAMPLE, WHAT, columns)
     if not set(COLUMNS) & set(table.header) and not any(map(WIDE.fullmatch, table.header)):
         grid, _ = table_in(file, names, EXAMPLE, WHAT)
         table = grid if len(grid.rows) <= len(names) + 1 else table

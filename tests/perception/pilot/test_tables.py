@@ -75,7 +75,7 @@ def table_of(shape: str, trials: dict[str, list[tuple[str, str]]]) -> list[str]:
     if shape == "restarting":
         return [HEAD, *(f"{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
     if shape == "blocks":
-        return [f"block,{HEAD}", *(f"{k // 6},{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
+        return [f"Block,{HEAD}", *(f"{k // 6},{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
     said = [*ICONS, "none"]
     pairs = [(icon, answer if answer in ICONS else "none") for *_, icon, answer in long]
     counts = [f"{icon}," + ",".join(str(pairs.count((icon, answer))) for answer in said) for icon in reversed(ICONS)]
