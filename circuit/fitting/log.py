@@ -13,6 +13,7 @@ import numpy as np
 from thermicon.icons.files.measured_table import measured, missing
 from thermicon.icons.files.table import read_table
 from thermicon.icons.files.units import like_units_of_time, unit_fault
+from thermicon.icons.near_words import nearest_words
 
 from ..arrays import Array
 from ..inputs import read_bytes, table_fault
@@ -156,6 +157,8 @@ def _check_times(name: str, time: Array) -> None:
 MOST_MB = 200.0
 NAMES = ("time_s", *DRIVES, *MEASURED)
 CURE = "leave the cell empty"
+MISSPELT = 0.85
+"""A name of a column that is so much alike a known one, and of its unit, is taken for a slip of the pen."""
 
 
 def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
@@ -176,6 +179,12 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     data = read_bytes(where, "log", MOST_MB, LogError)
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
+    absent = {name.lower(): name for name in NAMES if name not in table.header}
+    for cell in table.header:
+        close = "" if is_known(cell) else absent.get("".join(nearest_words(cell.lower(), absent, 1, MISSPELT)), "")
+        if close and cell[-2:] == close[-2:]:
+            cure = f"say so by --column {close}={cell}, or remove the column"
+            raise table.fault("table", table.line, f"{cell}: did you mean {close}? Found {table.found}", cure)
     if table.names.doubtful or not wanted:
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)

@@ -101,11 +101,10 @@ def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """A header in our names where they are known: units of those that were renamed, and what was ambiguous."""
+    """A header in our names where they are known: what those that were renamed are called, and what was ambiguous."""
 
     header: tuple[str, ...]
-    units: Mapping[str, Unit]
-    renamed: Mapping[str, str]
+    renamed: Mapping[str, tuple[str, Unit]]
     doubtful: Mapping[str, tuple[str, ...]]
 
 
@@ -114,7 +113,7 @@ def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str])
 
     Where two cells may be the same, none is taken, but one whose unit is said goes before others.
     """
-    units, renamed, doubtful = dict[str, Unit](), dict[str, str](), dict[str, tuple[str, ...]]()
+    renamed, doubtful = dict[str, tuple[str, Unit]](), dict[str, tuple[str, ...]]()
     places = {name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells}
     new, said = [f"({cell})" if cell in places else cell for cell in cells], set(places)
     for at, cell in enumerate(cells):
@@ -126,7 +125,7 @@ def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str])
         best = [one for one in several if one[1] or len(several) == 1]
         if len(best) == 1:
             at, unit = best[0]
-            new[at], renamed[name], units[name] = name, cells[at], unit or Unit("")
+            new[at], renamed[name] = name, (cells[at], unit or Unit(""))
         else:
             doubtful[name] = tuple(cells[at] for at, _ in several)
-    return Named(tuple(new), units, renamed, doubtful)
+    return Named(tuple(new), renamed, doubtful)

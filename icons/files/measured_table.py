@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .clock import order_fault, seconds_of, spread
-from .column_names import parted
+from .column_names import Unit, parted
 from .table import Table
 from .units import POSSIBLE_C, SENSED_C, errors, like_units_of_time, unit_fault
 
@@ -63,7 +63,7 @@ def measured(
     time, lines, notes = _times(table), np.array(table.lines), list(table.notes)
     counts = {name: Counter[str]() for name in names}
     columns = {name: table.numbers(name, cure, counts[name] if gaps else None) for name in names}
-    for name, unit in table.names.units.items():
+    for name, (_, unit) in table.names.renamed.items():
         if name in columns:
             columns[name] = columns[name] * unit.factor + unit.plus
     if (few := len(time)) < 2:
@@ -105,12 +105,12 @@ def measured(
 
 def _times(table: Table) -> Array:
     """The column of times, as numbers, or as times of day with or without dates."""
-    cells, unit = list(table.texts(TIME)), table.names.units.get(TIME)
+    cells, unit = list(table.texts(TIME)), table.names.renamed.get(TIME, ("", Unit("s")))[1]
     if not any(cells) and cells:
         raise table.fault("time", None, "time_s is empty in every row", "add the times, from the interval between rows")
     odd = [row for row, cell in enumerate(cells) if ":" not in cell]
     if 2 * len(odd) >= len(cells):
-        return table.numbers(TIME, CLOCK_CURE if len(odd) < len(cells) else ROW) * (unit.factor if unit else 1.0)
+        return table.numbers(TIME, CLOCK_CURE if len(odd) < len(cells) else ROW) * unit.factor
     if odd or (times := seconds_of(cells)) is None:
         row = [*odd, 0][0]
         what = f"time_s is {cells[row]!r}, not a time" if cells[row] else "time_s is empty"

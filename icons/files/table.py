@@ -107,7 +107,7 @@ class Table:
         if GROUPED.fullmatch(cell):
             return "write numbers without marks between thousands"
         if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]):
-            theirs = self.names.renamed.get(name, name)
+            theirs = self.names.renamed.get(name, (name,))[0]
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
         alone = len(self.header) > 1 and set(self.rows[row]) <= {"", cell}
         return "remove this line, which is no row of the table" if cell and alone else ""
@@ -152,10 +152,10 @@ def read_table(
             continue  # names that stand again, and rules between pages
         said = [] if rows else [cell for cell in bare if cell.strip(" ()[]-")]  # a row of units, but for a word
         if sum(unit_of(cell) is None for cell in said) < 0.5 * len(said) and not re.search(r"\d", "".join(said)):
-            own = {name: f"{name} [{cell.strip(' ()[]')}]" for name, cell in zip(header, bare, strict=False)
-                   if unit_of(cell)}  # fmt: skip
-            header = [own.get(name, name) for name in header]
-            theirs = {name: own.get(cell, cell) for name, cell in theirs.items()}
+            full = {name: f"{name} [{cell.strip(' ()[]')}]" for name, cell in zip(header, bare, strict=False)
+                    if unit_of(cell)}  # fmt: skip
+            header = [full.get(name, name) for name in header]
+            theirs = {name: full.get(cell, cell) for name, cell in theirs.items()}
             continue
         if not rows and len(row) == len(header) + 1 and '\n"1"' in text:
             header.insert(0, "")  # R names no column of row numbers
@@ -175,13 +175,12 @@ def read_table(
         if name and rows and first < at and all(row[first : first + 1] == row[at : at + 1] for row in rows):
             header[at] = ""  # SPICE programs and LabVIEW may write their times beside each column
     ours = named(header, names, theirs)
-    for name, unit in ours.units.items():
+    for name, (own, unit) in ours.renamed.items():
         if unit.ours not in ("", name.rpartition("_")[2]) and "_" in name:
-            what = f"{ours.renamed[name]!r} is in another unit than {name}"
-            raise fault("unit", line, what, "name another column")
+            raise fault("unit", line, f"{own!r} is in another unit than {name}", "name another column")
     notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
-    read = [f"{name} from {own!r}" for name, own in ours.renamed.items()
-            if theirs.get(name) != own or ours.units[name][1:] != (1, 0)]  # fmt: skip
+    read = [f"{name} from {own!r}" for name, (own, unit) in ours.renamed.items()
+            if theirs.get(name) != own or unit[1:] != (1, 0)]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
     lost = [f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header]
     notes += [f"no column is called {', and none '.join(lost)}"] if lost else []

@@ -42,7 +42,6 @@ class Curves:
     time_s: Array
     columns: Mapping[str, Array]
     whole: bool
-    ignored: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
 
@@ -89,8 +88,9 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
         table = replace(table, rows=kept[0], lines=kept[1])
     whole = all(name in table.header and name not in table.names.renamed for name in COLUMNS[1:])
     found = measured(table, known, CURE, ours=whole)
-    ignored = tuple(name for name in table.header if name and name not in (*COLUMNS, *known))
-    return Curves(where.name, found.time_s, found.columns, whole, ignored[:8], found.notes)
+    ignored = [name for name in table.header if name and name not in (*COLUMNS, *known)][:8]
+    notes = [f"ignored columns that no trace has: {', '.join(ignored)}"] if ignored else []
+    return Curves(where.name, found.time_s, found.columns, whole, (*found.notes, *notes))
 
 
 def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:

@@ -26,9 +26,7 @@ ALIKE = 0.55
 """A cell that is so much alike an icon is a slip of the pen, not an instruction."""
 NOTHING = ("", "no answer", "no response", "no_response", "missing", "–", "timeout", *NOTHINGS)
 """What experiments write where nobody answered."""
-WIDE = re.compile(
-    r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|responded|response|trial)(?:[_ .-]?(\d+))?", re.I
-)
+WIDE = re.compile(r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|respon(?:ded|se)|trial)[_ .-]?(\d+)?", re.I)
 ASKED, WIDE_EXAMPLE = ("icon", "presented"), "participant,icon_1,answer_1,icon_2,answer_2"
 """Words of `WIDE` for what was presented, and how such a line begins."""
 
