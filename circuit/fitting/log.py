@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.icons.files.clock import order_fault
 from thermicon.icons.files.measured_table import measured, missing
 from thermicon.icons.files.table import read_table
 from thermicon.icons.files.units import like_units_of_time, unit_fault
@@ -129,23 +130,18 @@ def _check_lengths(name: str, values: Mapping[str, Array]) -> None:
         raise LogError(f"{name}: {time[0]:,} rows; the limit is {MOST_ROWS:,}: keep every tenth row")
     for key, shape in lengths.items():
         if shape != time:
-            raise LogError(
-                f"{name}: unequal lengths: time_s has {time[0]} rows, {key} has {shape[0] if shape else 0}; cut the "
-                f"longer column"
-            )
+            what = f"time_s has {time[0]} rows, {key} has {shape[0] if shape else 0}"
+            raise LogError(f"{name}: unequal lengths: {what}; cut the longer column")
 
 
 def _check_times(name: str, time: Array) -> None:
     if not np.isfinite(time).all():
         row = int(np.argmin(np.isfinite(time)))
         raise LogError(f"{name}, row {row + 1}: time_s is empty; remove the row")
-    back = np.flatnonzero(np.diff(time) <= 0)
-    if back.size:
-        row = int(back[0]) + 1
-        raise LogError(
-            f"{name}, row {row + 1}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
-            f"increase: sort the rows, or give each recording its own file"
-        )
+    if (np.diff(time) <= 0).any():
+        row, why = order_fault(time) or (int(np.argmin(np.diff(time))) + 1, "write times with more decimals")
+        what = f"time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must increase"
+        raise LogError(f"{name}, row {row + 1}: {what}: {why}")
     step, like = float(np.median(np.diff(time))), like_units_of_time(time, whole=False)
     if step > SLOWEST_S or (like and step < SHORTEST_S):
         cure = f"s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"

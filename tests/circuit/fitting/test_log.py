@@ -43,7 +43,7 @@ def at(row: int, value: float, column: str = "time_s") -> np.ndarray:
         ({"current_A": TIME}, r"the column time_s \(time in s\) is missing; found current_A"),
         (changed(display_C=[32.0] * 99), "unequal lengths: time_s has 100 rows, display_C has 99; cut the longer"),
         (changed(display_C=[np.nan] * 100), "display_C holds no number at all; remove the column, or connect"),
-        (changed(time_s=at(50, 2.0)), "row 51: time_s 2 s does not come after 4.9 s; times must increase"),
+        (changed(time_s=at(50, 2.0)), "row 51: time_s 2 s .* after 4.9 s; .*increase: this row is out of place"),
         (changed(time_s=at(7, np.nan)), "row 8: time_s is empty; remove the row"),
         (changed(time_s=TIME * 1000), "steps of 100 over 9900: these look like milliseconds; divide the column by"),
         (changed(time_s=TIME * 100000), "steps of 10000 s; a fit needs rows at most 2 s apart: log faster"),
