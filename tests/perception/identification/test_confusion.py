@@ -1,3 +1,4 @@
+import math
 from statistics import NormalDist
 from typing import Any
 
@@ -135,3 +136,17 @@ def test_two_icons_that_hardly_differ_share_their_names(icons: int, apart: float
     distances = np.linalg.norm(points[:, None] - points, axis=-1)
     last = confuse(distances, lapse=0.0).pooled[-2:, -2:]
     assert last == pytest.approx(np.full((2, 2), last.mean()), abs=0.02)
+
+
+def test_what_is_small_in_each_of_many_ways_counts_together() -> None:
+    """64 icons that differ by 0.02 to 0.04 at most along any axis, and by a d′ of 0.17 in all."""
+    signs = np.ones((1, 1))
+    for _ in range(6):
+        signs = np.block([[signs, signs], [signs, -signs]])
+    points = signs[:, 1:] * np.linspace(0.01, 0.02, 63)
+    apart = np.linalg.norm(points[:, None] - points, axis=-1)
+    found = confuse(np.repeat(apart[None], 4, axis=0), lapse=0.0, samples=2048)
+    middle = float(apart[~np.eye(64, dtype=bool)].mean())
+    assert proportion_correct(found.pooled) == pytest.approx(
+        equal_proportion_correct(middle / math.sqrt(2), 64), abs=0.0008
+    )

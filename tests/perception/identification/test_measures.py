@@ -48,6 +48,12 @@ def test_plugin_loses_its_bias_and_repeats() -> None:
         plugin_bits(np.eye(2), 0)
 
 
+@pytest.mark.parametrize(("trials", "shown"), [(7, [3, 2, 2]), (6, [2, 2, 2]), (2, [1, 1])])
+def test_answers_without_error_carry_the_entropy_of_what_was_presented(trials: int, shown: list[int]) -> None:
+    bits = -sum(times / trials * math.log2(times / trials) for times in shown)
+    assert plugin_bits(np.eye(3), trials, experiments=5) == pytest.approx(bits, abs=1e-12)
+
+
 def test_wide_intervals_are_drawn_in_logarithms() -> None:
     for low, high, middle in ((1.0, 100.0, 10.0), (1.0, 1.4, 1.2), (-1.0, 3.0, 1.0)):
         between = Uncertain("t", low, high)

@@ -1,15 +1,16 @@
 """Conditioning against mathematics: laboratories whose likelihood is known in one dimension."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
+from tests.builders import weighted_quantile
 from thermicon.perception.pilot import conditioning
 from thermicon.perception.pilot.conditioning import Answered, condition, systematic
 from thermicon.perception.pilot.laboratory_file import off_middle
-from thermicon.perception.pilot.likelihood import effective, log_likelihoods, normalised_weights
+from thermicon.perception.pilot.likelihood import PooledLikelihood, effective, log_likelihoods, normalised_weights
 from thermicon.perception.pilot.playing import Confusions
 from thermicon.perception.pilot.prediction import changed, compare, median_three, three
 from thermicon.perception.pilot.states import Laboratories
@@ -79,6 +80,17 @@ def test_both_ways_agree_with_integration(participants: int, times: int, rounds:
     assert 0.8 < sample.std() / sd < 1.25
     assert np.abs(found.after.place[:, 1:].mean(axis=0)).max() < 0.25  # what the answers do not touch stays the prior
     assert not set(found.after.seed.tolist()) & set(found.before.seed.tolist())
+
+
+def test_a_polynomial_that_fits_badly_still_covers() -> None:
+    """Laboratories are of two kinds: no polynomial jumps, so that answers tell less than they could."""
+    rng, some, grid = np.random.default_rng(6), laboratories(200, 3), laboratories(2000, 5).place
+    played, covered = Toy().confusions(replace(some, place=2.0 * np.sign(some.place))), []
+    for seed, truth in enumerate(rng.standard_normal(24).tolist()):
+        likely = PooledLikelihood.fit(some.place, played, answers(2.0 * np.sign(truth), 12, 20, seed))
+        low, high = weighted_quantile(grid[:, 0], normalised_weights(likely(grid)), (0.025, 0.975))
+        covered.append(low <= truth <= high)
+    assert np.mean(covered) > 0.85
 
 
 def test_a_participant_is_a_mixture_over_people() -> None:
