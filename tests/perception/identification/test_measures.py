@@ -9,8 +9,9 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, information_bits, rank
-from thermicon.perception.identification.laboratory_draws import Uncertain, latin
+from thermicon.perception.identification.laboratory_draws import DrawnLaboratories, Uncertain, latin
 from thermicon.perception.identification.measures import plugin_bits, proportion_correct
+from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.ranking.assumptions import doubts
 
 
@@ -69,6 +70,13 @@ def test_a_latin_hypercube_has_one_draw_a_stratum() -> None:
     assert (np.sort((shares * 8).astype(int), axis=0) == np.arange(8)[:, None]).all()
     assert (shares == latin(3, 8, seed=4)).all()
     assert (shares != latin(3, 8, seed=5)).any()
+
+
+def test_each_draw_has_its_turn() -> None:
+    model = ObserverModel.load()
+    assert model.posterior is not None
+    found = DrawnLaboratories.of(model, "episodes", len(model.posterior), seed=0)
+    assert np.array_equal(found.values[:, : len(model.posterior.names)], model.posterior.draws)
 
 
 SIX, RIG = load_library("six-icons"), Rig.load("thenar")

@@ -15,6 +15,7 @@ from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import Measured, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
+    Emulated,
     Predicted,
     log_likelihood,
     person_covariance,
@@ -53,6 +54,18 @@ def test_a_mean_of_trials_is_as_likely_as_the_trials_one_by_one() -> None:
         expected[k] = multivariate_normal(means[k, which], whole).logpdf(np.log(values[people, which]))
         expected[k] -= ((times - 1.0) * norm.logpdf(0.0, scale=error))[some.given].sum()  # their scatter
     np.testing.assert_allclose(np.diff(log_likelihood(some, each)), np.diff(expected), rtol=1e-6)
+
+
+def test_a_polynomial_is_as_likely_as_what_it_was_fitted_to_where_that_is_straight() -> None:
+    """Means and logs of scatter, of people and of trials, change evenly with coordinates."""
+    chance, unknown = np.random.default_rng(3), np.full((4, 2), np.nan)
+    place, slopes = chance.standard_normal((400, 3)), chance.normal(0.0, 0.2, (3, 6))
+    mean, people, within = np.split(np.log([1.2, 2.2, 0.1, 0.1, 0.05, 0.05]) + place @ slopes, 3, axis=1)
+    values = np.exp(chance.normal(0.5, 0.3, (4, 2)))
+    some = Measurements(USUAL[:2], ("P1", "P2", "P3", "P4"), values, unknown, np.ones((4, 2)))
+    each = Predicted(mean, np.exp(2.0 * people)[:, :, None] * np.eye(2), np.exp(within))
+    found = log_likelihood(some, each)
+    assert (Emulated.fit(some, place, each, np.ones(400))(place) - found).std() < 0.02 * found.std()
 
 
 def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPrior) -> None:
