@@ -39,15 +39,6 @@ def test_two_icons_are_exact() -> None:
     assert confuse([[0.0]]).pooled == pytest.approx(1.0)
 
 
-def test_three_icons_on_a_line_agree_with_the_normal_integral() -> None:
-    line = np.abs(np.subtract.outer([0.0, 2.0, 5.0], [0.0, 2.0, 5.0]))
-    cdf = NormalDist().cdf
-    exact = [[cdf(1.0), cdf(3.5) - cdf(1.0), cdf(-3.5)], [cdf(-1.0), cdf(1.5) - cdf(-1.0), cdf(-1.5)]]
-    found = confuse(np.repeat(line[None], 50, axis=0), lapse=0.0)
-    assert found.pooled[:2] == pytest.approx(np.array(exact), abs=5 * found.standard_error)
-    assert stress(line, embed(line[None])[0]) == pytest.approx(0.0, abs=1e-7)
-
-
 def test_rows_sum_to_one_and_lapses_spread_evenly() -> None:
     found = confuse(equal(40.0), lapse=0.06)
     assert found.probability.sum(axis=-1) == pytest.approx(1.0, abs=1e-12)

@@ -1,5 +1,6 @@
 """Naming of trials beside a Monte Carlo written out."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 
 from thermicon.perception import Observer
 from thermicon.perception.identification.confusion import name_directly
-from thermicon.perception.identification.episodes import Episodes
+from thermicon.perception.identification.episodes import Episodes, episode_distances
+from thermicon.perception.observer.parts import Ratings
 
 DT = 0.01
 CLOCK = DT * np.arange(1800)
@@ -43,3 +45,15 @@ def test_the_icon_before_blurs_every_feature(observer: Observer, differs: str, l
     wrong = float((less < off).mean())
     assert 0.02 < wrong < 0.45
     assert [named[0, 1], named[1, 0]] == pytest.approx([wrong, wrong], abs=0.02)
+
+
+def test_a_scale_of_ratings_may_have_any_unit(observer: Observer) -> None:
+    """The same ratings in points of 1000: faint pulses are missed and named as before."""
+    cold = np.stack([USUAL, 0.02 * OTHERS["pause"], 0.05 * OTHERS["rate"]])[None]
+    felt, own = Episodes.of(cold, np.zeros_like(cold), DT, observer), observer.memory.cold
+    tenths = Ratings(10.0 * own.at_threshold, own.exponent, 10.0 * own.rated, 10.0 * own.scatter)
+    other = replace(observer, memory=replace(observer.memory, cold=tenths))
+    apart, again = (episode_distances(felt, felt, each, "naming") for each in (observer, other))
+    assert felt.counts.tolist() == [[2, 2, 2]] and again == pytest.approx(apart, rel=1e-9)
+    named, anew = (name_directly(felt, each, samples=400).probability for each in (observer, other))
+    assert anew == pytest.approx(named, abs=0.005)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
-from tests.perception.pilot.madeup import USUAL, synthetic_measurements
+from tests.perception.pilot.madeup import USUAL, measurements_of, synthetic_measurements
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.laboratory import Laboratory
@@ -85,6 +85,13 @@ def test_limits_and_times_lie_where_the_evidence_has_them(prior: LaboratoryPrior
     middle = np.exp(np.median(each.mean, axis=0))
     assert 1.4 < middle[0] < 2.5  # E3: 1.86 K
     assert 0.5 < middle[1] < 1.2  # E1, five strips
+
+
+def test_people_of_a_laboratory_scatter_as_predicted(prior: LaboratoryPrior) -> None:
+    some, setting, chance = prior.first(1, 0), Setting.of(RIG), np.random.default_rng(0)
+    made = measurements_of(prior, prior.values(some)[0], setting, USUAL[:3], 400, 10_000, chance)
+    found = np.sqrt(np.diagonal(predicted(prior, some, setting, USUAL[:3]).between[0]))
+    assert np.log(made.values).std(axis=0) == pytest.approx(found, rel=0.2)
 
 
 @pytest.mark.slow
