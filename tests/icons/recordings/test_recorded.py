@@ -137,7 +137,7 @@ def test_a_recording_that_is_noisier_than_the_tolerance(tmp_path: Path) -> None:
     assert isinstance(from_csv(path, tolerance_K=0.3), Icon)
 
 
-@pytest.mark.parametrize("case", MESSAGES["argument"], ids=str)
-def test_arguments_that_cannot_be(tmp_path: Path, case: dict[str, Any]) -> None:
-    with pytest.raises(ValueError, match=case["message"]):
-        from_csv(written(tmp_path, DIP), **case["given"])
+@pytest.mark.parametrize(("message", "given"), MESSAGES["argument"].items())
+def test_arguments_that_cannot_be(tmp_path: Path, message: str, given: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match=message):
+        from_csv(written(tmp_path, DIP), **given)
