@@ -153,7 +153,8 @@ def runs_of(logs: Sequence[Log], held: bool) -> tuple[Run, ...]:
     driven = [log for log in logs if log.drive is not None]
     if not driven:
         found = "; ".join(f"{log.name} has {', '.join(dict(log.columns))}" for log in logs)
-        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed ({found})")
+        cure = f"say what the file calls it by --column {DRIVES[0]}=THEIRS"
+        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed ({found}); {cure}")
     groups: dict[int, list[Log]] = {id(log): [] for log in driven}
     last = driven[0]
     for log in logs:
@@ -165,8 +166,8 @@ def runs_of(logs: Sequence[Log], held: bool) -> tuple[Run, ...]:
     silent = [run.name for run in runs if not run.channels]
     if silent:
         raise LogError(
-            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, or name the "
-            f"file of the thermometer behind it"
+            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, say what the "
+            f"file calls it by --column display_C=THEIRS, or name the file of the thermometer behind it"
         )
     return runs
 

@@ -8,9 +8,8 @@ import pytest
 from numpy.typing import ArrayLike, NDArray
 
 from thermicon.perception import Observer
-from thermicon.perception.identification.confusion import confuse, name_directly
+from thermicon.perception.identification.confusion import name_directly
 from thermicon.perception.identification.episodes import Episodes, EpisodesError, distance_shares, episode_distances
-from thermicon.perception.identification.measures import proportion_correct
 from thermicon.perception.kernels.episodes import MOST, RISE, USUAL
 
 Trace = NDArray[np.float64]
@@ -157,17 +156,6 @@ def test_noise_of_a_person_divides_distances(observer: Observer) -> None:
     stacked = Episodes.of(cold, np.zeros_like(cold), DT, observer)
     once, twice = episode_distances(stacked, stacked, observer, "episodes", np.array([1.0, 2.0]))[:, 0, 1]
     assert once == pytest.approx(2.0 * twice, rel=0.02)  # sensory noise of intensity does not change
-
-
-def test_naming_is_right_as_often_as_distances_say(observer: Observer) -> None:
-    """Two icons that differ in their rate alone: both forms reduce to one feature with one noise."""
-    icons = [(bump(1.0, 60.0, rise_s=rise), NOTHING) for rise in (1.0, 1.6)]  # so strong that none is missed
-    found = episodes(*icons, observer=observer)
-    named = name_directly(found, observer, lapse=0.0, samples=20_000).probability[0]
-    apart = episode_distances(found, found, observer, "naming")
-    assert np.diagonal(named).mean() == pytest.approx(
-        float(proportion_correct(confuse(apart, lapse=0.0).probability)[0]), abs=0.03
-    )
 
 
 def test_naming_loses_faint_episodes_and_never_gains_one(observer: Observer) -> None:

@@ -66,6 +66,8 @@ def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers
     same, other = (each["before"]["proportion_correct"] for each in own["predictions"])
     assert same == other
     assert own["predictions"][0]["after"]["people"] == 24
+    widths = [np.ptp(own["predictions"][0][when]["proportion_correct"][1:]) for when in ("before", "after")]
+    assert widths[0] == pytest.approx(own["predictions"][0]["narrower"] * widths[1])
     for each in (found.fit, found.fit_after):
         assert 0.0 < each.p <= 1.0
         assert len(each.pairs) == 15
