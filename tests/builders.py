@@ -71,7 +71,8 @@ def few_draws(path: Path, count: int, resampled: str = "", rig: str = "") -> Pat
 
     They are those of one laboratory where ``resampled`` says how they were obtained.
     """
-    from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
+    from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
+    from thermicon.perception.observer.draws import PosteriorDraws
     from thermicon.perception.observer.draws_file import to_text
 
     shipped = PosteriorDraws.load()

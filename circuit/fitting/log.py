@@ -10,8 +10,9 @@ from pathlib import Path
 
 import numpy as np
 
+from thermicon.icons.files.clock import order_fault
 from thermicon.icons.files.measured_table import measured, missing
-from thermicon.icons.files.table import Table, read_table
+from thermicon.icons.files.table import read_table
 from thermicon.icons.files.units import like_units_of_time, unit_fault
 from thermicon.icons.near_words import nearest_words
 
@@ -69,19 +70,14 @@ class Log:
         *,
         sha256: str = "",
         notes: Sequence[str] = (),
-        rows: Sequence[str] | None = None,
-        unused: str = "",
     ) -> Log:
-        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log.
-
-        `rows` are the places of the rows in a file, and `unused` its other columns, for messages.
-        """
+        """A checked log of columns by name, `time_s` among them; raises LogError for what cannot be a log."""
         values = {key: np.asarray(column, dtype=np.float64) for key, column in columns.items()}
         if "time_s" not in values:
             raise LogError(f"{name}: the column time_s (time in s) is missing; found {', '.join(values) or 'nothing'}")
         _check_lengths(name, values)
         time = values.pop("time_s")
-        _check_times(name, time, rows)
+        _check_times(name, time)
         for key in filter(is_known, values):
             if not np.isfinite(values[key]).any():
                 raise LogError(f"{name}: {key} holds no number at all; remove the column, or connect the sensor")
@@ -94,7 +90,7 @@ class Log:
         for key, column in {"time_s": time, **used}.items():
             if fault := unit_fault(key, column):
                 raise LogError(f"{name}: {'; '.join(fault)}")
-        unused = unused or ", ".join(key for key in values if key not in used)
+        unused = ", ".join(key for key in values if key not in used)
         more = (f"{name}: columns that are not used: {unused}",) if unused else ()
         for array in (time, *used.values()):
             array.setflags(write=False)
@@ -138,27 +134,18 @@ def _check_lengths(name: str, values: Mapping[str, Array]) -> None:
         raise LogError(f"{name}: {time[0]:,} rows; the limit is {MOST_ROWS:,}: keep every tenth row")
     for key, shape in lengths.items():
         if shape != time:
-            raise LogError(
-                f"{name}: unequal lengths: time_s has {time[0]} rows, {key} has {shape[0] if shape else 0}; cut the "
-                f"longer column"
-            )
+            what = f"time_s has {time[0]} rows, {key} has {shape[0] if shape else 0}"
+            raise LogError(f"{name}: unequal lengths: {what}; cut the longer column")
 
 
-def _place(name: str, row: int, rows: Sequence[str] | None) -> str:
-    return rows[row] if rows else f"{name}, row {row + 1}"
-
-
-def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
+def _check_times(name: str, time: Array) -> None:
     if not np.isfinite(time).all():
         row = int(np.argmin(np.isfinite(time)))
-        raise LogError(f"{_place(name, row, rows)}: time_s is empty; remove the row")
-    back = np.flatnonzero(np.diff(time) <= 0)
-    if back.size:
-        row = int(back[0]) + 1
-        raise LogError(
-            f"{_place(name, row, rows)}: time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must "
-            f"increase: sort the rows, or give each recording its own file"
-        )
+        raise LogError(f"{name}, row {row + 1}: time_s is empty; remove the row")
+    if (np.diff(time) <= 0).any():
+        row, why = order_fault(time) or (int(np.argmin(np.diff(time))) + 1, "write times with more decimals")
+        what = f"time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must increase"
+        raise LogError(f"{name}, row {row + 1}: {what}: {why}")
     length, whole = float(time[-1] - time[0]), like_units_of_time(time)
     step, like = float(np.median(np.diff(time))), like_units_of_time(time, whole=False)
     if step > SLOWEST_S or (like and step < SHORTEST_S):
@@ -174,9 +161,8 @@ def _check_times(name: str, time: Array, rows: Sequence[str] | None) -> None:
 MOST_MB = 200.0
 NAMES = ("time_s", *DRIVES, *MEASURED)
 CURE = "leave the cell empty"
-
 MISSPELT = 0.85
-"""A name of a column that is so much alike a known one is taken for a slip of the pen."""
+"""A name of a column that is so much alike a known one, and of its unit, is taken for a slip of the pen."""
 
 
 def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
@@ -196,25 +182,18 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     where = Path(path)
     data = read_bytes(where, "log", MOST_MB, LogError)
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
-    _check_columns(table)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
+    absent = {name.lower(): name for name in NAMES if name not in table.header}
+    for cell in table.header:
+        close = "" if is_known(cell) else absent.get("".join(nearest_words(cell.lower(), absent, 1, MISSPELT)), "")
+        if close and cell[-2:] == close[-2:]:
+            cure = f"say so by --column {close}={cell}, or remove the column"
+            raise table.fault("table", table.line, f"{cell}: did you mean {close}? Found {table.found}", cure)
+    if table.names.doubtful or not wanted:
+        raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)
     unused = ", ".join([name for name in table.header if name not in ("time_s", "icon", "", *wanted)][:8])
-    notes = [f"{where.name}: {note}" for note in found.notes]
-    places = [f"{where}:{line}" for line in found.lines]
+    said = (*found.notes, *([f"columns that are not used: {unused}"] if unused else []))
+    notes = [f"{where.name}: {note}" for note in said]
     digest = hashlib.sha256(data).hexdigest()
-    return Log.of(
-        where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes, rows=places, unused=unused
-    )
-
-
-def _check_columns(table: Table) -> None:
-    """Refuse a table without any column of a log, and a column that looks like a misspelt one."""
-    known = {name.lower(): name for name in NAMES}
-    for cell in table.header:
-        close = known.get("".join(nearest_words(cell.lower(), known, 1, MISSPELT)))
-        if close and close not in table.header and cell not in NAMES:
-            what = f"{cell}: did you mean {close}? Found {table.found}"
-            raise table.fault("table", table.line, what, "rename the column, or remove it")
-    if table.names.doubtful or not any(map(is_known, table.header)):
-        raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
+    return Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes)

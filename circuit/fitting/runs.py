@@ -106,7 +106,8 @@ def runs_of(logs: Sequence[Log], held: bool, rig: Rig | None = None) -> tuple[Ru
         deeper = f"{DISPLAY} with skin_C or a probe in the skin"
         if rig is not None and thermode:
             raise LogError(f"rig {rig.name} is a thermode, whose display is the drive: {deeper} is needed ({found})")
-        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed, or {deeper} ({found})")
+        cure = f"say what the file calls it by --column {DRIVES[0]}=THEIRS"
+        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed, or {deeper} ({found}); {cure}")
     driven = [log for log in logs if id(log) in drives]
     groups: dict[int, list[Log]] = {id(log): [] for log in driven}
     last = driven[0]
@@ -119,8 +120,8 @@ def runs_of(logs: Sequence[Log], held: bool, rig: Rig | None = None) -> tuple[Ru
     silent = [run.name for run in runs if not run.channels]
     if silent:
         raise LogError(
-            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, or name the "
-            f"file of the thermometer behind it"
+            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, say what the "
+            f"file calls it by --column display_C=THEIRS, or name the file of the thermometer behind it"
         )
     return runs
 

@@ -1,8 +1,10 @@
 """Skin as layers, and as a column of lumps: capacities, perfusion and the resistances between them."""
 
+from __future__ import annotations
+
 import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 
@@ -76,6 +78,25 @@ class Skin:
     def thickness_m(self) -> float:
         """Depth of the deep node in m."""
         return sum(layer.thickness_m for layer in self.layers)
+
+    @property
+    def corneum_m(self) -> float:
+        """Thickness of the stratum corneum in m; 0 for a skin without one."""
+        return self.layers[0].thickness_m if self.layers[0].name == STRATUM_CORNEUM else 0.0
+
+    def with_effusivity(self, times: float) -> Skin:
+        """The skin whose living layers have so many times their effusivity √(k·ρ·c), at the same diffusivity."""
+        layers = [
+            layer
+            if layer.name == STRATUM_CORNEUM
+            else replace(
+                layer,
+                conductivity_W_per_mK=times * layer.conductivity_W_per_mK,
+                heat_capacity_J_per_kgK=times * layer.heat_capacity_J_per_kgK,
+            )
+            for layer in self.layers
+        ]
+        return replace(self, layers=tuple(layers))
 
     def receptor_words(self) -> str:
         """Where the receptors lie, from the surface and from the base of the stratum corneum, as papers count them."""

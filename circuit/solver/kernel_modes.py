@@ -57,6 +57,19 @@ def follow_display(above_K, keep, now, then, drive_per_s, reading, direct, offse
 
 
 @compiled
+def rise(direct, weight, rate_per_s, step_s, out):
+    """Fill `out` (rows,) with the response to a display that rises by 1 K/s, from modes' weights and rates (m,)."""
+    left, decay, share = np.ones(rate_per_s.size), np.exp(-rate_per_s * step_s), weight / rate_per_s
+    steady = direct + weight.sum()
+    for k in range(out.size):
+        lost = 0.0
+        for m in range(rate_per_s.size):
+            lost += share[m] * (1.0 - left[m])
+            left[m] *= decay[m]
+        out[k] = steady * step_s * k - lost
+
+
+@compiled
 def ramp_responses(count, cap, g, perf, period_s, places, weights, response):
     """Fill `response` (rigs, readings + 1, periods + 1): readings in K, then the heat flow in W from skin to display.
 

@@ -19,6 +19,7 @@ import numpy as np
 from ..arrays import Array, Index
 from ..rig.module import ZERO_C_IN_K
 from ..rig.rig import Rig
+from ..rig.skin import column_of
 from .network import (
     COLD,
     HOT,
@@ -30,6 +31,9 @@ from .network import (
     SKIN,
     Network,
     skin_network_of,
+    smooth_flow_weights,
+    stacked,
+    temperature_weights,
 )
 
 READ = RECORDED[:5]
@@ -218,6 +222,23 @@ class SkinModes:
         rest = self.steady(display_C)
         return np.asarray(rest + (modes - rest) * np.exp(-self.rate_per_s * time_s))
 
+    def per_K(self, row: int) -> float:
+        """Steady change of a reading for each K of the display."""
+        return float(self.direct[row] + self.reading[row] @ (self.drive_per_s / self.rate_per_s))
+
+    def rest(self, row: int, display_C: float) -> float:
+        """A reading under a display held at a temperature in °C for long."""
+        return self.per_K(row) * (display_C - self.deep_C) + float(self.offset_C[row])
+
+    def rise(self, row: int, step_s: float, rows: int) -> Array:
+        """Change (rows,) of a reading, `step_s` apart, under a display that rises by 1 K/s from the first on."""
+        from . import kernel_modes
+
+        response = np.empty(rows)
+        weight = self.reading[row] * self.drive_per_s / self.rate_per_s
+        kernel_modes.rise(float(self.direct[row]), weight, self.rate_per_s, step_s, response)
+        return response
+
     def display_for_skin(
         self, target_C: Array, step_s: float, start_C: float, slew_K_per_s: float, limits_C: tuple[float, float]
     ) -> Array:
@@ -256,27 +277,61 @@ def modes_of(rig: Rig, insulated: bool = False) -> SkinModes:
     return modes_on(skin_network_of(rig), insulated)
 
 
+@lru_cache(maxsize=64)
+def thermode_modes(
+    rig: Rig, depths_m: tuple[float, ...], contact_m2K_per_W: float, effusivity: float = 1.0
+) -> SkinModes:
+    """Modes of a rig's skin under a thermode of another contact, with so many times the effusivity of living layers.
+
+    In place of FELT, °C and then W/m² into the skin are read at depths below the face.
+
+    >>> thermode_modes(Rig.load("forearm"), (0.15e-3,), 2.5e-4).rise(0, 0.5, 3).round(2)
+    array([0.  , 0.11, 0.33])
+    """
+    skin = rig.skin.with_effusivity(effusivity)
+    column = column_of(skin, rig.column.blood_capacity_J_per_m3K)
+    resistance = column.resistance_m2K_per_W.copy()
+    resistance[0] += contact_m2K_per_W
+    place = np.concatenate([[0.0], np.cumsum(resistance)])
+    at = [contact_m2K_per_W + skin.resistance_to_m2K_per_W(depth) for depth in depths_m]
+    readings = stacked([read(each, place) for read in (temperature_weights, smooth_flow_weights) for each in at])
+    g = 1.0 / resistance
+    return _modes(rig.deep_C, column.capacity_J_per_m2K, g, column.perfusion_W_per_m2K, float(g[0]), readings)
+
+
 def modes_on(network: Network, insulated: bool = False, readings: tuple[Index, Array] | None = None) -> SkinModes:
     """Return the modes of a network's skin; its plates play no part. `readings` are recorded after FELT."""
-    capacity, g, perfusion = network.capacity_J_per_K, network.conductance_W_per_K, network.perfusion_W_per_K
-    first = 0.0 if insulated else float(g[0])
-    matrix = np.diag(np.concatenate([[first], g[1:-1]]) + g[1:] + perfusion)
-    inner = np.arange(len(capacity) - 1)
-    matrix[inner, inner + 1] = matrix[inner + 1, inner] = -g[1:-1]
-    root = np.sqrt(capacity)
-    rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
+    g, felt = network.conductance_W_per_K, [RECORDED.index(probe) for probe in FELT]
+    rows = network.probe_start[felt], network.probe_weight[felt]
+    if readings is not None:
+        rows = np.concatenate([rows[0], readings[0]]), np.concatenate([rows[1], readings[1]])
+    first, perfusion = 0.0 if insulated else float(g[0]), network.perfusion_W_per_K
+    return _modes(network.deep_C, network.capacity_J_per_K, g, perfusion, first, rows, dense=True)
+
+
+def _modes(
+    deep_C: float, capacity: Array, g: Array, perfusion: Array, first: float, readings: tuple[Index, Array],
+    dense: bool = False,
+) -> SkinModes:  # fmt: skip
+    """Modes of lumps; the `dense` solver takes longer, and rounds as it always did."""
+    from scipy.linalg import eigh_tridiagonal
+
+    diagonal, root = np.concatenate([[first], g[1:-1]]) + g[1:] + perfusion, np.sqrt(capacity)
+    if dense:
+        matrix, inner = np.diag(diagonal), np.arange(len(capacity) - 1)
+        matrix[inner, inner + 1] = matrix[inner + 1, inner] = -g[1:-1]
+        rates, vectors = np.linalg.eigh(matrix / np.outer(root, root))
+    else:
+        rates, vectors = eigh_tridiagonal(diagonal / capacity, -g[1:-1] / (root[1:] * root[:-1]), check_finite=False)
     shape = vectors / root[:, np.newaxis]  # lumps = shape @ modes
-    felt = [RECORDED.index(probe) for probe in FELT]
-    rows = list(zip(network.probe_start[felt], network.probe_weight[felt], strict=True))
-    rows += [] if readings is None else list(zip(*readings, strict=True))
-    weights = np.zeros((len(rows), len(capacity) + 3))
-    for row, (start, three) in enumerate(rows):
+    weights = np.zeros((len(readings[0]), len(capacity) + 3))
+    for row, (start, three) in enumerate(zip(*readings, strict=True)):
         weights[row, start : start + 3] = three
     below, direct = weights[:, SKIN:-1], weights[:, COLD]
-    offset = weights.sum(axis=1) * network.deep_C  # zero for heat flows
+    offset = weights.sum(axis=1) * deep_C  # zero for heat flows
     assert not weights[:, HOT].any()
-    unlumps = vectors.T * root
-    return SkinModes(network.deep_C, rates, first * vectors[0] / root[0], below @ shape, direct, offset, shape, unlumps)
+    drive, rate_per_s = first * vectors[0] / root[0], np.asarray(rates, dtype=np.float64)
+    return SkinModes(deep_C, rate_per_s, drive, below @ shape, direct, offset, shape, vectors.T * root)
 
 
 def shown(setpoint_C: Array, step_s: float, lag_s: float = 0.0, slew_K_per_s: float = np.inf) -> Array:

@@ -270,6 +270,15 @@ def temperature_weights(at: float, place: Array) -> Weights:
     return start, (weight[0], weight[1], weight[2])
 
 
+def smooth_flow_weights(at: float, place: Array) -> Weights:
+    """Reading of the heat flow in W/m² there, linear between the middles of cells, so that it moves with the place."""
+    middles, conductance = 0.5 * (place[:-1] + place[1:]), 1.0 / np.diff(place)
+    above = int(np.clip(np.searchsorted(middles, at) - 1, 0, middles.size - 2))
+    share = (at - middles[above]) / (middles[above + 1] - middles[above])
+    upper, lower = (1.0 - share) * conductance[above], share * conductance[above + 1]
+    return above + COLD, (float(upper), float(lower - upper), float(-lower))
+
+
 def flow_weights(at: float, place: Array) -> Weights:
     """Reading of the heat flow in W/m² there: at a lump the mean of its two faces, between lumps the face's."""
     above, same = _bracket(at, place)

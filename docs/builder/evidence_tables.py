@@ -19,7 +19,8 @@ from thermicon.perception.evidence.results import (
     load_predictions,
 )
 from thermicon.perception.evidence.rows import load_evidence, load_rows
-from thermicon.perception.observer.observer import load_thresholds
+from thermicon.perception.observer.constants import names_of
+from thermicon.perception.observer.observer import MECHANISMS, load_thresholds
 from thermicon.perception.observer.people import people_records
 
 GROUPS = {
@@ -121,6 +122,16 @@ def coverage_sentence() -> str:
     return f"{inside}; {0.95 * len(rows):.0f} are expected. The others: {'; '.join(missed)}."
 
 
+def mechanisms_table() -> str:
+    """Every mechanism of the observer: what it does, its equation, its constants by the names of priors, its source."""
+    lines = []
+    for kind in MECHANISMS:
+        own = [name.removeprefix("cold ") for name in names_of(kind, *kind.__annotations__) if name[:5] != "warm "]
+        does = (kind.__doc__ or "").split("\n\n")[0]
+        lines.append((f"**{kind.__name__.lower()}**", does, kind.equation, ", ".join(own), kind.source))
+    return markdown(("mechanism", "what it does", "equation", "constants", "source"), lines)
+
+
 def predicted_table() -> str:
     """Published results that are never conditioned on: what `validate` compares with predictions."""
     records: dict[tuple[str, str], int] = {}
@@ -164,6 +175,7 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "coverage": coverage_sentence,
     "predicted": predicted_table,
     "people": people_table,
+    "mechanisms": mechanisms_table,
     "constants of receptors": lambda: constants_table(GROUPS["receptors"]),
     "constants of sensation": lambda: constants_table(GROUPS["sensation"]),
     "constants of detection": lambda: constants_table(GROUPS["detection"]),

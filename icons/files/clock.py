@@ -45,20 +45,26 @@ def seconds_of(cells: Sequence[str]) -> Array | None:
     return np.asarray(time + wrap * np.cumsum(np.diff(time, prepend=0.0) < -0.5 * wrap))
 
 
-def spread(time: Array, steps: bool) -> tuple[Array, int]:
+def spread(time: Array, steps: bool) -> tuple[Array, int] | None:
     """Times whose equal stamps, of a clock with too few digits, are spread evenly until the next; and how many rows.
 
-    With ``steps``, two readings at one time are a step, and stay.
+    The first and the last stamp may be seen in part, so that their rows are as far apart as others; None where no
+    stamp is seen whole. With ``steps``, two readings at one time are a step, and stay.
     """
     import numpy as np
 
     starts = np.flatnonzero(np.diff(time, prepend=-np.inf) != 0)
     counts = np.diff(starts, append=len(time))
-    if counts.max(initial=1) <= 1 + steps or len(starts) < 2:
+    if counts.max() <= 1 + steps and len(starts) > 1:
         return time, 0
-    gap = np.diff(time[starts], append=time[-1] + np.median(np.diff(time[starts])))
+    if len(starts) < 3:
+        return None
+    stamps = time[starts]
+    apart = np.append(np.diff(stamps), 0.0) / counts
+    apart[[0, -1]] = np.minimum(np.median(apart[1:-1]), [apart[0], np.inf])
+    stamps[0] = stamps[1] - counts[0] * apart[0]
     place = np.arange(len(time)) - np.repeat(starts, counts)
-    return time + place * np.repeat(gap / counts, counts), len(time) - len(starts)
+    return np.repeat(stamps, counts) + place * np.repeat(apart, counts), len(time) - len(starts)
 
 
 def order_fault(time: Array) -> tuple[int, str] | None:

@@ -6,12 +6,12 @@ A unit stands in brackets, behind a slash, a comma, a space or an underscore: ``
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class Unit:
+class Unit(NamedTuple):
     """A unit: the SI unit that ends our names, and by which factor and addition a number becomes one in it."""
 
     ours: str
@@ -19,16 +19,16 @@ class Unit:
     plus: float = 0.0
 
 
-ZERO_F = -32.0 / 1.8
 SPELLINGS = {
     "s sec secs second seconds sekunden": Unit("s"),
     "ms msec msecs millisecond milliseconds millis": Unit("s", 1e-3),
     "us µs μs usec microsecond microseconds": Unit("s", 1e-6),
+    "ns nsec nanosecond nanoseconds": Unit("s", 1e-9),
     "min mins minute minutes": Unit("s", 60.0),
     "h hr hour hours": Unit("s", 3600.0),
-    "c °c ºc ℃ degc deg.c degrees.c celsius deg.celsius degrees.celsius": Unit("C"),
+    "c °c ºc ℃ øc ¡c degc deg.c degrees.c celsius deg.celsius degrees.celsius": Unit("C"),  # ø, ¡: DOS, old Macs
     "k kelvin": Unit("C", 1.0, -273.15),
-    "f °f ºf ℉ degf deg.f degrees.f fahrenheit": Unit("C", 1 / 1.8, ZERO_F),
+    "f °f ºf ℉ øf ¡f degf deg.f degrees.f fahrenheit": Unit("C", 1 / 1.8, -32 / 1.8),
     "mc m°c mdegc millidegc millicelsius": Unit("C", 1e-3),
     "a amp amps ampere amperes": Unit("A"),
     "ma milliamp milliamps milliampere": Unit("A", 1e-3),
@@ -41,19 +41,20 @@ TIME = {"time", "timestamp", "datetime", "zeit", "uhrzeit", "zeitstempel", "elap
 BESIDE_TIME = {"x", "value", "date", "datum", "relative", "local", "utc", "gmt", "system", "stamp", "scan", "since",
                "start", "run", "of", "day"}  # fmt: skip
 THERMAL = {"t", "temp", "temps", "temperature", "temperatur", "température", "temperatura"}
-IDLE = {"actual", "measured", "mean", "avg", "value", "output", "average", "ist", "istwert", "reading", "sensor",
-        "ch", "channel"}  # fmt: skip
+IDLE = {"actual", "act", "measured", "mean", "avg", "ave", "last", "value", "output", "average", "ist", "istwert",
+        "reading", "sensor", "ch", "channel", "tec", "drive"}  # fmt: skip
 OTHERS = {
-    "i": "current", "strom": "current", "tec current": "current", "drive current": "current", "courant": "current",
-    "u": "voltage", "spannung": "voltage", "tec voltage": "voltage", "tension": "voltage",
-    "hot side": "hot plate", "hotplate": "hot plate", "set point": "setpoint", "setpoint": "setpoint",
-    "soll": "setpoint", "haut": "skin", "vsense": "current", "plus": "voltage",
+    "i": "current", "strom": "current", "courant": "current", "corriente": "current", "corrente": "current",
+    "u": "voltage", "spannung": "voltage", "tension": "voltage", "hot side": "hot plate", "hotplate": "hot plate",
+    "set point": "setpoint", "soll": "setpoint", "haut": "skin", "vsense": "current", "plus": "voltage",
 }  # fmt: skip
 """Other words for what our names say."""
 
 BRACKET = re.compile(r"(.*?)[\s_]*[(\[{<]([^)\]}>]*)[)\]}>].*")
-BEHIND = re.compile(r"(.*?)(?:\s*[/,|]\s*|[\s_]+)([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?")
+BEHIND = re.compile(r"(.*?)(?:\s*[/,|]\s*|\s+in\s+|[\s_]+)([^\s_/,|()\[\]]+|deg(?:rees)?[ .]\w+)(?:\s*\(.*)?")
 SPICE = re.compile(r"([vi])\((.+)\)", re.IGNORECASE)
+LONGEST_NAME = 200
+HUMP = re.compile(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
 
 
 def unit_of(text: str) -> Unit | None:
@@ -63,9 +64,10 @@ def unit_of(text: str) -> Unit | None:
 
 def parted(cell: str) -> tuple[str, Unit | None]:
     """The words of a name without its unit, and the unit."""
-    for pattern in (BRACKET, BEHIND):
-        if (found := pattern.fullmatch(cell)) and (unit := unit_of(found[2])):
-            return found[1], unit
+    for text in (cell, HUMP.sub(" ", cell)) if len(cell) <= LONGEST_NAME else ():
+        for pattern in (BRACKET, BEHIND):
+            if (found := pattern.fullmatch(text)) and (unit := unit_of(found[2])):
+                return found[1], unit
     unit = unit_of(cell) if len(cell) > 1 else None  # "ms", but not the least value, "min"
     return ("time", unit) if unit and unit.ours == "s" and unit.factor <= 1 else (cell, None)
 
@@ -76,57 +78,54 @@ def meant(cell: str, names: Iterable[str]) -> tuple[str, Unit | None] | None:
     >>> meant("Display Temp (°F)", ["time_s", "display_C"])[0], meant("Current", ["current_A"])
     ('display_C', None)
     """
+    known = {name.lower(): name for name in names}
+    if cell.lower() in known:
+        return known[cell.lower()], None
     if (found := SPICE.fullmatch(cell)) and not unit_of(found[2]):
         word = found[2].lower()
-        ours = OTHERS.get(word, "") + "_" + ("A" if found[1].lower() == "i" else "V")
-        known = next((name for name in names if name.lower() == word), ours)
-        return (known, Unit(known.rpartition("_")[2])) if known in names else None
+        ours = known.get(word) or f"{OTHERS.get(word, '')}_{'A' if found[1] in 'iI' else 'V'}"
+        return (ours, None) if ours in known.values() else None
     text, unit = parted(cell)
-    if unit and text in names and text.endswith(f"_{unit.ours}"):
+    if unit and text in known.values() and text.endswith(f"_{unit.ours}"):
         return text, unit
-    apart = re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", " ", text)
-    words = [word for word in re.split(r"[\W_\d]+", apart.lower()) if word]
+    words = [word for word in re.split(r"[\W_\d]+", HUMP.sub(" ", text).lower()) if word]
     if unit is None or unit.ours == "s":
         of_time = set(words) & TIME and set(words) <= TIME | BESIDE_TIME
         if of_time or words == ["x", "value"] or (unit and words == ["t"]):
-            return ("time_s", unit) if "time_s" in names else None
+            return ("time_s", unit) if "time_s" in known else None
     core = " ".join(word for word in words if word not in THERMAL | IDLE)
     core = OTHERS.get(core, core or ("temperature" if set(words) & THERMAL and (unit or words != ["t"]) else ""))
-    ours = f"{core.replace(' ', '_')}_{unit.ours if unit else 'C'}"
-    return next(((name, unit) for name in names if name.lower() == ours.lower()), None)
+    ours = f"{core.replace(' ', '_')}_{unit.ours if unit else 'C'}".lower()
+    return (known[ours], unit) if ours in known else None
 
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """A header in our names where they are known: units of those that were renamed, and what was ambiguous."""
+    """A header in our names where they are known: what those that were renamed are called, and what was ambiguous."""
 
     header: tuple[str, ...]
-    units: Mapping[str, Unit]
-    renamed: Mapping[str, str]
+    renamed: Mapping[str, tuple[str, Unit]]
     doubtful: Mapping[str, tuple[str, ...]]
 
 
-def named(header: Iterable[str], names: Iterable[str], theirs: Mapping[str, str]) -> Named:
+def named(cells: Sequence[str], names: Iterable[str], theirs: Mapping[str, str]) -> Named:
     """Read a header: names that are ours stay, those that ``theirs`` gives for ours, and those that mean one of ours.
 
     Where two cells may be the same, none is taken, but one whose unit is said goes before others.
     """
-    cells, names = list(header), list(names)
-    units, renamed, doubtful = dict[str, Unit](), dict[str, str](), dict[str, tuple[str, ...]]()
-    places: dict[str, list[tuple[int, Unit | None]]] = {
-        name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells
-    }
-    new = [f"({cell})" if cell in places else cell for cell in cells]
+    renamed, doubtful = dict[str, tuple[str, Unit]](), dict[str, tuple[str, ...]]()
+    places = {name: [(cells.index(own), parted(own)[1])] for name, own in theirs.items() if own in cells}
+    new, said = [f"({cell})" if cell in places else cell for cell in cells], set(places)
     for at, cell in enumerate(cells):
         if cell not in names and cell not in theirs.values() and not re.fullmatch("probe_.+_C", cell):
             found = meant(cell, names)
-            if found and found[0] not in {*cells, *theirs}:
+            if found and found[0] not in said.union(cells):
                 places.setdefault(found[0], []).append((at, found[1]))
     for name, several in places.items():
         best = [one for one in several if one[1] or len(several) == 1]
         if len(best) == 1:
             at, unit = best[0]
-            new[at], renamed[name], units[name] = name, cells[at], unit or Unit("")
+            new[at], renamed[name] = name, (cells[at], unit or Unit(""))
         else:
             doubtful[name] = tuple(cells[at] for at, _ in several)
-    return Named(tuple(new), units, renamed, doubtful)
+    return Named(tuple(new), renamed, doubtful)

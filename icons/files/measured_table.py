@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .clock import order_fault, seconds_of, spread
+from .column_names import Unit, parted
 from .table import Table
 from .units import POSSIBLE_C, SENSED_C, errors, like_units_of_time, unit_fault
 
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-TIME, CLOCK_CURE = "time_s", "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
+TIME, ROW = "time_s", "remove the row"
+CLOCK_CURE = "write times as seconds from any start, or as 2026-03-02 23:59:58.050"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,18 +36,20 @@ def missing(table: Table, name: str, what: str) -> Exception:
     """The fault of a column that a table does not have, or may have twice, and how to say which it is."""
     name, what = (name, what) if TIME in table.header else (TIME, "time in s")
     name, several = next(iter(table.names.doubtful.items()), (name, ()))
-    others = [cell for cell in table.header if cell and cell not in (*table.names.renamed, TIME, "icon")]
-    close = [*several, *others, "THEIRS"][0]
+    free = set(table.header) - {*table.names.renamed, TIME, "icon", ""}
+    units = {cell: parted(cell)[1] for cell in table.header if cell in free}
+    close = [cell for cell, unit in units.items() if unit and unit.ours == name.rpartition("_")[2]]
+    close = close or [cell for cell, unit in units.items() if unit is None]
+    theirs = several[0] if several else close[0] if len(close) == 1 else "THEIRS"
     said = f"{' and '.join(several)} may be {name}" if several else ""
     said = said or f"the column {name} ({what}) is missing; found {table.found}"
-    quote = '"' if set(close) & set(" ()[]/&;*|<>$'°") else ""
-    cure = f'--column {quote}{name}={close}{quote} (in Python columns={{"{name}": "{close}"}})'
+    quote = '"' if set(theirs) & set(" ()[]/&;*|<>$'°#") else ""
+    cure = f'--column {quote}{name}={theirs}{quote} (in Python columns={{"{name}": "{theirs}"}})'
     return table.fault("table", table.line, said, f"say which it is: {cure}")
 
 
 def measured(
-    table: Table, names: Sequence[str], cure: str, *, gaps: bool = True, steps: bool = False, most: float = math.inf,
-    ours: bool = False,
+    table: Table, names: Sequence[str], cure: str, *, gaps: bool = True, steps: bool = False, ours: bool = False
 ) -> Measured:  # fmt: skip
     """Return times and the columns called ``names``, in SI units; raises faults of the table with their cures.
 
@@ -59,8 +62,8 @@ def measured(
         raise missing(table, TIME, "time in s")
     time, lines, notes = _times(table), np.array(table.lines), list(table.notes)
     counts = {name: Counter[str]() for name in names}
-    columns = {name: table.numbers(name, cure, gaps=counts[name] if gaps else None, most=most) for name in names}
-    for name, unit in table.names.units.items():
+    columns = {name: table.numbers(name, cure, counts[name] if gaps else None) for name in names}
+    for name, (_, unit) in table.names.renamed.items():
         if name in columns:
             columns[name] = columns[name] * unit.factor + unit.plus
     if (few := len(time)) < 2:
@@ -81,28 +84,35 @@ def measured(
             for name, cells in counts.items() for cell, count in cells.most_common(3) if cell]  # fmt: skip
     notes += [f"{', '.join(left)}, which are {'taken as gaps' if gaps else 'left out'}"] if left else []
     time, lines, columns = time[kept], lines[kept], {name: column[kept] for name, column in columns.items()}
-    if found := order_fault(time):
-        row, why = found
+    if fall := order_fault(time):
+        row, why = fall
         what = f"time_s {time[row]:.9g} s does not come after {time[row - 1]:.9g} s; times must increase"
         raise table.fault("time", int(lines[row]), what, why)
-    if not np.ptp(time):
-        raise table.fault("time", None, f"all rows are at {time[0]:g} s", "times must increase: write more decimals")
-    time, count = spread(time, steps)
+    if (found := spread(time, steps)) is None:
+        what = f"the clock does not tell {len(time):,} rows apart"
+        raise table.fault("time", None, what, "write times with more decimals")
+    time, count = found
     if count:
         notes.append(f"the clock has too few digits: {count:,} rows at the time of the row before were spread")
     for name, column in () if ours else columns.items():
         if (fault := unit_fault(name, column)) is not None:
             raise table.fault("unit", None, *fault)
     if not ours and (like := like_units_of_time(time)):
-        what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}"
+        what = f"time_s goes in steps of {np.median(np.diff(time)):g} over {time[-1] - time[0]:g}, read as s"
         notes.append(f"{what}: these look like {like[0]}; if they are, {like[1]} to have s")
     return Measured(time, columns, tuple(lines.tolist()), tuple(notes))
 
 
 def _times(table: Table) -> Array:
     """The column of times, as numbers, or as times of day with or without dates."""
-    cells, unit = list(table.texts(TIME)), table.names.units.get(TIME)
-    if ":" in "".join(cells[:1]) and "" not in cells and (times := seconds_of(cells)) is not None:
-        return times
-    cure = CLOCK_CURE if ":" in "".join(cells) else "remove the row"
-    return table.numbers(TIME, cure) * (unit.factor if unit else 1.0)
+    cells, unit = list(table.texts(TIME)), table.names.renamed.get(TIME, ("", Unit("s")))[1]
+    if not any(cells) and cells:
+        raise table.fault("time", None, "time_s is empty in every row", "add the times, from the interval between rows")
+    odd = [row for row, cell in enumerate(cells) if ":" not in cell]
+    if 2 * len(odd) >= len(cells):
+        return table.numbers(TIME, CLOCK_CURE if len(odd) < len(cells) else ROW) * unit.factor
+    if odd or (times := seconds_of(cells)) is None:
+        row = [*odd, 0][0]
+        what = f"time_s is {cells[row]!r}, not a time" if cells[row] else "time_s is empty"
+        raise table.fault("cell", table.lines[row], what, ROW if odd else CLOCK_CURE)
+    return times

@@ -6,6 +6,7 @@ stands above the names, lines that begin with #, and the line by which spreadshe
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import itertools
@@ -24,20 +25,24 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-Kind = Literal["table", "size", "cell", "empty", "binary", "coding", "time", "unit"]
+Kind = Literal["table", "size", "cell", "empty", "binary", "time", "unit"]
 Fault = Callable[[Kind, int | None, str, str], Exception]
 """Makes the error for a fault: its kind, the line in the file, what is wrong, and the cure."""
 
-MARKS = ("\t", ",", ";")
+MARKS = ("\t", ",", ";", "|", " ")
 ASIDE = ("#", "sep=")
 NOTHINGS = ("n/a", "na", "#n/a", "nan", "null", "none", "-", "--", "---", "ol", "ovl", "overload")
 OVERLOADS = (9.9e37, 9.91e37)
 """What loggers write for a missing number, and instruments by SCPI for one that is out of range or none."""
-NO_NAME = re.compile(r"[-+\d.,;eE\s]*|n/a|nan")
-"""A cell that names no column."""
+LARGEST = 1e38
+"""Beyond what SCPI writes; sums of squares stay finite."""
+NUMBER = re.compile(r"[-+−]?[-\d.,:/]*\d([eE][-+]?\d+)?")
+"""A number or a time of day, as no name of a column is."""
+QUOTED_DECIMAL = re.compile(r'"[-−]?(\d+,\d{1,2}|0,\d+|\d+,\d{4,})"')
+"""Shows that decimals have commas, where commas also separate the cells; 1,234 may be a thousand."""
 WITH_UNIT = re.compile(r"([-+−]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\d\s].*)")
 GROUPED = re.compile(r"[-+−]?\d{1,3}(?:([., ' ])\d{3})+(?:[.,]\d+)?")
-FEW, LONGEST_CELL, MOST_ABOVE, LONGEST_LINE = 8, 60, 200, 100_000
+FEW, LONGEST_CELL, MOST_ABOVE, LONGEST_LINE = 8, 60, 200, 10_000
 """Columns that a message lists, characters of a cell that it quotes; lines, and of each how much, to find names."""
 
 
@@ -68,7 +73,7 @@ class Table:
         if self.header.count(name) > 1:
             raise self.fault("table", self.line, f"the column {name} appears twice", "rename or remove one of them")
         at = self.header.index(name)
-        return (row[at].strip() if at < len(row) else "" for row in self.rows)
+        return (row[at] if at < len(row) else "" for row in self.rows)
 
     def records(self, names: Sequence[str]) -> Iterator[tuple[int, dict[str, str]]]:
         """Line and cells by name of each row, of those columns that there are."""
@@ -76,10 +81,8 @@ class Table:
         for line, *cells in zip(self.lines, *map(self.texts, there), strict=True):
             yield line, dict(zip(there, cells, strict=True))
 
-    def numbers(
-        self, name: str, cure: str, *, gaps: Counter[str] | None = None, most: float = math.inf
-    ) -> NDArray[np.float64]:
-        """Return a column (rows,) of finite numbers of at most ``most``; raises a fault, with the ``cure``, otherwise.
+    def numbers(self, name: str, cure: str, gaps: Counter[str] | None = None) -> NDArray[np.float64]:
+        """Return a column (rows,) of finite numbers; raises a fault, with the ``cure``, otherwise.
 
         With ``gaps``, empty cells and what loggers write for a missing number are NaN, and counted there.
         """
@@ -88,7 +91,7 @@ class Table:
         with suppress(ValueError):  # a column of plain numbers, as most are, is read at once
             texts = list(self.texts(name))
             plain = np.array(list(map(float, texts)))
-            if (np.abs(plain) <= min(most, OVERLOADS[-1] / 2)).all() and "_" not in "".join(texts):
+            if (np.abs(plain) <= OVERLOADS[-1] / 2).all() and "_" not in "".join(texts):
                 return plain
         values = np.empty(len(self.rows))
         for row, cell in enumerate(self.texts(name)):
@@ -96,10 +99,10 @@ class Table:
             if gaps is not None and (not cell or cell.lower() in NOTHINGS or abs(value) in OVERLOADS):
                 values[row] = math.nan
                 gaps[cell] += 1
-            elif abs(value) <= most and math.isfinite(value):
+            elif abs(value) <= LARGEST:
                 values[row] = value
             else:
-                limit = "" if most == math.inf else f" of at most {most:g}"
+                limit = f" of at most {LARGEST:g}" if abs(value) < math.inf else ""
                 quoted = repr(cell if len(cell) <= LONGEST_CELL else f"{cell[:LONGEST_CELL]}…")
                 what = f"{name} is {quoted}, not a finite number{limit}" if cell else f"{name} is empty"
                 raise self.fault("cell", self.lines[row], what, self._cure(name, row, cell) or cure)
@@ -110,9 +113,9 @@ class Table:
         if GROUPED.fullmatch(cell):
             return "write numbers without marks between thousands"
         if (found := WITH_UNIT.fullmatch(cell)) and unit_of(found[2]):
-            theirs = self.names.renamed.get(name, name)
+            theirs = self.names.renamed.get(name, (name,))[0]
             return f"write {found[1]}; units belong in the names of the columns, as in {theirs} [{found[2]}]"
-        alone = len(self.header) > 1 and {other.strip() for other in self.rows[row]} <= {"", cell}
+        alone = len(self.header) > 1 and set(self.rows[row]) <= {"", cell}
         return "remove this line, which is no row of the table" if cell and alone else ""
 
 
@@ -141,11 +144,11 @@ def read_table(
     theirs, text = theirs or {}, table_text(data, fault, example)
     above, mark, skipped = _line_of_names(text, names, theirs)
     lines = _rows(text, above, mark, fault)
-    line, first = next(lines, (0, [""]))
-    header = [cell.strip().strip('"') for cell in first]
+    line, header = next(lines, (0, [""]))
+    header = [cell.strip('"') for cell in header]
     if not any(header):
         raise fault("table", None, "no line names the columns", f"the first line is such as: {example}")
-    if all(map(NO_NAME.fullmatch, header)):
+    if all(not cell or NUMBER.fullmatch(cell) or cell.lower() in NOTHINGS for cell in header):
         put = example if mark == "," or not header[1:] else f"{len(header)} names such as {example.replace(',', mark)}"
         raise fault("table", line, "this line holds numbers, not the names of columns", f"put {put} above it")
     rows, places = list[list[str]](), list[int]()
@@ -159,70 +162,92 @@ def read_table(
             rows.append(row)  # neither names again nor a rule
             places.append(place)
             continue
-        bare = [cell.strip() for cell in row[: len(header)]]
+        bare = row[: len(header)]
         if row[0].startswith(ASIDE) or bare == header or all(set(cell) <= {"-", "=", "*"} for cell in bare):
             continue  # names that stand again, and rules between pages
         said = [] if rows else [cell for cell in bare if cell.strip(" ()[]-")]  # a row of units, but for a word
         if sum(unit_of(cell) is None for cell in said) < 0.5 * len(said) and not re.search(r"\d", "".join(said)):
-            header = [f"{name} [{cell.strip(' ()[]')}]" if unit_of(cell) else name
-                      for name, cell in itertools.zip_longest(header, bare, fillvalue="")]  # fmt: skip
+            full = {name: f"{name} [{cell.strip(' ()[]')}]" for name, cell in zip(header, bare, strict=False)
+                    if unit_of(cell)}  # fmt: skip
+            header = [full.get(name, name) for name in header]
+            theirs = {name: full.get(cell, cell) for name, cell in theirs.items()}
             continue
-        if len(row) > len(header) and any(cell.strip() for cell in row[len(header) :]):
+        if not rows and len(row) == len(header) + 1 and '\n"1"' in text:
+            header.insert(0, "")  # R names no column of row numbers
+        if any(row[len(header) :]):
             what = f"{len(row)} cells, where the first line names {len(header)}"
             help = "write decimal points, put names with commas in quotes, or put semicolons between the cells"
             raise fault("table", place, what, help)
         rows.append(row)
         places.append(place)
         if len(rows) > most_rows:
-            raise fault("size", None, f"more than {most_rows:,} rows", "keep every tenth row, or cut the file")
+            raise fault("size", None, f"more than {most_rows:,} rows", "split the file, or keep every tenth reading")
+    if not header[0] and rows and ":" in rows[0][0]:
+        header[0] = "Time"  # PicoLog leaves the name of its clock empty
+    firsts = dict[str, int]()
+    for at, name in enumerate(header):
+        first = firsts.setdefault(name, at)
+        if name and rows and first < at and all(row[first : first + 1] == row[at : at + 1] for row in rows):
+            header[at] = ""  # SPICE programs and LabVIEW may write their times beside each column
     ours = named(header, names, theirs)
+    for name, (own, unit) in ours.renamed.items():
+        if unit.ours not in ("", name.rpartition("_")[2]) and "_" in name:
+            raise fault("unit", line, f"{own!r} is in another unit than {name}", "name another column")
     notes = [f"lines above the names were passed over: {skipped}"] if skipped else []
-    read = [f"{name} from {own!r}" for name, own in ours.renamed.items()
-            if theirs.get(name) != own or ours.units[name].factor != 1 or ours.units[name].plus]  # fmt: skip
+    read = [f"{name} from {own!r}" for name, (own, unit) in ours.renamed.items()
+            if theirs.get(name) != own or unit[1:] != (1, 0)]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
     lost = [f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header]
     notes += [f"no column is called {', and none '.join(lost)}"] if lost else []
-    return Table(ours.header, line, tuple(rows), tuple(places), fault, mark, ours, tuple(notes))
+    decimal = "" if mark == "," and QUOTED_DECIMAL.search(text) else mark
+    return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes))
 
 
 def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:
     """How many lines stand above the names, what separates the cells, and how many of those lines say something."""
-    lines = [line[:LONGEST_LINE] for line, _ in zip(io.StringIO(text), range(MOST_ABOVE), strict=False)]
+    lines = [line[:LONGEST_LINE] for line in itertools.islice(io.StringIO(text), MOST_ABOVE)]
+    head = max((at for at, line in enumerate(lines) if line.startswith("***End_of_Header***")), default=-1)
     first = next((at for at, line in enumerate(lines) if line.strip() and not line.startswith(ASIDE)), len(lines))
     best, place, mark = 0.0, first, ""
-    for at, line in enumerate(lines):
-        for each in (*MARKS, " "):
-            cells = _cells(line.lstrip("# ") if line.startswith("# ") else line, each)
-            known = [cell for cell in cells if cell in names or cell in theirs.values()]
-            alike = {found[0] for cell in cells if len(cell) <= LONGEST_CELL and (found := meant(cell, names))}
-            score = float(len(alike.union(known)))
-            below = next((_cells(row, each) for row in lines[at + 1 :] if row.strip()), [])
-            fits = len(cells) == len(below) > 1
-            score = score + 0.5 * fits if score and (fits or each != " ") else 0.0
-            if score > best:
+    for each in MARKS:
+        rows = list[tuple[int, list[str]]]()
+        with contextlib.suppress(csv.Error):
+            rows.extend(_cells((line.lstrip("# ") for line in lines), each))
+        for (at, cells), (_, below) in itertools.pairwise([*rows, (0, [])]):
+            known = {cell for cell in cells if cell in names or cell in theirs.values()}
+            words = [cell for cell in cells if len(cell) <= LONGEST_CELL]
+            score = float(len(known.union(found[0] for cell in words if (found := meant(cell, names)))))
+            numbers = any(map(NUMBER.fullmatch, words))
+            fits = not numbers and len(below) - len(cells) in (0, 1) and len(below) > 1
+            score = score + 0.5 * fits - 0.9 * numbers if score and (fits or each != " ") else 0.0
+            if score > best and at > head:
                 best, place, mark = score, at, each
     if not best:
-        head = "".join(lines[first : first + 1])
-        mark = max(MARKS, key=head.count) if any(one in head for one in MARKS) else " "
+        line = "".join(lines[first : first + 1])
+        mark = max(MARKS[:-1], key=line.count) if any(one in line for one in MARKS[:-1]) else " "
     return place, mark, sum(bool(line.strip()) and not line.startswith(ASIDE) for line in lines[:place])
 
 
-def _cells(line: str, mark: str) -> list[str]:
-    return line.split() if mark == " " else [cell.strip() for cell in next(csv.reader([line], delimiter=mark), [])]
+def _cells(lines: Iterator[str], mark: str) -> Iterator[tuple[int, list[str]]]:
+    """Rows that are not empty, each with the number of lines above it."""
+    if mark == " ":
+        lines, mark = ("\t".join(line.split()) for line in lines), "\t"
+    reader, above = csv.reader(lines, delimiter=mark), 0
+    for row in reader:
+        cells = [" ".join(cell.split()) if "\n" in cell else cell.strip() for cell in row]
+        if any(cells):
+            yield above, cells
+        above = reader.line_num
 
 
 def _rows(text: str, above: int, mark: str, fault: Fault) -> Iterator[tuple[int, list[str]]]:
     """Rows that are not empty, each with its line in the file, from the line of names on."""
-    stream: Iterator[str] = itertools.islice(io.StringIO(text, newline=""), above, None)
+    place, stream = above + 1, itertools.islice(io.StringIO(text), above, None)
     first = next(stream, "")
-    stream = itertools.chain([first.lstrip("# ") if first.startswith("#") else first], stream)
-    if mark == " ":
-        stream, mark = ("\t".join(line.split()) for line in stream), "\t"
-    reader = csv.reader(stream, delimiter=mark)
+    lines = itertools.chain([first.lstrip("# ") if first.startswith("#") else first], stream)
     try:
-        for row in reader:
-            if any(cell.strip() for cell in row):
-                yield above + reader.line_num, row
+        for at, cells in _cells(lines, mark):
+            place = above + at + 1
+            yield place, cells
     except csv.Error as problem:
-        what = f"this row cannot be read ({problem})"
-        raise fault("table", above + reader.line_num, what, "save it as CSV") from None
+        raise fault("table", place + 1, f"this row cannot be read ({problem})", "save it as CSV") from None

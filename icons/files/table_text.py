@@ -9,46 +9,45 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .table import Fault
 
-TABLES = (".csv", ".tsv", ".txt", ".dat", ".log", ".lvm", ".prn", ".raw", ".tdms", ".xlsx", ".xls", ".ods", ".gz")
+TABLES = (".csv", ".tsv", ".txt", ".dat", ".log", ".lvm", ".prn", ".raw", ".tdms", ".xlsx", ".xls", ".ods", ".gz",
+          ".zip", ".parquet", ".mat")  # fmt: skip
 """Endings of what may hold a table, or gets a sentence on how to make one of it."""
 
-BINARY = {
+OTHERS = {
     b"PK\3\4": ("a workbook of Excel or LibreOffice, or a zip archive", "save the sheet as CSV, or unpack the archive"),
     b"\x1f\x8b": ("compressed by gzip", "unpack it, and give the table in it"),
+    b"<": ("a page of HTML or XML", "open it in a spreadsheet, and save the sheet as CSV"),
+    b"{": ("JSON", "write its records as CSV"),
+    b"[{": ("JSON", "write its records as CSV"),
 }
-"""How files begin that are no text, what they are, and what to do; others are found by their zero bytes."""
-AS_TEXT = "write it by wrdata in ngspice, or export it as text in LTspice"
+"""How files begin that hold no table, what they are, and what to do; others are found by their zero bytes."""
 
 
 def table_text(data: bytes, fault: Fault, example: str) -> str:
     """Return the text of a table, each line ended by a newline alone; raises a fault that says what else it is."""
     if not data.strip():
         raise fault("empty", None, "the file is empty", f"the first line is such as: {example}")
-    for begin, (kind, cure) in BINARY.items():
-        if data.startswith(begin):
+    for begin, (kind, cure) in OTHERS.items():
+        if data.lstrip().startswith(begin):
             raise fault("binary", None, f"this is {kind}, not a table", cure)
     if data.startswith(b"TDSm"):
         return _tdms_text(data, fault)
-    text = _decoded(data, fault).replace("\r\n", "\n").replace("\r", "\n")
+    head = data[:200_000].replace(b"\0", b"")
+    if b"Title:" in head[:20] and b"\nVariables:" in head:
+        cure = "write it by wrdata in ngspice, or export it as text in LTspice"
+        raise fault("binary", None, "this is a raw file of a SPICE program, not a table", cure)
+    coding = "utf-16" if data.startswith((b"\xff\xfe", b"\xfe\xff")) else "utf-8-sig"
+    if b"\0" in data and coding != "utf-16":
+        what = f"this is a binary file, not a table (a zero byte at byte offset {data.index(0)})"
+        raise fault("binary", None, what, "save it as text (CSV in UTF-8)")
+    try:
+        text = data.decode(coding)
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", "replace")
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
     if re.search(r"(?m)^Index +time ", text[:10_000]):  # pages of ngspice's print
         return "\n".join(line if re.match(r"Index|\d", line) else "" for line in text.split("\n"))
     return text
-
-
-def _decoded(data: bytes, fault: Fault) -> str:
-    codings = ("utf-16",) if data.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "cp1252")
-    head = data[:200_000].replace(b"\0", b"")
-    if b"Title:" in head[:20] and b"\nVariables:" in head:
-        raise fault("binary", None, "this is a raw file of a SPICE program, not a table", AS_TEXT)
-    if b"\0" in data and "utf-16" not in codings:
-        what = f"this is a binary file, not a table (a zero byte at byte offset {data.index(0)})"
-        raise fault("binary", None, what, "save it as text (CSV in UTF-8)")
-    for name in codings:
-        try:
-            return data.decode(name)
-        except UnicodeDecodeError as problem:
-            at = problem.start
-    raise fault("coding", None, f"byte 0x{data[at]:02X} at byte offset {at} is not text", "save the file as UTF-8")
 
 
 def _tdms_text(data: bytes, fault: Fault) -> str:
@@ -59,15 +58,11 @@ def _tdms_text(data: bytes, fault: Fault) -> str:
         cure = 'pip install "thermicon[hardware]", or save it as CSV'
         raise fault("binary", None, "TDMS needs npTDMS, which is not installed", cure) from None
     try:
-        channels = [channel for group in TdmsFile.read(io.BytesIO(data)).groups() for channel in group.channels()]
-        columns = {channel.name: channel[:].tolist() for channel in channels}
-        if not any(name.lower().startswith("time") for name in columns):
-            clocks = {tuple(channel.time_track().round(9).tolist()) for channel in channels}
-            if len(clocks) != 1:
-                raise ValueError("its channels have different clocks; save each clock as a file of its own")
-            columns = {"time_s": list(clocks.pop()), **columns}
-        rows = [*zip(*columns.values(), strict=True)]
+        file = TdmsFile.read(io.BytesIO(data))
+        clocked = not any(c.name.lower().startswith("time") for group in file.groups() for c in group.channels())
+        frame = file.as_dataframe(time_index=clocked)
+        frame.columns = [re.findall("'(.*?)'", name)[-1] for name in frame.columns]
+        return str(frame.to_csv(sep="\t", index=clocked, index_label="time_s", lineterminator="\n"))
     except Exception as problem:  # npTDMS raises whatever a broken file leads it to
         why = "no wf_increment" if isinstance(problem, KeyError) else str(problem) or type(problem).__name__
         raise fault("binary", None, f"cannot be read as TDMS ({why})", "save it as CSV") from None
-    return "\n".join(["\t".join(columns), *("\t".join(map(str, row)) for row in rows)])

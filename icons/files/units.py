@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..number_text import number
+from .table import LARGEST
 
 if TYPE_CHECKING:
     import numpy as np
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-MOST_SIZE = 1e12
-"""What reads a wire that is off has fewer digits."""
 SENSED_C = (-40.0, 150.0)
 """Outside, a sensor of a display on skin is unplugged or its wire broken."""
 ON_SKIN_C, HOT_PLATE_C, MEDIAN_C = (5.0, 55.0), (5.0, 100.0), 15.0
@@ -66,16 +65,12 @@ def unit_fault(name: str, values: Array) -> tuple[str, str] | None:
     there = values[np.isfinite(values)]
     most, unit = float(np.abs(there).max(initial=0.0)), name.rpartition("_")[2]
     limit, small = LIMITS.get(unit, (np.inf, ""))
-    if most > MOST_SIZE:
-        return f"{name} reaches {most:g}, beyond the {MOST_SIZE:g} that any instrument gives", "leave that row out"
+    if most > LARGEST:
+        return f"{name} reaches {most:g}, beyond the {LARGEST:g} that any instrument gives", "leave that row out"
     if most > limit:
         what = f"{name} reaches {most:g} {unit}, above {limit:g} {unit}: it looks like {small}"
         return what, f"divide it by 1000, so that it is in {unit}"
     return _temperature_fault(name, there) if unit == "C" and there.size else None
-
-
-def _either(fits: list[tuple[str, str]], at: int) -> str:
-    return " or ".join(each[at] for each in fits)
 
 
 def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
@@ -86,14 +81,15 @@ def _temperature_fault(name: str, there: Array) -> tuple[str, str] | None:
     low, high = ON_SKIN_C if on_skin else HOT_PLATE_C
     plausible = SENSED_C[0] <= middle <= (BURNING_C if on_skin else SENSED_C[1])
     fits = list[tuple[str, str]]()
-    for unit, factor, plus, how in () if plausible else TEMPERATURES:
+    for unit, factor, plus, cure in () if plausible else TEMPERATURES:
         scaled = there * factor + plus
         kept = scaled[~errors(scaled, (low, high), (low - JUMP_K, high + JUMP_K))]
         if low <= kept.min() and kept.max() <= high and np.median(kept) > MEDIAN_C:
-            fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", how))
+            fits.append((f"{unit} ({number(float(kept.min()))} to {number(float(kept.max()))} °C)", cure))
     if fits:
-        cure = f"{_either(fits, 1)}{', whichever they are,' if len(fits) > 1 else ''} to have °C"
-        return f"{name} has a median of {middle:g}: these look like {_either(fits, 0)}", cure
+        like, how = (" or ".join(each) for each in zip(*fits, strict=True))
+        cure = f"{how}{', whichever they are,' if len(fits) > 1 else ''} to have °C"
+        return f"{name} has a median of {middle:g}: these look like {like}", cure
     if not outside.any() or (plausible and outside.mean() <= MOST_LEFT_OUT):
         return None
     what = f"{name} reads {there[np.argmax(outside)]:g} °C in {100 * outside.mean():.0f} % of its rows"
@@ -116,4 +112,4 @@ def like_units_of_time(time: Array, whole: bool = True) -> tuple[str, str] | Non
         for part, by, size in (("milli", "1000", 1e-3), ("micro", "1,000,000", 1e-6), ("nano", "1,000,000,000", 1e-9))
         if STEPS_S[0] <= step * size <= STEPS_S[1] and LENGTHS_S[0] <= length * size <= LENGTHS_S[1]
     ]
-    return (_either(fits, 0), _either(fits, 1)) if fits else None
+    return (" or ".join(like for like, _ in fits), " or ".join(how for _, how in fits)) if fits else None

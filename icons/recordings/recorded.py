@@ -18,7 +18,6 @@ from ..model.errors import CueErrors, whole_file
 from ..model.icon import Icon
 from ..model.statements import Hold, Ramp, Rest, Return, Statement, Step
 from ..model.units import HIGHEST_C, LONGEST_S, LOWEST_C, Control, fault
-from ..model.words import nearest
 
 TIME = "time_s"
 CONTROL_OF: dict[str, Control | None] = {
@@ -35,7 +34,7 @@ MOST_ROWS, MOST_MB = 1_000_000, 200
 """Rows of a recording, about five minutes at 3 kHz, and room for them with many further columns."""
 EXAMPLE = f"{TIME},temperature_C"
 _CURE = "fill it in, or remove the row; between readings the course is taken as linear"
-_CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "binary": "E006", "coding": "E007",
+_CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "binary": "E006",
           "time": "E015", "unit": "E219"}  # fmt: skip
 
 
@@ -201,9 +200,8 @@ def _column(place: str, table: Table, column: str | None) -> str:
         raise missing(table, "temperature_C", f"or {', '.join(list(CONTROL_OF)[1:])}")
     chosen = column or known[0]
     if chosen not in table.header or chosen == TIME:
-        close = nearest(chosen, [cell for cell in table.header if cell != TIME])
-        help = f"did you mean {close}?" if close else "the name must be spelled as in the file"
-        raise whole_file("E013", place, f"no temperature is called {chosen!r}; found {table.found}", help)
+        what = f"no temperature is called {chosen!r}; found {table.found}"
+        raise whole_file("E013", place, what, "the name must be spelled as in the file")
     return chosen
 
 

@@ -177,8 +177,6 @@ def _tables(names: tuple[str, str], icon: str | None, theirs: dict[str, str], sh
     for curves in (first, second):
         for said in curves.notes:
             note(f"note: {curves.name}: {said}")
-        if curves.ignored:
-            note(f"{curves.name}: ignored columns that no trace has: {', '.join(curves.ignored)}")
     said = ""
     if shift:
         second, said = _shifted(first, second)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from thermicon.icons.atomic import OutputError, complete_or_absent
 
 from ..files.outputs import STDOUT, check_output, check_separate
-from ..messages import note, progress_bar, usage
+from ..messages import note, noted, progress_bar, usage
 from .options import (
     FileNames,
     Json,
@@ -173,7 +173,8 @@ def condition(
     if is_measurements(answers, theirs):
         data = read_measurements(answers, where, theirs)
     else:
-        data = read_trials(answers, [icon.name for icon in icons], theirs)
+        with noted():
+            data = read_trials(answers, [icon.name for icon in icons], theirs)
     with progress_bar("simulating laboratories") as progress:
         found = observed(
             data, icons, where, others=others, draws=draws, observer=model, progress=progress, **crowd.asked

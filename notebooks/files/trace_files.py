@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 MOST_MB = 200.0
 MOST_ROWS = 10_000_000
-LARGEST = 1e9
-"""Largest size of a number, far more than any sensor gives: sums of squares stay finite."""
 CURE = "correct it, or leave the cell empty"
 EXTRA = re.compile(r"probe_.+_C")
 HELD = ("current_A", "voltage_V")
@@ -44,7 +42,6 @@ class Curves:
     time_s: Array
     columns: Mapping[str, Array]
     whole: bool
-    ignored: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
 
 
@@ -90,9 +87,10 @@ def read_curves(path: str, icon: str | None = None, theirs: Mapping[str, str] | 
         kept = tuple(table.rows[row] for row in rows), tuple(table.lines[row] for row in rows)
         table = replace(table, rows=kept[0], lines=kept[1])
     whole = all(name in table.header and name not in table.names.renamed for name in COLUMNS[1:])
-    found = measured(table, known, CURE, most=LARGEST, ours=whole)
-    ignored = tuple(name for name in table.header if name and name not in (*COLUMNS, *known))
-    return Curves(where.name, found.time_s, found.columns, whole, ignored[:8], found.notes)
+    found = measured(table, known, CURE, ours=whole)
+    ignored = [name for name in table.header if name and name not in (*COLUMNS, *known)][:8]
+    notes = [f"ignored columns that no trace has: {', '.join(ignored)}"] if ignored else []
+    return Curves(where.name, found.time_s, found.columns, whole, (*found.notes, *notes))
 
 
 def _rows_of(icons: list[str], path: str, icon: str | None) -> list[int]:

@@ -182,7 +182,7 @@ def observed_sentences(data: Answered) -> list[str]:
             "bits, test of fit and likelihood."
         )
     if trials.passed:
-        lines.append(f"Passed over, since they have neither icon nor answer: {trials.passed} rows or trials of a row.")
+        lines.append(f"Passed over, with neither icon nor answer of the set: {trials.passed} rows or trials of a row.")
     if trials.grouped:
         lines.append(
             "Counts of one group say nothing of differences between people, of order or of carry-over. The interval "

@@ -1,9 +1,9 @@
 """``python -m thermicon.perception.evidence``: make the shipped results of the inference again, step by step.
 
 ``fit`` infers the constants of every variant at the maximum of the posterior, and again without each experiment in turn
-to predict it. ``sample`` writes 1,000 draws of the posterior; chains that have not converged are refused. ``observer``
-writes the parameter file of the observer. On one computer the same seed gives the same draws, however many workers
-there are.
+to predict it; with ``--shipped`` it keeps the constants and writes their predictions alone. ``sample`` writes 1,000
+draws of the posterior; chains that have not converged are refused. ``observer`` writes the parameter file of the
+observer. On one computer the same seed gives the same draws, however many workers there are.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from .calibrate import write_observer
 from .chains import CHAINS, require_extra
 from .posterior import LeftOut, Maximum, Posterior, leave_each_out, maximise
 from .results import CONSTANTS, PREDICTIONS, Constant, PredictedRow, write_rows
-from .sampling import LEAST_STEPS, approximate_draws, sample
+from .sampling import LEAST_STEPS, approximate_draws, at_shipped, sample
 
 REFUSED = 3
 LEAST_STEPS_ASKED, MOST_STEPS, USUAL_STEPS = 100, 100_000, 20_000
@@ -36,7 +36,13 @@ def main(words: Sequence[str] | None = None) -> int:
     if asked.what == "sample":
         require_extra()
         return sample_posterior(asked)
-    write_fit() if asked.what == "fit" else write_observer()
+    if asked.what == "observer":
+        write_observer()
+    elif asked.shipped:
+        found = [at_shipped(Posterior(variable)) for variable in VARIABLES]
+        write_rows(predictions_of(found, leave_each_out(found[0], tell)), PREDICTIONS)
+    else:
+        write_fit()
     return 0
 
 
@@ -46,6 +52,7 @@ def parser() -> argparse.ArgumentParser:
         "python -m thermicon.perception.evidence", description=(__doc__ or "").split("\n")[0]
     )
     made.add_argument("what", choices=("fit", "sample", "observer"))
+    made.add_argument("--shipped", action="store_true", help="fit: keep the constants, write predictions at them")
     made.add_argument("-o", "--output", type=Path, help="the file of draws")
     made.add_argument("--seed", type=int, default=0)
     made.add_argument("--steps", type=int, default=USUAL_STEPS, help=f"most steps of each chain, 100 to {MOST_STEPS:,}")

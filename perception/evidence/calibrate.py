@@ -14,6 +14,7 @@ from thermicon.circuit.solver.steady import steady_state
 
 from ..identification.task import memory_noise, memory_record
 from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable, receptor_column, source_of
+from ..observer.constants import names_of, quantity_of, record_of
 from ..observer.draws import PosteriorDraws
 from ..observer.observer import DATA, Observer, load_thresholds
 from .results import UNMOVED_SD, Constant, load_constants
@@ -57,16 +58,15 @@ OFFSETS = "laboratories"
 
 def _record(each: Constant, interval: tuple[float, float, float], variant: str) -> Record:
     low, _, high = interval
-    channel, _, rest = each.name.partition(" ")
-    named = channel in CHANNELS
+    channel, quantity = quantity_of(each.name)
     return Record(
-        quantity=f"{rest if named else each.name}{variant}",
+        quantity=f"{quantity}{variant}",
         unit=each.unit,
         source=f"inferred from published evidence; prior: {each.source}",
         value=each.value,
         low=min(low, each.value),
         high=max(high, each.value),
-        channel=channel if named else "both",
+        channel=channel,
         method="maximum a posteriori, 95 % of the draws of the posterior",
         conditions=f"SD {each.narrowed:.2f} times the prior's, {each.prior_low:.3g} to {each.prior_high:.3g}",
         confidence="low" if each.narrowed > UNMOVED_SD else "medium",
@@ -83,16 +83,13 @@ def _memory(known: Table, shared: tuple[Record, ...], variable: Variable) -> Rec
 
 def _taken_over(known: Table) -> tuple[Record, ...]:
     """Records that enter as they are, under the observer's own names."""
-    zone = known.one("complete adaptation")
-    low, high = zone.interval
+    zone, area = known.one("complete adaptation"), known.one("thermode area of the forced-choice thresholds")
+    (neutral, reference), (low, high) = names_of(Observer, "neutral_C", "reference_area_m2"), zone.interval
+    same = "path_hand_m", "path_forearm_m", "lapse", "rated_share", "missing_cost", "episode_bar"
     return (
-        replace(zone, quantity="neutral zone", low=low, high=high),
-        replace(known.one("thermode area of the forced-choice thresholds"), quantity="reference area"),
-        *(known.one("path length to the cord", site=site) for site in ("hand", "forearm")),
-        known.one("lapse rate"),
-        known.one("share of the scatter of ratings"),
-        known.one("cost of a missing episode"),
-        known.one("bar of an episode"),
+        replace(zone, quantity=neutral, low=low, high=high),
+        replace(area, quantity=reference),
+        *(record_of(known, Observer, field) for field in same),
         *(_mean_rating(channel) for channel in CHANNELS),
     )
 
@@ -106,7 +103,7 @@ def _mean_rating(channel: Channel) -> Record:
     found = [evidence.find("E2", f"rating_mean_{strips}strip", channel) for strips in STRIPS]
     logs = [math.log(each.place) for each in found]
     return Record(
-        quantity="mean rating",
+        quantity=quantity_of(names_of(Observer, "mean_rating")[0])[1],
         unit="points of 100",
         source="statistics of open trial data, experiment E2 of evidence.csv",
         value=math.exp(sum(logs) / len(logs)),
@@ -137,7 +134,7 @@ def _neutral_flux(known: Table, channel: Channel) -> Record:
     network, column = network_of(rig), receptor_column("heat flow", channel)
     low, high = (network.read(steady_state(rig, "skin", level)[1], column) for level in zone.interval)
     return Record(
-        quantity="neutral heat flow",
+        quantity=quantity_of(names_of(Observer, "neutral_flux")[0])[1],
         unit="W/m²",
         source=f"computed from the neutral zone ({zone.source})",
         low=low,

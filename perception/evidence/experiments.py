@@ -13,16 +13,15 @@ import numpy as np
 
 from thermicon.circuit import Rig
 
-from ..experiments.laboratory import Laboratory
 from ..experiments.measure import ADAPTIVE, Condition, Setting, logs_of
 from ..observer.channels import CHANNELS, Channel, Variable, sign_of
-from ..observer.observer import load_thresholds
-from ..observer.people import YOUNG_YEARS
+from ..observer.mechanisms.age import YOUNG_YEARS
+from ..observer.observer import Observer, load_thresholds
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import perceive
 from .baseline import noticed_K
-from .predicted import DRAWS, Asked, Predicted, Subject, nominal_subject, predict
+from .predicted import DRAWS, Asked, Predicted, laboratory_of, predict
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 FLAT_K_PER_S = (0.1, 0.2, 0.3)
@@ -43,15 +42,10 @@ STEEP_K, STEEP_K_PER_S = 4.0, 3.0
 STEEP = f"display step of {STEEP_K:g} K at {STEEP_K_PER_S:g} K/s, thenar, percept clock"
 
 
-@lru_cache(maxsize=8)
-def _laboratory(subject: Subject, setting: Setting) -> Laboratory:
-    return subject.laboratory(setting)
-
-
 @lru_cache(maxsize=2048)
-def measured(setting: Setting, condition: Condition, subject: Subject) -> float:
+def measured(setting: Setting, condition: Condition, person: Observer) -> float:
     """What one person gives in a task, in the unit of the condition; inf where the largest change is not felt."""
-    value = float(np.exp(logs_of(_laboratory(subject, setting), setting, condition, SIZES_K)[0].mean()))
+    value = float(np.exp(logs_of(laboratory_of(person, setting), setting, condition, SIZES_K)[0].mean()))
     return value if condition.method not in ADAPTIVE or value < 0.999 * SIZES_K[-1] else np.inf
 
 
@@ -69,15 +63,15 @@ def rate_curve(variable: Variable = "temperature", *, draws: int = DRAWS, seed: 
     setting = Setting("forearm", AT_THE_SKIN, 9.0)
     said = "forced choice at the skin, forearm, from 32 °C; the end of the ramp is held for 1 s"
 
-    def at(channel: Channel, rate: float, subject: Subject) -> float:
-        return measured(setting, _threshold("forced_choice", channel, rate, 1.0), subject)
+    def at(channel: Channel, rate: float, person: Observer) -> float:
+        return measured(setting, _threshold("forced_choice", channel, rate, 1.0), person)
 
-    def change(channel: Channel, subject: Subject) -> float:
-        found = [at(channel, rate, subject) for rate in FLAT_K_PER_S]
+    def change(channel: Channel, person: Observer) -> float:
+        found = [at(channel, rate, person) for rate in FLAT_K_PER_S]
         return max(found) / min(found) - 1.0
 
-    def raised(channel: Channel, rate: float, subject: Subject) -> float:
-        return at(channel, rate, subject) / at(channel, FLAT_K_PER_S[0], subject)
+    def raised(channel: Channel, rate: float, person: Observer) -> float:
+        return at(channel, rate, person) / at(channel, FLAT_K_PER_S[0], person)
 
     asked, named = [], {rate: f"threshold at {rate:g} K/s" for rate in RATES_K_PER_S}
     for channel in CHANNELS:
@@ -110,9 +104,8 @@ def limits(
     rig, area = LIMITS[site]
     setting, aged = _setting(rig, area), "" if age_years is None else f", {age_years:g} years"
     said = f"display ramp of 1 K/s, {area:g} cm²{aged}"
-    crowd = nominal_subject(variable).laboratory(
-        setting, people=people, seed=seed, age_years=YOUNG_YEARS if age_years is None else age_years
-    )
+    years = YOUNG_YEARS if age_years is None else age_years
+    crowd = laboratory_of(Observer.load(variable=variable), setting, people=people, seed=seed, age_years=years)
     conditions = [_threshold("limits", channel) for channel in CHANNELS]
     asked = [
         Asked("limits threshold", one.channel, "K", said, partial(measured, setting, one), noticed_K(one.channel))
@@ -132,12 +125,12 @@ def reaction_times(variable: Variable = "temperature", *, draws: int = DRAWS, se
     said = f"display ramp of {RAMP_K_PER_S:g} K/s up to {RAMP_K:g} K from 31 °C, forearm, warm or cold?"
     largest = AREAS_CM2[-1]
 
-    def at(channel: Channel, area_cm2: float, subject: Subject) -> float:
+    def at(channel: Channel, area_cm2: float, person: Observer) -> float:
         timed = Condition("reaction_time", "choice", channel, 31.0, RAMP_K, RAMP_K_PER_S, 0.0)
-        return measured(_setting("forearm", area_cm2), timed, subject)
+        return measured(_setting("forearm", area_cm2), timed, person)
 
-    def exponent(channel: Channel, subject: Subject) -> float:
-        times = [at(channel, area, subject) for area in AREAS_CM2]
+    def exponent(channel: Channel, person: Observer) -> float:
+        times = [at(channel, area, person) for area in AREAS_CM2]
         return float(np.polyfit(np.log(AREAS_CM2), np.log(times), 1)[0])
 
     asked = [
@@ -167,15 +160,15 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
     """
     said = f"raised-cosine display pulse of {PULSE_K:g} K in {PULSE_S:g} s, thenar, percept clock"
 
-    def lead(surface: Surface, channel: Channel, subject: Subject) -> float:
+    def lead(surface: Surface, channel: Channel, person: Observer) -> float:
         played = _pulse(channel)
-        peak = perceive(played.traces[0], subject.observer).felt_peak_s(channel)
+        peak = perceive(played.traces[0], person).felt_peak_s(channel)
         moved = sign_of(channel) * played.surface_C(surface)[0]
         return float(np.inf) if peak is None else peak - float(played.time_s[int(moved.argmax())])
 
-    def onset(play: Callable[[Channel], Stimulus], channel: Channel, subject: Subject) -> float:
-        found = perceive(play(channel).traces[0], subject.observer)
-        return float(np.inf) if found.onset_s is None else found.onset_s - subject.observer.decision_s
+    def onset(play: Callable[[Channel], Stimulus], channel: Channel, person: Observer) -> float:
+        found = perceive(play(channel).traces[0], person)
+        return float(np.inf) if found.onset_s is None else found.onset_s - person.decision_s
 
     asked = [Asked("felt peak minus the display's", c, "s", said, partial(lead, "display", c)) for c in CHANNELS]
     asked += [Asked("felt peak minus the skin's", c, "s", said, partial(lead, "skin", c)) for c in CHANNELS]
@@ -195,16 +188,15 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
     said = f"skin steps at 1 K/s half of which are reported, held for {HOLD_S:g} s, {alarms:g} false alarms, thenar"
     setting = Setting("thenar", AT_THE_SKIN, 9.0)
 
-    def returned(channel: Channel, subject: Subject) -> float:
-        criterion = criterion_of(alarms, subject.observer.noise_correlation_s, HOLD_S)
-        asked = replace(subject.observer, criterion=criterion)
-        keen = Subject(asked, {**subject.constants, "criterion of yes and no": criterion})
+    def returned(channel: Channel, person: Observer) -> float:
+        criterion = criterion_of(alarms, person.noise_correlation_s, HOLD_S)
+        keen = replace(person, criterion=criterion, unhurried=criterion)
         size = measured(setting, _threshold("yes_no", channel, hold_s=HOLD_S), keen)
         start = round(size + HOLD_S, 2)
         played = _thenar("skin").play([ramp(channel, size, 1.0, HOLD_S, back=True)], start + HOLD_S + 2.0)
-        cold, warm = (psi[0] for psi in played.felt(asked))
+        cold, warm = (psi[0] for psi in played.felt(keen))
         after = (warm if channel == "cold" else cold)[round(start / played.dt_s) :]
-        return float(detect(after, np.zeros_like(after), played.dt_s, asked).probability)
+        return float(detect(after, np.zeros_like(after), played.dt_s, keen).probability)
 
     asked = [Asked("report of the return", c, "proportion", said, partial(returned, c)) for c in CHANNELS]
     return predict("step and return near threshold", asked, variable, draws, seed)

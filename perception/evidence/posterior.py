@@ -20,13 +20,15 @@ from ..arrays import Array
 from ..experiments.laboratory import Laboratory
 from ..experiments.published import Predictions, predict
 from ..observer.channels import Variable
-from ..observer.priors import WITHIN_95, Priors, load_priors, priors_of
+from ..observer.constants import names_of, offsets_in
+from ..observer.observer import Observer
+from ..observer.priors import LABORATORIES, WITHIN_95, Priors, load_priors, priors_of
 from .rows import Row, load_rows
 
 BoolArray = NDArray[np.bool_]
 FARTHEST = 30.0
 """A row that is missed by more standard deviations counts as this many, so that a wild step is not fatal."""
-LIMITS = ("cold limit", "warm limit", "softness of the limits")
+LIMITS = names_of(Observer, "limit_C", "softness_K")
 """Constants that heat flow does not have; they are fixed where they do nothing."""
 
 
@@ -76,7 +78,8 @@ class Posterior:
 
     def predictions(self, vector: Array) -> Predictions:
         """Predictions of every row, left out or not."""
-        return predict(Laboratory(self.values(vector), self.variable))
+        values = self.values(vector)
+        return predict(Laboratory.of(Observer.from_values(values, self.variable), offsets_in(values, LABORATORIES)))
 
     def residuals(self, vector: Array) -> Array:
         """Misses of rows and distances from the priors' middles, in SDs: half their squares are −log posterior."""

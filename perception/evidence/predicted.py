@@ -4,7 +4,8 @@ Intervals come from laboratories that the evidence leaves possible, as `rank` dr
 was simulated for ask one person of each.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -18,11 +19,12 @@ from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, USUAL_NORM, Variable
+from ..observer.constants import Both
 from ..observer.draws import PosteriorDraws
+from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
-from ..observer.people import YOUNG_YEARS
-from .results import load_constants
+from ..observer.people import People
 
 DRAWS = 24
 """Observers drawn for an interval: enough to see its size, not its second digit."""
@@ -52,40 +54,18 @@ class Predicted:
     baseline: float | None = None
 
 
-NOBODY_DIFFERS = (
-    "cold sensitivity between people",
-    "warm sensitivity between people",
-    "criterion between people",
-    "decision time between people",
-)
-
-
-@dataclass(frozen=True, eq=False)
-class Subject:
-    """An observer, with all constants by name, by which it is asked in a laboratory's tasks."""
-
-    observer: Observer
-    constants: Mapping[str, float]
-
-    def laboratory(
-        self, setting: Setting, *, people: int | None = None, seed: int = SEED, age_years: float = YOUNG_YEARS
-    ) -> Laboratory:
-        """A laboratory without an offset that asks this person alone, or `people` of an age, on the skin of a rig."""
-        known = dict(self.constants) | (dict.fromkeys(NOBODY_DIFFERS, 0.0) if people is None else {})
-        # The skin is the rig's own; age is an offset of sensitivity, in natural logarithms.
-        skin = Rig.load(setting.site_rig).skin
-        known |= {"effusivity of living skin": 1.0, "sensitivity between laboratories": 1.0}
-        known["softness of the limits"] = self.observer.cold.softness_K  # heat flow has none of its own
-        for channel, depth in zip(CHANNELS, (skin.cold_receptor_m, skin.warm_receptor_m), strict=True):
-            known[f"{channel} receptor depth"] = 1e3 * (depth - skin.layers[0].thickness_m)
-        lost = (self.constants[f"{channel} sensitivity lost per decade"] for channel in CHANNELS)
-        older = tuple(-each * (age_years - YOUNG_YEARS) / 10.0 for each in lost)
-        return setting.laboratory(known, older, self.observer.variable, people or PEOPLE, seed)
-
-
-def nominal_subject(variable: Variable) -> Subject:
-    """The observer at the maximum of the posterior."""
-    return Subject(Observer.load(variable=variable), {each.name: each.value for each in load_constants(variable)})
+@lru_cache(maxsize=8)
+def laboratory_of(
+    person: Observer, setting: Setting, *, people: int | None = None, seed: int = SEED, age_years: float = YOUNG_YEARS
+) -> Laboratory:
+    """A laboratory without an offset that asks this person alone, or `people` of an age, on the skin of a rig."""
+    # The skin is the rig's own; age is an offset of sensitivity, in natural logarithms.
+    skin = Rig.load(setting.site_rig).skin
+    depth_m = Both(*(each - skin.layers[0].thickness_m for each in (skin.cold_receptor_m, skin.warm_receptor_m)))
+    met = replace(person, depth_m=depth_m, effusivity=1.0)
+    older = [-math.log(person.age_factor(age_years, channel)) for channel in CHANNELS]
+    made = setting.laboratory(met, older, people or PEOPLE, seed)
+    return made if people is not None else replace(made, people=People.nominal(PEOPLE, person))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +79,7 @@ class Asked:
     channel: str
     unit: str
     conditions: str
-    answer: Callable[[Subject], float]
+    answer: Callable[[Observer], float]
     baseline: float | None = None
 
 
@@ -112,11 +92,11 @@ def predict(
 ) -> tuple[Predicted, ...]:
     """Answers of the nominal observer, with the interval over `draws` plausible ones (0: none) of a seed."""
 
-    def answers(subject: Subject) -> list[float]:
-        return [one.answer(subject) for one in asked]
+    def answers(person: Observer) -> list[float]:
+        return [one.answer(person) for one in asked]
 
-    nominal = answers(nominal_subject(variable))
-    others = list(in_order(answers, plausible_subjects(draws, seed, variable=variable) if draws else ()))
+    nominal = answers(Observer.load(variable=variable))
+    others = list(in_order(answers, plausible_observers(draws, seed, variable=variable) if draws else ()))
     made = []
     for place, one in enumerate(asked):
         each = tuple(found[place] for found in others)
@@ -161,8 +141,7 @@ def plausible_laboratories(n: int, seed: int, variable: Variable) -> DrawnLabora
 
 
 @lru_cache(maxsize=8)
-def plausible_subjects(n: int = 32, seed: int = 0, *, variable: Variable = "temperature") -> tuple[Subject, ...]:
+def plausible_observers(n: int = 32, seed: int = 0, *, variable: Variable = "temperature") -> tuple[Observer, ...]:
     """The observers of these laboratories; the same for the same seed."""
     drawn = plausible_laboratories(n, seed, variable)
-    constants = (dict(zip(drawn.names, values, strict=True)) for values in drawn.values.tolist())
-    return tuple(Subject(drawn.at(place, 1)[0], own) for place, own in enumerate(constants))
+    return tuple(drawn.at(place, 1)[0] for place in range(n))

@@ -119,6 +119,12 @@ def shipped_vector(posterior: Posterior) -> Array:
     return vector
 
 
+def at_shipped(posterior: Posterior) -> Maximum:
+    """The shipped constants in place of a maximum, for their predictions."""
+    vector = shipped_vector(posterior)
+    return Maximum(posterior, vector, np.eye(vector.size), 0.0, posterior.predictions(vector), 0)
+
+
 def approximate_draws(found: Maximum, seed: int = 0) -> PosteriorDraws:
     """Draws from the normal approximation at a maximum, marked as such: a stand-in where nothing was sampled."""
     normal = np.random.default_rng(seed).standard_normal((DRAWS, found.vector.size))

@@ -8,7 +8,7 @@ from thermicon.circuit import Rig
 
 from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import VARIABLES, Variable
-from ..observer.people import OLD_YEARS
+from ..observer.mechanisms.age import OLD_YEARS
 from .experiments import first_and_return, limits, peak_lead, rate_curve, reaction_times
 from .identified import (
     WAVES,

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
+from ..observer.constants import names_of
+from ..observer.observer import Observer
 from ..observer.priors import Priors
 
 RIDGE = 0.01
@@ -119,7 +121,7 @@ def fit_surrogate(
     return Surrogate(fitted[:, 0], fitted[:, 1 : 1 + size], curvature, middle, factor, features, weights, *reach)
 
 
-NAMES = ("cold limit", "warm limit", "softness of the limits")
+NAMES = names_of(Observer, "limit_C", "softness_K")
 COLD_C, WARM_C = (30.0, 31.0, 31.8, 32.0), (31.0, 32.0, 32.4, 34.0)
 """Temperatures of skin at rest in the experiments of the evidence, and near them."""
 COUNT = len(COLD_C) + len(WARM_C)

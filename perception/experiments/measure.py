@@ -8,18 +8,20 @@ spreads of the draw. `measure` asks new laboratories; a pilot asks those that it
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, Channel, Variable
+from ..observer.channels import CHANNELS, Channel
+from ..observer.constants import BETWEEN_LABORATORIES, Both
 from ..observer.draws import PosteriorDraws
-from ..observer.observer import on_forearm
-from ..observer.people import YOUNG_YEARS
+from ..observer.mechanisms.age import YOUNG_YEARS
+from ..observer.mechanisms.site import on_forearm
+from ..observer.observer import Observer
 from .laboratory import PEOPLE, SEED, Laboratory
 from .tasks import UNSTATED, Played, Ramp, yes_no_logs
 
@@ -143,16 +145,14 @@ class Setting:
 
     def laboratory(
         self,
-        constants: Mapping[str, float],
-        offsets_sd: Sequence[float],
-        variable: Variable,
+        constants: Observer,
+        offsets: Sequence[float],
         people: int = PEOPLE,
         seed: int = SEED,
     ) -> Laboratory:
-        """A laboratory that measures here; its offsets of cold and warm sensitivity are in SDs between laboratories."""
-        own = {f"{OWN} {channel}": offset for channel, offset in zip(CHANNELS, offsets_sd, strict=True)}
-        contact = {"contact resistance of a thermode": self.contact_m2K_per_W}
-        return Laboratory({**constants, **own, **contact}, variable, people=people, seed=seed)
+        """A laboratory that measures here; its people are so much more sensitive (ln), by `offsets`."""
+        met = replace(constants, contact_m2K_per_W=self.contact_m2K_per_W)
+        return Laboratory.of(met, {OWN: Both(*offsets)}, people, seed)
 
 
 def logs_of(
@@ -175,7 +175,7 @@ def logs_of(
         peaks = [Played.of(laboratory, ramp(size, condition.hold_s)).peak for size in sizes_K.tolist()]
         logs = np.maximum.accumulate(np.log(peaks))
         rising = np.append(True, np.diff(logs) > 0.0)
-        wanted = -np.log(gain * laboratory.sensitivity[channel])
+        wanted = np.log(laboratory.people.threshold(channel) / gain)
         return np.interp(wanted, logs[rising], np.log(sizes_K)[rising]), UNSTATED
     assert condition.size_K is not None
     timed = condition.kind == "reaction_time"
@@ -188,11 +188,11 @@ def logs_of(
         times = played.answers_s(gain, site, choice=condition.method == "choice")
         logs = np.log(np.minimum(times, condition.size_K / condition.rate_K_per_s + AFTER_S + 1.0))
         return np.median(logs, axis=1), float(np.median(logs.std(axis=1)))
-    values = laboratory.values
-    exponent, unit = values[f"{channel} rating exponent"], values[f"{channel} rating at threshold"]
-    logs = math.log(unit) + exponent * (math.log(played.peak * gain) + np.log(laboratory.sensitivity[channel]))
-    scatter = values["scatter of ratings"] / math.exp(float(logs.mean()))
-    return logs, math.hypot(scatter, exponent * values["gain noise"])
+    constants = laboratory.constants
+    exponent, unit = constants.rating_exponent.of(channel), constants.rating_at_threshold.of(channel)
+    logs = math.log(unit) + exponent * (math.log(played.peak * gain) - np.log(laboratory.people.threshold(channel)))
+    scatter = constants.rating_scatter / math.exp(float(logs.mean()))
+    return logs, math.hypot(scatter, exponent * constants.gain_noise)
 
 
 @dataclass(frozen=True, slots=True)
@@ -261,10 +261,11 @@ def measure(
         raise ValueError(f"an interval needs at least {LEAST_DRAWS} laboratories, not {draws}")
     setting, known = Setting.of(rig), posterior or PosteriorDraws.load()
     chosen = np.linspace(0, len(known) - 1, draws).round().astype(np.int64).tolist()
-    offsets = np.random.default_rng(seed).standard_normal((draws, len(CHANNELS))).tolist()
+    standard = np.random.default_rng(seed).standard_normal((draws, len(CHANNELS)))
+    offsets = (known.values(BETWEEN_LABORATORIES)[chosen][:, None] * standard).tolist()
 
     def one(k: int) -> tuple[float, float, float]:
-        laboratory = setting.laboratory(known.draw(chosen[k]), offsets[k], known.variable)
+        laboratory = setting.laboratory(known.observer(chosen[k]), offsets[k])
         logs, within = logs_of(laboratory, setting, condition)
         return float(logs.mean()), float(logs.std()), within
 

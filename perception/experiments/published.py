@@ -101,9 +101,9 @@ def yes_no(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         yield ("E4", "sigma_gm_age30", channel), float(log_width.mean())
         yield ("E4", "sigma_between_sd_log10_noise_removed", channel), float(log_width.std()) / LN10
         # Age acts on sensitivity alone; people show how a threshold follows sensitivity.
-        log_sensitivity = np.log(laboratory.sensitivity[channel])
+        log_sensitivity = -np.log(laboratory.people.threshold(channel))
         slope = -float(np.cov(log_sensitivity, log_half)[0, 1]) / max(float(log_sensitivity.var(ddof=1)), 1e-9)
-        lost = laboratory.values[f"{channel} sensitivity lost per decade"]
+        lost = laboratory.constants.lost_per_decade.of(channel)
         yield ("E4", "threshold50_ln_per_decade", channel), slope * lost
     yield ("E4", "cold_warm_threshold_correlation_person_fits", "both"), _correlation(*thresholds)
 
@@ -115,7 +115,7 @@ PREPULSE_K_PER_S, HELD_S, FOREPERIOD_S, COOLED_K = 2.5, 0.75, 0.25, 14.0
 
 def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E5: cooling at 1 K/s after a warm pulse; press at the first change, then say which it was."""
-    values = laboratory.values
+    constants = laboratory.constants
     gain = laboratory.gain("cold", TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E5"])
     warm_gain = laboratory.gain("warm", TWO_STRIPS_CM2, "E4", "forearm", MEAN_AGE_YEARS["E5"])
     lowest = 0.0
@@ -126,7 +126,7 @@ def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         corners = [*pulse, (start_s + COOLED_K, -COOLED_K)]
         drive = laboratory.drive("forearm", "cold", 32.0, corners, start_s + COOLED_K)
         cooled = np.ascontiguousarray(drive[round(start_s / DT_S) :])
-        caution = values["caution after a pre-pulse"]
+        caution = constants.caution_after_pulse
         samples = samples_of(((COOLED_K, -COOLED_K),), COOLED_K)
         answers = laboratory.answers_s(cooled, samples, "cold", gain, site="forearm", caution=caution)
         logs = np.log(np.minimum(answers, COOLED_K + 1.0))
@@ -139,9 +139,7 @@ def after_warmth(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
         else:
             yield ("E5", f"ratio_to_lowest_peak{level}_age_lt36", "cold"), mean - lowest
         warmth = laboratory.drive("forearm", "warm", 32.0, pulse, start_s).max() * warm_gain
-        lingering = values["warmth that lingers"] * float(laboratory.transducer.psi(warmth))
-        wrong = values["wrong labels"]
-        share = wrong + (0.5 - wrong) * -math.expm1(-lingering)
+        share = constants.called_warm(float(constants.psi(warmth)))
         yield ("E5", f"share_called_warm_peak{level}_age_lt36", "cold"), share
 
 
@@ -160,7 +158,7 @@ def forced_choice(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
             gain = laboratory.gain(channel, 9.0, place, site, 25.0)
             yield (place, "detection threshold", channel), -math.log(max(peak * gain, 1e-6))
     for channel in CHANNELS:
-        spread = laboratory.values[f"{channel} sensitivity between people"]
+        spread = laboratory.constants.sensitivity_between.of(channel)
         yield ("wrist", "spread of detection thresholds", channel), spread
 
 
@@ -171,13 +169,13 @@ PEDESTALS = np.geomspace(1.5, 4.5, 3)
 def differences(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """Amplitude differences of two pulses felt, and steps from threshold to pain."""
     for channel, size in FORCED_CHOICE[0][3].items():
-        steps = size * laboratory.transducer.difference_threshold(PEDESTALS)
+        steps = size * laboratory.constants.difference_threshold(PEDESTALS)
         yield ("amplitudes", "amplitude difference threshold", channel), float(np.log(steps).mean())
     peak = Played.of(laboratory, Ramp("forearm", "warm", 34.0, 10.0, 0.5, 20.0)).peak
-    multiple = peak / laboratory.values["warm threshold drive"]
+    multiple = peak / laboratory.constants.threshold_drive.warm
     yield (
         ("steps", "steps from threshold to pain", "warm"),
-        math.log(max(float(laboratory.transducer.psi(multiple)), 0.01)),
+        math.log(max(float(laboratory.constants.psi(multiple)), 0.01)),
     )
 
 
@@ -191,17 +189,17 @@ E6_K_PER_S = 40.0
 
 def ratings(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E2 and E6: ratings by area and by size; a rating is a power of the largest drive in multiples of threshold."""
-    values = laboratory.values
+    constants = laboratory.constants
     for channel, (rate, size) in RATED.items():
         peak = Played.of(laboratory, Ramp.held("forearm", channel, 31.0, size, rate, 0.7)).peak
         one, five = (
             peak * laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"]) for n in (1, 5)
         )
-        exponent, unit = values[f"{channel} rating exponent"], values[f"{channel} rating at threshold"]
+        exponent, unit = constants.rating_exponent.of(channel), constants.rating_at_threshold.of(channel)
         yield ("E2", "rating_mean_5strip", channel), math.log(unit) + exponent * math.log(max(five, 1e-6))
         yield ("E2", "rating_area_exponent_group", channel), exponent * math.log(five / one) / math.log(5.0)
         middle = unit * math.sqrt(one * five) ** exponent
-        scatter = math.hypot(values["scatter of ratings"], exponent * middle * values["gain noise"])
+        scatter = math.hypot(constants.rating_scatter, exponent * middle * constants.gain_noise)
         yield ("E2", "rating_within_sd_pooled", channel), math.log(scatter)
         change, _ = E6_SIZES[channel]
         low, high = (

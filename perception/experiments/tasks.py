@@ -12,8 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..observer.channels import Channel, sign_of
-from .laboratory import FEEBLE, Laboratory, samples_of
-from .skin_modes import Corner
+from .laboratory import FEEBLE, Corner, Laboratory, samples_of
 
 DISCREPANCY = 0.05
 """What a model of this kind may miss a published or measured value by, as a share; assumed."""
@@ -79,7 +78,7 @@ class Played:
     def reported(self, gain: float) -> Array:
         """Share of trials (people,) in which it is reported to a question without haste."""
         samples = samples_of(self.ramp.corners, self.ramp.end_s)
-        criterion = self.laboratory.values["criterion of yes and no"]
+        criterion = self.laboratory.constants.unhurried
         passed = self.laboratory.passages(self.drive, samples, self.ramp.channel, gain, criterion)[1]
         found: Array = passed.mean(axis=1)
         return found
@@ -87,7 +86,7 @@ class Played:
 
 def yes_no_logs(laboratory: Laboratory, ramps: Sequence[Ramp], gain: float) -> tuple[Array, Array]:
     """Logs (people,) of the size that is reported in half of the trials, and of the SD of the function, guesses out."""
-    from ..kernels.passage import psychometric
+    from ..kernels.crossing import psychometric
 
     reported = np.stack([Played.of(laboratory, ramp).reported(gain) for ramp in ramps], axis=1)
     logs = np.empty((reported.shape[0], len(HALVES)))

@@ -253,7 +253,7 @@ def name_directly(
     scale = np.ascontiguousarray(np.broadcast_to(np.asarray(louder, dtype=np.float64), (people, icons)))
     lapses = np.broadcast_to(np.asarray(lapse, dtype=np.float64), (people,))[:, None, None]
     rated = felt.scaled("naming", observer)
-    intensity, timing = intensity_noise("naming", observer, own), observer.memory.timing * own
+    intensity, timing = intensity_noise("naming", observer, own), observer.timing_noise * own
     counts = np.zeros((people, icons, icons))
 
     def work(part: slice) -> None:
@@ -263,7 +263,7 @@ def name_directly(
             noise = rng.standard_normal((int(rated.counts[person].max(initial=0)), icons, samples, NOISES))
             alignment.name(
                 rated.features[person], rated.counts[person], intensity[person], timing[person], scale[person],
-                observer.memory.missing, noise, counts[person],
+                observer.missing_cost, noise, counts[person],
             )  # fmt: skip
 
     over_rows(work, people, people * icons * icons * samples)

@@ -85,7 +85,7 @@ class Episodes:
 
         def work(part: slice) -> None:
             kernel.all_episodes(
-                cold[part], warm[part], dt_s, observer.memory.bar, observer.a, observer.p, features[part], counts[part]
+                cold[part], warm[part], dt_s, observer.episode_bar, observer.a, observer.p, features[part], counts[part]
             )
 
         over_rows(work, people, cold.size)
@@ -122,9 +122,8 @@ class Episodes:
 
         features = self.features.copy()
         warm = features[..., kernel.QUALITY] == 1.0
-        ratings = [observer.memory.ratings(channel) for channel in CHANNELS]
-        exponent = np.where(warm, ratings[1].exponent, ratings[0].exponent)
-        unit = np.where(warm, ratings[1].at_threshold, ratings[0].at_threshold)
+        exponent = np.where(warm, observer.rating_exponent.warm, observer.rating_exponent.cold)
+        unit = np.where(warm, observer.rating_at_threshold.warm, observer.rating_at_threshold.cold)
         rated = unit * np.exp(exponent * features[..., kernel.INTENSITY])
         features[..., kernel.NOISE] *= exponent * rated
         features[..., kernel.INTENSITY] = rated
@@ -134,10 +133,9 @@ class Episodes:
 
 def intensity_noise(norm: Norm, observer: Observer, memory: Array) -> Array:
     """σ_I (people, 2) of cold and warm on the scale of a norm; `memory` (people,) multiplies it."""
-    noise = np.array([observer.memory.intensity(channel) for channel in CHANNELS])
+    noise = np.array([observer.intensity_noise(channel) for channel in CHANNELS])
     if norm == "naming":
-        ratings = [observer.memory.ratings(channel) for channel in CHANNELS]
-        noise = noise * np.array([each.exponent * each.rated for each in ratings])
+        noise = noise * (np.array(observer.rating_exponent) * np.array(observer.mean_rating))
     return np.asarray(memory[:, None] * noise[None, :])
 
 
@@ -149,7 +147,7 @@ def episode_distances(one: Episodes, other: Episodes, observer: Observer, norm: 
     own = np.broadcast_to(np.asarray(memory, dtype=np.float64), (people,))
     first = one.scaled(norm, observer)
     second = first if other is one else other.scaled(norm, observer)
-    intensity, timing = intensity_noise(norm, observer, own), observer.memory.timing * own
+    intensity, timing = intensity_noise(norm, observer, own), observer.timing_noise * own
     apart = np.empty((people, one.counts.shape[1], other.counts.shape[1]))
 
     def work(part: slice) -> None:
@@ -171,7 +169,7 @@ def distance_shares(one: Episodes, i: int, other: Episodes, j: int, observer: Ob
     from ..kernels import alignment
     from ..kernels.episodes import QUALITY
 
-    intensity, timing = intensity_noise(norm, observer, np.ones(1))[0], observer.memory.timing
+    intensity, timing = intensity_noise(norm, observer, np.ones(1))[0], observer.timing_noise
     shares, total, own = np.empty(alignment.SHARES), np.zeros(alignment.SHARES), np.empty(alignment.SHARES)
     first, second = (
         held.scaled(norm, observer).features[0, k, : held.counts[0, k]] for held, k in ((one, i), (other, j))

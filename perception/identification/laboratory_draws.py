@@ -19,18 +19,16 @@ from thermicon.circuit.records import Table
 from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import Norm, Variable
-from ..observer.draws import laboratory_with
+from ..observer.constants import name_of
+from ..observer.mechanisms.memory import MEMORY_NAMES, MISSING
 from ..observer.observer import Observer, variant_records
 from ..observer.observer_model import ObserverModel
-from ..observer.parts import MEMORY_NAMES, NOISE
-from ..observer.people import People
+from ..observer.people import People, draw_people
 from ..sensation.detection import pooled
 from .measures import information_bits, proportion_correct
 from .population import ReceptorTemperatures, identify, respond
 from .task import USUAL, Task
 
-NAMED_ALONE = "cost of a missing episode"
-"""The constant of memory that the norm `naming` alone makes use of."""
 LOG_FROM = 1.5
 """An interval whose ends are in a larger ratio than this is drawn in its logarithm."""
 
@@ -84,9 +82,9 @@ def memory_parameters(norm: Norm, records: Table | None = None) -> tuple[Uncerta
     """
     found = []
     for record in variant_records() if records is None else records:
-        name = NOISE if record.quantity == "memory noise" else record.quantity
+        name = name_of(record)
         low, high = record.interval
-        if name in MEMORY_NAMES and (name != NAMED_ALONE or norm == "naming") and low < high:
+        if name in MEMORY_NAMES and (name != MISSING or norm == "naming") and low < high:
             found.append(Uncertain(name, low, high, record.unit))
     return tuple(found)
 
@@ -136,7 +134,8 @@ class DrawnLaboratories:
         """The observer and the people of a laboratory with these values of the constants (constants,)."""
         named = dict(zip(self.names, values.tolist(), strict=True))
         offsets = named[OFFSETS[0]], named[OFFSETS[1]]
-        return laboratory_with(self.variable, named, offsets, people, self.seed, self.age_years)
+        observer = Observer.from_values(named, self.variable)
+        return observer, draw_people(people, self.seed, age_years=self.age_years, observer=observer, offsets=offsets)
 
     def invited(self, people: int) -> NDArray[np.int64]:
         """Places (n, people) of the people whom each laboratory invites: a random sample of its own."""

@@ -19,6 +19,8 @@ from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
 from ..observer.channels import CHANNELS, source_of
+from ..observer.constants import QUANTITIES
+from ..observer.mechanisms.memory import NOISE
 from ..observer.observer import NORMS, Norm, Observer
 from ..sensation.bench import Bench, Stimulus, ramp
 from ..sensation.percept import perceive_many
@@ -52,7 +54,7 @@ def memory_noise(known: Table, observer: Observer) -> Record:
 def memory_record(variant: str, value: float, low: float, high: float) -> Record:
     """A record of the memory noise of a variant, by the ending of its names; not calibrated yet."""
     return Record(
-        quantity=f"memory noise{variant}",
+        quantity=f"{QUANTITIES[NOISE]}{variant}",
         unit="log units",
         source="not calibrated yet",
         value=value,
@@ -75,8 +77,7 @@ def _noise_of(episodes: Episodes, proportion: float, observer: Observer) -> floa
     wanted = math.sqrt(2.0) * NormalDist().inv_cdf(proportion)
 
     def missed(log_noise: float) -> float:
-        memory = replace(observer.memory, timing=math.exp(log_noise), share=0.0)
-        person = replace(observer, memory=memory)
+        person = replace(observer, timing_noise=math.exp(log_noise), rated_share=0.0)
         return float(episode_distances(episodes, episodes, person, "episodes")[0, 0, 1]) - wanted
 
     low, high = LOG_NOISE

@@ -162,13 +162,13 @@ def _name(
             for k in range(counts[i]):
                 x, z = felt[i, k], noise[k, i, s]
                 sd = intensity[int(x[QUALITY])]
-                total = math.sqrt(sd * sd + x[NOISE] * x[NOISE]) * louder[i]
+                total = math.sqrt(sd * sd + x[NOISE] * x[NOISE])
                 put(now[k], x)
-                now[k, INTENSITY] = x[INTENSITY] + total * z[0]
+                now[k, INTENSITY] = x[INTENSITY] + total * louder[i] * z[0]
                 now[k, RATE] = x[RATE] + timing * louder[i] * z[1]
                 now[k, LENGTH] = x[LENGTH] + timing * louder[i] * z[2]
                 now[k, PAUSE] = x[PAUSE] + timing * louder[i] * z[3]
-                alone[k] = max(min((x[INTENSITY] - x[ONSET]) / total, x[RISE] / louder[i]) + z[0], 0.0)
+                alone[k] = max(min((x[INTENSITY] - x[ONSET]) / total, x[RISE]) + louder[i] * z[0], 0.0)
             best, name = math.inf, 0
             for j in range(icons):
                 square = least_cost(now, counts[i], alone, c, felt[j], counts[j], missing[j], intensity, timing, cost)

@@ -2,9 +2,6 @@
 
 Every kernel runs over rows independently, so that splitting rows over threads changes no bit.
 
-A unit ramp of the surface from time 0 on gives s·t − Σ_m w_m·(1 − e^(−λ_m·t))/λ_m at a depth; on a uniform clock each
-exponential is the last one times e^(−λ_m·dt).
-
 For a channel with sign s (−1 cold, +1 warm), receptor temperature T, limit L and softness δ:
 
     q = L + s·δ·ln(1 + e^(s·(T − L)/δ))                      quality: no cold above L, no warmth below it
@@ -68,17 +65,6 @@ def _adapted_drive(
 adapted_drive: Any = vectorised(_adapted_drive)
 
 
-def _ramp_response(steady: float, weight: Any, rate: Any, dt: float, response: Any) -> None:
-    """Response (n_time,) to a unit ramp, for the modes' weights and rates (n,) in 1/s."""
-    left, decay, share = np.ones(rate.size), np.exp(-rate * dt), weight / rate
-    for t in range(response.size):
-        lost = 0.0
-        for m in range(rate.size):
-            lost += share[m] * (1.0 - left[m])
-            left[m] *= decay[m]
-        response[t] = steady * dt * t - lost
-
-
 DRAWS_AT_ONCE = 512
 
 
@@ -128,8 +114,6 @@ def _nearest(nearness: Any, projected: Any, counts: Any) -> None:
 
 
 Loop = Callable[..., None]
-_contracted: Any = kernel(nogil=True, fastmath={"reassoc", "nsz", "contract"})
 _vector: Any = kernel(nogil=True, fastmath={"reassoc", "nsz"})
 sensation: Loop = vectorised(_sensation)
 nearest: Loop = _vector(_nearest)
-ramp_response: Loop = _contracted(_ramp_response)

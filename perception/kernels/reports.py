@@ -2,8 +2,8 @@
 
     P(t) = mean over gains g and decision times d of 1 − exp(L_cold(t − d − δ_cold) + L_warm(t − d − δ_warm))
 
-L is the log probability of not having passed the criterion yet, at the rate that `passage` gives; δ is the conduction
-of a channel. A drive that is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)).
+L is the log probability that the change of a sensation from its first sample has not passed the criterion yet, relative
+to that of no change at all (`crossing`): crossings of noise alone are left out. δ is the conduction of a channel.
 """
 
 import math
@@ -14,20 +14,11 @@ import numpy as np
 from thermicon.circuit.compiled import kernel
 from thermicon.circuit.vector_math import LEAST, exp, expm1, log1p, vectorised
 
-from .passage import (
-    CERTAIN,
-    GAP_FROM,
-    GAP_STEP,
-    MILLS,
-    RISE,
-    Z_FROM,
-    Z_MIDDLE,
-    Z_STEP,
-    between,
-)  # fmt: skip
+from .crossing import CERTAIN, survive
 
 AT_ONCE = 64
 """Samples that go through the processor's vectors before it is asked whether a report is certain."""
+
 COLD, WARM = range(2)
 
 
@@ -46,7 +37,7 @@ def _report(
     passed, left = np.zeros((2, times + 1)), np.empty(times + 1)  # their first column is the time before the first
     arrived, decided = np.empty(times), np.empty(times)
     begin, end = np.empty(2, dtype=np.int64), np.empty(2, dtype=np.int64)
-    share = 1.0 / raised.size
+    share, steps = 1.0 / raised.size, np.full(samples, dt)
     for row in range(cold.shape[0]):
         # Between these times something changes; before them nothing has, and after them all stays as it is.
         first, last = times, 0
@@ -67,9 +58,10 @@ def _report(
             for channel in range(2):
                 if gain > 0 and begin[channel] == samples:
                     continue  # without change, all gains give the same
+                own, logs[channel, 0] = risen[channel], 0.0
                 survive(
-                    risen[channel], raised[gain], a, begin[channel], end[channel], dt, criterion[row, channel], tau,
-                    room, logs[channel],
+                    own, raised[gain], a, begin[channel], end[channel], steps, criterion[row, channel], tau,
+                    a * log1p(raised[gain] * own[0]), 1.0, CERTAIN, room, logs[channel],
                 )  # fmt: skip
                 delayed(logs[channel], every, late[row, channel] / dt, passed[channel, 1:])
             unreported += share * math.exp(logs[COLD, samples - 1] + logs[WARM, samples - 1])
@@ -108,43 +100,6 @@ def _changing(psi: Any) -> tuple[int, int]:
     return first, min(end + 1, psi.size)
 
 
-def _survive(
-    risen: Any, raised: float, a: float, begin: int, end: int, dt: float, criterion: float, tau: float,
-    room: Any, log_left: Any,
-) -> None:  # fmt: skip
-    """Fill the log probability (n_time,) that the change of a sensation from its first sample has not passed yet.
-
-    `risen` (n_time,) is e^(ψ/a) − 1 of a sensation that changes from the sample `begin` to `end`, and `raised` how much
-    larger its drive is. It is relative to that of no change at all: the crossings of noise alone are left out. What
-    comes after a report is certain is not computed.
-    """
-    silent = RISE[Z_MIDDLE] / tau * between(MILLS, (criterion - GAP_FROM) / GAP_STEP)
-    left, at_start = 0.0, a * log1p(raised * risen[0])
-    log_left[:begin] = left
-    psi, fall, last = room[0], room[1], 0.0
-    for start in range(begin, end, AT_ONCE):
-        count = min(AT_ONCE, end - start)
-        own, now, before = risen[start : start + count], psi[1:], psi
-        before[0] = last
-        for i in range(count):
-            now[i] = abs(a * log1p(raised * own[i]) - at_start)
-        for i in range(count):
-            z = (now[i] - before[i]) * (tau / dt)
-            fall[i] = max(between(RISE, (z - Z_FROM) / Z_STEP), z)
-        for i in range(count):
-            twice = now[i] + before[i]
-            rate = fall[i] / tau * between(MILLS, (criterion - 0.5 * twice - GAP_FROM) / GAP_STEP)
-            fall[i] = dt * ((rate if twice > 0.0 else silent) - silent)
-        last = psi[count]
-        for i in range(count):
-            left -= fall[i]
-            log_left[start + i] = left
-            if left < CERTAIN:
-                log_left[start + i :] = left
-                return
-    log_left[end:] = left
-
-
 def _delayed(course: Any, every: int, delay: float, found: Any) -> None:
     """Fill `found` (times,) with every k-th sample of a course that comes so many samples later, linear in between.
 
@@ -181,7 +136,6 @@ def _reports_by_cold(cold: Any, warm: Any, left: Any) -> float:
 
 _sum: Any = kernel(nogil=True, error_model="numpy", fastmath={"reassoc", "nsz", "contract", "arcp"})
 changing: Any = vectorised(_changing)
-survive: Any = _sum(_survive)
 delayed: Any = vectorised(_delayed)
 reports_by_cold: Any = _sum(_reports_by_cold)
 report: Any = _sum(_report)

@@ -7,7 +7,6 @@ inference and stays that of the shipped observer, except in draws of one laborat
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -21,12 +20,10 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array, own_arrays
 from .channels import CHANNELS, Variable, check_variable
+from .constants import BETWEEN_LABORATORIES, name_of
 from .draws_file import DrawsHeader, read_draws, shipped_file
-from .observer import Observer, shipped_constants, variant_records
-from .parts import NOISE
-from .people import People, draw_people
+from .observer import Observer, variant_records
 
-BETWEEN_LABORATORIES = "sensitivity between laboratories"
 NEGLIGIBLE = 1e-3
 """Spread between laboratories (ln) below which draws are those of one: published ones differ by some tenths."""
 FROM_EVIDENCE = "inferred from published evidence"
@@ -41,7 +38,7 @@ class PosteriorDraws:
     first draw is the nominal one: its constants, and what they predict of the evidence, are nearest to their medians.
 
     >>> posterior = PosteriorDraws.load()
-    >>> bool(posterior.observer(0).cold.limit_C == posterior.values("cold limit")[0])
+    >>> bool(posterior.observer(0).limit_C.cold == posterior.values("cold limit")[0])
     True
     """
 
@@ -108,8 +105,7 @@ class PosteriorDraws:
         """The records of the shipped observer with the constants of one draw of the default variant."""
         values, records = self.draw(k), []
         for record in variant_records():
-            name = f"{record.channel} {record.quantity}" if record.channel in CHANNELS else record.quantity
-            name = NOISE if record.quantity == "memory noise" else name
+            name = name_of(record)
             if name in self.memory_names:
                 record = replace(record, value=values[name], low=None, high=None)
             elif name in values and record.source.startswith(FROM_EVIDENCE):
@@ -120,7 +116,7 @@ class PosteriorDraws:
 
     def observer(self, k: int) -> Observer:
         """The observer of one draw."""
-        return Observer.from_constants({**shipped_constants(self.variable), **self.draw(k)}, self.variable)
+        return Observer.from_values(self.draw(k), self.variable)
 
     def nominal(self) -> Observer:
         """The observer of the first draw, which is nearest to the medians. The shipped observer is the maximum."""
@@ -144,21 +140,3 @@ class PosteriorDraws:
 def _read(file: Path, _changed_ns: int) -> PosteriorDraws:
     header, (names, draws), (memory_names, memory) = read_draws(file)
     return PosteriorDraws(header, names, draws, memory_names, memory)
-
-
-def laboratory_with(
-    variable: Variable,
-    values: Mapping[str, float],
-    offsets: tuple[float, float],
-    people: int,
-    seed: int,
-    age_years: float | None = None,
-) -> tuple[Observer, People]:
-    """The observer and people of a laboratory with these constants, those of memory among them, and else the shipped.
-
-    Cold and warm `offsets` are how much more sensitive (ln) its people are.
-    """
-    drawn = draw_people(people, seed, age_years=age_years, spreads=values)
-    cold, warm = math.exp(-offsets[0]) * drawn.threshold_cold, math.exp(-offsets[1]) * drawn.threshold_warm
-    observer = Observer.from_constants({**shipped_constants(variable), **values}, variable)
-    return observer, replace(drawn, threshold_cold=cold, threshold_warm=warm)

@@ -19,8 +19,9 @@ from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
 from .channels import VARIABLES, Variable, check_variable
-from .observer import DATA
-from .parts import LIMITS, MEMORY_NAMES, objection_to
+from .constants import ANY, objection_to, ranges_of
+from .mechanisms.memory import MEMORY_NAMES
+from .observer import DATA, Observer
 
 MOST_MB, LARGEST = 200.0, 1e9
 """Size of a file, and of a number in it: far more than any constant in its unit."""
@@ -167,26 +168,24 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
     names = tuple(rows[0])
     expected = _inferred(header.variable)
     _check_names(path.name, expected, names)
-    judged = [place for place, name in enumerate(names) if expected.get(name, True) or name in LIMITS]
-    draws = _numbers(path.name, names, rows[1:], len(head) + 2, judged)
+    draws = _numbers(path.name, names, rows[1:], len(head) + 2)
     remembered = [name in MEMORY_NAMES for name in names]
     constants = tuple(name for name in names if name not in MEMORY_NAMES)
     memory = tuple(name for name in names if name in MEMORY_NAMES)
     return header, (constants, draws[:, np.logical_not(remembered)]), (memory, draws[:, remembered])
 
 
-def _numbers(
-    file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int, judged: Sequence[int]
-) -> Array:
+def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], first_line: int) -> Array:
     """The rows as numbers (rows, names)."""
-    draws = np.empty((len(rows), len(names)))
+    draws, ranges = np.empty((len(rows), len(names))), ranges_of(Observer)
+    within = [ranges.get(name, ANY) for name in names]
     for number, row in enumerate(rows):
         where = f"{file}, line {first_line + number}"
         if len(row) != len(names):
             raise RecordError(f"{where}: {len(row)} numbers for {len(names)} constants: {CURE}")
         for place, text in enumerate(row):
             draws[number, place] = _number(text, f"{where}, {names[place]}")
-            if place in judged and (why := objection_to(names[place], float(draws[number, place]))):
+            if why := objection_to(within[place], float(draws[number, place])):
                 raise RecordError(f"{where}, {names[place]}: {text} {why}: {CURE}")
     return draws
 
@@ -228,7 +227,7 @@ def _number(text: str, where: str) -> float:
     return value
 
 
-def _check_names(name: str, expected: Mapping[str, bool], names: Sequence[str]) -> None:
+def _check_names(name: str, expected: Sequence[str], names: Sequence[str]) -> None:
     if len(set(names)) < len(names):
         raise RecordError(f"{name}: two columns have one name: {CURE}")
     for each in names:
@@ -241,12 +240,12 @@ def _check_names(name: str, expected: Mapping[str, bool], names: Sequence[str]) 
             raise RecordError(f"{name}: there is no column {each!r}: {CURE}")
 
 
-def _inferred(variable: Variable) -> dict[str, bool]:
-    """Names of all constants that are inferred for a variant, and whether their priors allow positive numbers only."""
+def _inferred(variable: Variable) -> tuple[str, ...]:
+    """Names of all constants that were inferred for a variant."""
     with CONSTANTS.open(encoding="utf-8", newline="") as file:
         file.readline()
         rows = csv.DictReader(file)
-        return {row["name"]: float(row["prior_low"]) > 0.0 for row in rows if row["variable"] == variable}
+        return tuple(row["name"] for row in rows if row["variable"] == variable)
 
 
 def current_inputs(table: Path = CONSTANTS) -> str:

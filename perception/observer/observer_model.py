@@ -8,7 +8,6 @@ new laboratory.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Self
@@ -18,16 +17,9 @@ from thermicon.circuit.records import RecordError, Table
 from .channels import CHANNELS, VARIABLES
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, read_records, variant_records
-from .people import People, age_factor, draw_people
+from .people import People, draw_people
 
 SHIPPED = "shipped"
-OF_PEOPLE = (
-    "criterion between people",
-    "correlation of cold and warm",
-    "decision time",
-    "decision time between people",
-)
-"""Inferred constants of people that both channels share; sensitivities have one a channel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,10 +27,9 @@ class ObserverModel:
     """The observer of a file with its people and its posterior.
 
     `name` is that of the file, or `shipped`, and `digest` the SHA-256 of its text in hexadecimal. `nominal` is the most
-    probable observer of the shipped posterior, the first draw of another. `spreads` are constants of how people differ
-    (None: the shipped ones), `records` those of the observer, from which intervals of memory are read, `posterior` the
-    draws of the constants (None: the file has none), `age_years` the age of all people (None: 20 to 30 years, as in the
-    evidence).
+    probable observer of the shipped posterior, the first draw of another. `records` are those of the observer, from
+    which intervals of memory are read, `posterior` the draws of the constants (None: the file has none), `age_years`
+    the age of all people (None: 20 to 30 years, as in the evidence).
 
     >>> ObserverModel.load().people(3, seed=1).memory.shape
     (3,)
@@ -47,7 +38,6 @@ class ObserverModel:
     name: str
     digest: str
     nominal: Observer = field(compare=False)
-    spreads: Mapping[str, float] | None = field(compare=False)
     records: Table = field(compare=False)
     posterior: PosteriorDraws | None = field(compare=False)
     age_years: float | None = None
@@ -66,20 +56,20 @@ class ObserverModel:
         """
         if path is None:
             digest = hashlib.sha256((DATA / "observer.toml").read_bytes()).hexdigest()
-            return cls(SHIPPED, digest, Observer.load(), None, variant_records(), PosteriorDraws.load())
+            return cls(SHIPPED, digest, Observer.load(), variant_records(), PosteriorDraws.load())
         file, draws = Path(path), None
         try:
             if file.suffix.lower() == ".csv":
                 draws = PosteriorDraws.load(file)
                 if draws.variable != VARIABLES[0]:
                     raise RecordError(f"{file.name}: draws of {draws.variable}, not of {VARIABLES[0]}, the default")
-                records, nominal, spreads = draws.table(0), draws.nominal(), dict(draws.draw(0))
+                records, nominal = draws.table(0), draws.nominal()
             else:
                 records = read_records(file)
-                nominal, spreads = Observer.from_table(records), _spreads(records)
+                nominal = Observer.from_table(records)
         except ValueError as wrong:  # a RecordError says in which file
             raise wrong if isinstance(wrong, RecordError) else RecordError(f"{file.name}: {wrong}") from None
-        return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, spreads, records, draws)
+        return cls(file.name, hashlib.sha256(file.read_bytes()).hexdigest(), nominal, records, draws)
 
     def most_draws(self, wanted: int) -> int:
         """As many draws as are wanted, or as many as there are."""
@@ -100,12 +90,12 @@ class ObserverModel:
 
     def people(self, n: int, seed: int = 0) -> People:
         """Virtual people who differ as this model says; person i is the same whatever n is."""
-        return draw_people(n, seed, age_years=self.age_years, spreads=self.spreads)
+        return draw_people(n, seed, age_years=self.age_years, observer=self.nominal)
 
     def aged(self, age_years: float) -> ObserverModel:
         """The same model for people of an age, 18 to 100 years: their thresholds are higher."""
         for channel in CHANNELS:
-            age_factor(age_years, channel)
+            self.nominal.age_factor(age_years, channel)
         return replace(self, age_years=age_years)
 
     @property
@@ -117,10 +107,3 @@ class ObserverModel:
     def __repr__(self) -> str:
         draws = "no posterior draws" if self.posterior is None else f"{len(self.posterior)} posterior draws"
         return f"ObserverModel({self.name}, {draws})"
-
-
-def _spreads(records: Table) -> dict[str, float]:
-    """How people differ by the records of an observer file; what it lacks is a RecordError that names it."""
-    shared = {name: records.one(name).central for name in OF_PEOPLE}
-    name = "sensitivity between people"
-    return shared | {f"{channel} {name}": records.one(name, channel=channel).central for channel in CHANNELS}

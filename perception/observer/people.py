@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from functools import lru_cache
+from functools import lru_cache, partial
 from statistics import NormalDist
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -17,14 +17,13 @@ from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
-from .observer import load_thresholds, observer_records
+from .constants import record_of
+from .observer import Observer, load_thresholds, observer_records
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
 STANDARD = NormalDist()
-YOUNG_YEARS, OLD_YEARS = 25.0, 65.0
-"""Age at which thresholds are the observer's, and an age at which they are old."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,11 +57,19 @@ class People:
         return int(self.threshold_cold.size)
 
     @classmethod
-    def nominal(cls, n: int = 1) -> People:
+    def nominal(cls, n: int = 1, observer: Observer | None = None) -> People:
         """The nominal person, n times: every multiplier 1, decision time and lapse as the observer has them."""
-        record = people_records()
-        own = {"decision_s": observer_records().one("decision time").central, "lapse": record["lapse"].central}
+        median = Observer.load() if observer is None else observer
+        own = {"decision_s": median.decision_s, "lapse": median.lapse}
         return cls(**{field.name: np.full(n, own.get(field.name, 1.0)) for field in fields(cls)})
+
+    def threshold(self, channel: Channel) -> Array:
+        """Multipliers (n,) of a channel's thresholds."""
+        return self.threshold_cold if channel == "cold" else self.threshold_warm
+
+    def criterion(self, channel: Channel) -> Array:
+        """Multipliers (n,) of a channel's criterion."""
+        return self.criterion_cold if channel == "cold" else self.criterion_warm
 
     def part(self, start: int, stop: int) -> People:
         """The persons from one number up to another."""
@@ -92,7 +99,9 @@ def draw_people(
     seed: int = 0,
     *,
     age_years: float | None = None,
-    spreads: Mapping[str, float] | None = None,
+    observer: Observer | None = None,
+    offsets: Sequence[float] = (0.0, 0.0),
+    how: Literal["random", "sobol"] = "random",
 ) -> People:
     """Draw n virtual people; person i is the same whatever n is.
 
@@ -108,9 +117,13 @@ def draw_people(
     age_years
         Age of all of them, which multiplies thresholds as `age_factor` says; None leaves age out, which is people of 20
         to 30 years.
-    spreads
-        Other inferred constants of people by name, such as one draw of the posterior; those left out, or None: the
-        shipped ones.
+    observer
+        The median person, whose constants say how people differ; None: the shipped one.
+    offsets
+        How much more sensitive (ln) all of them are to cold and to warmth, as people of one laboratory may be.
+    how
+        ``random``, or ``sobol``: people of quasi-random sensitivity, criterion and decision time, evenly spread, who
+        differ in nothing else.
 
     Returns
     -------
@@ -127,25 +140,20 @@ def draw_people(
     >>> a, b = draw_people(3, seed=1), draw_people(200, seed=1)
     >>> bool((a.memory == b.memory[:3]).all())
     True
-    >>> draw_people(3, spreads={"criterion between people": 0.0}).criterion_cold.tolist()
-    [1.0, 1.0, 1.0]
     """
     if n < 1:
         raise ValueError(f"at least one person is needed, not {n}")
     record = people_records()
-    column, normal = _columns(n, seed)
-    constants, inferred = {} if spreads is None else spreads, observer_records()
-    shared = constants.get("correlation of cold and warm", inferred.one("correlation of cold and warm").central)
+    column, normal = _columns(n, seed) if how == "random" else _sobol(n, seed)
+    median = Observer.load() if observer is None else observer
+    shared = median.correlation
 
     def lognormal(name: str, sd: float) -> Array:
         return np.exp(sd * normal[name])
 
-    def both(what: str) -> tuple[Array, Array]:
+    def both(what: str, sd_cold: float, sd_warm: float) -> tuple[Array, Array]:
         cold, own = (normal[f"{what}_{channel}"] for channel in CHANNELS)
         warm = shared * cold + math.sqrt(1.0 - shared**2) * own
-        sd_cold, sd_warm = (
-            constants.get(SPREADS[what].format(channel), record[f"{what}_{channel}"].central) for channel in CHANNELS
-        )
         return np.exp(sd_cold * cold), np.exp(sd_warm * warm)
 
     def triangular(name: str) -> Array:
@@ -154,21 +162,21 @@ def draw_people(
         right = high - np.sqrt((1.0 - uniform) * (high - low) * (high - mode))
         return np.where(uniform < (mode - low) / (high - low), left, right)
 
-    aged = [1.0 if age_years is None else age_factor(age_years, channel) for channel in CHANNELS]
-    threshold_cold, threshold_warm = both("threshold")
-    criterion_cold, criterion_warm = both("criterion")
+    aged = [1.0 if age_years is None else median.age_factor(age_years, channel) for channel in CHANNELS]
+    cold, warm = (math.exp(-offset) for offset in offsets)
+    threshold_cold, threshold_warm = both("threshold", *median.sensitivity_between)
+    criterion_cold, criterion_warm = both("criterion", median.criterion_between, median.criterion_between)
     least, most = record["memory"].interval
     return People(
-        threshold_cold=aged[0] * threshold_cold,
-        threshold_warm=aged[1] * threshold_warm,
+        threshold_cold=cold * (aged[0] * threshold_cold),
+        threshold_warm=warm * (aged[1] * threshold_warm),
         criterion_cold=criterion_cold,
         criterion_warm=criterion_warm,
         memory=(least + (most - least) * column["memory"]) / record["memory"].central,
         contact_resistance=lognormal("contact_resistance", math.log1p(record["contact_resistance"].central)),
         outer_layer=lognormal("outer_layer", math.log1p(record["outer_layer"].central)),
         path=triangular("path") / record["path"].central,
-        decision_s=constants.get("decision time", inferred.one("decision time").central)
-        * lognormal("decision_s", constants.get("decision time between people", record["decision_s"].central)),
+        decision_s=median.decision_s * lognormal("decision_s", median.decision_between),
         lapse=triangular("lapse"),
     )
 
@@ -185,41 +193,43 @@ def _columns(n: int, seed: int) -> tuple[dict[str, Array], dict[str, Array]]:
     return column, normal
 
 
-NORMAL = (
-    *(f"{what}_{channel}" for what in ("threshold", "criterion") for channel in CHANNELS),
-    *("contact_resistance", "outer_layer", "decision_s"),
-)
+@lru_cache(maxsize=8)
+def _sobol(n: int, seed: int) -> tuple[dict[str, Array], dict[str, Array]]:
+    """The same from a Sobol sequence, in columns of mean 0 and SD 1; what else differs is in the middle."""
+    from scipy.special import ndtri
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(len(SPREAD), seed=seed).random_base2(math.ceil(math.log2(n)))[:n]
+    normal = ndtri(np.clip(points, 1e-6, 1.0 - 1e-6))
+    normal = (normal - normal.mean(axis=0)) / normal.std(axis=0)
+    normal[:, :2] *= -1.0  # a high number is a sensitive person
+    middle = {name: np.full(n, 0.5) for name in people_records()}
+    return middle, {name: np.zeros(n) for name in NORMAL} | dict(zip(SPREAD, normal.T, strict=True))
+
+
+SPREAD = (*(f"{what}_{channel}" for what in ("threshold", "criterion") for channel in CHANNELS), "decision_s")
+"""Fields in which people of a Sobol sequence differ."""
+NORMAL = (*SPREAD, "contact_resistance", "outer_layer")
 """Fields whose logarithm is normal."""
-SPREADS = {"threshold": "{} sensitivity between people", "criterion": "criterion between people"}
-"""Inferred constants behind the columns of both channels."""
 
 
 @lru_cache(maxsize=1)
 def people_records() -> Mapping[str, Record]:
     """The record behind every field of `People`; `use` says whether it is data or assumed."""
-    table, inferred = load_thresholds(), observer_records()
-    criterion = inferred.one("criterion between people")
+    table, own = load_thresholds(), partial(record_of, observer_records(), Observer)
     records = {
-        "threshold_cold": inferred.one("sensitivity between people", channel="cold"),
-        "threshold_warm": inferred.one("sensitivity between people", channel="warm"),
-        "criterion_cold": criterion,
-        "criterion_warm": criterion,
+        "threshold_cold": own("sensitivity_between", "cold"),
+        "threshold_warm": own("sensitivity_between", "warm"),
+        "criterion_cold": own("criterion_between"),
+        "criterion_warm": own("criterion_between"),
         "memory": table.one("spread of memory noise between people"),
         "contact_resistance": table.one("contact resistance spread"),
         "outer_layer": layer_spreads().one("outermost layer thickness spread"),
-        "path": table.one("path length to the cord", site="hand"),
-        "decision_s": inferred.one("decision time between people"),
-        "lapse": table.one("lapse rate"),
+        "path": own("path_hand_m"),
+        "decision_s": own("decision_between"),
+        "lapse": own("lapse"),
     }
     return MappingProxyType(records)
-
-
-def age_factor(age_years: float, channel: Channel) -> float:
-    """Threshold of a channel at an age over that at 25 years."""
-    if not 18.0 <= age_years <= 100.0:
-        raise ValueError(f"an age of {age_years:g} years is not covered: give 18 to 100")
-    lost = observer_records().one("sensitivity lost per decade", channel=channel).central
-    return math.exp(lost * (age_years - YOUNG_YEARS) / 10.0)
 
 
 def _normal(uniform: Array) -> Array:

@@ -19,6 +19,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ..arrays import Array
 from .channels import CHANNELS, Variable
+from .constants import names_of
+from .observer import Observer
 
 Scale = Literal["linear", "log", "logit"]
 WITHIN_95 = 1.959964
@@ -138,7 +140,7 @@ def priors_of(variable: Variable) -> Priors:
     log_scale = math.log(DRIVE_SCALE[variable])
     shipped = tuple(
         replace(prior, unit="own", middle=prior.middle + log_scale)
-        if log_scale and prior.name.endswith("threshold drive")
+        if log_scale and prior.name in names_of(Observer, "threshold_drive")
         else prior
         for prior in load_priors().each
     )

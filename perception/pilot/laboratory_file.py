@@ -18,10 +18,11 @@ import numpy as np
 from thermicon.circuit.records import Record, Table, dump_records
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS
-from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
+from ..observer.constants import BETWEEN_LABORATORIES, name_of, names_of
+from ..observer.draws import PosteriorDraws
 from ..observer.draws_file import as_written, to_text
-from ..observer.parts import NOISE
+from ..observer.mechanisms.memory import NOISE
+from ..observer.observer import Observer
 from .conditioning import Conditioned
 from .playing import Stage
 from .states import OFFSETS, SEEDS, Laboratories, LaboratoryPrior
@@ -49,8 +50,8 @@ def laboratory_draws(
     """
     some, values = found.after, prior.values(found.after)
     names, own = prior.draws.names, values[:, : len(prior.draws.names)].copy()
-    for channel, offset in zip(CHANNELS, OFFSETS, strict=True):
-        own[:, names.index(f"{channel} threshold drive")] *= np.exp(-values[:, prior.names.index(offset)])
+    for drive, offset in zip(names_of(Observer, "threshold_drive"), OFFSETS, strict=True):
+        own[:, names.index(drive)] *= np.exp(-values[:, prior.names.index(offset)])
     own[:, names.index(BETWEEN_LABORATORIES)] = NO_SPREAD
     remembered = tuple(parameter.name for parameter in prior.memory)
     memory = values[:, [prior.names.index(name) for name in remembered]]
@@ -95,8 +96,7 @@ def laboratory_texts(draws: PosteriorDraws, version: str, provenance: Sequence[s
 
 def _narrowed(record: Record, each: Mapping[str, Array], remembered: Sequence[str]) -> Record:
     """A record with the interval of the draws, where they have its constant."""
-    name = f"{record.channel} {record.quantity}" if record.channel in CHANNELS else record.quantity
-    name = NOISE if record.quantity == "memory noise" else name
+    name = name_of(record)
     if name not in each or record.value is None or not (name in remembered or record.method.startswith("draw ")):
         return record
     low, high = (float(f"{number:.5g}") for number in np.percentile(each[name], [2.5, 97.5]).tolist())

@@ -23,7 +23,7 @@ from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Condition, Setting, logs_of
 from ..experiments.tasks import DISCREPANCY, UNSTATED
 from ..kernels.parallel import in_order
-from ..observer.draws import BETWEEN_LABORATORIES
+from ..observer.observer import Observer
 from .likelihood import features_of, ridge, smooth_features
 from .measurements_file import Measurements
 from .states import OFFSETS, Laboratories, LaboratoryPrior
@@ -186,8 +186,8 @@ def measuring(
 ) -> Laboratory:
     """A laboratory by a row of `LaboratoryPrior.values`, which measures in a setting."""
     named: dict[str, float] = dict(zip(prior.names, row.tolist(), strict=True))
-    offsets = [named[offset] / named[BETWEEN_LABORATORIES] for offset in OFFSETS]
-    return setting.laboratory(named, offsets, prior.draws.variable, people, seed)
+    constants = Observer.from_values(named, prior.draws.variable)
+    return setting.laboratory(constants, [named[offset] for offset in OFFSETS], people, seed)
 
 
 def predicted(

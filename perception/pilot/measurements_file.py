@@ -20,7 +20,7 @@ from thermicon.icons.near_words import nearest_words
 from ..arrays import Array, own_arrays
 from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
 from ..observer.channels import CHANNELS, Channel
-from .trials_file import TrialsError, check_labels, label, table_in
+from .trials_file import TrialsError, check_labels, label, require, table_in
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -29,8 +29,6 @@ COLUMNS = ("participant", "kind", "channel", "value", "unit")
 OPTIONAL = ("method", "size_K", "rate_K_per_s", "hold_s", "baseline_C", "standard_error", "trials")
 EXAMPLE = ",".join((*COLUMNS, "method", "size_K", "standard_error"))
 WHAT = "table of measurements"
-MARKS_OF_KIND = ("kind", "value")
-"""Columns by which a table of measurements is recognised."""
 MOST_CONDITIONS = 40
 
 FACTORS: Mapping[Kind, Mapping[str, float]] = {
@@ -120,9 +118,9 @@ class Measurements:
 
 def is_measurements(path: str | Path, columns: Mapping[str, str] | None = None) -> bool:
     """Whether the header of a file is that of measurements, not of trials."""
-    table, _ = table_in(Path(path), (), EXAMPLE, "table of trials or measurements", columns)
-    header = {cell.lower() for cell in table.header}
-    return "presented" not in header and any(mark in header for mark in MARKS_OF_KIND)
+    names = ("presented", *COLUMNS)
+    table, _ = table_in(Path(path), names, EXAMPLE, "table of trials or measurements", columns)
+    return "presented" not in table.header and any(mark in table.header for mark in ("kind", "value"))
 
 
 def read_measurements(path: str | Path, rig: Rig, columns: Mapping[str, str] | None = None) -> Measurements:
@@ -142,6 +140,7 @@ def read_measurements(path: str | Path, rig: Rig, columns: Mapping[str, str] | N
     """
     file = Path(path)
     table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT, columns)
+    require(file, table, COLUMNS, EXAMPLE)
     _check_columns(file, table.header)
     found: dict[tuple[str, Condition], tuple[float, float, float]] = {}
     first: dict[tuple[str, Condition], int] = {}

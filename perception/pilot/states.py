@@ -20,10 +20,11 @@ from thermicon.circuit.records import Table
 from ..arrays import Array
 from ..identification.laboratory_draws import Uncertain, latin, memory_parameters
 from ..observer.channels import CHANNELS, Norm
-from ..observer.draws import BETWEEN_LABORATORIES, PosteriorDraws, laboratory_with
+from ..observer.constants import BETWEEN_LABORATORIES
+from ..observer.draws import PosteriorDraws
 from ..observer.observer import Observer
 from ..observer.observer_model import ObserverModel
-from ..observer.people import People
+from ..observer.people import People, draw_people
 from ..observer.priors import Prior, priors_of
 
 LEAST_VARIANCE = 1e-12
@@ -137,7 +138,8 @@ class LaboratoryPrior:
     def observer_and_people(self, values: Array, seed: int, people: int) -> tuple[Observer, People]:
         """The observer of one laboratory, by a row of `values`, and people who come there."""
         named = dict(zip(self.names, values.tolist(), strict=True))
-        return laboratory_with(self.draws.variable, named, (named[OFFSETS[0]], named[OFFSETS[1]]), people, seed)
+        observer = Observer.from_values(named, self.draws.variable)
+        return observer, draw_people(people, seed, observer=observer, offsets=[named[offset] for offset in OFFSETS])
 
 
 def _scores(parameter: Uncertain, draws: PosteriorDraws) -> Array:

@@ -23,7 +23,7 @@ class Trials:
     `icons` are the names of all that could be answered, in the order of the set; `counts` (participants, icons
     presented, icons answered). `source` and `digest` are the name of the file and the first 16 digits of its SHA-256.
     `unanswered` (participants, icons presented) are trials without an answer, `passed` rows of the file
-    with neither icon nor answer. `grouped` says that the counts of a group are given as those of one participant.
+    with neither an icon nor an answer. `grouped` says that the counts of a group are given as those of one participant.
 
     Examples
     --------

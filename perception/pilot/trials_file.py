@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+import warnings
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -9,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
-from thermicon.icons.files.table import Kind, Table, read_table
-from thermicon.icons.near_words import did_you_mean
+from thermicon.icons.files.table import NOTHINGS, Table, as_number, read_table
+from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from ..arrays import Array
 from .trials import Trials
@@ -20,12 +21,12 @@ EXAMPLE = ",".join(COLUMNS)
 WHAT = "table of trials"
 MOST_MB, MOST_ROWS, MOST_PARTICIPANTS = 20, 200_000, 1000
 LONGEST_LABEL = 100
-LONGEST_COUNT = 6
-NOTHING = ("", "n/a", "na", "nan", "none", "null", "no answer", "no response", "-", "–", "timeout")
+MOST, PER_CENT = 1e6, "write numbers of answers (a per cent of a row times its number of trials)"
+ALIKE = 0.55
+"""A cell that is so much alike an icon is a slip of the pen, not an instruction."""
+NOTHING = ("", "no answer", "no response", "no_response", "missing", "–", "timeout", *NOTHINGS)
 """What experiments write where nobody answered."""
-WIDE = re.compile(
-    r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|responded|response|trial)(?:[_ .-]?(\d+))?", re.I
-)
+WIDE = re.compile(r"(?:trial[_ .-]?(\d+)[_ .-])?(icon|presented|answer|respon(?:ded|se)|trial)[_ .-]?(\d+)?", re.I)
 ASKED, WIDE_EXAMPLE = ("icon", "presented"), "participant,icon_1,answer_1,icon_2,answer_2"
 """Words of `WIDE` for what was presented, and how such a line begins."""
 
@@ -52,19 +53,23 @@ def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, st
     Trials(1 participant, 2 trials, 2 icons)
     """
     file = Path(path)
-    table, digest = table_in(file, (), EXAMPLE, WHAT, columns)
     names, places = tuple(icons), {name: place for place, name in enumerate(icons)}
+    table, digest = table_in(file, (*COLUMNS, "block"), EXAMPLE, WHAT, columns)
+    if not set(COLUMNS) & set(table.header) and not any(map(WIDE.fullmatch, table.header)):
+        grid, _ = table_in(file, names, EXAMPLE, WHAT)
+        table = grid if len(grid.rows) <= len(names) + 1 else table
     if "responded" not in table.header and len(places.keys() & set(table.header)) > 1:
         matrix = _matrix(file, table, places)
         return Trials(names, ("all",), matrix[None, :, :-1], file.name, digest, matrix[None, :, -1], grouped=True)
     runs: dict[str, list[dict[tuple[str, str], tuple[int, int]]]] = {}
     lines: dict[tuple[str, tuple[str, str]], int] = {}
-    passed = 0
-    for line, (participant, block, number, *cells) in _asked(file, table, columns):
+    passed, strange = 0, ("", "")
+    folded = [name.casefold() for name in names]
+    for line, (participant, block, number, *cells) in _asked(file, table):
         where = f"{file}:{line}"
-        icon, answer = (cell if cell in places or cell.casefold() not in NOTHING else "" for cell in cells)
-        if not icon and answer not in places:
-            passed += 1
+        icon, answer = ("" if cell not in places and cell.casefold() in NOTHING else cell for cell in cells)
+        if answer not in places and icon not in places and not nearest_words(icon.casefold(), folded, 1, ALIKE):
+            passed, strange = passed + 1, strange if strange[0] else (icon, where)
             continue
         person, trial = label(participant, "participant", where), label(number, "trial", where)
         key, own = (block, trial), runs.setdefault(person, [{}])
@@ -87,20 +92,22 @@ def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, st
             )
         np.add.at(counts[place], tuple(np.array([pair for run in own for pair in run.values()]).T), 1.0)
     if not counts[..., :-1].any():
+        if strange[0]:
+            _icon(strange[0], "presented", places, strange[1])
         raise TrialsError(f"{file}: no row has both an icon and an answer of the set; write one row per trial")
     return Trials(names, tuple(runs), counts[..., :-1], file.name, digest, counts[..., -1], passed)
 
 
-def _asked(path: Path, table: Table, columns: Mapping[str, str] | None) -> Iterator[tuple[int, list[str]]]:
+def _asked(path: Path, table: Table) -> Iterator[tuple[int, list[str]]]:
     """Line, and participant, block, trial, icon and answer of each trial, from a row a trial or a row a participant."""
     found = {(m[1] or m[3], m[2].lower() in ASKED): m[0] for m in map(WIDE.fullmatch, table.header) if m}
     numbers = dict.fromkeys(number for number, asked in found if number and asked and "presented" not in table.header)
     if not numbers:
-        table_in(path, COLUMNS, f"{EXAMPLE}, or, one row a participant, {WIDE_EXAMPLE}", WHAT, columns)
+        require(path, table, COLUMNS, f"{EXAMPLE}, or, one row a participant, {WIDE_EXAMPLE}")
         for line, row in table.records((*COLUMNS, "block")):
             yield line, [row["participant"], row.get("block", ""), *(row[column] for column in COLUMNS[1:])]
         return
-    table_in(path, COLUMNS[:1], WIDE_EXAMPLE, WHAT)
+    require(path, table, COLUMNS[:1], WIDE_EXAMPLE)
     if single := [name for (number, asked), name in found.items() if number and (number, not asked) not in found]:
         raise TrialsError(f"{path}:{table.line}: {single[0]} stands alone; a trial has two columns: {WIDE_EXAMPLE}")
     for line, row in table.records(("participant", "block", *found.values())):
@@ -121,42 +128,37 @@ def _matrix(path: Path, table: Table, places: Mapping[str, int]) -> Array:
         shown, cells = places[_icon(row[first], "a row", places, where)], [row[name] or "0" for name in names]
         if counts[shown].any() or shown not in said:
             raise TrialsError(f"{where}: {row[first]} has two rows, or no column; an icon has one of each")
-        if wrong := [cell for cell in cells if not cell.isdecimal() or len(cell) > LONGEST_COUNT]:
-            raise TrialsError(
-                f"{where}: {quoted(wrong[0])} is not a count; write numbers of answers (a per cent of a row times its "
-                "number of trials)"
-            )
-        counts[shown, said] = [int(cell) for cell in cells]
+        numbers = [as_number(cell, table.mark) for cell in cells]
+        if wrong := [cell for cell, size in zip(cells, numbers, strict=True) if size % 1 or not 0 <= size < MOST]:
+            raise TrialsError(f"{where}: {quoted(wrong[0])} is not a count; {PER_CENT}")
+        counts[shown, said] = numbers
+    sums = counts.sum(axis=1)
     if not counts[:, :-1].any():
         raise TrialsError(f"{path}: every count is 0; write how often each answer was given")
+    if (np.abs(sums[sums > 0] - 100) <= 1).all():
+        warnings.warn(f"{path}: the rows sum to 100, read as counts; if they are per cents, {PER_CENT}", stacklevel=3)
     return counts
 
 
 def table_in(
-    path: Path, needed: Sequence[str], example: str, what: str, columns: Mapping[str, str] | None = None
+    path: Path, names: Sequence[str], example: str, what: str, columns: Mapping[str, str] | None = None
 ) -> tuple[Table, str]:
-    """Return the table in a file, and the first 16 digits of the file's SHA-256, by which a result names it.
-
-    A TrialsError lists which columns of those `needed` are missing, and what was found.
-    """
+    """Return the table in a file, whose line of names has some of `names`, and 16 digits of the file's SHA-256."""
     data = read_bytes(path, what, MOST_MB, TrialsError)
-    said = table_fault(path, TrialsError)
+    table = read_table(data, table_fault(path, TrialsError), example, MOST_ROWS, names, columns)
+    return table, hashlib.sha256(data).hexdigest()[:16]
 
-    def fault(kind: Kind, line: int | None, wrong: str, cure: str) -> Exception:
-        return said(kind, line, wrong, "one experiment a file is enough" if kind == "size" else cure)
 
-    table = read_table(data, fault, example, MOST_ROWS, needed, columns)
+def require(path: Path, table: Table, needed: Sequence[str], example: str) -> None:
+    """Raise a TrialsError where columns are missing, which lists those that were found, or where there is no row."""
     if missing := [name for name in needed if name not in table.header]:
-        close = {cell.lower(): cell for cell in table.header}
-        hints = [f"rename {close[name]!r} to {name}" for name in missing if name in close]
-        cure = "; ".join(hints) or f"the first line is such as: {example}"
         raise TrialsError(
             f"{path}:{table.line}: {'column' if len(missing) == 1 else 'columns'} missing: {', '.join(missing)}; "
-            f"found: {table.found}; {cure}"
+            f"found: {table.found}; say what they are called by --column {missing[0]}=THEIRS (in Python columns="
+            f'{{"{missing[0]}": "THEIRS"}}), or write a line such as: {example}'
         )
-    if needed and not table.rows:
+    if not table.rows:
         raise TrialsError(f"{path}: no row below the names of the columns; write one row per trial")
-    return table, hashlib.sha256(data).hexdigest()[:16]
 
 
 def label(cell: str, column: str, where: str) -> str:
@@ -191,5 +193,6 @@ def _icon(cell: str, column: str, known: Mapping[str, int], where: str) -> str:
         return name
     same = [icon for icon in known if icon.casefold() == name.casefold()]
     hint = f"did you mean {same[0]}? Names differ by case" if same else did_you_mean(name, known)
-    cure = "" if same else "; where nobody answered, leave the cell empty" * (column == "responded")
+    where_to = {"responded": "; where nobody answered, leave the cell empty", "a column": "; leave out totals"}
+    cure = "" if same else where_to.get(column, "")
     raise TrialsError(f"{where}: {column} is {quoted(name)}, which is not an icon of the set; {hint}{cure}")

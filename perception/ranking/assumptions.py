@@ -22,10 +22,10 @@ import numpy as np
 from ..arrays import Array
 from ..identification.laboratory_draws import LaboratoryDraws
 from ..observer.channels import CHANNELS
-from ..observer.observer import Observer, on_forearm
+from ..observer.mechanisms.site import on_forearm
+from ..observer.observer import Observer
 from ..observer.people import People, people_records
 from ..sensation.coverage import nearest_site, outside_site
-from ..sensation.sensation import sensitivity
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
@@ -211,7 +211,7 @@ def _of_people(fitted: PeopleFit, rig: Rig, observer: Observer) -> list[Assumpti
 
     def of_area(factor: float) -> Array:
         own, other = (
-            [sensitivity(channel, observer, share * rig.contact.area_m2, rig.site) for channel in CHANNELS]
+            [observer.sensitivity(channel, share * rig.contact.area_m2, rig.site) for channel in CHANNELS]
             for share in (1.0, factor)
         )
         moved = {f"threshold_{c}": math.log(a / b) for c, a, b in zip(CHANNELS, own, other, strict=True)}

@@ -26,6 +26,7 @@ from ..identification.laboratory_draws import LaboratoryDraws, Uncertain, labora
 from ..identification.population import ReceptorTemperatures, run_end_s
 from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import USUAL_NORM
+from ..observer.constants import quantity_of
 from ..observer.observer import DATA, check_norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, people_records
@@ -261,6 +262,6 @@ def _effects(names: tuple[str, ...], values: Array, each: LaboratoryDraws, model
         fitted = design @ np.linalg.lstsq(design, each.proportion_correct, rcond=None)[0]
         order = np.argsort(values[:, place], kind="stable")
         ends = fitted[order[[round(0.025 * (len(order) - 1)), round(0.975 * (len(order) - 1))]]].tolist()
-        unit = units.get(base_name(name).removeprefix("cold ").removeprefix("warm "), "")
+        unit = units.get(quantity_of(base_name(name))[1], "")
         found.append(Effect(name, unit, low, high, float(correct[place]), float(bits[place]), *ends))
     return tuple(sorted(found, key=lambda e: (-e.proportion_correct, -e.information_bits, e.constant)))

@@ -4,7 +4,7 @@ Sensation is its mean plus unit noise of autocorrelation e^(−t²/2τ²). A yes
 a criterion, which is inferred from published answers. The rate of first crossings of a criterion not passed yet is
 Rice's for a moving mean, over the probability of being below it; this takes crossings as independent, good as long as
 they are rare or the rise is fast (tests compare it with drawn noise). A response comes later by the conduction of its
-channel and by decision. The rule is compiled, in `kernels.passage`; how often noise alone passes a criterion is
+channel and by decision. The rule is compiled, in `kernels.crossing`; how often noise alone passes a criterion is
 `false_alarms`. This is the definition of *felt* for every output: an icon is felt where at least half of the trials end
 in a report, its onset is the median response time of those trials, its channel the one that most of them go by.
 """

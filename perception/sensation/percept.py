@@ -21,7 +21,6 @@ from ..observer.channels import CHANNELS, Channel, receptor_input
 from ..observer.observer import Observer
 from .coverage import outside_data
 from .detection import channel_name, detect
-from .sensation import receptor_drive, sensation
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
@@ -213,9 +212,9 @@ def perceive_many(
     felt = []
     multiples = {"cold": threshold_cold, "warm": threshold_warm}
     for channel, received in zip(CHANNELS, (cold_received, warm_received), strict=True):
-        psi = receptor_drive(received, dt_s, channel, observer)
+        psi = observer.drive(received, dt_s, channel)
         # In place: memory as large as the input is what takes long in a large batch.
-        sensation(psi, channel, observer, area_m2=area_m2, site=site, threshold=multiples[channel], out=psi)
+        observer.sensation(psi, channel, area_m2=area_m2, site=site, threshold=multiples[channel], out=psi)
         felt.append(psi)
     return felt[0], felt[1]
 

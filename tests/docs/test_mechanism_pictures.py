@@ -20,7 +20,6 @@ from thermicon.circuit import Rig
 from thermicon.icons import load_library
 from thermicon.perception import Observer
 from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
-from thermicon.perception.observer.parts import conduction_s
 
 effect_of = pytest.fixture(scope="module")(lambda: {name: effect() for name, effect in EFFECTS.items()})
 
@@ -109,8 +108,7 @@ def test_stages_add_up_to_the_onset_and_are_drawn_in_order() -> None:
     assert all(each.leg_s > each.onset_s for each in stages)
     person = Observer.load()
     for each in stages:
-        speed = person.receptor(each.channel).velocity_m_per_s
-        assert each.nerve_s + each.cord_s == pytest.approx(conduction_s(each.channel, speed, person.path_m("thenar")))
+        assert each.nerve_s + each.cord_s == pytest.approx(person.delay_s(each.channel, person.path_m("thenar")))
         assert each.decision_s == person.decision_s
     assert inside(axes)
 

@@ -119,7 +119,7 @@ KINDS = {
         "rank six-icons --observer a.toml",
     ),
     "draws": Kind(
-        DRAWS, 1, "a.csv", lambda path: ObserverModel.load(path).nominal.cold, "rank six-icons --observer a.csv"
+        DRAWS, 1, "a.csv", lambda path: ObserverModel.load(path).nominal.limit_C, "rank six-icons --observer a.csv"
     ),
     "study": Kind(
         [data("notebooks", "example-study.toml")], 1, "a.toml",

@@ -1,13 +1,13 @@
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from thermicon.perception import Observer
-from thermicon.perception.observer.observer import Receptor
-from thermicon.perception.observer.parts import EpisodeMemory, Ratings
+from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 
 Array = NDArray[np.float64]
 
@@ -31,22 +31,29 @@ Cue = Callable[..., FakeTrace]
 @pytest.fixture
 def observer() -> Observer:
     """Round numbers of nobody: tests of mathematics must not depend on the calibration."""
-    return Observer(
-        cold=Receptor(20.0, 0.08, 2.0, 0.7),
-        warm=Receptor(14.0, 0.15, 0.5, 0.9),
+    return replace(
+        Observer.load(),
+        limit_C=NO_LIMIT_C,
+        adaptation_s=20.0,
+        threshold_drive=Both(0.08, 0.15),
+        velocity_m_per_s=Both(2.0, 0.5),
+        area_exponent=Both(0.7, 0.9),
+        forearm_factor=Both(1.0, 1.0),
+        softness_K=0.5,
         integration_s=0.1,
-        neutral_low_C=30.0,
-        neutral_high_C=36.0,
         a=12.0,
         p=2.0,
-        reference_area_m2=9e-4,
+        gain_noise=0.0,
         criterion=3.34,
         noise_correlation_s=0.3,
-        path_hand_m=0.7,
-        path_forearm_m=0.55,
         decision_s=0.2,
-        lapse=0.02,
-        memory=EpisodeMemory(0.30, 0.5, 3.0, 1.0, Ratings(6.0, 0.5, 40.0, 13.0), Ratings(2.3, 0.7, 27.0, 13.0)),
+        choice_s=0.0,
+        decision_noise=0.0,
+        timing_noise=0.30,
+        rating_at_threshold=Both(6.0, 2.3),
+        rating_exponent=Both(0.5, 0.7),
+        mean_rating=Both(40.0, 27.0),
+        rating_scatter=13.0,
     )
 
 

@@ -28,7 +28,7 @@ def answered(
     for gain in np.exp(quarters(observer.gain_noise)).tolist():
         left = np.zeros_like(time)
         for psi, late in zip((cold, warm), late_s, strict=True):
-            louder = observer.transducer.psi(gain * observer.transducer.multiple(psi))
+            louder = observer.psi(gain * observer.multiple(psi))
             logs = log_survival(louder, dt_s, caution * observer.criterion, observer)
             left += np.interp(time - late, dt_s * np.arange(psi.size), logs, left=0.0)
         passed += (1.0 - np.exp(left)) / quarters(observer.gain_noise).size

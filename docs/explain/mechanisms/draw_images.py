@@ -52,7 +52,7 @@ def draw_mechanisms(folder: Path) -> None:
     percepts = [perceive(simulate(icons[name], rig, tail_s=6.0)) for name in names]
     episodes = remembered(percepts)
     icons_remembered = [(percept, episodes.listed(0, k)) for k, percept in enumerate(percepts)]
-    episodes_figure(icons_remembered, Observer.load().memory.bar).savefig(folder / "mechanism-episodes.png", dpi=90)
+    episodes_figure(icons_remembered, Observer.load().episode_bar).savefig(folder / "mechanism-episodes.png", dpi=90)
     for name, axes in drawn.items():
         figure = axes.get_figure(root=True)
         assert isinstance(figure, Figure)

@@ -1,6 +1,6 @@
 """What each mechanism does to a cue: the same stimulus with it and without it, as curves to draw.
 
-Skin is the skin of the inference (`skin_modes`) under its own thermode, receptors and sensation are the shipped
+Skin is the skin of the inference under its own thermode, receptors and sensation are the shipped
 observer's. Nothing here is conditioned on or predicted for an experiment: it shows what an equation means.
 """
 
@@ -13,14 +13,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.circuit.solver.modes import thermode_modes
 from thermicon.perception.arrays import Array, own_arrays
-from thermicon.perception.evidence.results import Constant, load_constants
-from thermicon.perception.experiments.skin_modes import Corner, SkinModes, skin_modes
+from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
+from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer
-from thermicon.perception.observer.parts import Transducer
 from thermicon.perception.sensation.detection import detect
-from thermicon.perception.sensation.sensation import receptor_drive, sensation, sensitivity
 
 Look = Literal["cold", "warm", "reference", "off", "other"]
 """How a curve is drawn: in a channel's colour, thin for a reference, dashed grey for a mechanism turned off."""
@@ -61,7 +60,7 @@ class Effect:
 def limits_effect() -> Effect:
     """A slow fall from 38 to 31 °C: cold with its limit and without, and warmth, which is what fades first."""
     time, whole = _clock(12.0), Observer.load()
-    free = replace(whole, cold=replace(whole.cold, limit_C=None))
+    free = replace(whole, limit_C=NO_LIMIT_C)
     corners: list[Corner] = [(1.0, 0.0), (8.0, -7.0)]
     curves = [
         Curve("warm", "warm", time, _felt(corners, "warm", whole, time, baseline_C=38.0)),
@@ -91,16 +90,15 @@ def adaptation_effect() -> Effect:
 
 def depth_effect() -> Effect:
     """A fall by 5 K in 0.5 s at the cold receptors of thenar and forearm, for both ways to count their depth."""
-    time, depth = _clock(4.0), 1e-3 * _value("cold receptor depth")
+    time, depth = _clock(4.0), Observer.load().depth_m.cold
     sites: tuple[tuple[str, Look, Look], ...] = (("forearm", "cold", "off"), ("thenar", "reference", "other"))
     curves = []
     for site, below, surface in sites:
-        skin = _skin(site)
         for counted, at, look in (
-            ("below the stratum corneum", skin.corneum_m + depth, below),
+            ("below the stratum corneum", load_rig(site).skin.corneum_m + depth, below),
             ("0.15 mm from the surface", 0.15e-3, surface),
         ):
-            change = skin.course(at, 32.0, [(0.5, -5.0)], DT_S, time.size)
+            change = _course(site, at, 32.0, [(0.5, -5.0)], time.size)
             curves.append(Curve(f"{site}, {counted}", look, time, change - change[0]))
     title = "A fall by 5 K in 0.5 s at the cold receptors"
     return Effect("depth", title, "time (s)", "change of temperature (K)", tuple(curves))
@@ -111,11 +109,11 @@ def summation_effect() -> Effect:
     area = np.geomspace(0.02, 5000.0, 120)
     observer, curves = Observer.load(), []
     for channel in CHANNELS:
-        ratio = np.array([sensitivity(channel, observer, a * 1e-4) for a in area.tolist()])
+        ratio = np.array([observer.sensitivity(channel, a * 1e-4, None) for a in area.tolist()])
         curves.append(Curve(channel, channel, area, ratio))
     ends_off: tuple[tuple[Channel, Look], ...] = (("cold", "off"), ("warm", "other"))
     for channel, look in ends_off:
-        power = (area / (observer.reference_area_m2 * 1e4)) ** observer.receptor(channel).area_exponent
+        power = (area / (observer.reference_area_m2 * 1e4)) ** observer.area_exponent.of(channel)
         curves.append(Curve(f"{channel}, no ends", look, area, power))
     title = "Sensitivity by area of contact (1 at 9 cm²)"
     return Effect("summation", title, "area of contact (cm²)", "sensitivity", tuple(curves), log_x=True, log_y=True)
@@ -125,9 +123,9 @@ def transducer_effect() -> Effect:
     """Sensation against drive for the inferred exponent, a linear observer and the square law."""
     drive, whole = np.geomspace(0.2, 60.0, 120), Observer.load()
     curves = [
-        Curve(f"p = {whole.p:.2g} (inferred)", "cold", drive, whole.transducer.psi(drive)),
-        Curve("p = 1 (linear near threshold)", "reference", drive, Transducer(whole.a, 1.0).psi(drive)),
-        Curve("p = 2 (square law)", "off", drive, Transducer(whole.a, 2.0).psi(drive)),
+        Curve(f"p = {whole.p:.2g} (inferred)", "cold", drive, whole.psi(drive)),
+        Curve("p = 1 (linear near threshold)", "reference", drive, replace(whole, p=1.0).psi(drive)),
+        Curve("p = 2 (square law)", "off", drive, replace(whole, p=2.0).psi(drive)),
     ]
     title = "Sensation by receptor drive"
     return Effect(
@@ -151,10 +149,10 @@ def criteria_effect() -> Effect:
     """The same for people with a low, a middle and a high criterion."""
     from scipy.special import ndtri
 
-    sizes, observer, spread = np.linspace(0.02, 3.0, 60), Observer.load(), _value("criterion between people")
+    sizes, observer = np.linspace(0.02, 3.0, 60), Observer.load()
 
     def noticed(share: float) -> Array:
-        return _noticed(sizes, observer, float(np.exp(spread * ndtri(share))))
+        return _noticed(sizes, observer, float(np.exp(observer.criterion_between * ndtri(share))))
 
     words = ("lax (5th percentile)", "middle", "cautious (95th percentile)")
     looks: tuple[Look, ...] = ("other", "cold", "reference")
@@ -183,27 +181,21 @@ def _clock(end_s: float) -> Array:
     return clock
 
 
-def _value(name: str) -> float:
-    return _constants()[name].value
-
-
-def _constants() -> dict[str, Constant]:
-    return {each.name: each for each in load_constants()}
-
-
-def _skin(site: str) -> SkinModes:
-    return skin_modes(site, _value("contact resistance of a thermode"), _value("effusivity of living skin"))
+def _course(site: str, depth_m: float, baseline_C: float, corners: Sequence[Corner], rows: int) -> Array:
+    """Temperature (rows,) at a depth below the face of a site's skin under the thermode, °C."""
+    whole = Observer.load()
+    skin = thermode_modes(load_rig(site), (depth_m,), whole.contact_m2K_per_W, whole.effusivity)
+    return course_of(skin.rise(0, DT_S, rows), skin.rest(0, baseline_C), corners, DT_S, rows)
 
 
 def _felt(
     corners: Sequence[Corner], channel: Channel, observer: Observer, time: Array, *, baseline_C: float = 32.0
 ) -> Array:
     """Sensation (n_time,) of a thermode on the forearm that goes from corner to corner."""
-    skin = _skin("forearm")
-    depth = skin.corneum_m + 1e-3 * _value(f"{channel} receptor depth")
-    received = skin.course(depth, baseline_C, corners, DT_S, time.size)
-    drive = receptor_drive(received, DT_S, channel, observer)
-    return sensation(drive, channel, observer, area_m2=STRIPS_CM2 * 1e-4, site="forearm")
+    depth = observer.depths_m(load_rig("forearm").skin.corneum_m).of(channel)
+    received = _course("forearm", depth, baseline_C, corners, time.size)
+    drive = observer.drive(received, DT_S, channel)
+    return observer.sensation(drive, channel, area_m2=STRIPS_CM2 * 1e-4, site="forearm")
 
 
 def _noticed(sizes_K: Array, observer: Observer, criterion: ArrayLike = 1.0) -> Array:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from thermicon.circuit import Rig, simulate
 from thermicon.perception.observer.channels import CHANNELS, Channel
+from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.mechanisms.conduction import SPINAL_M_PER_S, SPINE_M
 from thermicon.perception.observer.observer import Observer
-from thermicon.perception.observer.parts import SPINAL_M_PER_S, SPINE_M
 from thermicon.perception.sensation.percept import perceive
 
 if TYPE_CHECKING:
@@ -48,8 +49,8 @@ def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
         felt, late = perceive(trace, whole), perceive(trace, _as_at_the_leg(whole, path_m))
         if felt.onset_s is None or felt.channel is None or late.onset_s is None:
             continue
-        nerve = path_m / whole.receptor(felt.channel).velocity_m_per_s
-        cord = SPINE_M / SPINAL_M_PER_S[felt.channel]
+        nerve = path_m / whole.velocity_m_per_s.of(felt.channel)
+        cord = SPINE_M / SPINAL_M_PER_S.of(felt.channel)
         before = felt.onset_s - nerve - cord - whole.decision_s
         stages.append(OnsetStages(icon.name, felt.channel, before, nerve, cord, whole.decision_s, late.onset_s))
     return tuple(stages)
@@ -57,8 +58,5 @@ def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
 
 def _as_at_the_leg(whole: Observer, path_m: float) -> Observer:
     """The observer whose nerves conduct so fast that the whole delay is that of a leg's nerve of the path alone."""
-    slow = {}
-    for channel in CHANNELS:
-        delay_s = path_m / LEG_M_PER_S[channel] - SPINE_M / SPINAL_M_PER_S[channel]
-        slow[channel] = replace(whole.receptor(channel), velocity_m_per_s=path_m / delay_s)
-    return replace(whole, cold=slow["cold"], warm=slow["warm"])
+    delays_s = (path_m / LEG_M_PER_S[channel] - SPINE_M / SPINAL_M_PER_S.of(channel) for channel in CHANNELS)
+    return replace(whole, velocity_m_per_s=Both(*(path_m / delay_s for delay_s in delays_s)))

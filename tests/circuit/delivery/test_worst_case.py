@@ -142,14 +142,21 @@ class TestRefusals:
 class TestFollowedSetPoints:
     """A module that a controller takes along set-points, which it cannot follow at once where they jump."""
 
-    SIX_K = tuple(pytest.param(f"{sign} by 6", marks=pytest.mark.slow) for sign in ("cool", "warm"))
+    GREAT = tuple(pytest.param(change, marks=pytest.mark.slow) for change in ("cool by 6", "warm by 5"))
 
-    @pytest.mark.parametrize("change", [*SIX_K, "cool by 3", "warm by 3"])
+    @pytest.mark.parametrize("change", [*GREAT, "cool by 3", "warm by 3"])
     def test_steps_of_skin_are_not_refused_for_a_jump_that_no_module_makes(self, change: str) -> None:
         shape = f"{change} °C at 3 °C/s; hold for 4 s; return at 3 °C/s"
         found = worst_case(by_controller(shape, RIG, "skin"))
         assert found.safe, found.reason
         assert rate_in(found) > 3.0, "a skin that changes at 3 K/s"
+
+    @pytest.mark.slow
+    def test_a_skin_as_warm_as_a_display_may_not_stay_is_refused_for_its_cut_off_alone(self) -> None:
+        shape = "warm by 6 °C at 3 °C/s; hold for 4 s; return at 3 °C/s"
+        found = worst_case(by_controller(shape, RIG, "skin"))
+        assert not found.safe
+        assert all("display at the cut-off" in check.scenario for check in found.findings), found.reason
 
     def test_a_step_that_needs_more_current_than_any_loop_may_have_is_refused_with_one_that_is_safe(self) -> None:
         shape = "step warm by 0.8 °C; hold for 0.06 s; step cool by 0.8 °C; hold for 0.1 s"

@@ -44,7 +44,7 @@ def at(row: int, value: float, column: str = "time_s") -> np.ndarray:
         (changed(display_C=[32.0] * 99), "unequal lengths: time_s has 100 rows, display_C has 99; cut the longer"),
         (changed(voltage_V=[np.nan] * 100), "voltage_V holds no number at all; remove the column, or connect"),
         (changed(display_C=[np.nan] * 100), "display_C holds no number at all; remove the column, or connect"),
-        (changed(time_s=at(50, 2.0)), "row 51: time_s 2 s does not come after 4.9 s; times must increase"),
+        (changed(time_s=at(50, 2.0)), "row 51: time_s 2 s .* after 4.9 s; .*increase: this row is out of place"),
         (changed(time_s=at(7, np.nan)), "row 8: time_s is empty; remove the row"),
         (changed(time_s=TIME * 1000), "steps of 100 over 9900: these look like milliseconds; divide the column by"),
         (changed(time_s=TIME * 100000), "steps of 10000 s; a fit needs rows at most 2 s apart: log faster"),
@@ -54,8 +54,8 @@ def at(row: int, value: float, column: str = "time_s") -> np.ndarray:
         (changed(current_A=[400.0] * 100), "reaches 400 A, above 50 A: it looks like milliamperes; divide it by 1000"),
         (changed(voltage_V=[4000.0] * 100), "reaches 4000 V, above 200 V: it looks like millivolts"),
         ({"time_s": TIME, "pressure": TIME}, "no column of a log; needed is one of current_A, com.*found time_s, pr"),
-        (changed(time_s=at(99, 1e308)), r"time_s reaches 1e\+308, beyond the 1e\+12 that any"),
-        (changed(display_C=at(99, 1e308, "display_C")), r"display_C reaches 1e\+308, beyond the 1e\+12 that any"),
+        (changed(time_s=at(99, 1e308)), r"time_s reaches 1e\+308, beyond the 1e\+38 that any"),
+        (changed(display_C=at(99, 1e308, "display_C")), r"display_C reaches 1e\+308, beyond the 1e\+38 that any"),
         ({"time_s": TIME[:5], "current_A": TIME[:5]}, "5 rows; a fit needs at least 20"),
         ({"time_s": range(1_000_001), "current_A": range(1_000_001)}, "1,000,001 rows; the limit is 1,000,000"),
     ],
@@ -138,19 +138,6 @@ GOOD = "time_s,current_A,display_C\n" + "".join(f"{k / 10:g},0.1,{32.0 + k / 100
 def saved(folder: Path, text: str) -> Path:
     (folder / "rig.csv").write_bytes(text.encode())
     return folder / "rig.csv"
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        GOOD, GOOD.replace(",", ";").replace(".", ","), GOOD.replace(",", "\t"), GOOD.replace("\n", "\r\n"),
-        "\ufeff" + GOOD, "# logged on Monday\nsep=,\n" + GOOD, GOOD + "\n\n",
-    ],
-)  # fmt: skip
-def test_a_table_is_read_whatever_separates_its_cells(text: str, tmp_path: Path) -> None:
-    log = read_log(saved(tmp_path, text))
-    assert (len(log.time_s), log.time_s[-1], log.column("display_C")[3]) == (40, 3.9, 32.03)
-    assert len(log.sha256) == 64
 
 
 @pytest.mark.parametrize(("change", "message"), MESSAGES["table"].items())

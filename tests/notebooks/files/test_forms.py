@@ -83,12 +83,17 @@ def tdms(waveform: bool = True) -> bytes:
 
 
 ISO, GERMAN, AMERICAN = "%Y-%m-%d %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S.%f", "%m/%d/%Y %I:%M:%S.%f %p"
-LVM = "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2026/03/02\nTime\t23:59:58\n***End_of_Header***\t\n\n"
+LVM = (
+    "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2026/03/02\nTime\t23:59:58\n***End_of_Header***\t\n\t\n"
+    "Channels\t2\t\nTime\t23:59:58.0\t23:59:58.0\nX_Dimension\tTime\tTime\nX0\t0\t0\n***End_of_Header***\t\n"
+)
 FORMS: dict[str, bytes] = {
     "thermicon": written(),
     "pandas with an index": written(("", *OURS), more=numbered),
     "numpy.savetxt": written(("# time_s", *OURS[1:]), mark=" "),
     "R write.table": written(tuple(f'"{name}"' for name in OURS), mark=" "),
+    "R write.table, row names": written(tuple(f'"{name}"' for name in OURS), mark=" ",
+        more=lambda at, row: [f'"{at + 1}"', *row]),
     "R write.csv2": written(tuple(f'"{name}"' for name in OURS), mark=";", comma=True),
     "MATLAB writetable": written(("Time_s", "Current_A", "Display_C")),
     "Excel, English": written(("Time (s)", "Current (A)", "Display (°C)"), code="utf-8-sig", end="\r\n"),
@@ -100,6 +105,11 @@ FORMS: dict[str, bytes] = {
     "Excel, sep=": written(above="sep=;\n", mark=";"),
     "Excel on a Mac": written(end="\r"),
     "LibreOffice": written(("Time/s", "Current/A", "Display/°C"), mark="\t", comma=True),
+    "Excel, names on two lines": written(('"Time\n(s)"', '"Current\n(A)"', '"Display\n(°C)"')),
+    "Excel for DOS": written(("Zeit in s", "Strom in A", "Display in °C"), mark=";", comma=True, code="cp850"),
+    "Google Sheets, German": written(comma=True, mark='","', change=(r"(?m)^|$", '"'), end="\r\n"),
+    "Markdown": written(("| time_s", *OURS[1:], "|"), mark="|", more=lambda at, row: [f"| {row[0]}", *row[1:], "|"]),
+    "JavaScript": written(("timeMs", "currentMa", "displayTempC"), number(1000), number(1000)),
     "Google Sheets": written(('"Time, s"', '"Current, A"', '"Display, °C"')),
     "PowerShell": written(tuple(f'"{name}"' for name in OURS), code="utf-16", end="\r\n"),
     "Arduino serial plotter": written(("t_ms", "I_mA", "T_display_C"), number(1000, form=".0f"), number(1000),
@@ -113,9 +123,11 @@ FORMS: dict[str, bytes] = {
         more=numbered),
     "PicoLog": written(("Time (ms)", "Current (mA)", "Display (C)"), number(1000), number(1000)),
     "PicoScope": written(("Time", "Current", "Display"), number(1000), number(1000), units="(ms),(mA),(°C)\n"),
+    "PicoLog 6": written(("", "Current Ave. (A)", "Display Last (C)"), clock("%Y-%m-%dT%H:%M:%S.%f+00:00")),
     "TC-08": written(("Time", "Current", "Display"), units="s,A,°C"),
     "LabVIEW LVM": written(("X_Value", *OURS[1:], "Comment"), mark="\t", above=LVM),
-    "DAQExpress": written(("Timestamp", *OURS[1:]), clock("%m/%d/%Y %H:%M:%S.%f")),
+    "LabVIEW LVM, times of each": written(("X_Value", "current_A", "X_Value", "display_C"), mark="\t", above=LVM,
+        more=lambda at, row: [*row[:2], row[0], row[2]]),
     "TDMS waveform": tdms(),
     "TDMS with times": tdms(waveform=False),
     "Keysight BenchVue": written(("Scan", "Time", "Current (A)", "Display (C)"), clock("%m/%d/%Y %H:%M:%S:%f", 3),
@@ -124,17 +136,12 @@ FORMS: dict[str, bytes] = {
     "Keysight overload": written(more=lambda at, row: [*row[:2], "9.90000000E+37"] if at == 30 else row),
     "Keithley KickStart": written(("Reading", "Relative Time", "current_A", "display_C"), more=numbered,
         above="Model,2450\n\n"),
-    "Tektronix": written(("TIME", *OURS[1:]), above="Model,MSO24\nSample Interval,0.1\nRecord Length,60\n\n"),
-    "Rigol": written(("Time(s)", "I(A)", "Display(℃)")),
     "Fluke": written(("Sample", "Time", *OURS[1:]), clock("%I:%M:%S.%f %p"), more=numbered),
     "Yokogawa": written(("Date Time", *OURS[1:]), clock("%Y/%m/%d %H:%M:%S.%f"), above="#Model,GP10\n"),
-    "Graphtec": written(("Date&Time", "Current [A]", "Display [degC]"), clock("%Y/%m/%d %H:%M:%S.%f"),
-        above="Vendor,GRAPHTEC\n"),
     "Campbell TOA5": written(("TIMESTAMP", *OURS[1:]), clock(ISO, 4), units="TS,Amp,Deg C",
                              above='"TOA5","CR1000","dip"\n'),
     "Meerstetter": written(("Time (s)", "Actual Output Current (A)", "Display Temperature (°C)"), mark=";"),
-    "Thorlabs TED": written(("Time [s]", "TEC Current [A]", "Display Temperature [C]"), mark="\t"),
-    "Laird": written(("Time", "current_A", "display_C"), clock("%H:%M:%S.%f"), mark=";"),
+    "whole seconds, from the midst of one": written(("Time", *OURS[1:]), lambda t: clock("%H:%M:%S")(t + 0.7)),
     "TCS in tenths, named": written(("time_ms", "current_A", "display_m°C"), number(1000), display=number(1000)),
     "1-wire": written(more=lambda at, row: [*row[:2], {10: "85", 30: "-127"}.get(at, row[2])]),
     "MAX31865": written(more=lambda at, row: [*row[:2], "-242.02" if at in (20, 21) else row[2]]),
@@ -142,7 +149,7 @@ FORMS: dict[str, bytes] = {
     "Fahrenheit": written(("Time (sec)", "current_A", "Display (°F)"), display=number(1.8, 32, ".8g")),
     "ROS bag": written(("Time", *OURS[1:]), number(1, 1772495998, ".11g")),
     "InfluxDB": written(("time", *OURS[1:]), clock("%Y-%m-%dT%H:%M:%S.%fZ")),
-    "ISO with zone": written(("timestamp", *OURS[1:]), clock("%Y-%m-%dT%H:%M:%S.%f+01:00")),
+    "nanoseconds": written(("time_ns", *OURS[1:]), number(1e9, 0, ".0f")),
     "syslog month": written(("Time", *OURS[1:]), clock("%d-%b-%Y %H:%M:%S.%f")),
     "German clock": written(("Zeit", *OURS[1:]), clock(GERMAN), mark=";", comma=False),
     "minutes": written(("time_min", *OURS[1:]), number(1 / 60, form=".8f")),
@@ -241,7 +248,7 @@ REFUSED: dict[str, tuple[str | bytes, str, Cure]] = {
         lambda text: f"{HEAD.replace(',', ' ')}\n{text}"),
     "unknown names": ("\n".join(["clock,x1,x2", *ROWS]), "--column", {"time_s": "clock", "current_A": "x1",
         "display_C": "x2"}),
-    "no unit": ("\n".join(["time_s,Current,display_C", *ROWS]), "did you mean current_A|--column current_A=Current",
+    "no unit": ("\n".join(["time_s,Current,display_C", *ROWS]), "--column current_A=Current",
         {"current_A": "Current"}),
     "milliseconds": (written(time=number(1000)), "milliseconds[;,] .*divide the column by 1000", scaled(0, 1e-3)),
     "epoch in ms": (written(time=number(1000, 1772495998000, ".13g")), "milliseconds[;,] .*by 1000", scaled(0, 1e-3,
@@ -259,6 +266,13 @@ REFUSED: dict[str, tuple[str | bytes, str, Cure]] = {
         edited(" °C", "")),
     "open thermocouple": (written(change=(r"\n2,[^\n]*", "\n2,0.3,OL")), "or remove the row", edited(r"\n2,[^\n]*",
         "")),
+    "whole minutes": (written(("Time", *OURS[1:]), clock("%d/%m/%Y %H:%M")), "tell 60 rows apart;? .*more decimals",
+        lambda _: written(("Time", *OURS[1:]), clock("%d/%m/%Y %H:%M:%S.%f")).decode()),
+    "footer of a logger": (written(("Time", *OURS[1:]), clock("%H:%M:%S.%f"), below="Minimum,,28\n"),
+        "a.csv:62.* time_s is 'Minimum', not a time;? +remove the row", edited("Minimum,,28\n", "")),
+    "no times": (written(time=lambda _: ""), "empty in every row;? +add the times", lambda _: written().decode()),
+    "web page": (b"<html><table><tr><td>time_s</td></tr></table>", "HTML.*as CSV", lambda _: written().decode()),
+    "JSON": (b'[{"time_s": 0}]', "JSON.*as CSV", lambda _: written().decode()),
     "end of a log": (written(below="End of data\n"), "remove this line", edited("End of data\n", "")),
     "backward": ("\n".join([HEAD, *ROWS[::-1]]), "run backward: sort them", in_order),
     "mixed": ("\n".join([HEAD, *random.Random(1).sample(ROWS, 60)]), "are mixed: sort them", in_order),
@@ -302,6 +316,24 @@ def test_what_is_not_read_is_named_and_its_cure_works(tmp_path: Path, name: str)
     for door in DOORS.values():
         columns = {} if callable(cure) else {k: v for k, v in cure.items() if door is not recording or k != "current_A"}
         assert outcome(door, path, columns)[0], outcome(door, path, columns)
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_a_column_of_another_unit_is_not_taken_and_a_cure_names_none(tmp_path: Path, door: str) -> None:
+    (tmp_path / "a.csv").write_bytes(written(("time_s", "Probe 1 (A)", "Probe 2 (°C)")))
+    name, theirs, other = ("current_A", "Probe 1 (A)", "Probe 2 (°C)") if door == "simulate" else (
+        "display_C", "Probe 2 (°C)", "Probe 1 (A)")  # fmt: skip
+    good, told = outcome(DOORS[door], tmp_path / "a.csv", {name: other})
+    assert not good and f"{other!r} is in another unit" in told
+    good, told = outcome(DOORS[door], tmp_path / "a.csv", {})
+    assert not good and f"={theirs}" in told
+    assert outcome(DOORS[door], tmp_path / "a.csv", {name: theirs})[0]
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+def test_units_in_a_line_of_their_own_do_not_hide_what_a_column_is_called(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_bytes(written(("Time", "Ch1", "Ch2"), number(1000), units="ms,A,°C"))
+    assert right(log(tmp_path / "a.csv", {"current_A": "Ch1", "display_C": "Ch2"}))
 
 
 def examine(seed: int) -> tuple[float, float, list[str]]:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.builders import messages
+from thermicon.perception.pilot.trials_file import read_trials
 
 from .conftest import Runner, rows_of, run_script
 
@@ -87,14 +88,29 @@ def test_what_is_done_is_not_overwritten_and_is_joined(script: Runner, done: Pat
     before, files = answers(done), sorted(done.rglob("*"))
     again = script("--participant", "A", "--simulate", output=done)
     assert again.returncode == 1
-    assert "has 8 answers already: --resume goes on after them" in again.stderr
+    assert "has 8 trials already: --resume goes on after them" in again.stderr
     again = script("--participant", "A", "--simulate", "--resume", output=done)
-    assert again.returncode == 0 and "A: done before, 8 answers; there is nothing to resume" in again.stdout
+    assert again.returncode == 0 and "A: done before, 8 trials; there is nothing to resume" in again.stdout
     assert (answers(done), sorted(done.rglob("*"))) == (before, files)
     assert "16 answers of 2 participants\n" in script("--collect", output=done).stdout
     joined = rows_of(done / "answers.csv")
     assert list(joined[0]) == COLUMNS
     assert [row["participant"] for row in joined] == ["A"] * 8 + ["B"] * 8
+
+
+def test_a_trial_without_an_answer_is_a_row_with_an_empty_one(quick: Path, tmp_path: Path) -> None:
+    study = shutil.copytree(quick, tmp_path / "study")
+    facts = json.loads((study / "study.json").read_text(encoding="utf-8"))
+    (study / "study.json").write_text(json.dumps({**facts, "answer_s": 1.0}), encoding="utf-8")
+    ran = run_script(study, tmp_path, "--participant", "A", "--simulate")
+    found = answers(tmp_path)
+    silent = sum(not row["responded"] for row in found)
+    assert [int(row["trial"]) for row in found] == list(range(1, 9)) and 0 < silent < 8
+    assert f"done; {8 - silent} answers after" in ran.stdout
+    assert "nothing to resume" in run_script(study, tmp_path, "--participant", "A", "--simulate", "--resume").stdout
+    joined = run_script(study, tmp_path, "--collect").stdout
+    assert f"{8 - silent} answers of 1 participant; {silent} trials without an answer\n" in joined
+    assert read_trials(tmp_path / "answers.csv", ["dip", "glow"]).unanswered.sum() == silent
 
 
 def test_the_stop_key_ends_after_the_trial_and_resume_goes_on(script: Runner, tmp_path: Path) -> None:

@@ -80,9 +80,9 @@ def test_observer_proves_itself() -> None:
     assert person.path_m("forearm") == 0.55
     assert person.path_m("thenar") == 0.7
     assert repr(person).startswith("Observer(a ")
-    with pytest.raises(ValueError, match=r"the sensation needs a above 0, not 0"):
+    with pytest.raises(ValueError, match=r"slope of sensation = 0 must be above 0"):
         replace(person, a=0.0)
-    with pytest.raises(ValueError, match=r"neutral zone 36 to 36 °C is empty"):
-        replace(person, neutral_low_C=36.0)
-    with pytest.raises(ValueError, match=r"lapse = 1.2 must lie in 0 to 1"):
+    with pytest.raises(ValueError, match=r"neutral zone: 36 to 36 is empty"):
+        replace(person, neutral_C=(36.0, 36.0))
+    with pytest.raises(ValueError, match=r"lapse rate = 1.2 must lie in 0 to 1"):
         replace(person, lapse=1.2)

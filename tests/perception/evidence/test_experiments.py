@@ -4,11 +4,13 @@ A test that demanded a published result would be a reason to tune for it: misses
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
+from thermicon.perception import Observer
 from thermicon.perception.evidence.experiments import (
     first_and_return,
     limits,
@@ -17,10 +19,11 @@ from thermicon.perception.evidence.experiments import (
     rate_curve,
     reaction_times,
 )
-from thermicon.perception.evidence.predicted import Predicted, Subject, nominal_subject
+from thermicon.perception.evidence.predicted import Predicted, laboratory_of
 from thermicon.perception.evidence.radiant import radiant_warming, whole_body_warmth
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.channels import CHANNELS, VARIABLES, Variable
+from thermicon.perception.observer.constants import Both
 
 
 def by(found: tuple[Predicted, ...], quantity: str, channel: str) -> Predicted:
@@ -54,7 +57,7 @@ RIGS = {"hand": Setting("hand-dorsum", 5.4e-4, 9.0), "forearm": Setting("forearm
 @pytest.mark.parametrize("site", RIGS)
 def test_limits_have_people_and_parameters_and_rise_with_age(site: str) -> None:
     cold, warm = limits(site, people=30, draws=4)
-    crowd = nominal_subject("temperature").laboratory(RIGS[site], people=30, seed=0)
+    crowd = laboratory_of(Observer.load(), RIGS[site], people=30, seed=0)
     assert [(one.channel, one.experiment) for one in (cold, warm)] == [(c, f"limits on the {site}") for c in CHANNELS]
     for one, skin in ((cold, 0.11), (warm, 0.20)):
         assert one.value is not None and one.low is not None and one.high is not None
@@ -83,8 +86,7 @@ def test_reaction_times_fall_with_area() -> None:
 
 
 def test_who_does_not_feel_the_largest_change_has_no_threshold() -> None:
-    person = nominal_subject("temperature")
-    deaf = Subject(person.observer, {**person.constants, "warm threshold drive": 1e4})
+    deaf = replace(Observer.load(), threshold_drive=Both(0.1, 1e4))
     for method in ("forced_choice", "yes_no"):
         asked = Condition("threshold", method, "warm", 32.0, None, 1.0, 3.0)
         assert np.isinf(measured(Setting.of(Rig.load("thenar")), asked, deaf))

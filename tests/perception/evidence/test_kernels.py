@@ -6,49 +6,29 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.perception.survival import log_survival
 from thermicon.perception import Observer
-from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samples_of
-from thermicon.perception.kernels import passage as kernels
-from thermicon.perception.kernels.passage import psychometric
-from thermicon.perception.observer.parts import Transducer, conduction_s
-from thermicon.perception.sensation.sensation import area_factor, summed_area_cm2
+from thermicon.perception.kernels import crossing as kernels
+from thermicon.perception.kernels.crossing import psychometric
+from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.mechanisms.summation import Summation, summed_area_cm2
 
 DT = 0.025
-TRANSDUCER = Transducer(11.0, 1.2)
-TABLE = TRANSDUCER.psi(np.exp(kernels.LOG_U_FROM + kernels.LOG_U_STEP * np.arange(kernels.LOG_U_POINTS)))
+TRANSDUCER = replace(Observer.load(), a=11.0, p=1.2)
 
 
-def passage(log_drive, log_gain, criterion, tau=0.3):
-    times = np.empty((log_gain.size, SHARES.size))
-    passed = kernels.passage(log_drive, DT * np.arange(log_drive.size), log_gain, criterion, tau, TABLE, SHARES, times)
-    return times, passed
-
-
-def test_first_passage_of_a_lane_agrees_with_that_of_a_course() -> None:
-    time = DT * np.arange(200)
-    course = 0.02 + 2.0 * np.clip(time - 0.5, 0.0, 2.0)
-    observer = replace(Observer.load(), noise_correlation_s=0.3)
-    gains, criteria = np.array([0.5, 1.0, 2.0, 4.0]), np.array([2.5, 2.5, 3.5, 2.0])
-    times, passed = passage(np.log(course), np.log(gains), criteria)
-    for lane, (gain, criterion) in enumerate(zip(gains.tolist(), criteria.tolist(), strict=True)):
-        psi = TRANSDUCER.psi(gain * course)
-        # A course counts the change from its first sample; here that is as good as none.
-        change = np.concatenate([[0.0], psi - psi[0]])[None, 1:]
-        logs = log_survival(change, DT, criterion - float(psi[0]), observer)[0]
-        answered = 1.0 - np.exp(logs)
-        assert passed[lane] == pytest.approx(answered[-1], abs=0.01)
-        for share, when in zip(SHARES.tolist(), times[lane].tolist(), strict=True):
-            if answered[-1] > share + 0.02:
-                assert when == pytest.approx(float(np.interp(share, answered, time)), abs=0.03)
+def passage(drive, gain, criterion, tau=0.3, time=None):
+    times, risen = np.empty((gain.size, SHARES.size)), drive**TRANSDUCER.p / TRANSDUCER.b
+    clock = DT * np.arange(drive.size) if time is None else time
+    raised = gain**TRANSDUCER.p
+    return times, kernels.passage(risen, clock, raised, TRANSDUCER.a, criterion, tau, SHARES, times)
 
 
 def test_first_passage_agrees_with_drawn_noise() -> None:
     tau, criterion = 0.3, 3.0
     time = DT * np.arange(160)
     course = np.maximum(1.5 * time, 1e-9)
-    times, _ = passage(np.log(course), np.zeros(1), np.array([criterion]), tau)
+    times, _ = passage(course, np.ones(1), np.array([criterion]), tau)
     rng = np.random.default_rng(3)
     lags = np.abs(time[:, None] - time[None, :])
     factor = np.linalg.cholesky(np.exp(-(lags**2) / (2.0 * tau**2)) + 1e-8 * np.eye(time.size))
@@ -58,7 +38,7 @@ def test_first_passage_agrees_with_drawn_noise() -> None:
 
 
 def test_no_drive_gives_false_alarms_alone() -> None:
-    _, passed = passage(np.full(200, -30.0), np.zeros(1), np.array([3.0]))
+    _, passed = passage(np.full(200, 1e-13), np.ones(1), np.array([3.0]))
     rate = math.exp(-4.5) / (2.0 * math.pi * 0.3)
     below = 0.5 * math.erfc(-3.0 / math.sqrt(2.0))
     assert passed[0] == pytest.approx(1.0 - below * math.exp(-rate / below * 199 * DT), rel=0.01)
@@ -66,18 +46,17 @@ def test_no_drive_gives_false_alarms_alone() -> None:
 
 def test_lanes_and_steps_can_be_chosen_freely() -> None:
     time = DT * np.arange(400)
-    log_drive = np.log(np.maximum(0.8 * time, 1e-9))
+    drive = 0.8 * time
     rng = np.random.default_rng(5)
-    gains, criteria = rng.normal(0.0, 0.5, 37), np.exp(rng.normal(1.3, 0.7, 37))
-    times, passed = passage(log_drive, gains, criteria)
+    gains, criteria = np.exp(rng.normal(0.0, 0.5, 37)), np.exp(rng.normal(1.3, 0.7, 37))
+    times, passed = passage(drive, gains, criteria)
     order = rng.permutation(37)
-    shuffled, passed_too = passage(log_drive, gains[order], criteria[order])
+    shuffled, passed_too = passage(drive, gains[order], criteria[order])
     np.testing.assert_allclose(shuffled, times[order], rtol=1e-6)
     np.testing.assert_allclose(passed_too, passed[order], atol=1e-6)
     few = samples_of(((10.0, 8.0),), 9.975)
     assert few.size < 0.4 * time.size
-    sparse = np.empty_like(times)
-    kernels.passage(log_drive[few], time[few], gains, criteria, 0.3, TABLE, SHARES, sparse)
+    sparse, _ = passage(drive[few], gains, criteria, time=time[few])
     np.testing.assert_allclose(sparse, times, rtol=1e-3)
 
 
@@ -90,7 +69,7 @@ def test_sizes_at_shares_are_read_between_and_beyond() -> None:
 
 @pytest.mark.parametrize(("a", "p"), [(12.0, 1.0), (6.0, 2.0), (30.0, 0.7)])
 def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: float, p: float) -> None:
-    transducer = Transducer(a, p)
+    transducer = replace(Observer.load(), a=a, p=p)
     assert float(transducer.psi(1.0)) == pytest.approx(1.0)
     low = float(transducer.psi(2e-4) / transducer.psi(1e-4))
     assert math.log2(low) == pytest.approx(p, abs=0.01)
@@ -101,23 +80,26 @@ def test_transducer_is_one_at_threshold_a_power_below_and_a_logarithm_above(a: f
 
 
 def test_summation_has_two_ends() -> None:
+    def area_factor(area_cm2: float, reference_cm2: float, exponent: float) -> float:
+        only = Summation(area_exponent=Both(exponent, exponent), reference_area_m2=1e-4 * reference_cm2)
+        return only.sensitivity("cold", 1e-4 * area_cm2, None)
+
     assert summed_area_cm2(0.001) == pytest.approx(summed_area_cm2(0.0001), rel=0.2)
     assert area_factor(400.0, 225.0, 0.9) < 1.2 < 1.4 < area_factor(225.0, 100.0, 0.9)
     assert area_factor(18000.0, 9.0, 0.9) < 20.0 < (18000.0 / 9.0) ** 0.9
     middle = math.log(area_factor(20.0, 10.0, 0.7)) / math.log(2.0)
     assert middle == pytest.approx(0.7, abs=0.12)
-    with pytest.raises(ValueError, match="above 0 cm²"):
-        summed_area_cm2(0.0)
+    with pytest.raises(ValueError, match="above 0 m²"):
+        area_factor(0.0, 9.0, 0.7)
 
 
 def test_the_spine_adds_to_the_nerve() -> None:
-    assert conduction_s("cold", 6.0, 0.7) == pytest.approx(0.7 / 6.0 + 0.225 / 12.0)
-    assert conduction_s("warm", 1.0, [0.7, 0.4]) == pytest.approx([0.7 + 0.225 / 2.0, 0.4 + 0.225 / 2.0])
+    nerves = replace(Observer.load(), velocity_m_per_s=Both(6.0, 1.0))
+    assert nerves.delay_s("cold", 0.7) == pytest.approx(0.7 / 6.0 + 0.225 / 12.0)
+    assert nerves.delay_s("warm", [0.7, 0.4]) == pytest.approx([0.7 + 0.225 / 2.0, 0.4 + 0.225 / 2.0])
 
 
 def test_a_later_decade_raises_thresholds() -> None:
-    posterior = Posterior()
-    laboratory = Laboratory(posterior.values(np.zeros(len(posterior.priors))))
+    laboratory = Laboratory.of(Observer.load(), {"E3": Both(0.0, 0.0)})
     young, old = (laboratory.gain("cold", 9.0, "E3", "hand", years) for years in (25.0, 65.0))
-    lost = laboratory.values["cold sensitivity lost per decade"]
-    assert math.log(young / old) == pytest.approx(4.0 * lost)
+    assert math.log(young / old) == pytest.approx(4.0 * Observer.load().lost_per_decade.cold)

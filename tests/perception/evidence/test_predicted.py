@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
-from thermicon.perception import confuse
+from thermicon.perception import Observer, confuse
 from thermicon.perception.evidence.baseline import SAMPLES, named_by_skin, nearer_of, noise_K, noticed_K
-from thermicon.perception.evidence.predicted import Asked, nominal_subject, plausible_subjects, predict
+from thermicon.perception.evidence.predicted import Asked, laboratory_of, plausible_observers, predict
 from thermicon.perception.evidence.targets import Published, Row
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
 from thermicon.perception.observer.channels import VARIABLES, Variable
@@ -18,21 +18,20 @@ from thermicon.perception.observer.people import People
 
 @pytest.mark.parametrize("variable", VARIABLES)
 def test_draws_are_those_of_the_posterior_and_fill_it(variable: Variable) -> None:
-    drawn = [subject.observer for subject in plausible_subjects(16, variable=variable)]
+    drawn = plausible_observers(16, variable=variable)
     assert {o.variable for o in drawn} == {variable}
     known = PosteriorDraws.load(variable=variable).values("noise correlation time")
     noise = np.array([o.noise_correlation_s for o in drawn])
-    assert noise.tolist() == [s.constants["noise correlation time"] for s in plausible_subjects(16, variable=variable)]
     assert set(noise.tolist()) <= set(known.tolist())
     assert 3 <= (noise < np.median(known)).sum() <= 13
-    assert len({o.memory.timing for o in drawn}) == 16
+    assert len({o.timing_noise for o in drawn}) == 16
 
 
 def test_the_seed_decides() -> None:
-    one, again, other = ([s.observer for s in plausible_subjects(4, seed=seed)] for seed in (1, 1, 2))
+    one, again, other = (plausible_observers(4, seed=seed) for seed in (1, 1, 2))
     assert one == again != other
     with pytest.raises(ValueError, match=r"at least two observers are needed to show an interval, not 1"):
-        plausible_subjects(1)
+        plausible_observers(1)
 
 
 def test_what_is_not_felt_is_none() -> None:
@@ -43,15 +42,14 @@ def test_what_is_not_felt_is_none() -> None:
 def test_one_person_has_the_skin_of_the_rig_no_offset_and_no_scatter_of_people_but_that_of_age() -> None:
     setting, limits = Setting.of(Rig.load("thenar")), Condition("threshold", "limits", "warm", 32.0, 12.0, 1.0, 0.0)
     choice = Condition("threshold", "forced_choice", "warm", 32.0, None, 1.0, 3.0)
-    person = nominal_subject("temperature")
-    alone, old = (person.laboratory(setting, age_years=years) for years in (25.0, 65.0))
-    assert (alone.values["cold receptor depth"], alone.values["warm receptor depth"]) == pytest.approx((0.10, 0.21))
-    assert alone.values["effusivity of living skin"] == 1.0
+    person = Observer.load()
+    alone, old = (laboratory_of(person, setting, age_years=years) for years in (25.0, 65.0))
+    assert alone.constants.depth_m == pytest.approx((0.10e-3, 0.21e-3))
+    assert alone.constants.effusivity == 1.0
     young_logs, old_logs = (logs_of(each, setting, choice)[0] for each in (alone, old))
     assert np.ptp(young_logs) == 0.0
-    lost = person.constants["warm sensitivity lost per decade"]
-    assert old_logs[0] - young_logs[0] == pytest.approx(4.0 * lost, rel=0.05)
-    many = logs_of(person.laboratory(setting, people=40), setting, limits)[0]
+    assert old_logs[0] - young_logs[0] == pytest.approx(4.0 * person.lost_per_decade.warm, rel=0.05)
+    many = logs_of(laboratory_of(person, setting, people=40), setting, limits)[0]
     assert (many.size, many.std() > 0.2) == (40, True)
 
 

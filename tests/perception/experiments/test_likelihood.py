@@ -1,7 +1,7 @@
-"""The rows of the likelihood, played again by circuit, traces and observer: an independent way to the same numbers.
+"""Rows of the likelihood, played again on a bench by the circuit, and answered by equations that are written out.
 
-The likelihood plays modes of the skin and asks by tables; here the same stimuli are played on the same skin on a bench.
-What is compared is one median person, young, of a laboratory without an offset.
+The likelihood plays sums of ramps in few steps. What is compared is one median person, young, of a laboratory without
+an offset.
 """
 
 import math
@@ -18,22 +18,21 @@ from thermicon.perception.evidence.results import load_constants
 from thermicon.perception.evidence.rows import load_evidence
 from thermicon.perception.experiments import published as experiments
 from thermicon.perception.experiments.laboratory import Laboratory
-from thermicon.perception.experiments.published import PEAKS_C, STRIP_CM2, TWO_STRIPS_CM2, Predictions
-from thermicon.perception.observer.channels import CHANNELS, Channel
-from thermicon.perception.sensation.bench import Bench, Stimulus, ramp
-from thermicon.perception.sensation.detection import detect, time_of
-from thermicon.perception.sensation.sensation import receptor_drive, sensitivity
+from thermicon.perception.experiments.published import PEAKS_C, TWO_STRIPS_CM2, Predictions
+from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.priors import LABORATORIES
+from thermicon.perception.sensation.bench import Bench
+from thermicon.perception.sensation.detection import time_of
 
-NOBODY_DIFFERS = (
-    *(f"{channel} sensitivity {among}" for channel in CHANNELS for among in ("between people", "lost per decade")),
-    *("criterion between people", "decision time between people", "sensitivity between laboratories"),
-)
 VALUES = {each.name: each.value for each in load_constants()}
 
 
 @pytest.fixture(scope="module")
 def predicted() -> Predictions:
-    laboratory = Laboratory({**VALUES, **dict.fromkeys(NOBODY_DIFFERS, 1e-9)})
+    nobody = Both(1e-9, 1e-9)
+    alike = {"sensitivity_between": nobody, "lost_per_decade": nobody, "decision_between": 1e-9}
+    person = replace(Observer.from_values(VALUES), criterion_between=1e-9, **alike)
+    laboratory = Laboratory.of(person, dict.fromkeys(LABORATORIES, nobody))
     with np.errstate(divide="ignore", invalid="ignore"):  # correlations of people who do not differ
         return experiments.predict(laboratory)
 
@@ -61,11 +60,6 @@ def bench(area_cm2: float, baseline_C: float) -> Bench:
     return Bench(rig.with_(**changes), baseline_C, "display")
 
 
-def played(on: Bench, channel: Channel, size_K: float, rate_K_per_s: float, hold_s: float) -> Stimulus:
-    end_s = np.ceil(100.0 * (size_K / rate_K_per_s + hold_s)) / 100.0
-    return on.play([ramp(channel, size_K, rate_K_per_s)], end_s)
-
-
 def answers(
     cold: np.ndarray, warm: np.ndarray, dt_s: float, person: Observer, caution: float = 1.0, choice_s: float = 0.0
 ) -> Callable[[float], float]:
@@ -74,79 +68,6 @@ def answers(
     late = float(person.delay_s("cold", path)), float(person.delay_s("warm", path))
     time, given = answered(cold, warm, dt_s, person, late, person.decision_s + choice_s, caution)
     return lambda share: time_of(given, time, share)
-
-
-def multiple(stimulus: Stimulus, channel: Channel, person: Observer) -> float:
-    """Largest drive in multiples of threshold."""
-    drive = receptor_drive(stimulus.received("temperature", channel)[0], stimulus.dt_s, channel, person).max()
-    sensitive = sensitivity(channel, person, stimulus.area_m2, stimulus.site)
-    return float(drive * sensitive / person.receptor(channel).threshold_drive)
-
-
-def rating(on: Bench, channel: Channel, person: Observer) -> tuple[float, float]:
-    """Mean rating and SD within a person of a ramp to 11 K, held for 0.7 s."""
-    rate, size = experiments.RATED[channel]
-    exponent = VALUES[f"{channel} rating exponent"]
-    raised = multiple(played(on, channel, size, rate, 0.7), channel, person) ** exponent
-    mean = VALUES[f"{channel} rating at threshold"] * raised
-    return mean, math.hypot(VALUES["scatter of ratings"], exponent * mean * person.gain_noise)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_reaction_times(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """E1: times within 1 %, the exponent of area within 0.01."""
-    rate, size = experiments.RAMPS[channel]
-    medians = []
-    for strips in (1, 5):
-        stimulus = played(bench(strips * STRIP_CM2, 31.0), channel, size, rate, 2.0)
-        cold, warm = (psi[0] for psi in stimulus.felt(person))
-        medians.append(answers(cold, warm, stimulus.dt_s, person, choice_s=person.choice_s)(0.5))
-    one, five = medians
-    assert five == pytest.approx(math.exp(predicted["E1", "rt_gm_5strip_onset_clock", channel]), rel=0.01)
-    by_area = math.log(five / one) / math.log(5.0)
-    assert by_area == pytest.approx(predicted["E1", "rt_area_exponent_onset_clock", channel], abs=0.01)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_ratings(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """E2: means within 1 %, their SD within 5 %, the exponent of area within 0.01."""
-    one, five = (rating(bench(strips * STRIP_CM2, 31.0), channel, person) for strips in (1, 5))
-    assert five[0] == pytest.approx(math.exp(predicted["E2", "rating_mean_5strip", channel]), rel=0.01)
-    by_area = math.log(five[0] / one[0]) / math.log(5.0)
-    assert by_area == pytest.approx(predicted["E2", "rating_area_exponent_group", channel], abs=0.01)
-    scatter = math.sqrt(one[1] * five[1])
-    assert scatter == pytest.approx(math.exp(predicted["E2", "rating_within_sd_pooled", channel]), rel=0.05)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_limits(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """E3: the geometric mean within 3 %, scatter of trials within 15 %: 500 parts of their distribution, 16 there."""
-    on, mean = bench(5 * STRIP_CM2, 32.0), math.exp(predicted["E3", "threshold_gm", channel])
-    stimulus = played(on, channel, 12.0, 1.0, 2.0)
-    cold, warm = (psi[0] for psi in stimulus.felt(person))
-    found = answers(cold, warm, stimulus.dt_s, person)
-    # At 1 K/s the change at a press is its time.
-    assert found(0.5) == pytest.approx(mean, rel=0.03)
-    pressed = np.array([found((k + 0.5) / 500) for k in range(500)])
-    logs = np.log10(pressed[pressed > experiments.ANTICIPATION_K])
-    assert 10.0 ** logs.mean() == pytest.approx(mean, rel=0.03)
-    assert logs.std() == pytest.approx(predicted["E3", "within_sd_log10_median_person", channel], rel=0.15)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_yes_no(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """E4: threshold and width within 2 %; the likelihood has nine sizes, and so has this."""
-    on, sizes = bench(TWO_STRIPS_CM2, 30.0), experiments.SIZES_K[channel]
-    cautious = replace(person, criterion=VALUES["criterion of yes and no"])
-    reported = []
-    for size in sizes.tolist():
-        stimulus = played(on, channel, size, experiments.DETECTION_K_PER_S, experiments.PLATEAU_S)
-        cold, warm = (psi[0] for psi in stimulus.felt(cautious))
-        reported.append(float(detect(cold, warm, stimulus.dt_s, cautious, times=False).probability))
-    own = np.maximum.accumulate(reported) + 1e-9 * np.arange(sizes.size)
-    low, half, high = np.exp(np.interp([0.1587, 0.5, 0.8413], own, np.log(sizes)))
-    assert half == pytest.approx(math.exp(predicted["E4", "threshold50_gm_age30", channel]), rel=0.02)
-    assert 0.5 * (high - low) == pytest.approx(math.exp(predicted["E4", "sigma_gm_age30", channel]), rel=0.02)
 
 
 def test_cooling_after_warmth(predicted: Predictions, person: Observer) -> None:
@@ -170,14 +91,6 @@ def test_cooling_after_warmth(predicted: Predictions, person: Observer) -> None:
         wrong, lingering = VALUES["wrong labels"], VALUES["warmth that lingers"] * float(warm[:start].max())
         share = predicted["E5", f"share_called_warm_peak{level}_age_lt36", "cold"]
         assert wrong + (0.5 - wrong) * -math.expm1(-lingering) == pytest.approx(share, abs=0.001)
-
-
-@pytest.mark.parametrize("channel", CHANNELS)
-def test_forced_choice_at_the_wrist(channel: Channel, predicted: Predictions, person: Observer) -> None:
-    """How many times threshold the published one is, within 1 %."""
-    published = experiments.FORCED_CHOICE[1][3][channel]
-    found = multiple(played(bench(9.0, 32.0), channel, published, 1.0, 3.0), channel, person)
-    assert found == pytest.approx(math.exp(-predicted["wrist", "detection threshold", channel]), rel=0.01)
 
 
 def test_the_lag_of_a_thermode_is_that_of_the_published_one() -> None:

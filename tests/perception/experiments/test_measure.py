@@ -6,6 +6,7 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.perception.evidence.rows import load_evidence
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of, measure
+from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
 from thermicon.perception.observer.draws import PosteriorDraws
 
 FOREARM = Rig.load("forearm").with_(**{"contact.area_cm2": 9.8})
@@ -25,10 +26,11 @@ def test_limits_of_a_new_laboratory_cover_the_published_ones_with_its_scatter() 
 
 def test_an_interval_is_that_of_new_laboratories_drawn_with_their_offsets() -> None:
     found, known, setting = measure(LIMITS, FOREARM, draws=5, seed=3), PosteriorDraws.load(), Setting.of(FOREARM)
-    offsets = np.random.default_rng(3).standard_normal((5, 2))
+    places = np.linspace(0, 999, 5).round().astype(int)
+    offsets = np.random.default_rng(3).standard_normal((5, 2)) * known.values(BETWEEN_LABORATORIES)[places, None]
     logs = [
-        logs_of(setting.laboratory(known.draw(k), offset, "temperature"), setting, LIMITS)[0]
-        for k, offset in zip(np.linspace(0, 999, 5).round().astype(int).tolist(), offsets.tolist(), strict=True)
+        logs_of(setting.laboratory(known.observer(k), offset), setting, LIMITS)[0]
+        for k, offset in zip(places.tolist(), offsets.tolist(), strict=True)
     ]
     low, middle, high = np.exp(np.percentile([each.mean() for each in logs], [2.5, 50.0, 97.5]))
     assert (found.low, found.value, found.high) == pytest.approx((low, middle, high))
@@ -53,7 +55,7 @@ def test_a_larger_change_is_faster_and_stronger(kind: str) -> None:
 
 def test_who_does_not_answer_counts_a_second_beyond_the_end() -> None:
     setting, known = Setting.of(FOREARM), PosteriorDraws.load()
-    numb = setting.laboratory(known.draw(0), (-40.0, -40.0), "temperature")
+    numb = setting.laboratory(known.observer(0), (-40.0, -40.0))
     timed = Condition("reaction_time", "simple", "warm", 32.0, 1.0, 1.0, 0.0)
     assert np.exp(logs_of(numb, setting, timed)[0].max()) == pytest.approx(1.0 + 3.0 + 1.0)
     assert np.exp(logs_of(numb, setting, LIMITS)[0].max()) == pytest.approx(12.0 + 1.0)

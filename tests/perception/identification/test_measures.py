@@ -9,8 +9,9 @@ import pytest
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
 from thermicon.perception import Ranking, information_bits, rank
-from thermicon.perception.identification.laboratory_draws import Uncertain, latin
+from thermicon.perception.identification.laboratory_draws import DrawnLaboratories, Uncertain, latin
 from thermicon.perception.identification.measures import plugin_bits, proportion_correct
+from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.ranking.assumptions import doubts
 
 
@@ -48,6 +49,12 @@ def test_plugin_loses_its_bias_and_repeats() -> None:
         plugin_bits(np.eye(2), 0)
 
 
+@pytest.mark.parametrize(("trials", "shown"), [(7, [3, 2, 2]), (6, [2, 2, 2]), (2, [1, 1])])
+def test_answers_without_error_carry_the_entropy_of_what_was_presented(trials: int, shown: list[int]) -> None:
+    bits = -sum(times / trials * math.log2(times / trials) for times in shown)
+    assert plugin_bits(np.eye(3), trials, experiments=5) == pytest.approx(bits, abs=1e-12)
+
+
 def test_wide_intervals_are_drawn_in_logarithms() -> None:
     for low, high, middle in ((1.0, 100.0, 10.0), (1.0, 1.4, 1.2), (-1.0, 3.0, 1.0)):
         between = Uncertain("t", low, high)
@@ -63,6 +70,13 @@ def test_a_latin_hypercube_has_one_draw_a_stratum() -> None:
     assert (np.sort((shares * 8).astype(int), axis=0) == np.arange(8)[:, None]).all()
     assert (shares == latin(3, 8, seed=4)).all()
     assert (shares != latin(3, 8, seed=5)).any()
+
+
+def test_each_draw_has_its_turn() -> None:
+    model = ObserverModel.load()
+    assert model.posterior is not None
+    found = DrawnLaboratories.of(model, "episodes", len(model.posterior), seed=0)
+    assert np.array_equal(found.values[:, : len(model.posterior.names)], model.posterior.draws)
 
 
 SIX, RIG = load_library("six-icons"), Rig.load("thenar")

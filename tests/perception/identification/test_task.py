@@ -14,7 +14,7 @@ from thermicon.perception.identification import carry_over as carryover
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.episodes import Episodes, episode_distances
 from thermicon.perception.observer.channels import NORMS, USUAL_NORM
-from thermicon.perception.observer.people import People
+from thermicon.perception.observer.people import People, draw_people
 from thermicon.perception.selection.edit import Edit
 from thermicon.perception.selection.request import Selection
 
@@ -172,6 +172,21 @@ def test_a_ranking_by_replay_counts_what_replay_leaves_behind() -> None:
         place = names.index(row["name"])
         assert row["carry_over"] == left.worst_of(place, USUAL_NORM)
         assert row["carry_over"] != other.worst_of(place, USUAL_NORM)
+
+
+def test_names_are_given_after_ten_minutes_as_in_the_usual_task() -> None:
+    usual, late = (
+        rank(ICONS, RIG, people=4, parameters=0, norm="naming", task=Task(gap_s=gap)) for gap in (None, 600.0)
+    )
+    assert late.confusion == pytest.approx(usual.confusion, abs=0.005)
+
+
+def test_what_is_left_behind_is_the_mean_of_people(monkeypatch: pytest.MonkeyPatch) -> None:
+    crowd, found = draw_people(2), []
+    for people in (crowd, crowd.part(0, 1), crowd.part(1, 2)):
+        monkeypatch.setattr(carryover, "draw_people", lambda _, people=people: people)
+        found.append(carry_over(ICONS, RIG, 18.0, 2.0).apart)
+    assert found[0] == pytest.approx(0.5 * (found[1] + found[2]), rel=1e-9)
 
 
 def test_icons_that_prescribe_current_are_replayed_too() -> None:

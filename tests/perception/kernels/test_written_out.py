@@ -10,7 +10,7 @@ import pytest
 from thermicon.perception import Observer
 from thermicon.perception.arrays import Array
 from thermicon.perception.kernels import alignment, episodes, kernels, reports
-from thermicon.perception.kernels.passage import (
+from thermicon.perception.kernels.crossing import (
     CERTAIN,
     GAP_FROM,
     GAP_STEP,
@@ -180,7 +180,7 @@ def test_sensation_written_over_its_drive(observer: Observer) -> None:
     drive[1], drive[2, 0], drive[3, -1], drive[4, 20:40] = 2.0, 3.0, 3.0, np.linspace(0.0, 4.0, 20)
     drive[4, 30] = 0.0
     scale = np.array([1.0, 0.5, 2.0, 3.0, 4.0])
-    apart, b = np.full_like(drive, np.nan), observer.transducer.b
+    apart, b = np.full_like(drive, np.nan), observer.b
     kernels.sensation(drive, scale, observer.a, observer.p, b, apart)
     expected = observer.a * np.log1p((scale[:, np.newaxis] * drive) ** observer.p / b)
     assert apart == pytest.approx(expected, abs=1e-12)

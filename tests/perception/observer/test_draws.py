@@ -47,10 +47,10 @@ def test_the_shipped_draws_belong_to_the_shipped_inputs(posterior: PosteriorDraw
 
 def test_a_draw_is_one_consistent_observer(posterior: PosteriorDraws) -> None:
     observer, values = posterior.observer(17), posterior.draw(17)
-    assert observer.cold.threshold_drive == values["cold threshold drive"]
-    assert observer.warm.velocity_m_per_s == values["warm conduction velocity"]
+    assert observer.threshold_drive.cold == values["cold threshold drive"]
+    assert observer.velocity_m_per_s.warm == values["warm conduction velocity"]
     assert observer.criterion == values["criterion of speeded answers"]
-    assert observer.memory.timing == Observer.load().memory.timing
+    assert observer.timing_noise == Observer.load().timing_noise
     table = posterior.table(17)
     assert table.one("sensitivity between people", channel="cold").central == values["cold sensitivity between people"]
     assert {r.quantity for r in table} == {r.quantity for r in variant_records()}

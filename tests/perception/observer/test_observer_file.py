@@ -13,7 +13,8 @@ from thermicon.circuit.records import RecordError, Table, load_records
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, draw_people, frontier, perceive, rank, search
 from thermicon.perception.observer.channels import VARIABLES, Variable, check_variable
-from thermicon.perception.observer.observer import DATA, Receptor
+from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.observer import DATA
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.sensation.bench import Bench, ramp
 
@@ -49,7 +50,7 @@ def test_whatever_is_needed_is_asked_for(variable: Variable) -> None:
         except RecordError as wrong:
             assert f"no quantity '{quantity}'" in str(wrong).replace(" from heat flow", "")
             needed.add(quantity)
-    assert len(needed) == 28 and ("limit" in needed) == (variable == "temperature")
+    assert len(needed) == 33 and ("limit" in needed) == (variable == "temperature")
 
 
 @pytest.fixture
@@ -155,15 +156,15 @@ def test_heat_flow_fades_in_a_hold_where_temperature_does_not() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"adaptation_s": 0.0}, r"adaptation_s = 0 must be above 0"),
-        ({"softness_K": 0.0}, r"softness_K = 0 must be above 0"),
-        ({"forearm_factor": 0.0}, r"forearm_factor = 0 must be above 0"),
-        ({"neutral_flux": (3.0, 3.0)}, r"neutral heat flow 3 to 3 W/m² is empty"),
+        ({"adaptation_s": 0.0}, r"slow adaptation time = 0 must be above 0"),
+        ({"softness_K": 0.0}, r"softness of the limits = 0 must be above 0"),
+        ({"forearm_factor": Both(1.0, 0.0)}, r"warm threshold on the forearm = 0 must be above 0"),
+        ({"neutral_flux": Both((3.0, 3.0), (1.0, 2.0))}, r"cold neutral heat flow: 3 to 3 is empty"),
     ],
 )
-def test_a_receptor_proves_itself(change: dict[str, Any], message: str) -> None:
+def test_an_observer_proves_itself(change: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        replace(Receptor(20.0, 0.1, 2.0, 0.5), **change)
+        replace(Observer.load(), **change)
 
 
 def test_messages(observer: Observer) -> None:

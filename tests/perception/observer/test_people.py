@@ -1,6 +1,6 @@
 """People drawn at random, and the priors of the constants: every number has a source or says that it has none."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
 from thermicon.perception.observer.observer import CHANNELS, observer_records
-from thermicon.perception.observer.people import People, age_factor, people_records
+from thermicon.perception.observer.people import People, people_records
 from thermicon.perception.observer.priors import Prior, Priors, load_priors
 
 
@@ -41,7 +41,10 @@ def test_spreads_are_those_of_the_records() -> None:
 
 
 def test_people_with_one_criterion_are_otherwise_the_same() -> None:
-    young, one = draw_people(9, seed=1), draw_people(9, seed=1, spreads={"criterion between people": 0.0})
+    young, one = (
+        draw_people(9, seed=1),
+        draw_people(9, seed=1, observer=replace(Observer.load(), criterion_between=0.0)),
+    )
     assert np.all(one.criterion_cold == 1.0)
     assert np.array_equal(one.threshold_cold, young.threshold_cold)
     assert np.array_equal(one.decision_s, young.decision_s)
@@ -61,7 +64,7 @@ def test_age_raises_the_thresholds_of_each_channel_by_its_own_loss() -> None:
         ratio = getattr(old, f"threshold_{channel}") / getattr(young, f"threshold_{channel}")
         lost = observer_records().one("sensitivity lost per decade", channel=channel).central
         assert ratio == pytest.approx(np.exp(4.0 * lost))
-        assert 1.2 < age_factor(65.0, channel) < 3.0
+        assert 1.2 < Observer.load().age_factor(65.0, channel) < 3.0
     assert np.array_equal(draw_people(9, seed=2, age_years=25.0).threshold_cold, young.threshold_cold[:9])
     assert np.array_equal(old.memory, young.memory)
     assert np.array_equal(old.criterion_warm, young.criterion_warm)

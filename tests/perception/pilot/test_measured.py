@@ -4,23 +4,26 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal, norm
 
-from tests.perception.pilot.madeup import USUAL, synthetic_measurements
+from tests.perception.pilot.madeup import USUAL, measurements_of, synthetic_measurements
 from thermicon.circuit import Rig
 from thermicon.icons import read_cue
 from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
-from thermicon.perception.experiments.tasks import DISCREPANCY
+from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.pilot.conditioning import Measured, condition
 from thermicon.perception.pilot.likelihood import effective, normalised_weights
 from thermicon.perception.pilot.measurement_likelihood import (
-    log_errors,
+    Emulated,
+    Predicted,
     log_likelihood,
     person_covariance,
     predicted,
     shared_covariance,
 )
+from thermicon.perception.pilot.measurements_file import Measurements
 from thermicon.perception.pilot.observed import observed
 from thermicon.perception.pilot.states import LaboratoryPrior
 
@@ -35,33 +38,42 @@ def prior() -> LaboratoryPrior:
     return LaboratoryPrior(PosteriorDraws.load(), "episodes")
 
 
-def test_the_likelihood_is_that_of_one_normal_vector(prior: LaboratoryPrior) -> None:
-    from scipy.stats import multivariate_normal
-
-    conditions = (*USUAL[:2], RATING)
-    made = synthetic_measurements(RIG, participants=4, seed=1, conditions=conditions)
-    values, errors = made.values.copy(), made.errors.copy()
-    values[0, 1], errors[2, 0], errors[3, 2] = np.nan, 0.2, 4.0
-    some = replace(made, values=values, errors=errors)
-    each = predicted(prior, prior.first(3, 0), Setting.of(RIG), conditions)
-    assert shared_covariance(some)[2, 2] == pytest.approx(DISCREPANCY**2 + 0.7**2)
-    assert person_covariance(some, np.zeros((3, 3)))[2, 2] == pytest.approx(0.4**2, abs=1e-5)
-    found = log_likelihood(some, each)
-    people, which = np.nonzero(some.given)
-    expected = []
+def test_a_mean_of_trials_is_as_likely_as_the_trials_one_by_one() -> None:
+    """Trials that all came out at their mean; one value has an error of its own, one is missing."""
+    trials, errors = np.array([[1.0, 4.0, 16.0], [16.0, np.nan, np.nan]]), np.full((2, 3), np.nan)
+    values, errors[1, 2] = np.array([[1.1, 1.9, 40.0], [0.6, np.nan, 55.0]]), 11.0
+    some = Measurements((*USUAL[:2], RATING), ("P1", "P2"), values, errors, trials)
+    root, times = np.random.default_rng(1).normal(0.0, 0.4, (3, 3, 3)), np.nan_to_num(trials, nan=1.0)
+    means, within = np.log([[1.0, 1.6, 50.0], [0.7, 2.5, 30.0], [1.3, 1.3, 20.0]]), np.linspace(0.1, 0.8, 9)
+    each = Predicted(means, root @ root.swapaxes(1, 2), within.reshape(3, 3))
+    people, which = (np.repeat(place, times[some.given].astype(int)) for place in np.nonzero(some.given))
+    expected = np.zeros(3)
     for k in range(3):
-        error = log_errors(some, each.within[k])[people, which]
-        own = person_covariance(some, each.between[k])[np.ix_(which, which)] * (people[:, None] == people)
-        whole = own + shared_covariance(some)[np.ix_(which, which)] + np.diag(error**2)
-        expected.append(multivariate_normal(each.mean[k][which], whole).logpdf(np.log(values[people, which])))
-    np.testing.assert_allclose(np.diff(found), np.diff(expected), rtol=1e-6)
+        error = np.where(np.isnan(trials), errors / values, each.within[k])
+        whole = person_covariance(some, each.between[k])[np.ix_(which, which)] * (people[:, None] == people)
+        whole += shared_covariance(some)[np.ix_(which, which)] + np.diag(error[people, which] ** 2)
+        expected[k] = multivariate_normal(means[k, which], whole).logpdf(np.log(values[people, which]))
+        expected[k] -= ((times - 1.0) * norm.logpdf(0.0, scale=error))[some.given].sum()  # their scatter
+    np.testing.assert_allclose(np.diff(log_likelihood(some, each)), np.diff(expected), rtol=1e-6)
+
+
+def test_a_polynomial_is_as_likely_as_what_it_was_fitted_to_where_that_is_straight() -> None:
+    """Means and logs of scatter, of people and of trials, change evenly with coordinates."""
+    chance, unknown = np.random.default_rng(3), np.full((4, 2), np.nan)
+    place, slopes = chance.standard_normal((400, 3)), chance.normal(0.0, 0.2, (3, 6))
+    mean, people, within = np.split(np.log([1.2, 2.2, 0.1, 0.1, 0.05, 0.05]) + place @ slopes, 3, axis=1)
+    values = np.exp(chance.normal(0.5, 0.3, (4, 2)))
+    some = Measurements(USUAL[:2], ("P1", "P2", "P3", "P4"), values, unknown, np.ones((4, 2)))
+    each = Predicted(mean, np.exp(2.0 * people)[:, :, None] * np.eye(2), np.exp(within))
+    found = log_likelihood(some, each)
+    assert (Emulated.fit(some, place, each, np.ones(400))(place) - found).std() < 0.02 * found.std()
 
 
 def test_forced_choice_agrees_with_the_rows_of_the_evidence(prior: LaboratoryPrior) -> None:
-    values = {**prior.draws.draw(0), "thenar cold": 0.0}
-    setting = Setting("thenar", values["contact resistance of a thermode"], 9.0)
-    logs, _ = logs_of(setting.laboratory(values, (0.0, 0.0), "temperature"), setting, CHOICE)
-    plain = Laboratory(values)
+    person = prior.draws.observer(0)
+    setting = Setting("thenar", person.contact_m2K_per_W, 9.0)
+    logs, _ = logs_of(setting.laboratory(person, (0.0, 0.0)), setting, CHOICE)
+    plain = Laboratory.of(person, {"thenar": Both(0.0, 0.0)})
     size = float(np.exp(logs.mean()))
     drive = plain.drive("thenar", "cold", 32.0, [(size, -size)], size + 3.0).max()
     assert drive * plain.gain("cold", 9.0, "thenar", "hand", 25.0) == pytest.approx(1.0, rel=0.03)
@@ -74,6 +86,13 @@ def test_limits_and_times_lie_where_the_evidence_has_them(prior: LaboratoryPrior
     middle = np.exp(np.median(each.mean, axis=0))
     assert 1.4 < middle[0] < 2.5  # E3: 1.86 K
     assert 0.5 < middle[1] < 1.2  # E1, five strips
+
+
+def test_people_of_a_laboratory_scatter_as_predicted(prior: LaboratoryPrior) -> None:
+    some, setting, chance = prior.first(1, 0), Setting.of(RIG), np.random.default_rng(0)
+    made = measurements_of(prior, prior.values(some)[0], setting, USUAL[:3], 400, 10_000, chance)
+    found = np.sqrt(np.diagonal(predicted(prior, some, setting, USUAL[:3]).between[0]))
+    assert np.log(made.values).std(axis=0) == pytest.approx(found, rel=0.2)
 
 
 @pytest.mark.slow

@@ -11,7 +11,8 @@ from thermicon.circuit.records import RecordError
 from thermicon.icons import IconSet
 from thermicon.perception import rank
 from thermicon.perception.identification.laboratory import DRAWS
-from thermicon.perception.observer.draws import BETWEEN_LABORATORIES, PosteriorDraws
+from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
+from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 from thermicon.perception.observer.observer_model import ObserverModel
 from thermicon.perception.pilot.conditioning import Answered
@@ -65,6 +66,8 @@ def test_the_result_holds_what_was_asked(found: Observed[Answered, Fit], answers
     same, other = (each["before"]["proportion_correct"] for each in own["predictions"])
     assert same == other
     assert own["predictions"][0]["after"]["people"] == 24
+    widths = [np.ptp(own["predictions"][0][when]["proportion_correct"][1:]) for when in ("before", "after")]
+    assert widths[0] == pytest.approx(own["predictions"][0]["narrower"] * widths[1])
     for each in (found.fit, found.fit_after):
         assert 0.0 < each.p <= 1.0
         assert len(each.pairs) == 15
@@ -99,7 +102,7 @@ def test_memory_stands_beside_the_constants_of_each_draw(found: Observed[Answere
         column = values[:, found.prior.names.index(name)]
         assert np.allclose(np.sort(draws.memory[:, k]), np.sort(column), rtol=1e-5)
     person = draws.observer(3)
-    assert (person.memory.share, person.memory.bar, person.memory.timing) == tuple(draws.memory[3])
+    assert (person.rated_share, person.episode_bar, person.timing_noise) == tuple(draws.memory[3])
     assert draws.table(3).one("memory noise", method="episodes").central == draws.memory[3, 2]
     assert draws.table(3).one("bar of an episode").central == draws.memory[3, 1]
 

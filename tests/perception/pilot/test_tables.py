@@ -62,28 +62,34 @@ def table_of(shape: str, trials: dict[str, list[tuple[str, str]]]) -> list[str]:
     long = [(person, k, *pair) for person, pairs in trials.items() for k, pair in enumerate(pairs)]
     if shape == "wide":
         head = ",".join(f"icon_{k},answer_{k}" for k in range(12))
-        return [f"participant,{head}", *(",".join([p, *sum(pairs, ())]) for p, pairs in trials.items())]
+        return [f"who,{head}", *(",".join([p, *sum(pairs, ())]) for p, pairs in trials.items())]
     if shape == "instructions":
         rows = [f"{p},{k},{icon},{said}" for p, k, icon, said in long]
         return [HEAD, "P1,,,", "P1,read,,go on", *rows, "P2,end,null,null"]
+    if shape == "greeting":
+        rows = [",".join(map(str, row)) for row in long]
+        return ["Experiment 1, thermal icons", "who,trial,presented,responded", *rows]
+    if shape == "stimuli":
+        rows = [f"{p},{2 * k},+,null\n{p},{2 * k + 1},{icon},{said}" for p, k, icon, said in long]
+        return [HEAD.title(), "P1,-1,<p>Place your hand</p>, ", *rows]
     if shape == "restarting":
         return [HEAD, *(f"{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
     if shape == "blocks":
-        return [f"block,{HEAD}", *(f"{k // 6},{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
+        return [f"Block,{HEAD}", *(f"{k // 6},{p},{k % 6 + 1},{icon},{said}" for p, k, icon, said in long)]
     said = [*ICONS, "none"]
     pairs = [(icon, answer if answer in ICONS else "none") for *_, icon, answer in long]
     counts = [f"{icon}," + ",".join(str(pairs.count((icon, answer))) for answer in said) for icon in reversed(ICONS)]
-    return [",".join(["presented", *said]), *counts]
+    return ["Table 3: confusions", ",".join(["", *said]), *counts]
 
 
 @pytest.mark.parametrize("missing", ["", "n/a", "None", "null", "no answer", "-", "timeout"])
-@pytest.mark.parametrize("shape", ["blocks", "restarting", "wide", "instructions", "matrix"])
+@pytest.mark.parametrize("shape", ["blocks", "restarting", "wide", "instructions", "matrix", "greeting", "stimuli"])
 def test_however_an_experiment_writes_its_trials_their_scores_are_the_same(
     tmp_path: Path, shape: str, missing: str
 ) -> None:
     trials = asked_and_said(missing)
     head, *rows = table_of(shape, trials)
-    found = read_trials(written(tmp_path, *rows, head=head), ICONS)
+    found = read_trials(written(tmp_path, *rows, head=head), ICONS, {"participant": "who"})
     every = [pair for pairs in trials.values() for pair in pairs]
     pairs = [pair for pair in every if pair[1] in ICONS]
     joint, shown, said = Counter(pairs), Counter(icon for icon, _ in pairs), Counter(answer for _, answer in pairs)
@@ -94,7 +100,18 @@ def test_however_an_experiment_writes_its_trials_their_scores_are_the_same(
     assert (own.trials, own.unanswered, found.total) == (24, 24 - len(pairs), 24)
     assert found.pooled.tolist() == [[joint[a, b] for b in ICONS] for a in ICONS]
     assert (found.participants, found.grouped) == ((("all",), True) if shape == "matrix" else (("P1", "P2"), False))
-    assert found.passed == 3 * (shape == "instructions")
+    assert found.passed == {"instructions": 3, "stimuli": 25}.get(shape, 0)
+
+
+def test_an_icon_that_is_misspelt_is_no_instruction_and_per_cents_are_asked_about(tmp_path: Path) -> None:
+    with pytest.raises(
+        TrialsError, match=r"csv:3: presented is 'dipp', which is not an icon of the set; did you mean dip"
+    ):
+        read_trials(written(tmp_path, "P1,1,dip,dip", "P1,2,dipp,"), ICONS)
+    with pytest.raises(TrialsError, match=r"csv:2: presented is 'wave', which is not an icon .*; known: cool"):
+        read_trials(written(tmp_path, "P1,1,wave,wave"), ICONS)
+    with pytest.warns(UserWarning, match="sum to 100, read as counts; if they are per cents, write numbers of answers"):
+        read_trials(written(tmp_path, "dip,90.0,10", "cool-step,5,95", head=",dip,cool-step"), ICONS)
 
 
 def test_an_icon_may_be_called_none(tmp_path: Path) -> None:
@@ -123,7 +140,7 @@ def test_empty_absent_binary_and_large_files_are_refused(tmp_path: Path, monkeyp
         read_trials(path, ICONS)
     written(tmp_path, *(f"P1,{k},dip,dip" for k in range(5)))
     monkeypatch.setattr(trials_file, "MOST_ROWS", 4)
-    with pytest.raises(TrialsError, match="more than 4 rows; one experiment a file"):
+    with pytest.raises(TrialsError, match="more than 4 rows; split the file"):
         read_trials(path, ICONS)
     monkeypatch.setattr(trials_file, "MOST_MB", 1e-5)
     with pytest.raises(TrialsError, match="too large for a table of trials; the limit is 1e-05 MB"):
@@ -152,7 +169,8 @@ def test_values_units_defaults_and_gaps_are_read(tmp_path: Path, rig: Rig) -> No
 def test_a_table_of_measurements_is_recognised_by_its_header(tmp_path: Path) -> None:
     assert is_measurements(written(tmp_path, *GOOD, head=VALUES))
     assert is_measurements(written(tmp_path, head="participant;kind;channel"))
-    assert not is_measurements(written(tmp_path))
+    assert is_measurements(written(tmp_path, *GOOD, head=f"Thresholds of the winter\n\n{VALUES}"))
+    assert not is_measurements(written(tmp_path, head=f"our kind of values\n{HEAD}"))
 
 
 @pytest.mark.parametrize("row", MESSAGES["measurements"])

@@ -135,7 +135,7 @@ def test_gain_noise_spreads_what_is_detected(observer: Observer) -> None:
     """Averaged over gains by hand: a quarter of presentations at each of four sizes of drive."""
     psi = np.minimum(np.arange(400) * 0.02, 3.0)
     noisy = replace(observer, gain_noise=0.4)
-    louder = [observer.transducer.psi(np.exp(g) * observer.transducer.multiple(psi)) for g in quarters(0.4)]
+    louder = [observer.psi(np.exp(g) * observer.multiple(psi)) for g in quarters(0.4)]
     each = detect(np.stack(louder), np.zeros((4, 400)), 0.01, observer).probability
     found = detect(psi, np.zeros(400), 0.01, noisy)
     assert float(found.probability) == pytest.approx(float(each.mean()), abs=1e-6)

@@ -1,0 +1,1 @@
+"""Mechanisms of the observer: a module each, with its constants, its equation and its source."""

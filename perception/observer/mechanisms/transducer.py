@@ -1,0 +1,81 @@
+"""The transducer: drive in multiples of threshold becomes sensation in d′."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...arrays import Array, as_rows
+from ...kernels.parallel import over_rows
+from ..channels import Channel
+from ..constants import constant
+from .gain import Gain
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transducer(Gain):
+    """A power near threshold, a logarithm far above it.
+
+    Near threshold ψ ≈ u^p: p = 1 is a linear observer, p = 2 the square law of energy, under which a pedestal helps.
+    Far above it equal ratios add equally. Neither a nor p has a thermal source: both are inferred.
+    """
+
+    equation = "ψ = a·ln(1 + u^p/b), b = 1/(e^(1/a) − 1), so that ψ(1) = 1"
+    source = "amplitude differences and steps to pain for a; no thermal source of p"
+    a: float = constant("slope of sensation")
+    p: float = constant("transducer exponent")
+
+    @property
+    def b(self) -> float:
+        """Constant that makes ψ(1) = 1."""
+        return 1.0 / math.expm1(1.0 / self.a)
+
+    def psi(self, multiple: ArrayLike) -> Array:
+        """Sensation in d′ of drives in multiples of threshold (0 or more), of the same shape."""
+        return np.asarray(self.a * np.log1p(np.asarray(multiple, dtype=np.float64) ** self.p / self.b))
+
+    def multiple(self, psi: ArrayLike) -> Array:
+        """Drive in multiples of threshold whose sensation is `psi` in d′.
+
+        >>> from thermicon.perception import Observer
+        >>> Observer.load().multiple(Observer.load().psi(3.0)).round(9)
+        np.float64(3.0)
+        """
+        return np.asarray((self.b * np.expm1(np.asarray(psi, dtype=np.float64) / self.a)) ** (1.0 / self.p))
+
+    def difference_threshold(self, pedestal: ArrayLike) -> Array:
+        """Increment that adds d′ = 1 to a pedestal when nothing but sensory noise counts, in multiples of threshold."""
+        base = np.asarray(pedestal, dtype=np.float64)
+        return self.multiple(self.psi(base) + 1.0) - base
+
+    def sensation(
+        self,
+        drive: ArrayLike,
+        channel: Channel,
+        *,
+        area_m2: float | None = None,
+        site: str | None = None,
+        threshold: ArrayLike = 1.0,
+        out: Array | None = None,
+    ) -> Array:
+        """Sensation ψ in d′ units, of shape (..., n_time) like the drive (in `drive_unit`).
+
+        `area_m2` is the area of contact (None: the reference area), `site` where on the body (None: the
+        thenar); `threshold` multiplies the thresholds of this person, age included, one number or one
+        for each leading index. It is written to `out`, which may be the drive, where that is given.
+        """
+        from ...kernels import kernels
+
+        rows, shape = as_rows(drive)
+        psi = np.empty(shape) if out is None else out
+        felt = psi.reshape(rows.shape)
+        unit = self.threshold_drive.of(channel) / self.sensitivity(channel, area_m2, site)
+        multiples = np.broadcast_to(np.asarray(threshold, dtype=np.float64), shape[:-1])
+        scale = np.ascontiguousarray(1.0 / (unit * multiples)).reshape(-1)
+
+        def work(part: slice) -> None:
+            kernels.sensation(rows[part], scale[part], self.a, self.p, self.b, felt[part])
+
+        over_rows(work, rows.shape[0], rows.size)
+        return psi
