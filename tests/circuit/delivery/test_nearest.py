@@ -5,7 +5,7 @@ import pytest
 from tests.circuit.delivery.one_drive import icon_of
 from thermicon.circuit import Rig, nearest_reachable, simulate
 from thermicon.circuit.delivery.nearest import changed
-from thermicon.icons import load_library
+from thermicon.icons import load_library, parse
 
 THENAR = Rig.load("thenar")
 WEAK = THENAR.with_(**{"driver.current_limit_A": 1.0})
@@ -28,6 +28,14 @@ def test_changes_keep_their_durations_and_levels() -> None:
     slower = changed(icon, 32.0, slower=2.0).corners(32.0)
     assert slower.time_s == pytest.approx([0, 4, 5, 11, 15, 16, 22])
     assert slower.value == icon.corners(32.0).value
+
+
+def test_an_icon_that_plays_another_plays_it_as_often_as_before() -> None:
+    twice = parse(
+        "cue 1\nicon a { cool by 4 °C at 2 °C/s; return at 2 °C/s }\nicon b { play a; hold for 1 s; play a }"
+    )["b"]
+    smaller, known = changed(twice, 32.0, smaller=0.5).corners(32.0), twice.corners(32.0)
+    assert (smaller.time_s, min(smaller.value)) == (known.time_s, pytest.approx(30.0))
 
 
 def test_what_is_reached_has_none_nor_what_cannot_begin_nor_a_current() -> None:

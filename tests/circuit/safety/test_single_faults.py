@@ -15,7 +15,7 @@ from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.demanded import TEST_A, TEST_S, dose_time_s, polarity_check
 from thermicon.circuit.safety.display import DisplayPlant
 from thermicon.circuit.safety.ensemble import Ensemble, between
-from thermicon.circuit.safety.gate import Gate
+from thermicon.circuit.safety.gate import Gate, gate_set
 from thermicon.circuit.safety.held import around_C, held_C
 from thermicon.circuit.safety.repeated import Repeating
 from thermicon.circuit.safety.single_faults import Faulty, Moments
@@ -357,6 +357,9 @@ def test_a_pause_grows_until_a_cut_off_of_a_tenth_of_a_second_suffices_in_plays(
     found = gate(warm, rig, pause_s=600.0).repeated
     assert found.shortest_pause_s is not None and found.faultless_pause_s is not None
     assert found.shortest_pause_s > 2.0 * found.faultless_pause_s
+    mild = Drive([0, 0.1, 2.6], [REST, 0.9 * REST, REST], held=True)
+    for one in gate_set([(mild, REST), (warm, REST)], rig, pause_s=600.0):
+        assert one.repeated.shortest_pause_s > 0.9 * found.shortest_pause_s, "a set waits for the icon that needs most"
     plant, held = CurrentPlant.of(Ensemble.of(rig)), held_C(rig, rig.limits)
     known, rest = Repeating(plant, [[CurrentPlay(warm, REST)]], rig.limits), plant.ensemble.at_rest(REST)
 
