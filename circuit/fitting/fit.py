@@ -33,7 +33,7 @@ def fit(
     logs: Log | str | Path | Sequence[Log | str | Path],
     rig: Rig,
     *,
-    free: Sequence[str] | None = None,
+    free: str | Sequence[str] | None = None,
     offset_K: float = OFFSET_SD_K,
     fixed_skin: bool = False,
 ) -> RigFit:
@@ -47,7 +47,7 @@ def fit(
     rig
         The rig to begin with; what is not free stays as it is.
     free
-        Dotted keys to fit, such as `contact.resistance_m2K_per_W`; None for those that the logs can tell together.
+        A dotted key to fit, such as `contact.resistance_m2K_per_W`, or several; None for those that logs tell together.
     offset_K
         Standard deviation in K of what every temperature sensor may read off; 0 for calibrated sensors.
     fixed_skin
@@ -90,7 +90,7 @@ def fit(
     if free is None:
         free = _told(rig, runs, alone, offset_K, fixed_skin)
         notes.insert(0, f"no keys were named; the logs tell best {', '.join(free)}")
-    keys = free_keys(free, rig, alone)
+    keys = free_keys((free,) if isinstance(free, str) else free, rig, alone)
     begin = _explicit(rig, keys)
     problem = aligned(Problem.of(begin, keys, runs, offset_K, fixed_skin))
     check_sensors(problem)

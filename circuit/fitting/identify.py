@@ -30,6 +30,9 @@ CLOSE = 0.9
 WORSE = 1.5
 """A key is not told along with others if one of them is then known so many times worse."""
 
+WHOLE = 1.0
+"""A scale is not known to its own size: however small it was fitted, nothing is said of it."""
+
 LATE_FIRST = "first give the late column a file of its own, and fit again"
 
 
@@ -63,7 +66,7 @@ class Parameter:
         """The half width as people write it, ±3 % or ±0.4 °C."""
         if not self.log:
             return f"±{self.half_width:.2g} {'K' if self.unit == '°C' else self.unit}"
-        return f"±{100 * self.half_width:.2g} %" if self.half_width < 1.0 else "unknown"
+        return f"±{100 * self.half_width:.2g} %" if self.half_width < WHOLE else "unknown"
 
 
 def half_width(log: bool, sd: float) -> float:
@@ -91,7 +94,9 @@ def identified(
     wanting = [
         k
         for k, key in enumerate(problem.keys)
-        if not is_identified(key.log, share[k] * float(deviation[k]), key.usual) or _at_bound(problem, theta, k)
+        if not is_identified(key.log, share[k] * float(deviation[k]), key.usual)
+        or (key.log and half_width(True, float(deviation[k])) >= WHOLE)
+        or _at_bound(problem, theta, k)
     ]
     advice = dict.fromkeys(wanting, LATE_FIRST) if late else cures(problem, theta, wanting, correlation)
     parameters = []

@@ -208,6 +208,13 @@ def test_rounding_is_noise_and_a_truth_out_of_reach_is_not_known(log: Log, thena
         small = Solution(theta, 1e-6 * np.eye(len(theta)), (0.02, 0.005), (1.0, 1.0), True)
         (item,), _ = identified(far, small, true_rig)
         assert item.identified is known and bool(item.cure) is not known, share
+    contact = Problem.of(true_rig, free_keys([CONTACT], true_rig), runs_of([log], held=True))
+    for sd, known in ((0.3, True), (0.4, False)):  # fitted a third as large, and known to its own size or not
+        less = Solution(
+            contact.first - math.log(3.0), sd**2 * np.eye(len(contact.first)), (0.02, 0.005), (1.0, 1.0), True
+        )
+        (item,), _ = identified(contact, less, true_rig)
+        assert (item.identified, item.interval != "unknown") == (known, known), sd
     wide = Parameter("a", "a", "", 1.0, 1.0, 0.5, 2.0, True, True)
     assert (wide.half_width, replace(wide, low=0.9, high=1.05).half_width) == pytest.approx((1.0, 0.1))
 
