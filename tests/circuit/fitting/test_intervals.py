@@ -1,6 +1,7 @@
 """What a log knows: said before measuring, of skin that is not the rig's, and of the truth in 200 logs."""
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -101,7 +102,8 @@ def test_a_late_column_is_named_with_its_delay(log: Log, true_rig: Rig, column: 
     moved = np.interp(log.time_s - delay_s, log.time_s, log.column(column))
     found = fit(altered(log, "late.csv", **{column: moved}), true_rig, free=[CONTACT])
     word = "late" if delay_s > 0 else "early"
-    assert any(f"{column} of late.csv is {abs(delay_s):.2g} s {word} against the other" in note for note in found.notes)
+    told = [re.match(rf"{column} of late.csv is (\S+) s {word} against the other", note) for note in found.notes]
+    assert [float(each[1]) for each in told if each] == [pytest.approx(abs(delay_s), rel=0.02)]
     assert found.misfit
 
 
