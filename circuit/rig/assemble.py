@@ -8,7 +8,7 @@ from .module import Peltier
 from .modules import ModuleOrigin, module_of
 from .parts import Driver, HeatSink, PassiveSink, Probe, SinkController
 from .rigfile import HeatSinkTable, ProbeTable, RigTable, SkinTable
-from .skin import STRATUM_CORNEUM, Layer, Skin
+from .skin import STRATUM_CORNEUM, Layer, Skin, usual_depth_mm
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,17 +71,17 @@ def skin_of(table: SkinTable) -> Skin:
     )
     if table.depth_from == STRATUM_CORNEUM and layers[0].name != STRATUM_CORNEUM:
         raise ValueError(sentence("parts.depth_from", layer=STRATUM_CORNEUM, first=layers[0].name))
-    above = table.layer[0].thickness_mm if table.depth_from == STRATUM_CORNEUM else 0.0
-    return Skin(
-        table.site,
-        table.rest_C,
-        (above + table.cold_receptor_mm) * 1e-3,
-        (above + table.warm_receptor_mm) * 1e-3,
-        layers,
-        table.deep_C,
-        None if table.elements is None else tuple(table.elements),
-        table.depth_from,
+    given = (table.cold_receptor_mm, table.warm_receptor_mm)
+    own = table.depth_from is not None or any(each is not None for each in given)
+    usual_from = "surface" if own or layers[0].name != STRATUM_CORNEUM else STRATUM_CORNEUM
+    depth_from = table.depth_from or usual_from
+    above = table.layer[0].thickness_mm if depth_from == STRATUM_CORNEUM else 0.0
+    cold, warm = (
+        (above + (usual_depth_mm(channel) if each is None else each)) * 1e-3
+        for channel, each in zip(("cold", "warm"), given, strict=True)
     )
+    elements = None if table.elements is None else tuple(table.elements)
+    return Skin(table.site, table.rest_C, cold, warm, layers, table.deep_C, elements, depth_from, own)
 
 
 def probes_of(tables: Sequence[ProbeTable], thickness_m: float) -> tuple[Probe, ...]:

@@ -74,6 +74,7 @@ def carry_over(
     waits = [max(1, round((lasted + gap_s) * RATE_HZ)) for lasted in lasting]
     rows = round(end_s * RATE_HZ) + 1
     last = (max(waits) + rows) / RATE_HZ
+    rig = person.placed_in(rig)
     traces = simulate_all(list(icons), rig, end_s=last, rate_Hz=RATE_HZ)
     leaving = [_replayed(icon, rig, last) for icon in icons] if tracking == "replay" else traces
     dt, _ = uniform_clock(traces[0].time_s)

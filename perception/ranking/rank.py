@@ -113,7 +113,7 @@ def rank(
     model.people(people, seed)  # refuses fewer than one person before anything is simulated
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
-    traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
+    traces = list(simulate_all(members, nominal.placed_in(rig), end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.gap_s is None else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     # Batches need no draws, and of the shipped model nothing, which every worker has.
@@ -149,6 +149,7 @@ def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None
     whole = Nominal(ranking.proportion_correct, ranking.information_bits, felt.detected, felt.middle, onsets)
     crowd = model.people(job.people, job.seed)
     found = new_laboratory(
-        felt.thin, crowd, whole, job.norm, model=model, draws=draws, seed=job.seed, task=job.task, step=step
-    )
+        job.icons, job.rig, job.end_s, crowd, whole, job.norm,
+        tracking=job.tracking, model=model, draws=draws, seed=job.seed, task=job.task, step=step,
+    )  # fmt: skip
     return replace(ranking, new_laboratory=found)

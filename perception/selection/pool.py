@@ -59,7 +59,7 @@ class Pool:
         durations = np.array([duration_s(icon, rig) for icon in icons])
         end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
         padded = [*icons, *[icons[-1]] * (BLOCK - len(icons))]
-        traces = simulate_all(padded, rig, end_s=end, rate_Hz=rate_Hz)[: len(icons)]
+        traces = simulate_all(padded, observer.placed_in(rig), end_s=end, rate_Hz=rate_Hz)[: len(icons)]
         dt, rows = uniform_clock(traces[0].time_s)
         cold, warm = perceive_many(
             np.array([trace.cold_receptor_C[:rows] for trace in traces]),
