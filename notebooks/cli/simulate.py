@@ -154,7 +154,6 @@ def simulate_file(
 ) -> None:
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
-    from thermicon.perception import Observer
 
     icons = pick(read_set([file], rig), icon)
     pictures = [] if figure.figure is None else [figure.figure]
@@ -165,8 +164,7 @@ def simulate_file(
     near = [None if one.reachable else nearest_reachable(each, rig) for each, one in zip(icons, traces, strict=True)]
     tell(traces, rig, output, [None if found is None else found.sentence for found in near])
     for each, picture in zip(icons, pictures, strict=False):
-        met = Observer.load().placed_in(rig)
-        played = simulate(each, met, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
+        played = simulate(each, rig, tail_s=FELT_TAIL_S if tail_s is None else tail_s)
         replace(figure, figure=picture).write(felt_overview(played, rig.changes))
 
 

@@ -157,11 +157,10 @@ def _drawn(axes: Axes, said: str, caption: str) -> Picture:
 def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
     """Yield every icon: what it scores, its cue text, and an overview of its run."""
     from thermicon.circuit import simulate
-    from thermicon.perception import Observer
 
     from ..figures.overview import FELT_TAIL_S, felt_overview
 
-    members, met = list(icons), Observer.load().placed_in(rig)
+    members = list(icons)
     yield Heading("Icons")
     if len(members) > MOST_OVERVIEWS:
         yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; simulate FILE --figure OUT draws all of them.")
@@ -176,6 +175,6 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
         text = str(icon)  # without the head of its file
         yield Code(text[text.find("\nicon ") + 1 :].rstrip("\n"))
         if place < MOST_OVERVIEWS:
-            data = small_png(felt_overview(simulate(icon, met, tail_s=FELT_TAIL_S), rig.changes), OVERVIEWS)
+            data = small_png(felt_overview(simulate(icon, rig, tail_s=FELT_TAIL_S), rig.changes), OVERVIEWS)
             alt = f"temperatures, heat flow, current and sensation of {icon.name}"
             yield Picture("", alt, OVERVIEW_PIXELS, data)

@@ -145,7 +145,7 @@ def draw(icon: Icon, rig: Rig, observer: Observer, reading: Reading) -> Drawing:
     lasts = duration_s(icon, rig)
     rate = RATE_HZ if (lasts + TAIL_S) * RATE_HZ <= MOST_ROWS else float(MOST_ROWS // (lasts + TAIL_S + 1.0))
     end = math.ceil((lasts + TAIL_S) * rate - 1e-6) / rate  # on the beat, so that the clock is uniform
-    trace = simulate(icon, observer.placed_in(rig), rate_Hz=rate, tail_s=end - lasts)
+    trace = simulate(icon, rig, rate_Hz=rate, tail_s=end - lasts)
     percept = perceive(trace, observer)
     base = baseline_C(icon, rig)
     start = steady_state(rig, "display", base)[0] if icon.context.control == "current" else base
@@ -202,7 +202,7 @@ def _notes_on(drawing: Drawing, reading: Reading, rig: Rig) -> list[str]:
         notes.append(f"{drawing.icon.name} is not felt by the nominal person, who reports it in {share} of trials")
     if len(drawing.handles) == MOST_HANDLES:
         notes.append(f"only the first {MOST_HANDLES} corners can be dragged")
-    return [*notes, *drawing.rig.warnings, *drawing.percept.outside_data]
+    return [*notes, *trace.warnings, *drawing.percept.outside_data]
 
 
 def _badge(verdict: SafetyVerdict) -> Badge:

@@ -161,13 +161,13 @@ def peak_lead(variable: Variable = "temperature", *, draws: int = DRAWS, seed: i
     said = f"raised-cosine display pulse of {PULSE_K:g} K in {PULSE_S:g} s, thenar, percept clock"
 
     def lead(surface: Surface, channel: Channel, person: Observer) -> float:
-        played = _pulse(channel, person)
+        played = _pulse(channel)
         peak = perceive(played.traces[0], person).felt_peak_s(channel)
         moved = sign_of(channel) * played.surface_C(surface)[0]
         return float(np.inf) if peak is None else peak - float(played.time_s[int(moved.argmax())])
 
-    def onset(play: Callable[[Channel, Observer], Stimulus], channel: Channel, person: Observer) -> float:
-        found = perceive(play(channel, person).traces[0], person)
+    def onset(play: Callable[[Channel], Stimulus], channel: Channel, person: Observer) -> float:
+        found = perceive(play(channel).traces[0], person)
         return float(np.inf) if found.onset_s is None else found.onset_s - person.decision_s
 
     asked = [Asked("felt peak minus the display's", c, "s", said, partial(lead, "display", c)) for c in CHANNELS]
@@ -193,7 +193,7 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
         keen = replace(person, criterion=criterion, unhurried=criterion)
         size = measured(setting, _threshold("yes_no", channel, hold_s=HOLD_S), keen)
         start = round(size + HOLD_S, 2)
-        played = _thenar("skin", person).play([ramp(channel, size, 1.0, HOLD_S, back=True)], start + HOLD_S + 2.0)
+        played = _thenar("skin").play([ramp(channel, size, 1.0, HOLD_S, back=True)], start + HOLD_S + 2.0)
         cold, warm = (psi[0] for psi in played.felt(keen))
         after = (warm if channel == "cold" else cold)[round(start / played.dt_s) :]
         return float(detect(after, np.zeros_like(after), played.dt_s, keen).probability)
@@ -202,15 +202,16 @@ def first_and_return(variable: Variable = "temperature", *, draws: int = DRAWS, 
     return predict("step and return near threshold", asked, variable, draws, seed)
 
 
-@lru_cache(maxsize=64)
-def _pulse(channel: Channel, person: Observer) -> Stimulus:
-    return _thenar("display", person).play([raised_cosine(channel, PULSE_K, PULSE_S)], PULSE_S + 4.0)
+@lru_cache(maxsize=2)
+def _pulse(channel: Channel) -> Stimulus:
+    return _thenar("display").play([raised_cosine(channel, PULSE_K, PULSE_S)], PULSE_S + 4.0)
 
 
-@lru_cache(maxsize=64)
-def _steep(channel: Channel, person: Observer) -> Stimulus:
-    return _thenar("display", person).play([ramp(channel, STEEP_K, STEEP_K_PER_S, 2.0)], 4.0)
+@lru_cache(maxsize=2)
+def _steep(channel: Channel) -> Stimulus:
+    return _thenar("display").play([ramp(channel, STEEP_K, STEEP_K_PER_S, 2.0)], 4.0)
 
 
-def _thenar(surface: Surface, person: Observer) -> Bench:
-    return Bench(person.placed_in(Rig.load("thenar")), surface=surface)
+@lru_cache(maxsize=2)
+def _thenar(surface: Surface) -> Bench:
+    return Bench(Rig.load("thenar"), surface=surface)

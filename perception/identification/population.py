@@ -15,7 +15,8 @@ from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.detection import Detection, detect
-from ..sensation.percept import perceive_many, uniform_clock
+from ..sensation.percept import perceive_many
+from ..sensation.received import uniform_clock
 from .confusion import NAMED_SAMPLES, SAMPLES, Confusion, confuse, name_directly
 from .depths import between
 from .episodes import Episodes, episode_distances

@@ -18,7 +18,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, source_of
+from ..observer.channels import source_of
 from ..observer.constants import QUANTITIES
 from ..observer.mechanisms.memory import NOISE
 from ..observer.observer import NORMS, Norm, Observer
@@ -97,15 +97,14 @@ def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, floa
     fraction = known.one("rate Weber fraction").central
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     for rate, span in itertools.product(rates, spans):
-        played = _pair(observer.placed_in(Rig.load(RIG)), span, rate, rate * (1.0 + fraction))
-        at_cold, at_warm = (played.received(observer.variable, channel) for channel in CHANNELS)
-        yield *perceive_many(at_cold, at_warm, played.dt_s, observer), played.dt_s
+        played = _pair(span, rate, rate * (1.0 + fraction))
+        yield *perceive_many(*played.received(observer), played.dt_s, observer), played.dt_s
 
 
 @lru_cache(maxsize=64)
-def _pair(rig: Rig, span_K: float, slow: float, fast: float) -> Stimulus:
+def _pair(span_K: float, slow: float, fast: float) -> Stimulus:
     end = round(span_K / slow + TAIL_S, 2)
-    return Bench(rig).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)
+    return Bench(Rig.load(RIG)).play([ramp("cold", span_K, rate) for rate in (slow, fast)], end)
 
 
 def _root_mean_square(values: Sequence[float]) -> float:

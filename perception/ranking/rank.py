@@ -113,7 +113,7 @@ def rank(
     model.people(people, seed)  # refuses fewer than one person before anything is simulated
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
-    traces = list(simulate_all(members, nominal.placed_in(rig), end_s=end, rate_Hz=RATE_HZ))
+    traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.gap_s is None else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
     # Batches need no draws, and of the shipped model nothing, which every worker has.

@@ -44,7 +44,7 @@ def onset_stages(icons: Iterable[Icon], rig: Rig) -> tuple[OnsetStages, ...]:
     whole = Observer.load()
     stages = []
     for icon in icons:
-        trace = simulate(icon, whole.placed_in(rig))
+        trace = simulate(icon, rig)
         path_m = whole.path_m(trace.site)
         felt, late = perceive(trace, whole), perceive(trace, _as_at_the_leg(whole, path_m))
         if felt.onset_s is None or felt.channel is None or late.onset_s is None:

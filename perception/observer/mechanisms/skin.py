@@ -28,10 +28,6 @@ class Skin(Mechanism):
         above_m = self.corneum_share * corneum_m
         return Both(above_m + self.depth_m.cold, above_m + self.depth_m.warm)
 
-    def placed_in(self, rig: Rig) -> Rig:
-        """The rig with this person's receptors in its skin, where its file does not place them."""
-        return rig.with_(**depth_keys(rig, self.depths_m(rig.skin.corneum_m)))
-
 
 def depth_keys(rig: Rig, depths_m: Both[float]) -> dict[str, float | str]:
     """Keys of a rig's skin with receptors at depths below its face; none where the rig places its own."""
