@@ -88,8 +88,10 @@ class Observer(
         What sensitivity depends on: age (ln), area in m², and site.
     limit_C, softness_K, integration_s, adaptation_s, neutral_C, neutral_flux
         Limits of quality in °C and their softness in K; time constants, s; range of complete adaptation, °C and W/m².
-    depth_m, contact_m2K_per_W, effusivity
-        Skin of laboratories: depths of receptors, m, contact resistance, and a multiple.
+    corneum_share, depth_m
+        Where receptors lie: share of the stratum corneum that counts, and depth below it, m.
+    contact_m2K_per_W, effusivity
+        Skin of laboratories: contact resistance, and a multiple.
 
     Raises
     ------
