@@ -164,7 +164,7 @@ class Laboratory:
         constants, (raised, cautions) = self.constants, self._lanes[channel]
         times, risen = np.empty((raised.size, SHARES.size)), drive[samples] ** constants.p / constants.b
         passed = passage(
-            risen, DT_S * samples, gain**constants.p * raised, constants.a, criterion * cautions,
+            risen, DT_S * samples, gain**constants.p * raised, constants.a, constants.criteria(criterion, cautions),
             constants.noise_correlation_s, SHARES, times,
         )  # fmt: skip
         return times.reshape(-1, TRIALS), passed.reshape(-1, SHARES.size)
