@@ -63,6 +63,22 @@ def reaction_times(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     yield ("E1", "rt_cold_warm_correlation_5strip_onset_clock", "both"), both
 
 
+STRIPS = range(1, 6)
+
+
+def quality_in_haste(laboratory: Laboratory, *, compared: bool = True) -> Iterator[tuple[Key, float]]:
+    """E8: the task of E1, and how often its answers name the wrong quality, in the mean over its areas."""
+    gains = {
+        channel: [laboratory.gain(channel, n * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"]) for n in STRIPS]
+        for channel in CHANNELS
+    }
+    for (channel, (rate, size)), other in zip(RAMPS.items(), reversed(CHANNELS), strict=True):
+        played = Played.of(laboratory, Ramp("forearm", channel, 31.0, size, rate, 6.0))
+        both = zip(gains[channel], gains["warm"], strict=True)
+        shares = [float(played.misnamed(*each, "forearm", compared=compared).mean()) for each in both]
+        yield ("E8", f"share_{channel}_called_{other}_all_fast", channel), sum(shares) / len(shares)
+
+
 def _correlation(first: Array, second: Array) -> float:
     return float(np.corrcoef(first, second)[0, 1])
 
