@@ -47,7 +47,9 @@ WORDS = {
     "choice": "choice reaction time",
     "simple": "simple reaction time",
     "magnitude": "rating",
+    "wrong_quality": "wrong quality of a speeded choice",
 }
+"""Methods in words, and the kind whose method does not say what is asked."""
 OWN = "own"
 """Name of the laboratory whose offset is the user's."""
 SITES = ("thenar", "forearm", "hand-dorsum", "fingertip")
@@ -115,7 +117,7 @@ class Condition:
     @property
     def words(self) -> str:
         """How it is asked, in words."""
-        return "wrong quality of a speeded choice" if self.kind == "wrong_quality" else WORDS[self.method]
+        return WORDS.get(self.kind, WORDS[self.method])
 
     @property
     def label(self) -> str:
@@ -208,8 +210,7 @@ def misnamed_of(laboratory: Laboratory, setting: Setting, condition: Condition) 
     about = setting.site_rig, condition.channel, condition.baseline_C, condition.size_K, condition.rate_K_per_s
     played = Played.of(laboratory, Ramp.held(*about, max(condition.hold_s, AFTER_S)))
     shares = played.misnamed(Both(cold, warm).of(condition.channel), warm, setting.path_site)
-    median = float(np.median(shares))
-    return shares, math.sqrt(median * (1.0 - median))
+    return shares, float(np.median(np.sqrt(shares * (1.0 - shares))))
 
 
 @dataclass(frozen=True, slots=True)

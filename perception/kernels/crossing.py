@@ -117,8 +117,7 @@ def _outrun(
     kept = math.exp(-0.5 * h * h)
     rise, sd = math.sqrt(0.5 * math.pi) * h, math.sqrt(2.0 + kept * kept * ((1.0 - 0.5 * math.pi) * h * h - 1.0))
     steps, logs, room = np.empty(samples), np.empty(samples), np.empty((2, SAMPLES_AT_ONCE + 1))
-    for t in range(1, samples):
-        steps[t] = time[t] - time[t - 1]
+    steps[1:] = time[1:] - time[:-1]
     for lane in range(raised.size):
         c, o = criterion[lane], other[lane]
         logs[0] = math.log(cumulative(c))
@@ -135,8 +134,7 @@ def _outrun(
             quiet, before = still, decided
             if log_left < SURE or seldom:
                 break
-        guessed = 0.5 * quiet * math.exp(logs[samples - 1]) if logs[samples - 1] > SURE else 0.0
-        wrong[lane] = share + guessed
+        wrong[lane] = share + (0.5 * quiet * math.exp(logs[samples - 1]) if logs[samples - 1] > SURE else 0.0)
 
 
 def _first_below_index(falling: Any, level: float, end: int) -> int:

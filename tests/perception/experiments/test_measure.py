@@ -88,7 +88,7 @@ def test_floor_and_comparison_keep_noise_from_naming_and_labels_rename_cold() ->
     cold, warm = shares(criterion_floor=2.4)
     assert 0.001 < warm < 0.02
     (_, free), (_, alone), (_, slow) = shares(compared=False), shares(), shares(choice_s=0.5)
-    assert free > 0.04 and free > alone > warm and slow < alone
+    assert free > 3.0 * warm and free > alone > warm and slow < alone
     renamed, same = shares(criterion_floor=2.4, wrong_labels=Observer.load().wrong_labels - 0.045)
     assert (cold - renamed, warm - same) == pytest.approx((0.045, 0.0), abs=0.002)
 
