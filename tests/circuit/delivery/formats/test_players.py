@@ -18,6 +18,7 @@ from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
 from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
+from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
 from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import Icon, load_library
@@ -224,11 +225,16 @@ class TestVolts:
         )
 
     def test_more_rows_than_a_table_holds_are_refused(self, monkeypatch: pytest.MonkeyPatch, ni: Bench) -> None:
-        monkeypatch.setattr("thermicon.circuit.delivery.formats.psychopy.MOST_ROWS", 100)
-        with pytest.raises(
-            FormatError, match=r"a row for each update, at most 100; there are 802 at 100 Hz: use a dev"
-        ):
-            load_format("psychopy").write(ni.ready.delivery)
+        """A minute at 16 kHz is written, and at 17 kHz is not."""
+        monkeypatch.setattr("thermicon.circuit.delivery.formats.psychopy.write_rows", lambda _, rows: bytes(len(rows)))
+        found = ni.ready.delivery
+
+        def a_minute_at(hertz: int) -> DeliveredDrive:
+            return replace(found, rate_Hz=hertz, played=replace(found.played, codes=np.zeros(60 * hertz, np.int64)))
+
+        assert len(load_format("psychopy").write(a_minute_at(16_000))) == 960_000
+        with pytest.raises(FormatError, match=r"at most 1,000,000; there are 1,020,000 at 17000 Hz: use a device"):
+            load_format("psychopy").write(a_minute_at(17_000))
 
     @pytest.mark.parametrize(
         ("row", "column", "cell", "words"),
