@@ -148,6 +148,18 @@ def test_a_cut_off_keeps_the_limit_with_a_sensor_wrong_by_0_3_K_and_asks_for_no_
     assert check.since_s is not None and 0.0 < check.since_s < check.time_s < 1.0, "the skin is hottest once it is cut"
 
 
+def test_a_loop_that_swings_when_one_update_late_is_told_to_be_quicker_and_a_weaker_one_is_not() -> None:
+    shape, controller = "cool by 3 °C at 2 °C/s; hold for 1 s; return at 2 °C/s", Device.load("closed-loop-controller")
+    delays_s = []
+    for kp in (2.5, 1.0):
+        gains = {"kp_A_per_K": kp, "ki_A_per_Ks": 0.25 * kp}
+        rig = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5}, controller=gains)
+        found = worst_case(deliver(icon_of(shape), rig, controller))
+        assert found.safe and found.demands.loop is not None, found.reason
+        delays_s.append(found.demands.loop.delay_at_most_s)
+    assert delays_s[0] < 0.05 <= delays_s[1]
+
+
 @pytest.mark.slow
 def test_controllers_inside_the_demands_stay_inside_every_limit() -> None:
     written, played, unsafe, number = 0, 0, [], 100
