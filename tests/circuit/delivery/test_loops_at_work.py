@@ -152,7 +152,7 @@ def test_a_loop_that_swings_when_one_update_late_is_told_to_be_quicker_and_a_wea
     shape, controller = "cool by 3 °C at 2 °C/s; hold for 1 s; return at 2 °C/s", Device.load("closed-loop-controller")
     delays_s = []
     for kp in (2.5, 1.0):
-        gains = {"kp_A_per_K": kp, "ki_A_per_Ks": 0.25 * kp}
+        gains = {"kp_A_per_K": kp, "ki_A_per_Ks": 0.25 * kp, "lag_s": 0.1}
         rig = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5}, controller=gains)
         found = worst_case(deliver(icon_of(shape), rig, controller))
         assert found.safe and found.demands.loop is not None, found.reason
