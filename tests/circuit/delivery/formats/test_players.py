@@ -18,8 +18,7 @@ from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
 from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
-from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import Icon, load_library
 
@@ -223,18 +222,6 @@ class TestVolts:
         fast.stops(
             r"row \d+: at \d\.\d+ s, where rows at one rate from 0 s on have .* give a drive with a row for each"
         )
-
-    def test_more_rows_than_a_table_holds_are_refused(self, monkeypatch: pytest.MonkeyPatch, ni: Bench) -> None:
-        """A minute at 16 kHz is written, and at 17 kHz is not."""
-        monkeypatch.setattr("thermicon.circuit.delivery.formats.psychopy.write_rows", lambda _, rows: bytes(len(rows)))
-        found = ni.ready.delivery
-
-        def a_minute_at(hertz: int) -> DeliveredDrive:
-            return replace(found, rate_Hz=hertz, played=replace(found.played, codes=np.zeros(60 * hertz, np.int64)))
-
-        assert len(load_format("psychopy").write(a_minute_at(16_000))) == 960_000
-        with pytest.raises(FormatError, match=r"at most 1,000,000; there are 1,020,000 at 17000 Hz: use a device"):
-            load_format("psychopy").write(a_minute_at(17_000))
 
     @pytest.mark.parametrize(
         ("row", "column", "cell", "words"),
