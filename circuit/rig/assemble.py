@@ -8,7 +8,7 @@ from .module import Peltier
 from .modules import ModuleOrigin, module_of
 from .parts import Driver, HeatSink, PassiveSink, Probe, SinkController
 from .rigfile import HeatSinkTable, ProbeTable, RigTable, SkinTable
-from .skin import STRATUM_CORNEUM, Layer, Skin
+from .skin import STRATUM_CORNEUM, Layer, Skin, usual_depth_mm
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,19 +69,22 @@ def skin_of(table: SkinTable) -> Skin:
         )
         for layer in table.layer
     )
-    if table.depth_from == STRATUM_CORNEUM and layers[0].name != STRATUM_CORNEUM:
+    horny = layers[0].name == STRATUM_CORNEUM
+    if table.depth_from == STRATUM_CORNEUM and not horny:
         raise ValueError(sentence("parts.depth_from", layer=STRATUM_CORNEUM, first=layers[0].name))
-    above = table.layer[0].thickness_mm if table.depth_from == STRATUM_CORNEUM else 0.0
-    return Skin(
-        table.site,
-        table.rest_C,
-        (above + table.cold_receptor_mm) * 1e-3,
-        (above + table.warm_receptor_mm) * 1e-3,
-        layers,
-        table.deep_C,
-        None if table.elements is None else tuple(table.elements),
-        table.depth_from,
-    )
+    given = (table.cold_receptor_mm, table.warm_receptor_mm)
+    own = table.depth_from is not None or given != (None, None)
+    depth_from = table.depth_from or ("surface" if own or not horny else STRATUM_CORNEUM)
+    corneum_mm = table.layer[0].thickness_mm if horny else 0.0
+
+    def depth_m(channel: str, given_mm: float | None) -> float:
+        usual = given_mm is None and table.depth_from is None
+        above_mm = corneum_mm if usual or depth_from == STRATUM_CORNEUM else 0.0
+        return (above_mm + (usual_depth_mm(channel) if given_mm is None else given_mm)) * 1e-3
+
+    cold, warm = (depth_m(*each) for each in zip(("cold", "warm"), given, strict=True))
+    elements = None if table.elements is None else tuple(table.elements)
+    return Skin(table.site, table.rest_C, cold, warm, layers, table.deep_C, elements, depth_from, own)
 
 
 def probes_of(tables: Sequence[ProbeTable], thickness_m: float) -> tuple[Probe, ...]:

@@ -123,7 +123,9 @@ def _slips(rig: Rig) -> Iterator[str]:
 
 
 def _skin(rig: Rig) -> Iterator[str]:
-    """Heat loss and blood."""
+    """Receptors that an observer does not place, heat loss and blood."""
+    if rig.skin.own:
+        yield sentence("warnings.receptors")
     loss_W_per_m2 = -rig.resting_flux_W_per_m2
     if loss_W_per_m2 > HIGH_RESTING_FLUX_W_PER_M2:
         yield sentence("warnings.flux", loss=loss_W_per_m2, most=HIGH_RESTING_FLUX_W_PER_M2)

@@ -165,9 +165,9 @@ class SkinTable(KeyTable):
 
     site: Text
     rest_C: Annotated[float, Field(ge=10, le=45)]
-    cold_receptor_mm: Millimetres
-    warm_receptor_mm: Millimetres
-    depth_from: Literal["surface", "stratum corneum"] = "surface"
+    cold_receptor_mm: Millimetres | None = None
+    warm_receptor_mm: Millimetres | None = None
+    depth_from: Literal["surface", "stratum corneum"] | None = None
     deep_C: Celsius | None = None
     elements: list[Annotated[int, Field(ge=1, le=200)]] | None = None
     layer: Annotated[list[LayerTable], Field(min_length=1, max_length=MOST_LAYERS)]

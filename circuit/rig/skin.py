@@ -33,6 +33,13 @@ def layer_spreads() -> Table:
     return load_records(resources.files("thermicon.circuit") / "data" / "skin-spread.toml")
 
 
+@cache
+def usual_depth_mm(channel: str) -> float:
+    """Depth of the cold or warm receptors in mm where nobody places them: from the base of the stratum corneum."""
+    records = load_records(resources.files("thermicon.circuit") / "data" / "receptor-depths.toml")
+    return records.one("receptor depth", channel=channel).central
+
+
 @dataclass(frozen=True, slots=True)
 class Layer:
     """One layer of tissue; thickness m, conductivity W/(m·K), density kg/m³, capacity J/(kg·K), perfusion 1/s."""
@@ -51,7 +58,8 @@ class Skin:
 
     `rest_C` is the bare surface at rest. `deep_C` fixes deep tissue and blood; None: solved from the heat balance.
     `elements` gives a fixed number of elements per layer (T-sections) instead of the graded mesh.
-    The depths of the receptors count from the surface here; `depth_from` is how the rig file counts them.
+    The depths of the receptors count from the surface here; `depth_from` is how the rig file counts them, and `own`
+    whether it places them at all: otherwise they lie where receptors usually do, until an observer places its own.
     """
 
     site: str
@@ -62,6 +70,7 @@ class Skin:
     deep_C: float | None = None
     elements: tuple[int, ...] | None = None
     depth_from: str = "surface"
+    own: bool = False
 
     def __post_init__(self) -> None:
         thickness, above, below = self.thickness_m, 0.0, ""

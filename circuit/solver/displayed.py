@@ -144,6 +144,7 @@ def trace_of_display(
         hot_plate_C=nothing.copy(),
         probes=tuple((name, _at(rows, times, row)) for name, row in probes),
         limits=rig.limits,
+        rig=rig,
         **felt,
     )
 

@@ -212,6 +212,7 @@ def _trace(
         target_C=target,
         probes=own_probes,
         limits=rig.limits,
+        rig=rig,
         **values,
     )
 

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+    from ..rig.rig import Rig
+
 
 COLUMNS = ("icon", "time_s", "current_A", "voltage_V", "target_C", *RECORDED)
 """Columns of a trace file, in order."""
@@ -133,6 +135,8 @@ class Trace:
         Name and temperature (rows,) in °C of every probe of the rig, in the order of its file.
     limits
         Limits of safety of the rig; None: the shipped ones.
+    rig
+        The rig, in whose skin an observer places its receptors; None: they are where the columns say.
 
     Examples
     --------
@@ -166,6 +170,7 @@ class Trace:
     heat_flow_warm_receptor_W_per_m2: Array
     probes: tuple[tuple[str, Array], ...] = ()
     limits: Limits | None = None
+    rig: Rig | None = None
 
     def __post_init__(self) -> None:
         for name, array in (*((name, getattr(self, name)) for name in COLUMNS[1:]), *self.probes):

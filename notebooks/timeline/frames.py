@@ -79,7 +79,7 @@ def frame_of(scene: Scene, points: int = MOST_POINTS) -> CanvasFrame:
     >>> [panel["key"] for panel in made.meta["panels"]], made.meta["time"]["n"], len(made.buffers)
     (['temperature', 'heat', 'current', 'sensation'], 1401, 11)
     """
-    from thermicon.perception.sensation.percept import uniform_clock
+    from thermicon.perception.sensation.received import uniform_clock
 
     badge = scene.badge
     meta: dict[str, Any] = {

@@ -12,6 +12,7 @@ from thermicon.circuit.records import Record, Table, dump_records
 from thermicon.circuit.solver.network import network_of
 from thermicon.circuit.solver.steady import steady_state
 
+from ..experiments.published import STRIPS
 from ..identification.task import memory_noise, memory_record
 from ..observer.channels import CHANNELS, VARIABLES, Channel, Variable, receptor_column, source_of
 from ..observer.constants import names_of, quantity_of, record_of
@@ -92,9 +93,6 @@ def _taken_over(known: Table) -> tuple[Record, ...]:
         *(record_of(known, Observer, field) for field in same),
         *(_mean_rating(channel) for channel in CHANNELS),
     )
-
-
-STRIPS = range(1, 6)
 
 
 def _mean_rating(channel: Channel) -> Record:

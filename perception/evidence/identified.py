@@ -23,12 +23,14 @@ from thermicon.circuit import Rig
 
 from ..arrays import Array
 from ..identification.confusion import SAMPLES, normalised
+from ..identification.depths import rungs
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, USUAL_NORM, VARIABLES, Variable, receptor_column
+from ..observer.channels import CHANNELS, USUAL_NORM, Variable, receptor_column
+from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
@@ -80,20 +82,28 @@ class Identified:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A set that was played to many people; `identify` then asks one variant of the observer."""
+    """A set that is played to many people; `identify` asks one variant of the observer."""
 
-    labels: tuple[str, ...]
+    icons: tuple[Icon, ...]
+    rig: Rig
+    end_s: float
     crowd: People
-    played: tuple[ReceptorTemperatures, ...]
     seed: int
     baseline: Array
 
     def identify(self, variable: Variable, draws: int) -> Identified:
         """Confusions of one variant from memory."""
-        played = self.played[VARIABLES.index(variable)]
-        few = self.crowd.part(0, people_for_intervals(len(self.labels)))
-        thin = played.thinned(len(few), EVERY)
-        nominal = Observer.load(variable=variable)
+        labels, rig = tuple(icon.name for icon in self.icons), self.rig
+        few = self.crowd.part(0, people_for_intervals(len(labels)))
+        nominal, others = Observer.load(variable=variable), plausible_laboratories(max(draws, 2), self.seed, variable)
+        depths_m = rungs([nominal, *(others.at(k, 1)[0] for k in range(len(others)))], few.corneum_m(rig))
+        cold, warm = (receptor_column(variable, channel) for channel in CHANNELS)
+        played = ReceptorTemperatures.simulated(
+            self.icons, self.crowd, rig, nominal, self.end_s, RATE_HZ, None, (cold, warm)
+        )
+        thin = ReceptorTemperatures.at_depths(
+            self.icons, few, rig, depths_m, self.end_s, RATE_HZ / EVERY, None, (cold, warm)
+        )
 
         def confusions(at: ReceptorTemperatures, observer: Observer, people: People, samples: int) -> Array:
             felt = respond(at, people, observer, detection=False)
@@ -101,38 +111,30 @@ class Shown:
             return probability
 
         whole = confusions(played, nominal, self.crowd, SAMPLES)
-        kept = np.zeros((0, *whole.shape))
-        if draws:
-            others = plausible_laboratories(draws, self.seed, variable)
-            invited = others.invited(len(few))
+        invited = others.invited(len(few))
 
-            def drawn(k: int) -> Array:
-                found: Array = confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
-                return found
+        def drawn(k: int) -> Array:
+            found: Array = confusions(thin, *others.at(k, len(few)), FEW_SAMPLES)[invited[k]]
+            return found
 
-            kept = np.stack(list(in_order(drawn, range(draws))))
+        each = list(in_order(drawn, range(draws)))
+        kept = np.stack(each) if each else np.zeros((0, *whole.shape))
         alone = confusions(thin, nominal, few, FEW_SAMPLES)
-        return Identified(variable, self.labels, whole, alone, kept, self.baseline)
+        return Identified(variable, labels, whole, alone, kept, self.baseline)
 
 
 def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
-    """Play icons to virtual people, each on their own skin and contact, as `rank` does."""
+    """Icons to play to virtual people, each on their own skin and contact, as `rank` does."""
     from thermicon.circuit import simulate_many
     from thermicon.circuit.solver.simulate import duration_s
 
-    members, crowd = list(icons), draw_people(people, seed)
-    names = tuple(icon.name for icon in members)
+    members, crowd = tuple(icons), draw_people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
-    columns = [[receptor_column(variable, channel) for channel in CHANNELS] for variable in VARIABLES]
-    probes = [SKIN, *(probe for pair in columns for probe in pair)]
-    batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=probes)
-    played = tuple(
-        ReceptorTemperatures(batch[cold], batch[warm], batch.time_s, rig.site, rig.contact.area_m2, names)
-        for cold, warm in columns
-    )
+    rigs = crowd.rigs(rig, [Both(rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)] * people)
+    batch = simulate_many(members, rigs, nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=[SKIN])
     rows = [round(each * RATE_HZ) + 1 for each in durations]
-    return Shown(names, crowd, played, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
+    return Shown(members, rig, end, crowd, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
 
 
 def correct(probability: Array) -> float:

@@ -11,15 +11,12 @@ from functools import lru_cache
 
 import numpy as np
 
-from thermicon.circuit import Rig
-
 from ..arrays import Array
 from ..experiments.laboratory import PEOPLE, SEED, Laboratory
 from ..experiments.measure import Setting
 from ..identification.laboratory_draws import DrawnLaboratories
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, USUAL_NORM, Variable
-from ..observer.constants import Both
 from ..observer.draws import PosteriorDraws
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, variant_records
@@ -60,9 +57,7 @@ def laboratory_of(
 ) -> Laboratory:
     """A laboratory without an offset that asks this person alone, or `people` of an age, on the skin of a rig."""
     # The skin is the rig's own; age is an offset of sensitivity, in natural logarithms.
-    skin = Rig.load(setting.site_rig).skin
-    depth_m = Both(*(each - skin.layers[0].thickness_m for each in (skin.cold_receptor_m, skin.warm_receptor_m)))
-    met = replace(person, depth_m=depth_m, effusivity=1.0)
+    met = replace(person, effusivity=1.0)
     older = [-math.log(person.age_factor(age_years, channel)) for channel in CHANNELS]
     made = setting.laboratory(met, older, people or PEOPLE, seed)
     return made if people is not None else replace(made, people=People.nominal(PEOPLE, person))

@@ -30,8 +30,10 @@ class Warming:
     warm_receptor_W_per_m2: Array
 
 
-def radiant_warming(rig: Rig) -> Warming:
+def radiant_warming(rig: Rig, depth_m: float) -> Warming:
     """Warming of a rig's bare skin by 1 W/m² that is absorbed at its surface for RADIANT_S; it rises with the flux.
+
+    `depth_m` is that of the warm receptors.
 
     To the skin it is a display behind the film of air that became warmer by one over the film's conductance. A
     ValueError names a rig whose column has no lump in the surface.
@@ -39,7 +41,7 @@ def radiant_warming(rig: Rig) -> Warming:
     if rig.column.resistance_m2K_per_W[0] > 0.0:
         raise ValueError(f"rig {rig.name} has no lump in the surface: leave out skin.elements for radiant heat")
     behind = 1.0 / rig.ambient.film_W_per_m2K
-    skin = thermode_modes(rig, (0.0, rig.skin.warm_receptor_m), behind)
+    skin = thermode_modes(rig, (0.0, depth_m), behind)
     times_s: Array = DT_S * np.arange(round(RADIANT_S / DT_S) + 1, dtype=np.float64)
     change = skin.relax(times_s, skin.deep_C + behind, skin.steady(skin.deep_C)) - skin.offset_C[:, np.newaxis]
     surface_K, receptor_K, _, receptor_W_per_m2 = change
@@ -55,7 +57,7 @@ def whole_body_warmth(
     a thermode to the whole body, far beyond the areas it was measured on, and without any. The rise of the
     surface that goes with a flux is given beside, to set the published 6.3 W/m² against 0.003 °C.
     """
-    rig, warmed = _forearm()
+    rig, warmed = _forearm(Observer.load(variable=variable))
     body = load_thresholds().one("area of the body").central
     factor = 1.0 / Observer.load(variable=variable).sensitivity("warm", None, rig.site)
     said = (
@@ -74,7 +76,7 @@ def whole_body_warmth(
 
 def _flux_felt(area_m2: float | None, observer: Observer) -> float:
     """Flux whose largest warm sensation is 1, by bisection of its logarithm."""
-    rig, warmed = _forearm()
+    rig, warmed = _forearm(observer)
     rest, change = rig.skin.rest_C, warmed.warm_receptor_K
     if observer.variable == "heat flow":
         rest, change = rig.resting_flux_W_per_m2, warmed.warm_receptor_W_per_m2
@@ -87,7 +89,7 @@ def _flux_felt(area_m2: float | None, observer: Observer) -> float:
     return float(np.sqrt(low * high))
 
 
-@lru_cache(maxsize=1)
-def _forearm() -> tuple[Rig, Warming]:
+@lru_cache(maxsize=64)
+def _forearm(observer: Observer) -> tuple[Rig, Warming]:
     rig = Rig.load("forearm")
-    return rig, radiant_warming(rig)
+    return rig, radiant_warming(rig, observer.depths_m(rig.skin.corneum_m).warm)

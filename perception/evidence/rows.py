@@ -185,6 +185,20 @@ LEAST = 0.01
 """No row is taken for more certain than this, on its own scale."""
 
 
+HASTE_DISCREPANCY = 0.003
+"""What a model of this kind may miss a share of wrong qualities by; assumed."""
+
+
+def in_haste(evidence: Evidence) -> list[Row]:
+    """Shares of wrong qualities in a speeded choice, over all areas."""
+    rows = []
+    for channel, wrong in zip(CHANNELS, ("cold called warm", "warm called cold"), strict=True):
+        found = evidence.find("E8", f"share_{wrong.replace(' ', '_')}_all_fast", channel)
+        sd = math.hypot(found.se, HASTE_DISCREPANCY)
+        rows.append(Row(("E8", found.statistic, channel), found.value, sd, False, found.unit, f"{wrong} in haste"))
+    return rows
+
+
 def _from_thresholds() -> list[Row]:
     table, rows = load_thresholds(), []
     for channel in CHANNELS:

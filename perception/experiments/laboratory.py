@@ -31,6 +31,8 @@ DT_S = 0.025
 """Step of drives: times of answers are interpolated within it."""
 RAMP_GROWTH, HOLD_GROWTH = 0.03, 0.1
 """Steps in which passages are counted, as shares of the time since the last corner, where that is more than DT_S."""
+EVERY = 4
+"""Of so many samples one is enough for the noise of a channel that is at rest."""
 LEAST_ROWS = 600
 """Samples of a response to a ramp that are computed at once: most stimuli take no more."""
 FEEBLE = 1e-9
@@ -164,10 +166,35 @@ class Laboratory:
         constants, (raised, cautions) = self.constants, self._lanes[channel]
         times, risen = np.empty((raised.size, SHARES.size)), drive[samples] ** constants.p / constants.b
         passed = passage(
-            risen, DT_S * samples, gain**constants.p * raised, constants.a, criterion * cautions,
+            risen, DT_S * samples, gain**constants.p * raised, constants.a, constants.criteria(criterion, cautions),
             constants.noise_correlation_s, SHARES, times,
         )  # fmt: skip
         return times.reshape(-1, TRIALS), passed.reshape(-1, SHARES.size)
+
+    def outrun(
+        self, drive: Array, samples: Samples, channel: Channel, gain: float, *, site: str, compared: bool = True
+    ) -> Array:
+        """Share (people,) of speeded choices that noise of the other channel decides, or a guess at the end.
+
+        Noise that passes first decides if its channel is still further above its criterion one choice time later; not
+        `compared`, it always does.
+        """
+        from ..kernels.crossing import outrun
+
+        constants, both = self.constants, (channel, CHANNELS[1 - CHANNELS.index(channel)])
+        (raised, cautions), (_, others) = (self._lanes[each] for each in both)
+        late, other_late = (float(constants.delay_s(each, constants.path_m(site))) for each in both)
+        time, risen = DT_S * samples, drive[samples] ** constants.p / constants.b
+        moments, wrong = time[::EVERY], np.empty(raised.size)
+        together = moments + other_late - late
+        outrun(
+            risen, time, gain**constants.p * raised, constants.a, constants.criteria(constants.criterion, cautions),
+            constants.noise_correlation_s, constants.criteria(constants.criterion, others), moments,
+            np.interp(together, time, np.arange(float(time.size))),
+            np.interp(together + constants.choice_s, time, risen), constants.choice_s, compared, wrong,
+        )  # fmt: skip
+        shares: Array = wrong.reshape(len(self.people), -1).mean(axis=1)
+        return shares
 
     def answers_s(
         self,

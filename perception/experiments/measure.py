@@ -1,4 +1,4 @@
-"""What a laboratory would measure: thresholds, reaction times and ratings under a condition, on the skin of a rig.
+"""What a laboratory would measure: thresholds, times, ratings and wrong names under a condition, on the skin of a rig.
 
 The tasks are those of the published experiments that the constants were inferred from, on the skin of the rig's site,
 with its contact and area, and with the laboratory's own offset of sensitivity. People are a quasi-random crowd with the
@@ -28,17 +28,18 @@ from .tasks import UNSTATED, Played, Ramp, yes_no_logs
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
 
-Kind = Literal["threshold", "reaction_time", "rating"]
+Kind = Literal["threshold", "reaction_time", "rating", "wrong_quality"]
 METHODS: dict[Kind, tuple[str, ...]] = {
     "threshold": ("forced_choice", "yes_no", "limits"),
     "reaction_time": ("choice", "simple"),
     "rating": ("magnitude",),
+    "wrong_quality": ("choice",),
 }
 """Methods of each kind; the first of reaction times and ratings is meant where none is given."""
 ADAPTIVE = ("forced_choice", "yes_no")
 """Methods that find the size themselves."""
-UNITS: dict[Kind, str] = {"threshold": "K", "reaction_time": "s", "rating": "points"}
-"""Units inside; ratings are points of 100."""
+UNITS: dict[Kind, str] = {"threshold": "K", "reaction_time": "s", "rating": "points", "wrong_quality": "1"}
+"""Units inside; ratings are points of 100, wrong qualities a share of the answers."""
 WORDS = {
     "forced_choice": "forced choice",
     "yes_no": "yes/no",
@@ -46,7 +47,9 @@ WORDS = {
     "choice": "choice reaction time",
     "simple": "simple reaction time",
     "magnitude": "rating",
+    "wrong_quality": "wrong quality of a speeded choice",
 }
+"""Methods in words, and the kind whose method does not say what is asked."""
 OWN = "own"
 """Name of the laboratory whose offset is the user's."""
 SITES = ("thenar", "forearm", "hand-dorsum", "fingertip")
@@ -65,15 +68,15 @@ class Condition:
     Parameters
     ----------
     kind
-        ``threshold``, ``reaction_time`` or ``rating``.
+        ``threshold``, ``reaction_time``, ``rating`` or ``wrong_quality``.
     method
-        ``forced_choice``, ``yes_no`` or ``limits``; ``choice`` or ``simple``; ``magnitude``.
+        ``forced_choice``, ``yes_no`` or ``limits``; ``choice`` or ``simple``; ``magnitude``; ``choice``.
     channel
         ``cold`` or ``warm``.
     baseline_C
         Where the ramp starts, °C.
     size_K
-        Change that was timed or rated, and where a ramp of limits ends, K; None for forced choice and yes/no.
+        Change that was timed, rated or named, and where a ramp of limits ends, K; None for forced choice and yes/no.
     rate_K_per_s
         Rate of the ramp, K/s.
     hold_s
@@ -104,7 +107,7 @@ class Condition:
         if not self.rate_K_per_s > 0.0 or not self.hold_s >= 0.0:
             raise ValueError("a rate above 0 and a hold of at least 0 s are needed")
         if self.method not in ADAPTIVE and (self.size_K is None or not self.size_K > 0.0):
-            raise ValueError(f"{WORDS[self.method]} needs the size of the change, above 0 K")
+            raise ValueError(f"{self.words} needs the size of the change, above 0 K")
 
     @property
     def unit(self) -> str:
@@ -112,9 +115,14 @@ class Condition:
         return UNITS[self.kind]
 
     @property
+    def words(self) -> str:
+        """How it is asked, in words."""
+        return WORDS.get(self.kind, WORDS[self.method])
+
+    @property
     def label(self) -> str:
         """What it is in words."""
-        words = f"{self.channel}, {WORDS[self.method]}"
+        words = f"{self.channel}, {self.words}"
         if self.kind == "threshold":
             return f"{words}, {self.rate_K_per_s:g} K/s"
         return f"{words}, {self.size_K:g} K at {self.rate_K_per_s:g} K/s"
@@ -195,12 +203,23 @@ def logs_of(
     return logs, math.hypot(scatter, exponent * constants.gain_noise)
 
 
+def misnamed_of(laboratory: Laboratory, setting: Setting, condition: Condition) -> tuple[Array, float]:
+    """Share (people,) of the answers of a speeded choice that name the wrong quality, and the SD of one answer."""
+    assert condition.size_K is not None
+    cold, warm = (laboratory.gain(each, setting.area_cm2, OWN, setting.path_site, YOUNG_YEARS) for each in CHANNELS)
+    about = setting.site_rig, condition.channel, condition.baseline_C, condition.size_K, condition.rate_K_per_s
+    played = Played.of(laboratory, Ramp.held(*about, max(condition.hold_s, AFTER_S)))
+    shares = played.misnamed(Both(cold, warm).of(condition.channel), warm, setting.path_site)
+    return shares, float(np.median(np.sqrt(shares * (1.0 - shares))))
+
+
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """What new laboratories would measure under a condition: `value` with its 95 % interval `low` to `high`.
 
     `value` is the geometric mean over people in the unit of the condition, `between` the SD of its natural log between
-    people, `within` that of one trial of the median person; all are medians over laboratories.
+    people, `within` that of one trial of the median person; all are medians over laboratories. Of wrong qualities they
+    are mean and SDs of the share itself.
     """
 
     condition: Condition
@@ -211,8 +230,9 @@ class Measurement:
     within: float
 
     def __repr__(self) -> str:
-        span = f"{self.value:.3g} {self.condition.unit} [{self.low:.3g}, {self.high:.3g}]"
-        return f"Measurement({self.condition.label}: {span}, SD between people {self.between:.2f} ln)"
+        unit, log = ("", "") if self.condition.unit == "1" else (f" {self.condition.unit}", " ln")
+        span = f"{self.value:.3g}{unit} [{self.low:.3g}, {self.high:.3g}]"
+        return f"Measurement({self.condition.label}: {span}, SD between people {self.between:.2f}{log})"
 
 
 def measure(
@@ -245,9 +265,10 @@ def measure(
 
     Notes
     -----
-    Tasks after E1 to E4 and E6 of the evidence. Forced choice is correct in 76 % at threshold (d′ = 1), yes/no reported
-    in half of the trials with the criterion of questions without haste, limits pressed at the first change. A rating
-    is a power of the largest drive; another laboratory's scale may differ by a factor.
+    Tasks after E1 to E4, E6 and E8 of the evidence. Forced choice is correct in 76 % at threshold (d′ = 1), yes/no
+    reported in half of the trials with the criterion of questions without haste, limits pressed at the first change. A
+    rating is a power of the largest drive; another laboratory's scale may differ by a factor. A wrong quality is a
+    speeded choice that noise of the other channel decides, or cold that is called warm; who feels nothing guesses.
 
     Examples
     --------
@@ -263,12 +284,14 @@ def measure(
     chosen = np.linspace(0, len(known) - 1, draws).round().astype(np.int64).tolist()
     standard = np.random.default_rng(seed).standard_normal((draws, len(CHANNELS)))
     offsets = (known.values(BETWEEN_LABORATORIES)[chosen][:, None] * standard).tolist()
+    shares = condition.kind == "wrong_quality"
 
     def one(k: int) -> tuple[float, float, float]:
         laboratory = setting.laboratory(known.observer(chosen[k]), offsets[k])
-        logs, within = logs_of(laboratory, setting, condition)
-        return float(logs.mean()), float(logs.std()), within
+        found, within = (misnamed_of if shares else logs_of)(laboratory, setting, condition)
+        return float(found.mean()), float(found.std()), within
 
     mean, between, within = np.array(list(in_order(one, range(draws)))).T
-    low, middle, high = np.exp(np.percentile(mean, [2.5, 50.0, 97.5])).tolist()
+    ends = np.percentile(mean, [2.5, 50.0, 97.5])
+    low, middle, high = (ends if shares else np.exp(ends)).tolist()
     return Measurement(condition, middle, low, high, float(np.median(between)), float(np.median(within)))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..observer.channels import Channel, sign_of
-from .laboratory import FEEBLE, Corner, Laboratory, samples_of
+from .laboratory import DT_S, FEEBLE, Corner, Laboratory, samples_of
 
 DISCREPANCY = 0.05
 """What a model of this kind may miss a published or measured value by, as a share; assumed."""
@@ -69,6 +69,19 @@ class Played:
         """Times (people, trials) in s of a press at the first change, or of a choice of warm or cold; inf: none."""
         samples = samples_of(self.ramp.corners, self.ramp.end_s)
         return self.laboratory.answers_s(self.drive, samples, self.ramp.channel, gain, site=site, choice=choice)
+
+    def misnamed(self, gain: float, warm_gain: float, site: str, *, compared: bool = True) -> Array:
+        """Share of trials (people,) in which a choice of warm or cold in haste names the wrong one.
+
+        Noise of the other channel decides (`compared` with the stimulated one or not), or cold is called warm: the
+        warmth that lingers is that of the baseline.
+        """
+        laboratory, ramp = self.laboratory, self.ramp
+        samples = samples_of(ramp.corners, ramp.end_s)
+        mistaken = laboratory.outrun(self.drive, samples, ramp.channel, gain, site=site, compared=compared)
+        constants = laboratory.constants
+        resting = laboratory.drive(ramp.site_rig, "warm", ramp.baseline_C, (), DT_S)
+        return constants.mislabelled(ramp.channel, mistaken, float(constants.psi(warm_gain * resting)[0]))
 
     def limits_K(self, gain: float, site: str) -> Array:
         """How far the ramp has come at a press (people, trials), K; a second beyond its end where nobody pressed."""

@@ -15,11 +15,11 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
-from ..observer.channels import CHANNELS, NORMS, Norm
+from ..observer.channels import NORMS, Norm
 from ..observer.observer import Observer
 from ..observer.people import draw_people
-from ..sensation.features import receptor_C
-from ..sensation.percept import perceive_many, uniform_clock
+from ..sensation.percept import perceive_many
+from ..sensation.received import received, uniform_clock
 from .episodes import Episodes, episode_distances
 from .task import USUAL, Task
 
@@ -77,9 +77,7 @@ def carry_over(
     traces = simulate_all(list(icons), rig, end_s=last, rate_Hz=RATE_HZ)
     leaving = [_replayed(icon, rig, last) for icon in icons] if tracking == "replay" else traces
     dt, _ = uniform_clock(traces[0].time_s)
-    met, left = (
-        [np.array([receptor_C(trace, channel) for trace in each]) for channel in CHANNELS] for each in (traces, leaving)
-    )
+    met, left = (np.stack([received(trace, person) for trace in each], axis=1) for each in (traces, leaving))
 
     def for_one(thresholds: tuple[float, float]) -> Array:
         def felt(at_cold: Array, at_warm: Array) -> Array:

@@ -154,12 +154,12 @@ def detected_as_delivered(
     icon, rig = delivery.icon, delivery.rig
     crowd, observer = draw_people(people, SEED), Observer.load()
     end = run_end_s([duration_s(icon, rig)]) if end_s is None else end_s
-    as_designed = ReceptorTemperatures.simulated([icon], crowd.rigs(rig), rig, end, RATE_HZ, None)
+    as_designed = ReceptorTemperatures.simulated([icon], crowd, rig, observer, end, RATE_HZ, None)
     cold, warm = (
         met + _change(met - met[..., :1], channel, designed, delivered, as_designed.time_s + delivery.lead_s)
-        for channel, met in zip(CHANNELS, (as_designed.cold_C, as_designed.warm_C), strict=True)
+        for channel, met in zip(CHANNELS, as_designed.rungs_C, strict=True)
     )
-    as_delivered = replace(as_designed, cold_C=cold, warm_C=warm)
+    as_delivered = replace(as_designed, rungs_C=(cold, warm))
     before, after = (
         float(population_detection(each, crowd, observer).probability.mean()) for each in (as_designed, as_delivered)
     )

@@ -4,10 +4,12 @@ Each draw invites a random sample of the same few people. Draws are laid about t
 draw adds is its difference from the nominal observer with the same people and noise.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,9 +17,14 @@ from ..arrays import Array
 from ..observer.channels import Norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People
-from .laboratory_draws import MANY, LaboratoryDraws, laboratory_draws, people_for_intervals, scored
-from .population import ReceptorTemperatures
+from .depths import rungs
+from .laboratory_draws import EVERY, MANY, LaboratoryDraws, laboratory_draws, people_for_intervals, scored
+from .population import RATE_HZ, ReceptorTemperatures
 from .task import USUAL, Task
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import Icon
 
 DRAWS = 128
 """The ends of the interval scatter by one to two points of per cent correct from seed to seed."""
@@ -85,11 +92,14 @@ class Nominal:
 
 
 def new_laboratory(
-    thin: ReceptorTemperatures,
+    icons: Sequence[Icon],
+    rig: Rig,
+    end_s: float,
     crowd: People,
     predicted: Nominal,
     norm: Norm,
     *,
+    tracking: str | None = None,
     model: ObserverModel | None = None,
     draws: int = DRAWS,
     seed: int = 0,
@@ -98,8 +108,9 @@ def new_laboratory(
 ) -> NewLaboratory:
     """Intervals about `predicted`, from `draws` sets of constants, evenly spaced; `step` is called after each.
 
-    `thin` are temperatures of the first PEOPLE of the crowd at every EVERY-th instant; each draw adds to the prediction
-    what it changes against the nominal observer on the same people and noise. Norm, task and seed are as in `rank`.
+    The first few people of the crowd feel the icons, played on the rig until `end_s`, at every EVERY-th instant; each
+    draw adds to the prediction what it changes against the nominal observer on the same people and noise. Norm,
+    tracking, task and seed are as in `rank`.
     Raises `ValueError` for fewer than two draws, which have no interval, and for an observer without draws.
     """
     if draws < 2:
@@ -107,16 +118,19 @@ def new_laboratory(
     own = ObserverModel.load() if model is None else model
     if own.posterior is None:
         raise ValueError(f"{own.name} has no posterior draws, from which an interval for a new laboratory is made")
-    icons = predicted.detected.size
-    few = thin.thinned(people_for_intervals(icons), 1 if icons <= MANY else 2)
-    persons = crowd.part(0, len(few.cold_C))
+    count = len(icons)
+    persons = crowd.part(0, min(len(crowd), people_for_intervals(count)))
+    few = ReceptorTemperatures.at_depths(
+        icons, persons, rig, rungs([own.nominal, *own.some_draws(draws)], persons.corneum_m(rig)), end_s,
+        RATE_HZ / (EVERY if count <= MANY else 2 * EVERY), tracking,
+    )  # fmt: skip
     each = laboratory_draws(
         lambda _: few, persons, norm, own, draws=draws, seed=seed, task=task, resampled=True, step=step
     )
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))
     about: tuple[Any, ...] = astuple(predicted)
-    most = (1.0, math.log2(icons), 1.0, math.inf, math.inf)
+    most = (1.0, math.log2(count), 1.0, math.inf, math.inf)
     raw = (each.proportion_correct, each.information_bits, each.detected, each.d_prime, each.onset_s)
     correct, bits, detected, apart, onset = (
         np.clip(values + (nominal - own_values), 0.0, top)
@@ -129,7 +143,7 @@ def new_laboratory(
         posterior=own.posterior.header.status,
         proportion_correct=_ends(correct),
         information_bits=_ends(bits),
-        detected=tuple(_ends(detected[:, icon]) for icon in range(icons)),
+        detected=tuple(_ends(detected[:, icon]) for icon in range(count)),
         # Over the draws in which an icon is felt, where these are the most.
         onset_s=tuple(
             _ends(each[np.isfinite(each)]) if 2 * np.isfinite(each).sum() > each.size else None for each in onset.T

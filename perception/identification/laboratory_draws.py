@@ -2,7 +2,7 @@
 
 Every draw is one consistent set of constants. It brings its own spread between people, an offset of the laboratory
 drawn from the spread between laboratories, and memory: its own, where the draws are those of one laboratory, otherwise
-drawn from its intervals, which no published posterior knows of. Depths of receptors stay those of the rig.
+drawn from its intervals, which no published posterior knows of.
 """
 
 from __future__ import annotations
@@ -224,7 +224,7 @@ def _acting(
 
     Of the first draw, each constant in turn takes the value that lies farthest from its own.
     """
-    few, values = played.thinned(count, 1), laboratories.values
+    few, values = played.first(count), laboratories.values
 
     def named(constants: Array) -> Array:
         observer, people = laboratories.with_values(constants, count)
@@ -254,7 +254,7 @@ def scored(
 
     correct, bits and least detection (people,) of each of them.
     """
-    samples = min(SAMPLES, max(LEAST, NAMED // few.cold_C.shape[1]))
+    samples = min(SAMPLES, max(LEAST, NAMED // len(few.names)))
     felt = respond(few, people, observer, times=True)
     d_prime, confusion = identify(felt, norm, people, observer, seed, samples, task=task)
     correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)

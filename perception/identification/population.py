@@ -7,18 +7,24 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ..arrays import Array
 from ..observer.channels import Norm
+from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.people import People
 from ..sensation.detection import Detection, detect
-from ..sensation.percept import perceive_many, uniform_clock
+from ..sensation.percept import perceive_many
+from ..sensation.received import uniform_clock
 from .confusion import NAMED_SAMPLES, SAMPLES, Confusion, confuse, name_directly
+from .depths import between
 from .episodes import Episodes, episode_distances
 from .task import USUAL, Task
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+    from thermicon.circuit.solver.batch import Batch
     from thermicon.icons import Icon
 
 TAIL_S, RATE_HZ = 10.0, 100.0
@@ -36,13 +42,16 @@ PROBES = ("cold_receptor_C", "warm_receptor_C")
 
 @dataclass(frozen=True, slots=True)
 class ReceptorTemperatures:
-    """Temperatures at the receptors of every person: °C, shape (people, icons, n_time); clock in s, area in m².
+    """Temperatures at the receptors of every person: °C; clock in s, area in m².
 
-    `names` are those of the icons, for messages.
+    `rungs_C` has those of cold and of warm receptors, (depths, people, icons, n_time) each: at `depths_m`, between
+    which the receptors of many observers lie, or, where that is empty, of the one observer they were simulated for.
+    `corneum_m` (people,) is each person's stratum corneum, m; `names` are those of the icons, for messages.
     """
 
-    cold_C: Array
-    warm_C: Array
+    rungs_C: tuple[Array, Array]
+    depths_m: tuple[Both[float], ...]
+    corneum_m: Array
     time_s: Array
     site: str
     area_m2: float
@@ -50,24 +59,60 @@ class ReceptorTemperatures:
 
     @classmethod
     def simulated(
-        cls, icons: Sequence[Icon], rigs: Sequence[Rig], rig: Rig, end_s: float, rate_Hz: float, tracking: str | None
+        cls, icons: Sequence[Icon], crowd: People, rig: Rig, observer: Observer, end_s: float, rate_Hz: float,
+        tracking: str | None, probes: tuple[str, str] = PROBES,
+    ) -> ReceptorTemperatures:  # fmt: skip
+        """Simulate icons on the skins of people until `end_s`, with currents that are designed on `rig`."""
+        rigs = crowd.rigs(rig, [observer.depths_m(each) for each in crowd.corneum_m(rig).tolist()])
+        batch = _played(icons, rigs, rig, end_s, rate_Hz, tracking, probes)
+        return cls._of([batch], (), crowd, rig, icons)
+
+    @classmethod
+    def at_depths(
+        cls, icons: Sequence[Icon], crowd: People, rig: Rig, depths_m: tuple[Both[float], ...], end_s: float,
+        rate_Hz: float, tracking: str | None, probes: tuple[str, str] = PROBES, designed_on: Rig | None = None,
+    ) -> ReceptorTemperatures:  # fmt: skip
+        """The same for observers whose receptors lie between these depths; a rig that places its own keeps them."""
+        nominal, rungs_m = designed_on or rig, depths_m[:1] if rig.skin.own else depths_m
+        skins = [crowd.rigs(rig, [each] * len(crowd)) for each in rungs_m]
+        each = [_played(icons, rigs, nominal, end_s, rate_Hz, tracking, probes) for rigs in skins]
+        return cls._of(each, () if rig.skin.own else rungs_m, crowd, rig, icons)
+
+    @classmethod
+    def _of(
+        cls, played: Sequence[Batch], depths_m: tuple[Both[float], ...], crowd: People, rig: Rig, icons: Sequence[Icon]
     ) -> ReceptorTemperatures:
-        """Simulate icons on the rigs of people until `end_s`, with currents that are designed on `rig`."""
-        from thermicon.circuit import simulate_many
+        cold, warm = (np.stack([batch.values[k] for batch in played]) for k in range(2))
+        names, first = tuple(icon.name for icon in icons), played[0]
+        return cls((cold, warm), depths_m, crowd.corneum_m(rig), first.time_s, rig.site, rig.contact.area_m2, names)
 
-        batch = simulate_many(icons, rigs, nominal=rig, end_s=end_s, rate_Hz=rate_Hz, tracking=tracking, probes=PROBES)
-        names = tuple(icon.name for icon in icons)
-        return cls(batch.cold_C, batch.warm_C, batch.time_s, rig.site, rig.contact.area_m2, names)
+    @property
+    def people(self) -> int:
+        """Number of people."""
+        return self.corneum_m.size
 
-    def of(self, icons: Sequence[int]) -> ReceptorTemperatures:
-        """Some of the icons."""
-        names = tuple(self.names[place] for place in icons)
-        return replace(self, cold_C=self.cold_C[:, icons], warm_C=self.warm_C[:, icons], names=names)
+    def felt_by(self, observer: Observer) -> tuple[Array, Array]:
+        """Temperatures (people, icons, n_time) at the receptors of an observer, cold and warm."""
+        if not self.depths_m:
+            return self.rungs_C[0][0], self.rungs_C[1][0]
+        above_m = observer.corneum_share * self.corneum_m
+        columns = zip(zip(*self.depths_m, strict=True), self.rungs_C, observer.depth_m, strict=True)
+        cold, warm = (between(depths, rungs_C, above_m + own_m) for depths, rungs_C, own_m in columns)
+        return cold, warm
 
-    def thinned(self, people: int, every: int) -> ReceptorTemperatures:
-        """The first people at every k-th instant, copied."""
-        cold, warm = (held[:people, :, ::every].copy() for held in (self.cold_C, self.warm_C))
-        return replace(self, cold_C=cold, warm_C=warm, time_s=self.time_s[::every])
+    def first(self, people: int) -> ReceptorTemperatures:
+        """Those of the first people."""
+        cold, warm = (rungs_C[:, :people] for rungs_C in self.rungs_C)
+        return replace(self, rungs_C=(cold, warm), corneum_m=self.corneum_m[:people])
+
+
+def _played(
+    icons: Sequence[Icon], rigs: Sequence[Rig], nominal: Rig, end_s: float, rate_Hz: float, tracking: str | None,
+    probes: tuple[str, str],
+) -> Batch:  # fmt: skip
+    from thermicon.circuit import simulate_many
+
+    return simulate_many(icons, rigs, nominal=nominal, end_s=end_s, rate_Hz=rate_Hz, tracking=tracking, probes=probes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,9 +160,10 @@ def population_detection(played: ReceptorTemperatures, crowd: People, observer: 
 
 def _sensations(played: ReceptorTemperatures, crowd: People, observer: Observer) -> tuple[Array, Array, float]:
     dt, rows = uniform_clock(played.time_s)
+    at_cold, at_warm = played.felt_by(observer)
     cold, warm = perceive_many(
-        played.cold_C[..., :rows],
-        played.warm_C[..., :rows],
+        at_cold[..., :rows],
+        at_warm[..., :rows],
         dt,
         observer,
         area_m2=played.area_m2,

@@ -18,7 +18,7 @@ from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, source_of
+from ..observer.channels import source_of
 from ..observer.constants import QUANTITIES
 from ..observer.mechanisms.memory import NOISE
 from ..observer.observer import NORMS, Norm, Observer
@@ -98,8 +98,7 @@ def _felt(known: Table, observer: Observer) -> Iterator[tuple[Array, Array, floa
     rates, spans = known.one("rate of the rate task").interval, known.one("span of the rate task").interval
     for rate, span in itertools.product(rates, spans):
         played = _pair(span, rate, rate * (1.0 + fraction))
-        at_cold, at_warm = (played.received(observer.variable, channel) for channel in CHANNELS)
-        yield *perceive_many(at_cold, at_warm, played.dt_s, observer), played.dt_s
+        yield *perceive_many(*played.received(observer), played.dt_s, observer), played.dt_s
 
 
 @lru_cache(maxsize=64)

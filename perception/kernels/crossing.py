@@ -6,8 +6,8 @@ that has not been passed yet is passed, per unit of time, at Rice's rate over th
     (φ(z) + z·Φ(z))/τ · φ(g)/Φ(g),   z = r·τ,   g = c − ψ
 
 A drive that is g times as large has the sensation a·ln(1 + g^p·(e^(ψ/a) − 1)). Rankings read reports of it (`reports`),
-experiments the times at which shares of trials have passed; psychometric functions are read here too: sizes at which
-each person reports given shares, guesses taken out.
+experiments the times at which shares of trials have passed, and how often the noise of another channel passes first;
+psychometric functions are read here too: sizes at which each person reports given shares, guesses taken out.
 """
 
 import math
@@ -101,6 +101,42 @@ def _passage(risen: Any, time: Any, raised: Any, a: float, criterion: Any, tau: 
     return passed
 
 
+def _outrun(
+    risen: Any, time: Any, raised: Any, a: float, criterion: Any, tau: float, other: Any, moments: Any, place: Any,
+    later: Any, choice: float, compared: bool, wrong: Any,
+) -> None:  # fmt: skip
+    """Fill the share (lanes,) of trials that the noise of another channel, with the criterion `other`, decides.
+
+    That noise counts from the same start; what passes at a moment arrives together with the sample `place` (moments,)
+    of the channel that rises, of which `later` (moments,) is `risen` one `choice` in s after that. If it is `compared`,
+    it decides only where it is then further above its criterion. Who has not answered by the end guesses. Noise that
+    has just risen through c is h later ρ·(c + h·√(π/2)/τ) in the mean, ρ = e^(−h²/2τ²), with what is left of its
+    variance and that of its slope (Slepian 1963).
+    """
+    samples, h = time.size, choice / tau
+    kept = math.exp(-0.5 * h * h)
+    rise, sd = math.sqrt(0.5 * math.pi) * h, math.sqrt(2.0 + kept * kept * ((1.0 - 0.5 * math.pi) * h * h - 1.0))
+    steps, logs, room = np.empty(samples), np.empty(samples), np.empty((2, SAMPLES_AT_ONCE + 1))
+    steps[1:] = time[1:] - time[:-1]
+    for lane in range(raised.size):
+        c, o = criterion[lane], other[lane]
+        logs[0] = math.log(cumulative(c))
+        survive(risen, raised[lane], a, 1, samples, steps, c, tau, 0.0, 0.0, SURE, room, logs)
+        rate = RISE[Z_MIDDLE] / tau * between(MILLS, (o - GAP_FROM) / GAP_STEP)
+        below = quiet = cumulative(o)
+        share, before, seldom = 0.0, 0.0, 1.0 - below + rate * time[samples - 1] < SELDOM
+        for t in range(moments.size):
+            log_left = between(logs, place[t])
+            ahead = kept * (o + rise) - o - (a * log1p(raised[lane] * later[t]) - c)
+            decided = math.exp(log_left) * (cumulative(ahead / sd) if compared else 1.0)
+            still = below * math.exp(-rate * moments[t])
+            share += (1.0 - below) * decided if t == 0 else 0.5 * (quiet - still) * (decided + before)
+            quiet, before = still, decided
+            if log_left < SURE or seldom:
+                break
+        wrong[lane] = share + (0.5 * quiet * math.exp(logs[samples - 1]) if logs[samples - 1] > SURE else 0.0)
+
+
 def _first_below_index(falling: Any, level: float, end: int) -> int:
     """Index of the first number of a falling column that is at or below a level; `end` where none is."""
     low, high = 0, end
@@ -126,6 +162,8 @@ GAP_FROM, GAP_STEP, GAP_POINTS = -6.0, 0.01, 1401
 Z_FROM, Z_STEP, Z_TO = -4.0, 0.01, 4.0
 Z_MIDDLE = 400
 CERTAIN = -16.0
+SELDOM = 1e-6
+"""Share of trials that noise decides, so small that it is not computed."""
 OUT_OF_REACH = 5.0
 """Gap in d′ above which a criterion is passed less than once in a day."""
 SURE = -5.0
@@ -180,4 +218,5 @@ between: Any = _vector(_between)
 first_below: Any = _compile(_first_below_index)
 survive: Any = _vector(_survive)
 passage: Any = _vector(_passage)
+outrun: Any = _vector(_outrun)
 psychometric: Any = _compile(_psychometric)

@@ -5,13 +5,7 @@ Two variants: temperature at receptor depth, or heat flow there (the hypothesis 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, get_args
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from thermicon.circuit import Trace
+from typing import Literal, get_args
 
 Channel = Literal["cold", "warm"]
 Norm = Literal["episodes", "naming"]
@@ -55,9 +49,3 @@ def source_of(variable: Variable) -> str:
 def receptor_column(variable: Variable, channel: Channel) -> str:
     """Column of a trace, or probe of a batch, that the receptors of a channel go by."""
     return f"{channel}_receptor_C" if variable == "temperature" else f"heat_flow_{channel}_receptor_W_per_m2"
-
-
-def receptor_input(trace: Trace, variable: Variable, channel: Channel) -> NDArray[np.float64]:
-    """What the receptors of a channel go by in a trace: °C, or W/m² into the skin, shape (rows,)."""
-    found: NDArray[np.float64] = getattr(trace, receptor_column(variable, channel))
-    return found

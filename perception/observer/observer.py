@@ -76,8 +76,9 @@ class Observer(
         Time to an answer and what a choice adds, s, and their SDs (ln) between trials and people.
     velocity_m_per_s, path_hand_m, path_forearm_m
         Conduction in nerves, m per s, over paths to the cord, m.
-    criterion, unhurried, caution_after_pulse, noise_correlation_s
-        Change that is answered in haste and without, d′, how much more after a pulse, and the noise's correlation, s.
+    criterion, unhurried, caution_after_pulse, noise_correlation_s, criterion_floor
+        Change that is answered in haste and without, d′, how much more after a pulse, the noise's correlation, s, and
+        the least criterion of anybody, d′.
     threshold_drive, gain_noise, a, p
         Drive that feels like a threshold, SD (ln) of the gain, slope of sensation in d′ and its exponent.
     rating_at_threshold, rating_exponent, mean_rating, rating_scatter
@@ -88,8 +89,10 @@ class Observer(
         What sensitivity depends on: age (ln), area in m², and site.
     limit_C, softness_K, integration_s, adaptation_s, neutral_C, neutral_flux
         Limits of quality in °C and their softness in K; time constants, s; range of complete adaptation, °C and W/m².
-    depth_m, contact_m2K_per_W, effusivity
-        Skin of laboratories: depths of receptors, m, contact resistance, and a multiple.
+    corneum_share, depth_m
+        Where receptors lie: share of the stratum corneum that counts, and depth below it, m.
+    contact_m2K_per_W, effusivity
+        Skin of laboratories: contact resistance, and a multiple.
 
     Raises
     ------

@@ -12,6 +12,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Self
 
+import numpy as np
+
 from thermicon.circuit.records import RecordError, Table
 
 from .channels import CHANNELS, VARIABLES
@@ -87,6 +89,12 @@ class ObserverModel:
         if asked > len(self.posterior):
             raise ValueError(f"{asked} draws of the parameters were asked for; {self.name} has {len(self.posterior)}")
         return asked
+
+    def some_draws(self, count: int) -> list[Observer]:
+        """Observers of so many evenly spaced draws; none where there are no draws."""
+        if (held := self.posterior) is None:
+            return []
+        return [held.observer(k) for k in np.linspace(0, len(held) - 1, count).round().astype(np.int64).tolist()]
 
     def people(self, n: int, seed: int = 0) -> People:
         """Virtual people who differ as this model says; person i is the same whatever n is."""

@@ -17,7 +17,8 @@ from thermicon.circuit.rig.skin import layer_spreads
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
-from .constants import record_of
+from .constants import Both, record_of
+from .mechanisms.skin import depth_keys
 from .observer import Observer, load_thresholds, observer_records
 
 if TYPE_CHECKING:
@@ -75,21 +76,26 @@ class People:
         """The persons from one number up to another."""
         return People(**{field.name: getattr(self, field.name)[start:stop] for field in fields(self)})
 
-    def rigs(self, rig: Rig) -> list[Rig]:
-        """The rig as each person meets it: own contact resistance and own outermost layer."""
-        columns = (self.contact_resistance.tolist(), self.outer_layer.tolist())
-        return [_as_met(rig, contact, layer) for contact, layer in zip(*columns, strict=True)]
+    def corneum_m(self, rig: Rig) -> Array:
+        """Thickness (n,) of each person's stratum corneum on the rig's site, m."""
+        return rig.skin.corneum_m * self.outer_layer
+
+    def rigs(self, rig: Rig, depths_m: Sequence[Both[float]]) -> list[Rig]:
+        """The rig as each person meets it: own contact resistance, own outermost layer, and receptors at own depths."""
+        columns = (self.contact_resistance.tolist(), self.outer_layer.tolist(), depths_m)
+        return [_as_met(rig, *each) for each in zip(*columns, strict=True)]
 
     def __repr__(self) -> str:
         return f"People({len(self)})"
 
 
 @lru_cache(maxsize=1024)
-def _as_met(rig: Rig, contact: float, layer: float) -> Rig:
+def _as_met(rig: Rig, contact: float, layer: float, depths_m: Both[float]) -> Rig:
     """The rig with contact resistance and outermost layer multiplied; kept, since a ranking asks for it twice."""
     keys = {
         "contact.resistance_m2K_per_W": contact * rig.contact.resistance_m2K_per_W,
         "skin.layer.0.thickness_mm": layer * rig.skin.layers[0].thickness_m * 1e3,
+        **depth_keys(rig, depths_m),
     }
     return rig.with_(**keys)
 

@@ -175,7 +175,7 @@ def _check_columns(file: Path, header: Sequence[str]) -> None:
 
 def _row(cells: Mapping[str, str], where: str, rig: Rig) -> tuple[tuple[str, Condition], tuple[float, float, float]]:
     """Who and under which condition, and what was found: value, standard error, trials."""
-    kind = cast("Kind", _one_of(cells["kind"], "kind", tuple(METHODS), where))
+    kind = cast("Kind", _one_of(cells["kind"], "kind", tuple(FACTORS), where))
     channel = cast("Channel", _one_of(cells["channel"], "channel", CHANNELS, where))
     methods, what = METHODS[kind], kind.replace("_", " ")
     method = cells.get("method", "")

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
+from ..identification.depths import rungs
 from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.measures import information_bits
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
@@ -77,7 +78,7 @@ class Stage:
     @property
     def people(self) -> int:
         """Number of virtual people of each laboratory."""
-        return len(self.played.cold_C)
+        return self.played.people
 
     def confusions(self, some: Laboratories, step: Callable[[], None] | None = None) -> Confusions:
         """How the people of each laboratory name the icons; `step` is called after each."""
@@ -114,7 +115,8 @@ def stage(icons: IconSet, rig: Rig, prior: LaboratoryPrior, *, seed: int = 0, tr
         )
     crowd = draw_people(people_for_intervals(len(members)), seed)
     end = run_end_s(duration_s(icon, rig) for icon in members)
-    played = ReceptorTemperatures.simulated(members, crowd.rigs(rig), rig, end, RATE_HZ / EVERY, tracking)
+    depths_m = rungs(map(prior.draws.observer, range(len(prior.draws))), crowd.corneum_m(rig))
+    played = ReceptorTemperatures.at_depths(members, crowd, rig, depths_m, end, RATE_HZ / EVERY, tracking)
     return Stage(played.names, played, prior, (crowd.contact_resistance, crowd.outer_layer))
 
 

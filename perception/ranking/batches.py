@@ -18,7 +18,6 @@ from thermicon.circuit.program import code_digest as digest_of
 
 from ..arrays import Array, own_arrays
 from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
-from ..identification.laboratory_draws import EVERY, PEOPLE
 from ..identification.measures import experiments_bits, information_bits
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond
 from ..identification.task import USUAL, Task
@@ -46,7 +45,7 @@ class BatchResult:
     `detected` (p, m), `cold_share` (p, m) of the reports and `confusion` (p, m, m) are probabilities, `reported`
     (1, m, n) is the number of people who have reported by each time, `d_prime` (p, q) from memory, `correct` (p, m)
     0–1, `bits`, `plugin` (p,) information and what experiments report of it, `other_correct` (p, m) by the
-    other norm. `cold_C`, `warm_C` (p or 0, m, n) are thinned temperatures of the first people.
+    other norm.
     """
 
     detected: Array
@@ -58,8 +57,6 @@ class BatchResult:
     bits: Array
     plugin: Array
     other_correct: Array
-    cold_C: Array
-    warm_C: Array
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -112,7 +109,7 @@ def run(job: Job, number: int) -> BatchResult:
     start, stop = job.span(number)
     model = ObserverModel.of(job.observer)
     crowd, observer = model.people(job.people, job.seed).part(start, stop), model.nominal
-    played = ReceptorTemperatures.simulated(job.icons, crowd.rigs(job.rig), job.rig, job.end_s, RATE_HZ, job.tracking)
+    played = ReceptorTemperatures.simulated(job.icons, crowd, job.rig, observer, job.end_s, RATE_HZ, job.tracking)
     felt = respond(played, crowd, observer, times=True)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
     # Fewer trials than of the norm that counts, the fewer the more templates naming goes through.
@@ -120,7 +117,6 @@ def run(job: Job, number: int) -> BatchResult:
     _, other = identify(felt, job.other_norm, crowd, observer, job.seed, fewer, start, job.task)
     named = confusion.probability
     first, second = np.triu_indices(len(job.icons), 1)
-    first_people = played.thinned(max(0, min(start + len(crowd), PEOPLE) - start), EVERY)
     return BatchResult(
         detected=felt.detected.probability,
         cold_share=felt.detected.cold_share,
@@ -131,8 +127,6 @@ def run(job: Job, number: int) -> BatchResult:
         bits=information_bits(named),
         plugin=experiments_bits(named, job.trials, job.seed, EXPERIMENTS, start).mean(axis=1),
         other_correct=np.diagonal(other.probability, axis1=1, axis2=2).copy(),
-        cold_C=first_people.cold_C,
-        warm_C=first_people.warm_C,
     )
 
 
@@ -155,7 +149,6 @@ class PooledResult:
     other_correct: Array
     standard_error: float
     person_standard_error: float
-    thin: ReceptorTemperatures
 
     def __post_init__(self) -> None:
         own_arrays(self, "pooled")
@@ -194,8 +187,6 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
 
     Place and order of work do not change the result.
     """
-    from thermicon.circuit.solver.simulate import rows_until
-
     each: Iterator[tuple[int, BatchResult]]
     parts: dict[int, BatchResult] = {}
     blur = 0.0
@@ -229,14 +220,6 @@ def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None
         other_correct=joined("other_correct").mean(axis=0),
         standard_error=_sampling_error(job, mean, job.people),
         person_standard_error=blur,
-        thin=ReceptorTemperatures(
-            joined("cold_C"),
-            joined("warm_C"),
-            rows_until(job.end_s, RATE_HZ)[::EVERY],
-            job.rig.site,
-            job.rig.contact.area_m2,
-            tuple(icon.name for icon in job.icons),
-        ),
     )
 
 

@@ -149,6 +149,7 @@ def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None
     whole = Nominal(ranking.proportion_correct, ranking.information_bits, felt.detected, felt.middle, onsets)
     crowd = model.people(job.people, job.seed)
     found = new_laboratory(
-        felt.thin, crowd, whole, job.norm, model=model, draws=draws, seed=job.seed, task=job.task, step=step
-    )
+        job.icons, job.rig, job.end_s, crowd, whole, job.norm,
+        tracking=job.tracking, model=model, draws=draws, seed=job.seed, task=job.task, step=step,
+    )  # fmt: skip
     return replace(ranking, new_laboratory=found)

@@ -22,12 +22,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..drawn import Drawn
+from ..identification.depths import rungs
 from ..identification.laboratory_draws import LaboratoryDraws, Uncertain, laboratory_draws, latin
 from ..identification.population import ReceptorTemperatures, run_end_s
 from ..kernels.parallel import Progress, step_counter
 from ..observer.channels import USUAL_NORM
 from ..observer.constants import quantity_of
-from ..observer.observer import DATA, check_norm
+from ..observer.observer import DATA, Observer, check_norm
 from ..observer.observer_model import ObserverModel
 from ..observer.people import People, people_records
 from .assumptions import explained, explained_together, scores_of
@@ -68,35 +69,40 @@ def base_name(constant: str) -> str:
 class UncertainRig:
     """Contact and layer as intervals, and the simulations between which others are interpolated.
 
-    `grid` holds temperatures in °C, shape (contact · layer, channel, people, icons, n_time), and `like` what does not
-    depend on the two. Shares are of each interval, 0–1; the rig as it is has 0.5 of both.
+    `grid` holds temperatures in °C, shape (contact · layer, channel, depths, people, icons, n_time), and `like` what
+    does not depend on the two. Shares are of each interval, 0–1; the rig as it is has 0.5 of both.
     """
 
     parameters: tuple[Uncertain, Uncertain]
     grid: Array
     like: ReceptorTemperatures
+    outer_layer: Array
 
     @classmethod
-    def simulate(cls, icons: Sequence[Icon], rig: Rig, people: People, end_s: float) -> UncertainRig:
+    def simulate(
+        cls, icons: Sequence[Icon], rig: Rig, people: People, end_s: float, observers: Sequence[Observer]
+    ) -> UncertainRig:
         """Simulate every icon for each person at the nodes, with the currents that are designed on the rig as it is."""
         resistance, layer_mm = rig.contact.resistance_m2K_per_W, rig.skin.layers[0].thickness_m * 1e3
         by = 1.0 + rig.uncertainty.contact_resistance_relative
         other = 1.0 + people_records()["outer_layer"].central  # one person's spread
         contact = Uncertain(CONTACT, resistance / by, resistance * by)
         layer = Uncertain(LAYER, layer_mm / other, layer_mm * other)
-        played = []
+        ends = np.outer([1.0 / other, other], people.corneum_m(rig))
+        depths, grid = rungs(observers, ends), []
         for share, place in product(NODES, NODES):
             keys = {"contact.resistance_m2K_per_W": contact.at(share), "skin.layer.0.thickness_mm": layer.at(place)}
-            rigs = people.rigs(rig.with_(**keys))
-            played.append(ReceptorTemperatures.simulated(icons, rigs, rig, end_s, RATE_HZ, None))
-        grid = np.stack([np.stack([each.cold_C, each.warm_C]) for each in played])
-        return cls((contact, layer), grid, played[0])
+            met = rig.with_(**keys)
+            played = ReceptorTemperatures.at_depths(icons, people, met, depths, end_s, RATE_HZ, None, designed_on=rig)
+            grid.append(np.stack(played.rungs_C))
+        return cls((contact, layer), np.stack(grid), played, people.outer_layer)
 
     def played(self, contact: float, layer: float) -> ReceptorTemperatures:
         """Temperatures of the receptors for a contact and an outermost layer, as shares of their intervals."""
         weights = np.outer(_parabola(contact), _parabola(layer)).reshape(-1)
         cold, warm = (weights @ self.grid.reshape(weights.size, -1)).reshape(self.grid.shape[1:])
-        return replace(self.like, cold_C=cold, warm_C=warm)
+        corneum_m = self.outer_layer * (1e-3 * self.parameters[1].at(layer)) * (self.like.corneum_m > 0.0)
+        return replace(self.like, rungs_C=(cold, warm), corneum_m=corneum_m)
 
 
 def _parabola(share: float) -> Array:
@@ -209,7 +215,7 @@ def sensitivity(
         )
     crowd = model.people(people, seed)
     end = run_end_s((duration_s(icon, rig) for icon in members), RATE_HZ)
-    uncertain = UncertainRig.simulate(members, rig, crowd, end)
+    uncertain = UncertainRig.simulate(members, rig, crowd, end, model.some_draws(draws))
     shares = latin(2, draws, seed + 1)
     each = laboratory_draws(
         lambda place: uncertain.played(*shares[place].tolist()),

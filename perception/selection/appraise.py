@@ -125,19 +125,14 @@ def population_response(
     crowd: People,
     tracking: str | None = None,
     *,
-    rigs: Sequence[Rig] | None = None,
     rate_Hz: float = RATE_HZ,
     end_s: float | None = None,
     observer: Observer,
 ) -> tuple[PopulationResponse, Array]:
-    """What every person feels of every icon, and durations (s) of the icons.
-
-    `rigs` are those of the people (None: the rig with each person's contact and skin).
-    """
+    """What every person feels of every icon, and durations (s) of the icons."""
     from thermicon.circuit.solver.simulate import duration_s
 
     durations = np.array([duration_s(icon, rig) for icon in icons])
     end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
-    each = crowd.rigs(rig) if rigs is None else rigs
-    played = ReceptorTemperatures.simulated(icons, each, rig, end, rate_Hz, tracking)
+    played = ReceptorTemperatures.simulated(icons, crowd, rig, observer, end, rate_Hz, tracking)
     return respond(played, crowd, observer, detection=False), durations

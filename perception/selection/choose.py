@@ -197,8 +197,11 @@ class Chooser:
         if draws:
             onset_s = felt.detection.onset_s[chosen]
             alone = Nominal(own.proportion_correct, own.information_bits, felt.detected[chosen], middle, onset_s)
-            how: dict[str, Any] = {"model": model, "draws": draws, "seed": job.seed, "task": task, "step": step}
-            found = new_laboratory(felt.thin.of(chosen), self.crowd, alone, job.norm, **how)
+            icons = [job.icons[k] for k in chosen]
+            found = new_laboratory(
+                icons, job.rig, job.end_s, self.crowd, alone, job.norm,
+                tracking=job.tracking, model=model, draws=draws, seed=job.seed, task=task, step=step,
+            )  # fmt: skip
         return Choice(
             icons=tuple(names),
             objective=asked.objective,

@@ -27,7 +27,6 @@ from .candidate_edits import CandidateEdit, Screening, Vain, offers, worse
 from .pool import POOL_HZ, Pool
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import Icon
 
     from ..ranking.ranking import Ranking
@@ -148,7 +147,6 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
     now = kept.dprimes(kept, job.norm, nominal)
     screening, vain = Screening(kept, now, pair, wanted, job.norm, nominal), Vain()
     crowd = ranking.model.people(job.people, job.seed)
-    rigs = crowd.rigs(job.rig)
     target = wanted * now[i, j] / before[i, j] if now[i, j] > 0 and before[i, j] > 0 else wanted
     largest, confirmed = LARGEST, 0.0
     refused: set[tuple[int, str]] = set()
@@ -165,9 +163,9 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
             break
         one = offered[0]
         end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], POOL_HZ))
-        parted, harmed = _with_people(ranking, screening, one, crowd, rigs, end_s)
+        parted, harmed = _with_people(ranking, screening, one, crowd, end_s)
         if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
-            recounted = _recounted(ranking, one, crowd, rigs, end_s)
+            recounted = _recounted(ranking, one, crowd, end_s)
             return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
         vain.opposed |= harmed
         refused.add((one.place, one.new))
@@ -185,13 +183,13 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
 
 
 def _with_people(
-    ranking: Ranking, screening: Screening, one: CandidateEdit, crowd: People, rigs: Sequence[Rig], end_s: float
+    ranking: Ranking, screening: Screening, one: CandidateEdit, crowd: People, end_s: float
 ) -> tuple[float, bool]:
     """Median d′ of the pair with an edit, and whether another pair becomes worse, for the people of the ranking."""
     job, before, nominal = ranking.job, ranking.d_prime, ranking.model.nominal
 
     def medians(icons: Sequence[Icon], task: Task) -> Array:
-        felt, _ = population_response(icons, job.rig, crowd, job.tracking, rigs=rigs, end_s=end_s, observer=nominal)
+        felt, _ = population_response(icons, job.rig, crowd, job.tracking, end_s=end_s, observer=nominal)
         return np.asarray(np.median(memory_dprime(felt, job.norm, crowd.memory, nominal, task), axis=0))
 
     i, j = screening.pair
@@ -212,7 +210,7 @@ def _with_people(
     return float(after[i, j]), bool(worse(before[rest], after[rest], screening.wanted).any())
 
 
-def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, rigs: Sequence[Rig], end_s: float) -> float:
+def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, end_s: float) -> float:
     """Share of the first people whose number of episodes of the icon changes with the edit."""
     job, few = ranking.job, crowd.part(0, min(len(crowd), MOST_RECOUNTED))
     felt, _ = population_response(
@@ -220,7 +218,6 @@ def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, rigs: Sequen
         job.rig,
         few,
         job.tracking,
-        rigs=rigs[: len(few)],
         rate_Hz=POOL_HZ,
         end_s=end_s,
         observer=ranking.model.nominal,

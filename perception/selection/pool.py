@@ -15,7 +15,8 @@ from ..identification.population import run_end_s
 from ..observer.observer import Norm, Observer
 from ..ranking.scores import energy_J, objection
 from ..sensation.detection import detect
-from ..sensation.percept import perceive_many, uniform_clock
+from ..sensation.percept import perceive_many
+from ..sensation.received import received, uniform_clock
 from .goal import SAFETY, Goal
 from .max_min_subset import Limits
 from .request import ChoiceError, Selection, check_selection, too_few
@@ -60,10 +61,11 @@ class Pool:
         end = run_end_s(durations.tolist(), rate_Hz) if end_s is None else end_s
         padded = [*icons, *[icons[-1]] * (BLOCK - len(icons))]
         traces = simulate_all(padded, rig, end_s=end, rate_Hz=rate_Hz)[: len(icons)]
-        dt, rows = uniform_clock(traces[0].time_s)
+        dt, _ = uniform_clock(traces[0].time_s)
+        at_cold, at_warm = zip(*(received(trace, observer) for trace in traces), strict=True)
         cold, warm = perceive_many(
-            np.array([trace.cold_receptor_C[:rows] for trace in traces]),
-            np.array([trace.warm_receptor_C[:rows] for trace in traces]),
+            np.array(at_cold),
+            np.array(at_warm),
             dt,
             observer,
             area_m2=rig.contact.area_m2,

@@ -163,7 +163,7 @@ def search(
     run, model = SearchRun(icons, count), ObserverModel.of(observer)
     nominal = Evaluator(rig, objective, check_norm(norm), seed, model.nominal, tracking, wanted)
     first = model.people(PEOPLE, seed)
-    few = replace(nominal, rigs=tuple(first.rigs(rig)), crowd=first)
+    few = replace(nominal, crowd=first)
     draws, parts = model.draw_count(parameters, DRAWS), list[GoalPart]()
     if wanted is not None:
         wanted.check_draws(draws)

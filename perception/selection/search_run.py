@@ -34,7 +34,7 @@ SHRINK, FINEST = 0.85, 0.005
 
 @dataclass(frozen=True, slots=True)
 class Evaluator:
-    """How pools and sets are scored: by the nominal person unless there is a `crowd`, whose rigs are `rigs`.
+    """How pools and sets are scored: by the nominal person unless there is a `crowd`.
 
     `goal` says what is asked of single icons and of totals.
     """
@@ -46,7 +46,6 @@ class Evaluator:
     observer: Observer
     tracking: str | None = None
     goal: Goal | None = None
-    rigs: tuple[Rig, ...] = ()
     crowd: People | None = None
 
     @property
@@ -59,7 +58,8 @@ class Evaluator:
         pool = Pool.of([candidate.icon for candidate in candidates], self.rig, self.observer)
         if self.crowd is None:
             return pool, pool.dprimes(pool, self.norm, self.observer)[None]
-        met = ReceptorTemperatures.simulated(pool.icons, self.rigs, self.rig, pool.end_s, POOL_HZ, self.tracking)
+        how = self.rig, self.observer, pool.end_s, POOL_HZ, self.tracking
+        met = ReceptorTemperatures.simulated(pool.icons, self.crowd, *how)
         felt = respond(met, self.crowd, self.observer, detection=False)
         return pool, memory_dprime(felt, self.norm, self.crowd.memory, self.observer, USUAL)
 

@@ -13,9 +13,11 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, Channel, Variable, receptor_input, sign_of
+from ..observer.channels import Channel, sign_of
+from ..observer.constants import Both
 from ..observer.observer import Observer
-from .percept import perceive_many, uniform_clock
+from .percept import perceive_many
+from .received import received, uniform_clock
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
@@ -47,9 +49,10 @@ class Stimulus:
         """Clock (rows,), s."""
         return self.dt_s * np.arange(self.rows, dtype=np.float64)
 
-    def received(self, variable: Variable, channel: Channel) -> Array:
-        """What the receptors of a channel go by, shape (k, rows): °C, or W/m² into the skin."""
-        return np.stack([receptor_input(trace, variable, channel)[: self.rows] for trace in self.traces])
+    def received(self, observer: Observer) -> Both[Array]:
+        """What cold and warm receptors of an observer go by, shape (k, rows) each: °C, or W/m² into the skin."""
+        each = [received(trace, observer) for trace in self.traces]
+        return Both(*(np.stack([own[channel][: self.rows] for own in each]) for channel in range(2)))
 
     def surface_C(self, surface: Surface) -> Array:
         """Temperature of the face of the skin or of the display, °C, shape (k, rows)."""
@@ -57,8 +60,7 @@ class Stimulus:
 
     def felt(self, observer: Observer) -> tuple[Array, Array]:
         """Sensations (cold, warm) of the nominal person, shape (k, rows)."""
-        at_cold, at_warm = (self.received(observer.variable, channel) for channel in CHANNELS)
-        return perceive_many(at_cold, at_warm, self.dt_s, observer, area_m2=self.area_m2, site=self.site)
+        return perceive_many(*self.received(observer), self.dt_s, observer, area_m2=self.area_m2, site=self.site)
 
 
 @dataclass(frozen=True, slots=True)

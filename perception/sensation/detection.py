@@ -138,7 +138,8 @@ def detect(
     def each_row(*values: ArrayLike) -> Array:
         return np.stack([np.broadcast_to(np.asarray(own, dtype=np.float64), lead).reshape(-1) for own in values], -1)
 
-    criteria, late = observer.criterion * each_row(criterion_cold, criterion_warm), each_row(*conduction)
+    criteria = observer.criteria(observer.criterion, each_row(criterion_cold, criterion_warm))
+    late = each_row(*conduction)
     decisions = each_row(decision) * np.exp(quarters(observer.decision_noise))
     raised = np.exp(observer.p * quarters(observer.gain_noise))
     probability, reported, share = np.empty(rows), np.empty((rows, count)), np.zeros(rows)

@@ -17,10 +17,11 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..criteria import FELT_FROM
 from ..drawn import Drawn
-from ..observer.channels import CHANNELS, Channel, receptor_input
+from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from .coverage import outside_data
 from .detection import channel_name, detect
+from .received import received, uniform_clock
 
 if TYPE_CHECKING:
     from thermicon.circuit import Trace
@@ -143,7 +144,8 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
     Parameters
     ----------
     trace
-        A trace of `simulate`, with a uniform clock; its site decides thresholds and nerve path. The response window is
+        A trace of `simulate`, with a uniform clock; its site decides thresholds and nerve path, the observer
+        where in its skin the receptors lie. The response window is
         the length of the trace: simulate a tail, such as 10 s, to include the return.
     observer
         The person, of temperature or of heat flow; None: the nominal one.
@@ -173,8 +175,7 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
     """
     person = Observer.load() if observer is None else observer
     area = trace.area_m2 if area_m2 is None else area_m2
-    dt, rows = uniform_clock(trace.time_s)
-    at_cold, at_warm = (receptor_input(trace, person.variable, channel)[:rows] for channel in CHANNELS)
+    dt, (at_cold, at_warm) = uniform_clock(trace.time_s)[0], received(trace, person)
     cold, warm = perceive_many(at_cold, at_warm, dt, person, area_m2=area, site=trace.site)
     path = person.path_m(trace.site)
     found = detect(cold, warm, dt, person, path_m=path)
@@ -211,26 +212,12 @@ def perceive_many(
     """
     felt = []
     multiples = {"cold": threshold_cold, "warm": threshold_warm}
-    for channel, received in zip(CHANNELS, (cold_received, warm_received), strict=True):
-        psi = observer.drive(received, dt_s, channel)
+    for channel, at_receptors in zip(CHANNELS, (cold_received, warm_received), strict=True):
+        psi = observer.drive(at_receptors, dt_s, channel)
         # In place: memory as large as the input is what takes long in a large batch.
         observer.sensation(psi, channel, area_m2=area_m2, site=site, threshold=multiples[channel], out=psi)
         felt.append(psi)
     return felt[0], felt[1]
-
-
-def uniform_clock(time_s: ArrayLike) -> tuple[float, int]:
-    """Step (s) of a uniform clock and how many rows it has; a shorter last step is left off."""
-    clock = np.asarray(time_s, dtype=np.float64)
-    if clock.size < 2:
-        raise ValueError("a percept needs a trace of at least two rows")
-    rows = clock.size
-    if rows > 2 and clock[-1] - clock[-2] < (clock[1] - clock[0]) * (1.0 - 1e-6):
-        rows -= 1
-    dt = float(clock[rows - 1] - clock[0]) / (rows - 1)
-    if not np.allclose(np.diff(clock[:rows]), dt, rtol=1e-6, atol=1e-9):
-        raise ValueError("a percept needs a uniform clock: simulate at one rate (rate_Hz)")
-    return dt, rows
 
 
 def on_one_clock(percepts: Sequence[Percept]) -> tuple[Array, Array, float]:

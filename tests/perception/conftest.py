@@ -23,6 +23,7 @@ class FakeTrace:
     warm_receptor_C: Array
     site: str = "thenar"
     area_m2: float = 9e-4
+    rig: None = None
 
 
 Cue = Callable[..., FakeTrace]

@@ -1,8 +1,10 @@
-"""Labels: warmth that lingers makes cold be called warm."""
+"""Labels: cold is called warm now and then, and more often where warmth lingers."""
 
 import math
 from dataclasses import dataclass
 
+from ...arrays import Array
+from ..channels import Channel
 from ..constants import SHARE, constant
 from .mechanism import Mechanism
 
@@ -19,3 +21,8 @@ class Labels(Mechanism):
     def called_warm(self, psi_warm: float) -> float:
         """Share of coolings that are called warm, after warmth of so many d′."""
         return self.wrong_labels + (0.5 - self.wrong_labels) * -math.expm1(-self.lingering * psi_warm)
+
+    def mislabelled(self, channel: Channel, mistaken: Array, psi_warm: float) -> Array:
+        """Shares of wrong names of a channel of which these shares are taken for the other."""
+        renamed = self.called_warm(psi_warm)
+        return mistaken * (1.0 - renamed) + (renamed if channel == "cold" else 0.0)

@@ -1,21 +1,37 @@
-"""Skin under a thermode: where receptors lie, the contact, and the effusivity of living tissue."""
+"""Skin: where receptors lie, and under a thermode the contact and the effusivity of living tissue."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from ..constants import Both, constant
+from ..constants import SHARE, Both, constant
 from .mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
 
 
 @dataclass(frozen=True, kw_only=True)
 class Skin(Mechanism):
-    """Skin of laboratories: depth of receptors below the stratum corneum, contact, effusivity. Rigs have their own."""
+    """Depth of receptors, by one rule at every site; contact and effusivity of laboratories: rigs have their own."""
 
-    equation = "depth = stratum corneum + own depth; √(kρc) of living layers × effusivity"
+    equation = "depth = share · stratum corneum + own depth; √(kρc) of living layers × effusivity"
     source = "Ho 2018 for depths; Ho & Jones for contact; contact with glass (1957) for effusivity"
+    corneum_share: float = constant("share of the stratum corneum that counts", SHARE, default=1.0)
     depth_m: Both[float] = constant("{} receptor depth", scale=1e-3, task=True)
     contact_m2K_per_W: float = constant("contact resistance of a thermode", task=True)
     effusivity: float = constant("effusivity of living skin", task=True)
 
     def depths_m(self, corneum_m: float) -> Both[float]:
         """Depths of the receptors below the face of skin with a stratum corneum so thick."""
-        return Both(corneum_m + self.depth_m.cold, corneum_m + self.depth_m.warm)
+        above_m = self.corneum_share * corneum_m
+        return Both(above_m + self.depth_m.cold, above_m + self.depth_m.warm)
+
+
+def depth_keys(rig: Rig, depths_m: Both[float]) -> dict[str, float | str]:
+    """Keys of a rig's skin with receptors at depths below its face; none where the rig places its own."""
+    if rig.skin.own:
+        return {}
+    cold_mm, warm_mm = (1e3 * depth for depth in depths_m)
+    return {"skin.depth_from": "surface", "skin.cold_receptor_mm": cold_mm, "skin.warm_receptor_mm": warm_mm}

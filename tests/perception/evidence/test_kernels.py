@@ -10,8 +10,10 @@ from thermicon.perception import Observer
 from thermicon.perception.experiments.laboratory import SHARES, Laboratory, samples_of
 from thermicon.perception.kernels import crossing as kernels
 from thermicon.perception.kernels.crossing import psychometric
+from thermicon.perception.observer.channels import CHANNELS, Channel
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.mechanisms.summation import Summation, summed_area_cm2
+from thermicon.perception.observer.people import People
 
 DT = 0.025
 TRANSDUCER = replace(Observer.load(), a=11.0, p=1.2)
@@ -24,15 +26,18 @@ def passage(drive, gain, criterion, tau=0.3, time=None):
     return times, kernels.passage(risen, clock, raised, TRANSDUCER.a, criterion, tau, SHARES, times)
 
 
+def drawn_noise(time: np.ndarray, tau: float, *trials: int) -> np.ndarray:
+    lags = np.subtract.outer(time, time) / tau
+    factor = np.linalg.cholesky(np.exp(-0.5 * lags**2) + 1e-8 * np.eye(time.size))
+    return np.asarray(np.random.default_rng(3).standard_normal((*trials, time.size)) @ factor.T)
+
+
 def test_first_passage_agrees_with_drawn_noise() -> None:
     tau, criterion = 0.3, 3.0
     time = DT * np.arange(160)
     course = np.maximum(1.5 * time, 1e-9)
     times, _ = passage(course, np.ones(1), np.array([criterion]), tau)
-    rng = np.random.default_rng(3)
-    lags = np.abs(time[:, None] - time[None, :])
-    factor = np.linalg.cholesky(np.exp(-(lags**2) / (2.0 * tau**2)) + 1e-8 * np.eye(time.size))
-    noisy = TRANSDUCER.psi(course) + rng.standard_normal((6000, time.size)) @ factor.T
+    noisy = TRANSDUCER.psi(course) + drawn_noise(time, tau, 6000)
     first = np.where((noisy > criterion).any(axis=1), time[(noisy > criterion).argmax(axis=1)], np.inf)
     np.testing.assert_allclose(times[0], np.quantile(first, SHARES), atol=0.06)
 
@@ -42,6 +47,25 @@ def test_no_drive_gives_false_alarms_alone() -> None:
     rate = math.exp(-4.5) / (2.0 * math.pi * 0.3)
     below = 0.5 * math.erfc(-3.0 / math.sqrt(2.0))
     assert passed[0] == pytest.approx(1.0 - below * math.exp(-rate / below * 199 * DT), rel=0.01)
+
+
+@pytest.mark.parametrize("case", [("cold", 0.1, False), ("warm", 0.1, True), ("warm", 0.5, True)])
+def test_noise_of_the_other_channel_decides_as_often_as_drawn_noise(case: tuple[Channel, float, bool]) -> None:
+    tau, criterion, trials, (channel, choice_s, compared) = 0.25, 2.0, 20_000, case
+    person = replace(TRANSDUCER, gain_noise=0.0, criterion=criterion, choice_s=choice_s, noise_correlation_s=tau)
+    asked = replace(Laboratory.of(person, {}), people=People.nominal(1, person))
+    time = DT * np.arange(161)
+    course, samples = np.maximum(1.5 * time, 1e-9), samples_of(((4.0, 6.0),), 4.0)
+    found = asked.outrun(course, samples, channel, 1.0, site="forearm", compared=compared)[0]
+    sooner = np.diff([person.delay_s(each, 0.55) for each in CHANNELS])[0] * (1.0 if channel == "warm" else -1.0)
+    noise = drawn_noise(time, tau, 2, trials)
+    own, other = person.psi(course) + noise[0], noise[1]
+    first, at = (np.where((x > criterion).any(axis=1), time[(x > criterion).argmax(axis=1)], 9.0) for x in (own, other))
+    decided = 0
+    for k in np.flatnonzero(at - sooner < first):
+        then = at[k] + choice_s
+        decided += not compared or np.interp(then, time, other[k]) > np.interp(then - sooner, time, own[k])
+    assert found == pytest.approx(decided / trials, rel=0.1)
 
 
 def test_lanes_and_steps_can_be_chosen_freely() -> None:

@@ -6,14 +6,14 @@ from pathlib import Path
 import pytest
 
 from thermicon.circuit.records import RecordError
-from thermicon.perception.evidence.rows import load_evidence, load_rows, read_evidence
+from thermicon.perception.evidence.rows import in_haste, load_evidence, load_rows, read_evidence
 from thermicon.perception.observer.observer import DATA
 
 
 def test_every_statistic_has_an_experiment_an_error_and_a_licence() -> None:
     evidence = load_evidence()
-    assert len(evidence.statistics) == 323
-    assert {row.experiment for row in evidence.statistics} == {f"E{n}" for n in range(1, 8)}
+    assert len(evidence.statistics) == 335
+    assert {row.experiment for row in evidence.statistics} == {f"E{n}" for n in range(1, 9)}
     assert all(math.isfinite(row.se) for row in evidence.statistics)
     assert all(each.licence for each in evidence.experiments.values())
     with pytest.raises(RecordError, match=r"no statistic 'treshold_gm' \(cold\): did you mean threshold_gm"):
@@ -26,7 +26,7 @@ def test_every_statistic_has_an_experiment_an_error_and_a_licence() -> None:
         ("1.476,0.03537", "1.476,-0.03537", "line 1.*: se: "),
         ("E3,threshold_gm,cold,1.476", "E3,threshold_gm,cold,none", "value: "),
         ("E3,threshold_gm,cold", "E3,threshold_gm,cool", "channel: "),
-        ("E3,threshold_gm,cold", "E8,threshold_gm,cold", r"evidence.toml has no 'E8'"),
+        ("E3,threshold_gm,cold", "E0,threshold_gm,cold", r"evidence.toml has no 'E0'"),
     ],
 )
 def test_a_wrong_row_is_named_by_line_and_column(tmp_path: Path, before: str, after: str, message: str) -> None:
@@ -50,5 +50,7 @@ def test_rows_are_published_numbers_with_errors() -> None:
     assert rows["E3", spread.statistic, "warm"].sd == pytest.approx(math.hypot(spread.se, 0.2 * spread.value))
     width = rows["E4", "sigma_gm_age30", "warm"]
     assert width.value == pytest.approx(math.log(2.269) - 0.14)
+    warm = in_haste(load_evidence())[1]
+    assert (warm.value, warm.sd) == pytest.approx((0.0062583, math.hypot(0.0035638, 0.003)))
     steps = rows["steps", "steps from threshold to pain", "warm"]
     assert (steps.value, steps.sd) == (pytest.approx(math.log(30.0)), 0.3)

@@ -48,6 +48,7 @@ def bench(area_cm2: float, baseline_C: float) -> Bench:
     changes: dict[str, float] = {
         "contact.area_cm2": area_cm2,
         "contact.resistance_m2K_per_W": VALUES["contact resistance of a thermode"],
+        "skin.depth_from": "stratum corneum",
         "skin.cold_receptor_mm": VALUES["cold receptor depth"],
         "skin.warm_receptor_mm": VALUES["warm receptor depth"],
         "thermode.lag_s": 0.0,

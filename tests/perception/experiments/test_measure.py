@@ -1,13 +1,18 @@
 """What a new laboratory would measure lies where the evidence has it, and is asked as the evidence was."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception.evidence.rows import load_evidence
+from thermicon.perception.experiments.laboratory import Laboratory
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of, measure
-from thermicon.perception.observer.constants import BETWEEN_LABORATORIES
+from thermicon.perception.experiments.published import quality_in_haste
+from thermicon.perception.observer.constants import BETWEEN_LABORATORIES, Both
 from thermicon.perception.observer.draws import PosteriorDraws
+from thermicon.perception.observer.observer import Observer
 
 FOREARM = Rig.load("forearm").with_(**{"contact.area_cm2": 9.8})
 LIMITS, CHOICE, YES_NO = (
@@ -61,10 +66,40 @@ def test_who_does_not_answer_counts_a_second_beyond_the_end() -> None:
     assert np.exp(logs_of(numb, setting, LIMITS)[0].max()) == pytest.approx(12.0 + 1.0)
 
 
+@pytest.mark.parametrize("site", ["forearm", "thenar"])
+def test_wrong_qualities_are_a_matter_of_chance_for_what_is_not_felt_and_seldom_for_what_is(site: str) -> None:
+    nothing, cold, warm = (
+        measure(Condition("wrong_quality", "choice", channel, 31.0, size, 5.0, 0.0), Rig.load(site), draws=6)
+        for channel, size in (("warm", 0.01), ("cold", 8.0), ("warm", 8.0))
+    )
+    assert nothing.value == pytest.approx(0.5, abs=0.1)
+    assert 0.0 < warm.low < warm.value < warm.high < nothing.low
+    assert warm.value < cold.value < 0.5
+    assert repr(cold).startswith("Measurement(cold, wrong quality of a speeded choice, 8 K at 5 K/s: 0.1")
+
+
+def test_floor_and_comparison_keep_noise_from_naming_and_labels_rename_cold() -> None:
+    """E8: warm was called cold in 0.6 % of the choices, cold called warm in 3.3 %."""
+
+    def shares(compared: bool = True, **changes: float) -> tuple[float, ...]:
+        person = replace(Observer.load(), **changes)
+        return tuple(dict(quality_in_haste(Laboratory.of(person, {"E1": Both(0.0, 0.0)}), compared=compared)).values())
+
+    cold, warm = shares(criterion_floor=2.4)
+    assert 0.001 < warm < 0.02
+    (_, free), (_, alone), (_, slow) = shares(compared=False), shares(), shares(choice_s=0.5)
+    assert free > 3.0 * warm and free > alone > warm and slow < alone
+    renamed, same = shares(criterion_floor=2.4, wrong_labels=Observer.load().wrong_labels - 0.045)
+    assert (cold - renamed, warm - same) == pytest.approx((0.045, 0.0), abs=0.002)
+
+
 def test_messages() -> None:
     with pytest.raises(ValueError, match=r"an interval needs at least 2 laboratories, not 1"):
         measure(LIMITS, FOREARM, draws=1)
     with pytest.raises(ValueError, match=r"limits needs the size of the change, above 0 K"):
         Condition("threshold", "limits", "cold", 32.0, None, 1.0, 0.0)
-    with pytest.raises(ValueError, match=r"there is no rating by limits of cold"):
-        Condition("rating", "limits", "cold", 32.0, 5.0, 1.0, 0.0)
+    with pytest.raises(ValueError, match=r"wrong quality of a speeded choice needs the size of the change, above 0 K"):
+        Condition("wrong_quality", "choice", "cold", 32.0, None, 1.0, 0.0)
+    for kind in ("rating", "wrong_quality"):
+        with pytest.raises(ValueError, match=f"there is no {kind} by limits of cold"):
+            Condition(kind, "limits", "cold", 32.0, 5.0, 1.0, 0.0)  # type: ignore[arg-type]

@@ -144,7 +144,7 @@ def test_faint_icons_have_wide_intervals_of_detection_and_none_of_onset() -> Non
 
 def test_only_constants_that_take_part_are_doubted(ranking: Ranking) -> None:
     """The thenar at the reference area: nothing of other sites, of age, of reaction times and of other experiments."""
-    idle = {"caution after a pre-pulse", "choice time", "cold receptor depth", "E1 cold"}
+    idle = {"caution after a pre-pulse", "choice time", "E1 cold"}
     idle |= {"warm sensitivity lost per decade"}
     of_a_site = {"cold threshold on the forearm", "warm threshold on the forearm", "cold area exponent"}
     smaller = Rig.load("forearm").with_(**{"contact.area_cm2": 4.0})
@@ -153,5 +153,5 @@ def test_only_constants_that_take_part_are_doubted(ranking: Ranking) -> None:
         each = found.new_laboratory.each
         acting = {name for name, acts in zip(each.names, each.acts, strict=True) if acts}
         assert acting.isdisjoint(some)
-        assert acting >= {"memory noise (episodes)", "laboratory, cold", "gain noise", *others}
+        assert acting >= {"memory noise (episodes)", "laboratory, cold", "gain noise", "cold receptor depth", *others}
         assert acting >= {doubt["constant"] for doubt in doubts(each)}

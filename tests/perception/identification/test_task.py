@@ -17,6 +17,7 @@ from thermicon.perception.observer.channels import NORMS, USUAL_NORM
 from thermicon.perception.observer.people import People, draw_people
 from thermicon.perception.selection.edit import Edit
 from thermicon.perception.selection.request import Selection
+from thermicon.perception.sensation.received import received as at_receptors
 
 RIG = Rig.load("thenar")
 SIX = read_cue("six-icons")
@@ -144,8 +145,8 @@ def largest_miss_K(tracking: str, gap_s: float, got: list[Received]) -> float:
             session = drive_of(plan, {icon.name: icon for icon in ICONS}, RIG, tracking)
             run = simulate_current(session.drive, RIG, start_C=session.start_C)
             every = round(100 / carryover.RATE_HZ)
-            for values, column in zip(got[place], ("cold_receptor_C", "warm_receptor_C"), strict=True):
-                played = getattr(run, column)[::every][begin:]
+            for values, column in zip(got[place], at_receptors(run, Observer.load()), strict=True):
+                played = column[::every][begin:]
                 worst = max(worst, float(np.abs(played - values[other, begin : begin + len(played)]).max()))
     return worst
 

@@ -12,11 +12,16 @@ from thermicon.circuit import Rig, simulate
 from thermicon.circuit.records import RecordError, Table, load_records
 from thermicon.icons import load_library, parse
 from thermicon.perception import Observer, draw_people, frontier, perceive, rank, search
+from thermicon.perception.identification.depths import rungs
+from thermicon.perception.identification.population import ReceptorTemperatures
 from thermicon.perception.observer.channels import VARIABLES, Variable, check_variable
 from thermicon.perception.observer.constants import Both
+from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import DATA
 from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.observer.people import People
 from thermicon.perception.sensation.bench import Bench, ramp
+from thermicon.perception.sensation.percept import perceive_many
 
 SHIPPED = DATA / "observer.toml"
 SIX, RIG = load_library("six-icons"), Rig.load("thenar")
@@ -130,18 +135,39 @@ def test_every_variant_loads_and_is_near_the_thresholds_it_was_inferred_from(var
 
 
 @pytest.mark.parametrize("variable", ["temperature", "heat flow"])
-def test_both_ways_to_count_depth_reach_the_percept(variable: Variable) -> None:
-    """From the base of the stratum corneum (0.17 mm on the thenar) receptors are deeper, felt later and less."""
-    person, icon = Observer.load(variable=variable), SIX["warming-step"]
-    surface = RIG.with_(**{"skin.depth_from": "surface"})
-    assert surface.skin.warm_receptor_m == pytest.approx(0.21e-3)
-    assert RIG.skin.warm_receptor_m == pytest.approx(0.38e-3)
-    traces = [simulate(icon, rig, tail_s=3.0) for rig in (surface, RIG)]
-    same = simulate(icon, surface.with_(**{"skin.cold_receptor_mm": 0.27, "skin.warm_receptor_mm": 0.38}), tail_s=3.0)
-    felt = [perceive(trace, person) for trace in (*traces, same)]
-    assert felt[1].psi_warm == pytest.approx(felt[2].psi_warm, abs=1e-6)
-    assert felt[1].onset_s > felt[0].onset_s + 0.05
-    assert felt[1].psi_warm.max() < felt[0].psi_warm.max()
+def test_an_observer_places_its_receptors_and_a_rig_overrides(variable: Variable) -> None:
+    """Deeper receptors are felt later and less; the same depths written in a rig are felt alike, whoever asks."""
+    person, icon = Observer.load(variable=variable), SIX["cooling-step"]
+    felt = [perceive(simulate(icon, RIG, tail_s=3.0), replace(person, corneum_share=w)) for w in (0.0, 0.5, 1.0)]
+    onsets = [each.onset_s for each in felt]
+    assert onsets[0] < onsets[1] < onsets[2] and onsets[0] < 0.75 * onsets[2]
+    peaks = [each.psi_cold.max() for each in felt]
+    assert peaks[0] > peaks[1] > peaks[2]
+    for w, own in zip((0.0, 0.5, 1.0), felt, strict=True):
+        cold, warm = replace(person, corneum_share=w).depths_m(RIG.skin.corneum_m)
+        written = RIG.with_(**{"skin.cold_receptor_mm": 1e3 * cold, "skin.warm_receptor_mm": 1e3 * warm})
+        for other in (person, replace(person, corneum_share=0.3)):
+            assert perceive(simulate(icon, written, tail_s=3.0), other).onset_s == pytest.approx(own.onset_s, abs=0.02)
+        assert sum("places its receptors itself" in each for each in written.warnings) == 1
+    assert not any("places its receptors itself" in each for each in RIG.warnings)
+
+
+@pytest.mark.parametrize("site", ["thenar", "fingertip", "forearm"])
+def test_a_crowd_and_draws_have_their_receptors_where_one_person_has(site: str) -> None:
+    """Depths between those that were simulated are felt as their own simulation: within 0.05 d′ of 10 and more."""
+    rig, crowd, icons = Rig.load(site), People.nominal(2), list(SIX)[:2]
+    draws = PosteriorDraws.load()
+    several = [draws.observer(k) for k in range(0, len(draws), 25)]
+    how = 12.0, 25.0, None
+    ladder = ReceptorTemperatures.at_depths(icons, crowd, rig, rungs(several, crowd.corneum_m(rig)), *how)
+    for one in several[:8]:
+        alone = ReceptorTemperatures.simulated(icons, crowd, rig, one, *how)
+        area = rig.contact.area_m2
+        for mine, theirs in zip(
+            *(perceive_many(*each.felt_by(one), 0.04, one, area_m2=area, site=site) for each in (ladder, alone)),
+            strict=True,
+        ):
+            assert np.abs(mine - theirs).max() < 0.05 + 0.01 * theirs.max()
 
 
 def test_heat_flow_fades_in_a_hold_where_temperature_does_not() -> None:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, draw_people
+from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.observer import CHANNELS, observer_records
 from thermicon.perception.observer.people import People, people_records
 from thermicon.perception.observer.priors import Prior, Priors, load_priors
@@ -52,7 +53,8 @@ def test_people_with_one_criterion_are_otherwise_the_same() -> None:
 
 def test_people_change_the_rig() -> None:
     rig, crowd = Rig.load("thenar"), draw_people(3, seed=1)
-    for person, own in enumerate(crowd.rigs(rig)):
+    for person, own in enumerate(crowd.rigs(rig, [Both(0.2e-3, 0.3e-3)] * 3)):
+        assert (own.skin.cold_receptor_m, own.skin.warm_receptor_m) == pytest.approx((0.2e-3, 0.3e-3))
         assert own.contact.resistance_m2K_per_W == pytest.approx(5.4e-4 * crowd.contact_resistance[person])
         assert own.skin.layers[0].thickness_m == pytest.approx(0.17e-3 * crowd.outer_layer[person])
         assert own.module == rig.module

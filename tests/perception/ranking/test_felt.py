@@ -35,14 +35,15 @@ def test_one_nominal_person_is_the_percept(monkeypatch: pytest.MonkeyPatch) -> N
     for icon in found.icons:
         trace = traces[icon.name]
         percept = perceive(trace)
-        assert icon.detected_probability == pytest.approx(percept.detected_probability, abs=1e-6)
-        assert icon.onset_s == (None if percept.onset_s is None else pytest.approx(percept.onset_s, abs=1e-6))
+        # People have lumps at their receptors; a percept is read between those of its trace.
+        assert icon.detected_probability == pytest.approx(percept.detected_probability, abs=2e-3)
+        assert icon.onset_s == (None if percept.onset_s is None else pytest.approx(percept.onset_s, abs=2e-3))
         assert icon.channel == percept.channel
 
 
 def test_of_many_it_is_the_mean_over_them(ranking: Ranking) -> None:
     crowd = draw_people(PEOPLE, 0)
-    met = ReceptorTemperatures.simulated(list(ICONS), crowd.rigs(RIG), RIG, END_S, 100.0, None)
+    met = ReceptorTemperatures.simulated(list(ICONS), crowd, RIG, Observer.load(), END_S, 100.0, None)
     each = population_detection(met, crowd, Observer.load()).probability
     assert each.shape == (PEOPLE, 2)
     assert [icon.detected_probability for icon in ranking.icons] == pytest.approx(each.mean(axis=0), rel=1e-9)

@@ -100,7 +100,8 @@ def test_depths_are_a_rule_on_the_rig() -> None:
     assert cold.text.endswith(
         "0.1 mm against 0.046 to 0.21 mm: passes; on this rig that is inside the viable epidermis"
     )
-    deep = rig_rules(Rig.load("thenar").with_(**{"skin.warm_receptor_mm": 0.5}))[1]
+    from_base = {"skin.depth_from": "stratum corneum", "skin.warm_receptor_mm": 0.5}
+    deep = rig_rules(Rig.load("thenar").with_(**from_base))[1]
     assert (deep.passed, deep.margin) == (False, pytest.approx(-0.08))
     assert deep.text.endswith("0.5 mm against 0.11 to 0.42 mm: fails; on this rig that is inside the dermis")
     surface = Rig.load("thenar").with_(**{"skin.depth_from": "surface", "skin.cold_receptor_mm": 0.15})

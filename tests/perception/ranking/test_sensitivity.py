@@ -1,11 +1,14 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from thermicon.circuit import Rig
 from thermicon.icons import load_library, parse
-from thermicon.perception import draw_people
+from thermicon.perception import Observer, draw_people
 from thermicon.perception.identification.laboratory_draws import memory_parameters
 from thermicon.perception.observer.channels import NORMS
+from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.ranking.sensitivity import (
     NODES,
@@ -94,12 +97,16 @@ def test_temperatures_between_the_nodes_are_those_of_a_run(rig: Rig) -> None:
     from thermicon.circuit import simulate_many
 
     people, icons = draw_people(3, 0), tuple(parse(TWO))
-    uncertain = UncertainRig.simulate(icons, rig, people, 8.0)
+    person = Observer.load()
+    others = [person, replace(person, depth_m=Both(0.05e-3, 0.15e-3)), replace(person, depth_m=Both(0.2e-3, 0.4e-3))]
+    uncertain = UncertainRig.simulate(icons, rig, people, 8.0, others)
     moved = rig.with_(**{"contact.resistance_m2K_per_W": uncertain.parameters[0].at(0.7)})
-    batch = simulate_many(icons, people.rigs(moved), nominal=rig, end_s=8.0, rate_Hz=12.5)
-    played = uncertain.played(0.7, 0.5)
-    assert played.cold_C == pytest.approx(batch.cold_C, abs=0.02)
-    assert played.warm_C == pytest.approx(batch.warm_C, abs=0.02)
+    for one in others:
+        rigs = people.rigs(moved, [one.depths_m(each) for each in people.corneum_m(rig).tolist()])
+        batch = simulate_many(icons, rigs, nominal=rig, end_s=8.0, rate_Hz=12.5)
+        cold, warm = uncertain.played(0.7, 0.5).felt_by(one)
+        assert cold == pytest.approx(batch.cold_C, abs=0.03)
+        assert warm == pytest.approx(batch.warm_C, abs=0.03)
     for k, node in enumerate(NODES):
         assert _parabola(node) == pytest.approx(np.eye(3)[k])
 

@@ -27,7 +27,7 @@ def test_a_ramp_is_played_held_and_returned(bench: Bench) -> None:
     assert skin[1, -1] == pytest.approx(32.5, abs=1e-3)
     assert (played.site, played.area_m2) == ("thenar", pytest.approx(9e-4))
     assert played.time_s[-1] == pytest.approx(3.0)
-    assert played.received("heat flow", "cold").shape == (2, 301)
+    assert played.received(Observer.load(variable="heat flow")).cold.shape == (2, 301)
 
 
 def test_what_is_felt_is_what_perceive_says(bench: Bench) -> None:

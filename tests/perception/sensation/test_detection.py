@@ -131,6 +131,16 @@ def test_pooled_is_a_person_drawn_at_random(observer: Observer) -> None:
     assert list(found.channel) == [0]
 
 
+def test_nobody_has_a_criterion_below_the_floor(observer: Observer) -> None:
+    psi, flat, own = np.minimum(np.arange(400) * 0.02, 2.0), np.zeros((3, 400)), [0.4, 0.8, 1.2]
+    free, floored = (
+        detect(np.stack([psi] * 3), flat, 0.01, each, criterion_cold=own, criterion_warm=own).probability
+        for each in (observer, replace(observer, criterion_floor=observer.criterion))
+    )
+    assert floored[0] == floored[1] < free[1] < free[0]
+    assert floored[2] == free[2]
+
+
 def test_gain_noise_spreads_what_is_detected(observer: Observer) -> None:
     """Averaged over gains by hand: a quarter of presentations at each of four sizes of drive."""
     psi = np.minimum(np.arange(400) * 0.02, 3.0)

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from thermicon.perception import Observer, Percept, perceive
-from thermicon.perception.sensation.percept import on_one_clock, uniform_clock
+from thermicon.perception.sensation.percept import on_one_clock
+from thermicon.perception.sensation.received import uniform_clock
 
 
 def test_a_cooling_is_felt_cold(cue: Any, observer: Observer) -> None:

@@ -1,0 +1,40 @@
+"""Receptors at the depths of many observers: a few depths are simulated, and what lies between is interpolated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Array
+from ..observer.constants import Both
+from ..observer.observer import Observer
+
+RUNGS = 4
+"""Depths that are simulated for each channel."""
+
+
+def rungs(observers: Iterable[Observer], corneum_m: ArrayLike) -> tuple[Both[float], ...]:
+    """Depths (m) to simulate for observers, of whom there are two or more, in skin with (people,) m of stratum corneum.
+
+    They lie between the least and the greatest as the nodes of Chebyshev do, where a polynomial errs least.
+    """
+    thin, thick = float(np.min(corneum_m)), float(np.max(corneum_m))
+    ends = np.array([[each.depths_m(thin), each.depths_m(thick)] for each in observers])
+    low, high = ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)
+    shares = 0.5 - 0.5 * np.cos(np.pi * (np.arange(RUNGS) + 0.5) / RUNGS)
+    return tuple(Both(*(low + share * (high - low)).tolist()) for share in shares)
+
+
+def between(depths_m: Sequence[float], rungs_C: Array, at_m: Array) -> Array:
+    """Temperatures (people, icons, n_time) at a depth of each person (people,), from those at some depths.
+
+    `rungs_C` has shape (depths, people, icons, n_time); the polynomial through all of them is read.
+    """
+    weights = np.ones((len(depths_m), at_m.size))
+    for k, own in enumerate(depths_m):
+        for other in (*depths_m[:k], *depths_m[k + 1 :]):
+            weights[k] *= (at_m - other) / (own - other)
+    found: Array = np.einsum("kp,kpit->pit", weights, rungs_C)
+    return found
