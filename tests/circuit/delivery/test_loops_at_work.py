@@ -7,6 +7,7 @@ each, or as many as THERMICON_EVIDENCE says.
 import json
 import os
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,11 +19,12 @@ from tests.circuit.delivery.followed import Follower
 from tests.circuit.delivery.loops_at_work import Controllers, at_work
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.surerig import sure_rig
-from thermicon.circuit import Device, Rig
+from thermicon.circuit import Device, Drive, Rig, simulate_current
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
-from thermicon.circuit.safety.checks import Demands
+from thermicon.circuit.safety.checks import CutOff, Demands
+from thermicon.circuit.safety.gate import Gate
 from thermicon.icons import Icon, load_library
 
 EXPORTS = min(200, int(os.environ.get("THERMICON_EVIDENCE", "200")))
@@ -122,8 +124,11 @@ def test_a_cut_off_keeps_the_limit_with_a_sensor_wrong_by_0_3_K_and_asks_for_no_
     rig = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5})
     icon, controller = icon_of("warm by 6 °C at 2 °C/s; hold for 1 s"), Device.load("closed-loop-controller")
 
+    def judged(highest_C: float) -> Gate:
+        return worst_case(deliver(icon, rig.with_(**{"safety.skin_highest_C": highest_C}), controller))
+
     def demanded(highest_C: float) -> Demands:
-        found = worst_case(deliver(icon, rig.with_(**{"safety.skin_highest_C": highest_C}), controller))
+        found = judged(highest_C)
         assert found.safe, found.reason
         return found.demands
 
@@ -133,6 +138,26 @@ def test_a_cut_off_keeps_the_limit_with_a_sensor_wrong_by_0_3_K_and_asks_for_no_
     kept, near = demanded(wrong_C + 0.12), demanded(wrong_C - 0.04)
     assert (kept.cut_off_display_C, kept.current_limit_A) == (usual.cut_off_display_C, usual.current_limit_A)
     assert hottest_of_a_stuck_loop(rig, near, 0.3) < wrong_C - 0.04, "tighter, though a right sensor needs it not"
+    # What a relay of 20 ms keeps is played: it acts half a kelvin beyond a display without power, on less current.
+    unpowered_C = float(simulate_current(Drive([0.0, 1.0], [0.0, 0.0]), rig).display_C[0])
+    relay = replace(judged(39.8).demands, cut_off_display_C=CutOff(0.0, unpowered_C + 0.5, 0.02))
+    relay_C = hottest_of_a_stuck_loop(rig, relay, 0.3)
+    assert judged(relay_C + 0.015).safe
+    (check,) = judged(relay_C - 0.015).findings[:1]
+    assert "display at the cut-off" in check.scenario
+    assert check.since_s is not None and 0.0 < check.since_s < check.time_s < 1.0, "the skin is hottest once it is cut"
+
+
+def test_a_loop_that_swings_when_one_update_late_is_told_to_be_quicker_and_a_weaker_one_is_not() -> None:
+    shape, controller = "cool by 3 °C at 2 °C/s; hold for 1 s; return at 2 °C/s", Device.load("closed-loop-controller")
+    delays_s = []
+    for kp in (2.5, 1.0):
+        gains = {"kp_A_per_K": kp, "ki_A_per_Ks": 0.25 * kp, "lag_s": 0.1}
+        rig = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5}, controller=gains)
+        found = worst_case(deliver(icon_of(shape), rig, controller))
+        assert found.safe and found.demands.loop is not None, found.reason
+        delays_s.append(found.demands.loop.delay_at_most_s)
+    assert delays_s[0] < 0.05 <= delays_s[1]
 
 
 @pytest.mark.slow

@@ -52,6 +52,7 @@ def test_what_is_reached_has_none_nor_what_cannot_begin_nor_a_current() -> None:
         ("warm by 3 °C at 2 °C/s; hold for 2 s", "skin", {"driver.current_min_A": 0.0}),
         ("cool by 6 °C at 3 °C/s; hold for 4 s", "skin", {"driver.current_limit_A": 0.3}),
         ("cool by 5 °C at 50 °C/s; hold for 1 s", "display", {}),
+        ("cool by 3 °C at 8 °C/s; hold for 1 s", "skin", {}),  # its ramps slower, all others smaller
     ],
 )
 def test_the_number_as_printed_is_reached(body: str, control: str, changes: dict[str, float]) -> None:

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.circuit.delivery.one_drive import changed, icon_of, prepare
+from tests.circuit.delivery.one_drive import changed, icon_of, prepare, worst_case
+from tests.circuit.surerig import sure_rig
 from tests.circuit.verdicts import GreenVerdict
-from thermicon.circuit import Device, Drive, Rig, simulate_current
+from thermicon.circuit import Device, Drive, Rig, simulate, simulate_current
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.devicefile import DeviceError
 from thermicon.circuit.delivery.formats import load_format
@@ -53,6 +54,13 @@ class TestDeliveredDrive:
         found = deliver(SKIN, RIG, LOOP)
         assert found.outcome.reached
         assert np.abs(found.trace.skin_C - found.designed_trace.skin_C).max() < 0.1
+
+    def test_it_may_be_played_again_once_the_skin_of_the_design_is_back(self) -> None:
+        known = sure_rig()
+        skin = simulate(STEP, known, tail_s=30.0)
+        away_s = skin.time_s[np.abs(skin.skin_C - skin.skin_C[0]) > 0.1][-1] - 8.0
+        again_s = worst_case(deliver(STEP, known, LOOP)).repeated.recovery_s
+        assert 5.0 < away_s < again_s < 1.5 * away_s, "a little later, since set-points lead"
 
     def test_the_drivers_limits_hold_it_back(self) -> None:
         weak = RIG.with_(**{"driver.current_limit_A": 0.6})

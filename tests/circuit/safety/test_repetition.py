@@ -140,14 +140,14 @@ def test_recovery_is_when_display_and_skin_are_back() -> None:
     assert last <= found <= last + 1.02, "rows stand 0.1 s apart, later 1 s"
 
 
-def played_thirty_times(drive: Drive, ensemble: Ensemble, pause_s: float) -> float:
-    """Warmest skin in °C of thirty plays, with the pauses and a minute of the last value held."""
-    state, warmest = ensemble.at_rest(REST), -np.inf
-    for _ in range(30):
+def played_thirty_times(drive: Drive, ensemble: Ensemble, pause_s: float, off_s: float = 1e-3) -> float:
+    """Warmest skin in °C of thirty plays with pauses between, and of a time without current after the last."""
+    state, warmest, skin = ensemble.at_rest(REST), -np.inf, WATCHED.index("skin_C")
+    for number in range(30):
+        state = ensemble.rest(REST, state, pause_s) if number else state
         for (_, values), then in ensemble.play(drive, state):
-            warmest, state = max(warmest, float(values[WATCHED.index("skin_C")].max())), then
-        state = ensemble.rest(REST, state, pause_s)
-    return warmest
+            warmest, state = max(warmest, float(values[skin].max())), then
+    return max(warmest, float(ensemble.hold(0.0, state, np.linspace(0.0, off_s, 601))[0][skin].max()))
 
 
 def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
@@ -164,6 +164,14 @@ def test_the_shortest_pause_is_safe_and_a_tenth_less_is_not() -> None:
     assert not repeating.safe(0.9 * shortest)
     assert played_thirty_times(drive, ensemble, shortest) <= 40.0
     assert played_thirty_times(drive, ensemble, 0.5 * shortest) > 40.0, "the limit is real, not only a bound's"
+
+
+def test_the_shortest_pause_waits_until_zero_current_after_a_play_is_safe_too() -> None:
+    drive = Drive([0, 1.0, 3.5, 4.5, 9.8, 10.8], [REST, -0.13, -0.13, 0.02, 0.02, REST], held=True)
+    ensemble, limits = Ensemble.of(sure_rig()), Limits.of({"skin_highest_C": 38.96, "skin_highest_soft_C": 38.0})
+    shortest = shortest_pause_s(Repeating(CurrentPlant.of(ensemble), [[CurrentPlay(drive, REST)]], limits))
+    kept_C, passed_C = (played_thirty_times(drive, ensemble, share * shortest, 600.0) for share in (1.0, 0.5))
+    assert kept_C <= 38.96 < passed_C
 
 
 def test_a_pause_that_cannot_be_is_told() -> None:

@@ -194,3 +194,5 @@ def test_what_stands_for_a_bridge_has_its_mean_and_its_heat() -> None:
     begin, end = switching(shares * peak, peak)
     assert 0.5 * (begin + end) == pytest.approx(shares * peak)
     assert (begin**2 + begin * end + end**2) / 3.0 == pytest.approx(np.abs(shares) * peak**2)
+    begin, end = switching(np.full((4, 1), 0.3), peak)
+    assert begin[1:] == pytest.approx(end[:-1]), "no jump where the mean stays"

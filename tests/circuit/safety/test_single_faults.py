@@ -10,7 +10,7 @@ import pytest
 from tests.circuit.delivery.replay import Held, Player, exposure
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Drive, Limits, Rig, gate
-from thermicon.circuit.safety.checks import CutOff
+from thermicon.circuit.safety.checks import CutOff, SingleFault
 from thermicon.circuit.safety.current import CurrentPlant, CurrentPlay
 from thermicon.circuit.safety.demanded import TEST_A, TEST_S, dose_time_s, polarity_check
 from thermicon.circuit.safety.display import DisplayPlant
@@ -31,8 +31,8 @@ COOL = Drive([0, 0.5, 3.0, 4.0], [REST, 0.8, REST, REST], held=True)
 TIMES = np.arange(0.0, 60.0, 0.02)
 
 
-def faulty(drive: Drive = COOL) -> Faulty:
-    few = Ensemble.of(THENAR).only(CORNERS)
+def faulty(drive: Drive = COOL, rig: Rig = THENAR) -> Faulty:
+    few = Ensemble.of(rig).only(CORNERS)
     return Faulty(few, drive, REST, few.at_rest(REST), LIMITS)
 
 
@@ -82,6 +82,17 @@ def test_a_cut_off_that_reacts_in_time_keeps_the_limits_with_the_driver_at_its_o
             assert within
             assert temperatures_pass(alone, 0.0, then, TIMES)[0]
     assert cut.react_within_s in (2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02)
+
+
+def test_where_no_cut_off_is_quick_enough_a_current_limit_is_told_for_which_one_is() -> None:
+    def stuck(limit_A: float) -> tuple[CutOff, SingleFault]:
+        rig = THENAR.with_(**{"driver.current_limit_A": limit_A, "driver.voltage_limit_V": 60.0})
+        return faulty(rig=rig).cut_off((25.0, 39.0))
+
+    cut, fault = stuck(4.0)
+    limit_A = fault.values["limit_A"]
+    assert (cut.react_within_s, stuck(limit_A + 0.6)[0].react_within_s) == (0.0, 0.0), "no narrower than it need be"
+    assert stuck(limit_A)[0].react_within_s > 0.0
 
 
 def test_limits_of_the_display_bound_the_cut_off() -> None:

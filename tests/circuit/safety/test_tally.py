@@ -55,6 +55,14 @@ def test_what_adds_up_counts_once_for_every_play() -> None:
     assert check_of(often, "skin surface").value == check_of(once, "skin surface").value
 
 
+def test_a_sum_is_reached_at_the_row_after_the_last_warm_one() -> None:
+    for last in range(4):
+        values, tally = np.full((4, 1, 5), 30.0), Tally(LIMITS, ["a"])
+        values[..., last] = 46.0
+        tally.add(np.arange(5.0), values)
+        assert check_of(tally, "thermal dose").time_s == last + 1.0
+
+
 def test_rates_and_sums_can_be_left_out() -> None:
     tally = Tally(LIMITS, ["a", "b"])
     tally.add(TIME, runs(), rates=False, sums=False)

@@ -6,6 +6,7 @@ import io
 import json
 import re
 import sys
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -16,7 +17,7 @@ from tests.circuit.delivery.one_drive import icon_of, prepare
 from tests.circuit.surerig import sure_rig
 from thermicon.circuit import Device, Rig
 from thermicon.circuit.delivery.deliver import deliver
-from thermicon.circuit.delivery.formats import load_format
+from thermicon.circuit.delivery.formats import FormatError, load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import load_library
 
@@ -67,6 +68,18 @@ class TestSerial:
 
 class TestPsychopy:
     """Conditions, drives and player."""
+
+    def test_a_minute_of_rows_at_16_khz_is_written_and_at_17_khz_is_not(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr("thermicon.circuit.delivery.formats.psychopy.write_rows", lambda _, rows: bytes(len(rows)))
+        found = deliver(load_library("six-icons")["cooling-step"], RIG, Device.load("dac-16"))
+
+        def written_at(hertz: int) -> bytes:
+            played = replace(found.played, codes=np.zeros(60 * hertz, np.int64))
+            return load_format("psychopy").write(replace(found, rate_Hz=hertz, played=played))
+
+        assert len(written_at(16_000)) == 960_000
+        with pytest.raises(FormatError, match=r"at most 1,000,000; there are 1,020,000 at 17000 Hz: use a device"):
+            written_at(17_000)
 
     @staticmethod
     @cache

@@ -18,7 +18,7 @@ from tests.circuit.daq import Daq
 from tests.circuit.delivery.one_drive import changed, icon_of, prepare
 from tests.circuit.verdicts import LOOP, MADE_UP, GreenVerdict
 from thermicon.circuit import Device, Rig
-from thermicon.circuit.delivery.formats import FormatError, load_format
+from thermicon.circuit.delivery.formats import load_format
 from thermicon.circuit.delivery.pack import pack
 from thermicon.icons import Icon, load_library
 
@@ -222,13 +222,6 @@ class TestVolts:
         fast.stops(
             r"row \d+: at \d\.\d+ s, where rows at one rate from 0 s on have .* give a drive with a row for each"
         )
-
-    def test_more_rows_than_a_table_holds_are_refused(self, monkeypatch: pytest.MonkeyPatch, ni: Bench) -> None:
-        monkeypatch.setattr("thermicon.circuit.delivery.formats.psychopy.MOST_ROWS", 100)
-        with pytest.raises(
-            FormatError, match=r"a row for each update, at most 100; there are 802 at 100 Hz: use a dev"
-        ):
-            load_format("psychopy").write(ni.ready.delivery)
 
     @pytest.mark.parametrize(
         ("row", "column", "cell", "words"),
