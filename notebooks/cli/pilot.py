@@ -92,16 +92,29 @@ def pilot_command(
     Without answers, whole experiments are simulated in laboratories that the evidence allows: how many participants and
     trials give the wanted interval of FILE's per cent correct, or distinguish two sets. With
     answers, FILE is the set that was presented; further ones are predicted for the laboratory too. A laboratory is one
-    draw of the posterior with people of its own: those that make the answers likely count more.
+    draw of the posterior with people of its own: those that make the answers likely count more. With the JSON of a
+    ranking beside its FILES, that prediction is scored on the answers as it was sealed.
     """
     if answers is not None and len(answers) > 1:
         raise usage("give one file of answers or of measurements, not both", "--answers' / '--measurements")
+    sealed = [name for name in files if name.lower().endswith(".json")]
+    if sealed and (answers is None or len(sealed) > 1 or len(sealed) == len(files)):
+        raise usage(
+            "a sealed prediction stands beside the cue files it was made of, one at a time, with --answers", "FILE"
+        )
     planned = {"--participants": participants, "--trials": trials, "--wanted": wanted}
     for option, value in (planned if answers is not None else {"--keep": keep, "--column": column}).items():
         if value is not None:
             raise usage("belongs to a plan, before there are answers" if answers else "needs --answers FILE", option)
     if json is not None:
         check_output(json, (".json",), "JSON")
+    if answers is not None and sealed:
+        if keep is not None:
+            raise usage("belongs to answers without a sealed prediction, which is scored as it is", "--keep")
+        open_sealed(
+            Path(sealed[0]), answers[0], theirs_of(column), [name for name in files if name not in sealed], rig, json
+        )
+        return
     if answers is not None:
         condition(answers[0], theirs_of(column), files, crowd, rig, keep, draws or USUAL_DRAWS, json)
         return
@@ -137,6 +150,28 @@ def pilot_command(
         write_text(found.to_json() + "\n", json)
     if json != STDOUT:
         show(plan_report(found, [Path(name).name for name in files]))
+
+
+def open_sealed(
+    sealed: Path, answers: Path, theirs: dict[str, str], files: Sequence[str], rig: RigOptions, json: Path | None
+) -> None:
+    """Score a sealed prediction on answers; show and write it."""
+    check_separate([sealed, answers, *files], [json])
+    from thermicon.perception.pilot.sealed import opened, read_sealed
+    from thermicon.perception.pilot.trials_file import read_trials
+
+    from ..report.pilot_report import opened_report
+    from ..report.terminal import show
+
+    where, icons = rig.load(), read_set(files)
+    held = read_sealed(sealed, icons, where)
+    with noted():
+        data = read_trials(answers, held.labels, theirs)
+    found = opened(held, data, icons, where)
+    if json is not None:
+        write_text(found.to_json() + "\n", json)
+    if json != STDOUT:
+        show(opened_report(found))
 
 
 def condition(

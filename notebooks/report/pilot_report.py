@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from thermicon.perception.pilot.conditioning import Answered, Measured
     from thermicon.perception.pilot.observed import Observed
     from thermicon.perception.pilot.prediction import Fit, MeasurementFit
+    from thermicon.perception.pilot.sealed import Opened
     from thermicon.perception.pilot.trials import AnswerScore
 
 MOST_PEOPLE, MOST_PAIRS = 20, 8
@@ -27,6 +28,30 @@ LEAST_VALUES = 6
 """Values below which a test of fit judges nobody."""
 LEAST_CARRIED = 30
 """Laboratories of measurements below which an interval is rough."""
+
+
+def opened_report(found: Opened) -> list[Block]:
+    """Report the scores of a sealed prediction, and in one sentence what they are worth."""
+    columns = ("", "log score, bits a trial", "correct, it says")
+    rows = [(by, signed(bits, ".2f"), percent(correct)) for by, (bits, correct) in found.scores.items()]
+    own, *others = (bits for bits, _ in found.scores.values())
+    off, chance = own - others[-1], 2.0 * found.chance_bits
+    than = [
+        f"{'better' if own > bits else 'no better'} than {by} ({signed(own - bits, '+.2f')} bits)"
+        for by, (bits, _) in [*found.scores.items()][1:3]
+    ]
+    kept = (
+        "kept what it promised" if abs(off) <= chance else "promised more than it kept" if off < 0.0 else "did better"
+    )
+    return [
+        Text(f"{found.sealed.source}, thermicon {found.sealed.version}, SHA-256:\n{found.sealed.sha256}"),
+        grid(columns, rows, columns[1:]),
+        Text(
+            f"{found.trials} answers, {percent(found.observed_correct)} correct. "
+            f"The prediction was {' and '.join(than)}; it {kept}: {signed(off, '+.2f')} bits from the best that its "
+            f"matrix allows, where chance leaves ±{chance:.2f} in independent trials."
+        ),
+    ]
 
 
 def observed_report(found: Observed[Any, Any], files: Sequence[str], last: str = "") -> list[Block]:

@@ -14,13 +14,13 @@ import numpy as np
 from thermicon.circuit import Rig
 
 from ..experiments.measure import ADAPTIVE, Condition, Setting, logs_of
+from ..identification.skin_alone import noticed_K
 from ..observer.channels import CHANNELS, Channel, Variable, sign_of
 from ..observer.mechanisms.age import YOUNG_YEARS
 from ..observer.observer import Observer, load_thresholds
 from ..sensation.bench import Bench, Stimulus, Surface, raised_cosine, ramp
 from ..sensation.detection import criterion_of, detect
 from ..sensation.percept import perceive
-from .baseline import noticed_K
 from .predicted import DRAWS, Asked, Predicted, laboratory_of, predict
 
 RATES_K_PER_S = (0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)

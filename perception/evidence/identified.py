@@ -28,13 +28,12 @@ from ..identification.laboratory_draws import EVERY, people_for_intervals
 from ..identification.laboratory_draws import SAMPLES as FEW_SAMPLES
 from ..identification.measures import information_bits, plugin_bits, proportion_correct
 from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond, run_end_s
+from ..identification.skin_alone import named_by_skin
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, USUAL_NORM, Variable, receptor_column
-from ..observer.constants import Both
 from ..observer.observer import Observer
 from ..observer.people import People, draw_people
 from ..ranking.batches import EXPERIMENTS
-from .baseline import named_by_skin
 from .predicted import Predicted, interval_of, plausible_laboratories
 
 if TYPE_CHECKING:
@@ -131,8 +130,7 @@ def show(icons: Iterable[Icon], rig: Rig, people: int, seed: int) -> Shown:
     members, crowd = tuple(icons), draw_people(people, seed)
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
-    rigs = crowd.rigs(rig, [Both(rig.skin.cold_receptor_m, rig.skin.warm_receptor_m)] * people)
-    batch = simulate_many(members, rigs, nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=[SKIN])
+    batch = simulate_many(members, crowd.rigs(rig), nominal=rig, end_s=end, rate_Hz=RATE_HZ, probes=[SKIN])
     rows = [round(each * RATE_HZ) + 1 for each in durations]
     return Shown(members, rig, end, crowd, seed, named_by_skin(batch[SKIN], rows, crowd, seed))
 

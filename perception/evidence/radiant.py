@@ -13,9 +13,9 @@ from thermicon.circuit import Rig
 from thermicon.circuit.solver.modes import thermode_modes
 
 from ..arrays import Array
+from ..identification.skin_alone import noticed_K
 from ..observer.channels import Variable
 from ..observer.observer import Observer, load_thresholds
-from .baseline import noticed_K
 from .predicted import DRAWS, Asked, Predicted, predict
 
 RADIANT_S, DT_S = 3.0, 0.01

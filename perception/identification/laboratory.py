@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +31,11 @@ DRAWS = 128
 COVER = (2.5, 97.5)
 
 Interval = tuple[float, float]
+NEW_LABORATORY = (
+    *("detected_interval_new_laboratory", "onset_interval_new_laboratory_s"),
+    "proportion_correct_interval_new_laboratory",
+)
+"""Keys of the intervals of an icon in the JSON of `rank`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +43,8 @@ class NewLaboratory:
     """95 % intervals of what a new laboratory will find: people, constants and laboratory together.
 
     Proportion correct and bits of the set, as the mean over `people` invited, detected share of every icon in file
-    order, its onset in the draws in which it is felt (None where it is not felt in most), and d′ of every pair (icons,
-    icons), lower and upper.
+    order, its onset in the draws in which it is felt (None where it is not felt in most), d′ of every pair (icons,
+    icons) and how often it is `confused`, on the diagonal named correctly, lower and upper.
     """
 
     draws: int
@@ -50,11 +55,13 @@ class NewLaboratory:
     detected: tuple[Interval, ...]
     onset_s: tuple[Interval | None, ...]
     d_prime: tuple[Array, Array]
+    confused: tuple[Array, Array]
     each: LaboratoryDraws
 
-    def pair(self, i: int, j: int) -> Interval:
-        """Interval of the d′ of one pair."""
-        return float(self.d_prime[0][i, j]), float(self.d_prime[1][i, j])
+    def pair(self, i: int, j: int, of: str = "d_prime") -> Interval:
+        """Interval of the d′ of one pair, or of how often it is `confused`."""
+        low, high = getattr(self, of)
+        return float(low[i, j]), float(high[i, j])
 
     @property
     def persons(self) -> dict[str, Array]:
@@ -67,9 +74,10 @@ class NewLaboratory:
 
     def rows(self, names: Sequence[str]) -> list[dict[str, Any]]:
         """The intervals of every icon, by the keys of `rank --json`."""
+        named = [self.pair(k, k, "confused") for k in range(len(names))]
+        keys = ("name", *NEW_LABORATORY)
         return [
-            {"name": name, "detected_interval_new_laboratory": share, "onset_interval_new_laboratory_s": onset}
-            for name, share, onset in zip(names, self.detected, self.onset_s, strict=True)
+            dict(zip(keys, row, strict=True)) for row in zip(names, self.detected, self.onset_s, named, strict=True)
         ]
 
     def __repr__(self) -> str:
@@ -89,6 +97,7 @@ class Nominal:
     detected: Array
     d_prime: Array
     onset_s: Array
+    confused: Array = field(default_factory=lambda: np.array(math.nan))
 
 
 def new_laboratory(
@@ -130,13 +139,13 @@ def new_laboratory(
     # Means over all the people of the nominal observer: their sample belongs to the draw.
     centre = scored(few, persons, own.nominal, norm, seed, task, np.arange(len(persons)))
     about: tuple[Any, ...] = astuple(predicted)
-    most = (1.0, math.log2(count), 1.0, math.inf, math.inf)
-    raw = (each.proportion_correct, each.information_bits, each.detected, each.d_prime, each.onset_s)
-    correct, bits, detected, apart, onset = (
+    most = (1.0, math.log2(count), 1.0, math.inf, math.inf, 1.0)
+    raw = (each.proportion_correct, each.information_bits, each.detected, each.d_prime, each.onset_s, each.confused)
+    correct, bits, detected, apart, onset, confused = (
         np.clip(values + (nominal - own_values), 0.0, top)
-        for values, nominal, own_values, top in zip(raw, about, centre[:5], most, strict=True)
+        for values, nominal, own_values, top in zip(raw, about, centre[:6], most, strict=True)
     )
-    low, high = np.percentile(apart, COVER, axis=0)
+    apart_ends, confused_ends = (tuple(np.percentile(values, COVER, axis=0)) for values in (apart, confused))
     return NewLaboratory(
         draws=draws,
         people=len(persons),
@@ -148,7 +157,8 @@ def new_laboratory(
         onset_s=tuple(
             _ends(each[np.isfinite(each)]) if 2 * np.isfinite(each).sum() > each.size else None for each in onset.T
         ),
-        d_prime=(low, high),
+        d_prime=apart_ends,
+        confused=confused_ends,
         each=replace(
             each,
             proportion_correct=correct,
@@ -156,6 +166,7 @@ def new_laboratory(
             detected=detected,
             d_prime=apart,
             onset_s=onset,
+            confused=confused,
             persons_correct=np.clip(each.persons_correct + (predicted.proportion_correct - centre[0]), 0.0, 1.0),
             persons_bits=np.clip(each.persons_bits + (predicted.information_bits - centre[1]), 0.0, most[1]),
         ),

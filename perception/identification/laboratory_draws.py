@@ -162,7 +162,8 @@ class LaboratoryDraws:
     `values` (draws, constants) belong to `names`, and `acts` (constants,) says which of them take part in how the set
     is named on its rig; `proportion_correct` and `information_bits` (draws,) are means over
     the people of a draw, `detected` and `onset_s` (draws, icons; NaN where an icon is not felt), `d_prime` (draws,
-    icons, icons) their medians. `persons_correct`, `persons_bits` (draws, people) and `persons_detected` (draws,
+    icons, icons) their medians, `confused` (draws, icons, icons) the mean of both ways, correct on the diagonal.
+    `persons_correct`, `persons_bits` (draws, people) and `persons_detected` (draws,
     people), of the icon that a person detects least, are those of the people of a draw one by one.
     """
 
@@ -174,6 +175,7 @@ class LaboratoryDraws:
     detected: Array
     d_prime: Array
     onset_s: Array
+    confused: Array
     persons_correct: Array
     persons_bits: Array
     persons_detected: Array
@@ -212,7 +214,7 @@ def laboratory_draws(
         found.append(scores)
         if step is not None:
             step()
-    each = (np.stack([scores[k] for scores in found]) for k in range(8))
+    each = (np.stack([scores[k] for scores in found]) for k in range(9))
     acts = _acting(laboratories, played(0), min(count, FEW), norm, seed, task)
     return LaboratoryDraws(laboratories.names, laboratories.values, acts, *each)
 
@@ -250,7 +252,7 @@ def scored(
     task: Task,
     invited: NDArray[np.int64],
 ) -> tuple[Array, ...]:
-    """Proportion correct, bits, detected (icons,), d′ (icons, icons), onset (icons,) of those who are invited; and
+    """Proportion correct, bits, detected, d′, onset and confusions (icons, icons) of those who are invited; and
 
     correct, bits and least detection (people,) of each of them.
     """
@@ -258,7 +260,7 @@ def scored(
     felt = respond(few, people, observer, times=True)
     d_prime, confusion = identify(felt, norm, people, observer, seed, samples, task=task)
     correct, bits = proportion_correct(confusion.probability), information_bits(confusion.probability)
-    found = felt.detected
+    named, found = confusion.probability[invited].mean(axis=0), felt.detected
     reported = found.reported_sum() if found.reported is None else found.reported[invited].sum(axis=0)
     reports = pooled(found.probability[invited], found.cold_share[invited], reported, found.dt_s)
     return (
@@ -267,6 +269,7 @@ def scored(
         reports.probability,
         np.median(d_prime[invited], axis=0),
         reports.onset_s,
+        0.5 * (named + named.T),
         correct[invited],
         bits[invited],
         found.probability[invited].min(axis=1),

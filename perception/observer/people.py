@@ -80,9 +80,12 @@ class People:
         """Thickness (n,) of each person's stratum corneum on the rig's site, m."""
         return rig.skin.corneum_m * self.outer_layer
 
-    def rigs(self, rig: Rig, depths_m: Sequence[Both[float]]) -> list[Rig]:
-        """The rig as each person meets it: own contact resistance, own outermost layer, and receptors at own depths."""
-        columns = (self.contact_resistance.tolist(), self.outer_layer.tolist(), depths_m)
+    def rigs(self, rig: Rig, depths_m: Sequence[Both[float] | None] | None = None) -> list[Rig]:
+        """The rig as each person meets it: own contact resistance, outermost layer, and depths of the receptors.
+
+        Without depths (m) receptors are where the rig has them.
+        """
+        columns = (self.contact_resistance.tolist(), self.outer_layer.tolist(), depths_m or [None] * len(self))
         return [_as_met(rig, *each) for each in zip(*columns, strict=True)]
 
     def __repr__(self) -> str:
@@ -90,12 +93,12 @@ class People:
 
 
 @lru_cache(maxsize=1024)
-def _as_met(rig: Rig, contact: float, layer: float, depths_m: Both[float]) -> Rig:
+def _as_met(rig: Rig, contact: float, layer: float, depths_m: Both[float] | None) -> Rig:
     """The rig with contact resistance and outermost layer multiplied; kept, since a ranking asks for it twice."""
     keys = {
         "contact.resistance_m2K_per_W": contact * rig.contact.resistance_m2K_per_W,
         "skin.layer.0.thickness_mm": layer * rig.skin.layers[0].thickness_m * 1e3,
-        **depth_keys(rig, depths_m),
+        **({} if depths_m is None else depth_keys(rig, depths_m)),
     }
     return rig.with_(**keys)
 

@@ -128,6 +128,7 @@ def rank(
     ranking = Ranking(
         version=own_version(),
         content_hash=hashlib.sha256("\0".join([str(icons), rig.document, model.digest]).encode("utf-8")).hexdigest(),
+        digests={**digests_of(icons, rig), "observer": model.digest},
         job=job,
         model=model,
         felt=felt,
@@ -142,11 +143,18 @@ def rank(
     return with_intervals(ranking, draws, report) if draws else ranking
 
 
+def digests_of(icons: IconSet, rig: Rig) -> dict[str, str]:
+    """SHA-256 of the canonical text of icons, and of a rig with its changes."""
+    held = {"icons": str(icons), "rig": rig.document}
+    return {name: hashlib.sha256(text.encode("utf-8")).hexdigest() for name, text in held.items()}
+
+
 def with_intervals(ranking: Ranking, draws: int, step: Callable[[], None] | None = None) -> Ranking:
     """A ranking with what a new laboratory will find, from draws of the posterior; `step` is called after each."""
     job, felt, model = ranking.job, ranking.felt, ranking.model
     onsets = felt.detection.onset_s
-    whole = Nominal(ranking.proportion_correct, ranking.information_bits, felt.detected, felt.middle, onsets)
+    scores, confused = (ranking.proportion_correct, ranking.information_bits), 0.5 * (felt.pooled + felt.pooled.T)
+    whole = Nominal(*scores, felt.detected, felt.middle, onsets, confused)
     crowd = model.people(job.people, job.seed)
     found = new_laboratory(
         job.icons, job.rig, job.end_s, crowd, whole, job.norm,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..identification.laboratory import NEW_LABORATORY
 from .assumptions import doubts
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ ICON_KEYS = (
 )
 TWO_NUMBERS = ("peak_change_K", "attack_K_per_s", "delay_s")
 AT_RECEPTORS = ("cold_receptor", "warm_receptor")
-NEW_LABORATORY = ("detected_interval_new_laboratory", "onset_interval_new_laboratory_s")
+OFTEN_CONFUSED = 0.05
+"""Pairs confused more often than this have an interval of it."""
 
 
 def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
@@ -49,6 +51,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "by": "model",
             "norm": ranking.norm,
             "content_hash": ranking.content_hash,
+            "sha256": ranking.digests,
             "task": {"gap_s": ranking.task.gap_s},
             "icons": [
                 {
@@ -169,6 +172,9 @@ def _pairs(ranking: Ranking) -> list[dict[str, Any]]:
             "d_prime": pair.d_prime,
             "d_prime_interval_new_laboratory": elsewhere and elsewhere.pair(place[pair.a], place[pair.b]),
             "confused_probability": pair.confused_probability,
+            "confused_interval_new_laboratory": elsewhere.pair(place[pair.a], place[pair.b], "confused")
+            if elsewhere and pair.confused_probability > OFTEN_CONFUSED
+            else None,
             "why": list(pair.why),
             "rules": [rule.to_dict() for rule in pair.rules],
             "edit": None,

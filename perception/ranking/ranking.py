@@ -41,8 +41,8 @@ class Ranking(Drawn):
     ----------
     version
         Version of the program.
-    content_hash
-        Hash of icons, rig and observer.
+    content_hash, digests
+        Hash of icons, rig and observer, and of each.
     job
         What was ranked, and how: icons, rig, seed and number of people, trials, tracking, norm, task.
     model
@@ -74,6 +74,7 @@ class Ranking(Drawn):
 
     version: str
     content_hash: str
+    digests: dict[str, str]
     job: Job
     model: ObserverModel
     felt: PooledResult

@@ -86,6 +86,22 @@ def test_trials_without_an_answer_and_counts_of_a_group_are_said(cli: Cli, two: 
     assert json.loads(out.read_text(encoding="utf-8"))["one_group"]
 
 
+def test_a_sealed_prediction_is_scored_beside_its_cue_file(cli: Cli, two: Path, answers: Path, tmp_path: Path) -> None:
+    sealed, out = tmp_path / "sealed.json", tmp_path / "out.json"
+    cli.good("rank", two, "--people", 8, "--intervals", 0, "--json", sealed)
+    said = cli("pilot", two, sealed, "--answers", answers, "--json", out)
+    words = told(said, "guessing −1.00 50 %", "19 answers, 95 % correct. The prediction was better than guessing")
+    own = json.loads(out.read_text(encoding="utf-8"))
+    assert own["sealed"]["sha256"] in words
+    assert [*own["scores"]][2:] == ["skin temperature alone", "best that its matrix allows"]
+    for wrong in (
+        [two, sealed],
+        [sealed, "--answers", answers],
+        [two, sealed, "--answers", answers, "--keep", "l.toml"],
+    ):
+        assert "sealed prediction" in cli("pilot", *wrong).stderr
+
+
 def test_enough_draws_say_by_how_much_it_narrowed(cli: Cli, two: Path, answers: Path) -> None:
     words = told(cli("pilot", two, "--answers", answers, "--draws", 200), "95 % bits 95 % narrower")
     assert "too few to say" not in words

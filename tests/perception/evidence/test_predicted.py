@@ -7,10 +7,11 @@ import pytest
 
 from thermicon.circuit import Rig
 from thermicon.perception import Observer, confuse
-from thermicon.perception.evidence.baseline import SAMPLES, named_by_skin, nearer_of, noise_K, noticed_K
+from thermicon.perception.evidence.baseline import nearer_of
 from thermicon.perception.evidence.predicted import Asked, laboratory_of, plausible_observers, predict
 from thermicon.perception.evidence.targets import Published, Row
 from thermicon.perception.experiments.measure import Condition, Setting, logs_of
+from thermicon.perception.identification.skin_alone import SAMPLES, named_by_skin, noise_K, noticed_K
 from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.people import People
@@ -39,9 +40,7 @@ def test_what_is_not_felt_is_none() -> None:
     assert (found[0].value, found[0].low, found[0].high) == (None, None, None)
 
 
-def test_one_person_has_own_receptors_in_the_rig_no_offset_and_no_scatter_of_people_but_that_of_age() -> (
-    None
-):
+def test_one_person_has_own_receptors_in_the_rig_no_offset_and_no_scatter_of_people_but_that_of_age() -> None:
     setting, limits = Setting.of(Rig.load("thenar")), Condition("threshold", "limits", "warm", 32.0, 12.0, 1.0, 0.0)
     choice = Condition("threshold", "forced_choice", "warm", 32.0, None, 1.0, 3.0)
     person = Observer.load()

@@ -113,6 +113,10 @@ def test_they_are_in_the_file(ranking: Ranking) -> None:
     assert held["set"]["information_bits_interval_new_laboratory"] == list(found.information_bits)
     assert held["set"]["posterior_draws"] == 16
     assert held["icons"][0]["detected_interval_new_laboratory"] == list(found.detected[0])
+    named = [(icon["proportion_correct"], icon["proportion_correct_interval_new_laboratory"]) for icon in held["icons"]]
+    asked = [(pair["confused_probability"], pair["confused_interval_new_laboratory"]) for pair in held["pairs"]]
+    assert all((often > 0.05) is (ends is not None) for often, ends in asked)
+    assert all(ends[0] <= value <= ends[1] and ends[1] - ends[0] > 0.005 for value, ends in [*named, *asked] if ends)
     pair = next(p for p in held["pairs"] if {p["a"], p["b"]} == {"warming-step", "linear-warming"})
     low, high = pair["d_prime_interval_new_laboratory"]
     assert low < pair["d_prime"] < high

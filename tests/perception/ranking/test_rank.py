@@ -14,17 +14,17 @@ from thermicon.perception.plots.draw_heat import plot_distance
 from thermicon.perception.ranking import batches
 
 TOP = (
-    "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash task icons pairs "
-    "confusion set persons assumptions goal chosen map"
+    "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash sha256 task icons "
+    "pairs confusion set persons assumptions goal chosen map"
 )
 ICON = (
     "name detected_probability onset_s channel peak_change_K attack_K_per_s delay_s proportion_correct reachable safe "
     "reason cautions rules rules_score rules_margin outside_data detected_interval_new_laboratory "
-    "onset_interval_new_laboratory_s carry_over"
+    "onset_interval_new_laboratory_s proportion_correct_interval_new_laboratory carry_over"
 )
 PAIR = (
-    "a b d_prime d_prime_interval_new_laboratory confused_probability why rules edit distinguishable_by_rules "
-    "rules_margin no_edit parts"
+    "a b d_prime d_prime_interval_new_laboratory confused_probability confused_interval_new_laboratory why rules edit "
+    "distinguishable_by_rules rules_margin no_edit parts"
 )
 SET = (
     "proportion_correct proportion_correct_interval information_bits information_bits_interval bits_per_s "

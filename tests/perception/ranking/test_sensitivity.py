@@ -105,8 +105,8 @@ def test_temperatures_between_the_nodes_are_those_of_a_run(rig: Rig) -> None:
         rigs = people.rigs(moved, [one.depths_m(each) for each in people.corneum_m(rig).tolist()])
         batch = simulate_many(icons, rigs, nominal=rig, end_s=8.0, rate_Hz=12.5)
         cold, warm = uncertain.played(0.7, 0.5).felt_by(one)
-        assert cold == pytest.approx(batch.cold_C, abs=0.03)
-        assert warm == pytest.approx(batch.warm_C, abs=0.03)
+        assert cold == pytest.approx(batch.cold_C, abs=0.05)
+        assert warm == pytest.approx(batch.warm_C, abs=0.05)
     for k, node in enumerate(NODES):
         assert _parabola(node) == pytest.approx(np.eye(3)[k])
 

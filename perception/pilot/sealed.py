@@ -1,0 +1,112 @@
+"""A sealed prediction, the JSON of `rank`, opened: its log score on answers, beside guessing, skin alone and its best.
+
+The score is the mean log probability, in bits, that a prediction gave to the answers; the best that its own matrix
+allows is the score that it expects of itself if it is the truth.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.circuit.inputs import InputError, quoted, read_bytes
+from thermicon.circuit.program import own_version
+
+from ..arrays import Array
+from ..identification.skin_alone import skin_alone
+from ..ranking.rank import digests_of
+from .trials import Trials
+
+if TYPE_CHECKING:
+    from thermicon.circuit import Rig
+    from thermicon.icons import IconSet
+
+WHAT, MOST_MB = "sealed prediction", 200
+LEAST = 1e-6
+"""Probability that counts in place of 0, so that no single answer decides for ever."""
+
+
+class SealedError(InputError):
+    """A sealed prediction cannot be opened; the message says what, where and the cure."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sealed:
+    """A prediction as it was sealed: file, its SHA-256, version of the program, names, confusions (icons, icons)."""
+
+    source: str
+    sha256: str
+    version: str
+    labels: tuple[str, ...]
+    confusion: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """Bits a trial and share said to be correct of prediction, guessing, skin temperature, and best, in this order.
+
+    `chance_bits` is the SD of the prediction's bits over experiments of as many independent trials, were it the truth.
+    """
+
+    sealed: Sealed
+    trials: int
+    observed_correct: float
+    scores: dict[str, tuple[float, float]]
+    chance_bits: float
+
+    def to_json(self) -> str:
+        """Every number as JSON text."""
+        return json.dumps(asdict(self), default=np.ndarray.tolist, ensure_ascii=False, indent=1)
+
+
+def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> Sealed:
+    """Read what `rank --json` wrote of these icons on this rig; a `SealedError` says what does not fit."""
+    data, again = read_bytes(Path(path), WHAT, MOST_MB, SealedError), "give the file that rank --json wrote, as it was"
+    try:
+        held = json.loads(data)
+        version, digests, named = str(held["thermicon"]), dict(held["sha256"]), held["confusion"]
+        labels, confusion = tuple(named["labels"]), np.array(named["probability"], dtype=np.float64)
+    except (ValueError, KeyError, TypeError, RecursionError) as wrong:
+        why = f"it has no {wrong}" if isinstance(wrong, KeyError) else quoted(str(wrong))
+        raise SealedError(f"{path}: not a {WHAT}: {why}; {again}") from None
+    newest, own = ([int(part) for part in re.findall(r"\d+", text)[:3]] for text in (version, own_version()))
+    if own and newest > own:
+        raise SealedError(f"{path}: written by thermicon {version}, and this is {own_version()}; update to open it")
+    if labels != tuple(icon.name for icon in icons):
+        shown = ", ".join(map(str, labels[:6]))
+        raise SealedError(f"{path}: predicts other icons than those given ({shown}); give those, in their order")
+    for name, digest in digests_of(icons, rig).items():
+        if digest != digests.get(name):
+            cure = "the cue files unchanged" if name == "icons" else "the same --rig and --set"
+            raise SealedError(f"{path}: sealed for other {name}; give {cure}, or open it with thermicon {version}")
+    if confusion.shape != (len(labels),) * 2 or not (confusion >= 0).all() or (abs(confusion.sum(1) - 1) > 1e-6).any():
+        raise SealedError(f"{path}: confusion.probability has no row of probabilities for each icon; {again}")
+    return Sealed(Path(path).name, hashlib.sha256(data).hexdigest(), version, labels, confusion)
+
+
+def opened(sealed: Sealed, trials: Trials, icons: IconSet, rig: Rig) -> Opened:
+    """Score a sealed prediction on answers to its icons; trials without an answer are left out."""
+    counts, own = trials.pooled, sealed.confusion
+    number, shown, logs = float(counts.sum()), counts.sum(axis=1), np.log2(own.clip(LEAST))
+
+    def score(confusion: Array, answers: Array = counts) -> tuple[float, float]:
+        bits = (answers * np.log2(confusion.clip(LEAST))).sum() / number
+        return float(bits), float(shown @ confusion.diagonal() / number)
+
+    spread = (own * np.square(logs - (own * logs).sum(axis=1, keepdims=True))).sum(axis=1)
+    scores = {
+        "prediction": score(own),
+        "guessing": score(np.full_like(own, 1.0 / len(own))),
+        "skin temperature alone": score(skin_alone(list(icons), rig)),
+        "best that its matrix allows": score(own, shown[:, None] * own),
+    }
+    return Opened(
+        sealed, int(number), float(counts.trace() / number), scores, math.sqrt(float(shown @ spread)) / number
+    )
