@@ -81,7 +81,7 @@ class Identified:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A set that is played to many people; `identify` asks one variant of the observer."""
+    """A set that is shown to many people; `identify` asks one variant of the observer."""
 
     icons: tuple[Icon, ...]
     rig: Rig
@@ -90,6 +90,12 @@ class Shown:
     seed: int
     baseline: Array
 
+    def played(self, variable: Variable) -> ReceptorTemperatures:
+        """What the receptors of every person go through, as the nominal observer of a variant has them."""
+        cold, warm = (receptor_column(variable, channel) for channel in CHANNELS)
+        how = self.rig, Observer.load(variable=variable), self.end_s, RATE_HZ, None
+        return ReceptorTemperatures.simulated(self.icons, self.crowd, *how, (cold, warm))
+
     def identify(self, variable: Variable, draws: int) -> Identified:
         """Confusions of one variant from memory."""
         labels, rig = tuple(icon.name for icon in self.icons), self.rig
@@ -97,9 +103,6 @@ class Shown:
         nominal, others = Observer.load(variable=variable), plausible_laboratories(max(draws, 2), self.seed, variable)
         depths_m = rungs([nominal, *(others.at(k, 1)[0] for k in range(len(others)))], few.corneum_m(rig))
         cold, warm = (receptor_column(variable, channel) for channel in CHANNELS)
-        played = ReceptorTemperatures.simulated(
-            self.icons, self.crowd, rig, nominal, self.end_s, RATE_HZ, None, (cold, warm)
-        )
         thin = ReceptorTemperatures.at_depths(
             self.icons, few, rig, depths_m, self.end_s, RATE_HZ / EVERY, None, (cold, warm)
         )
@@ -109,7 +112,7 @@ class Shown:
             probability: Array = identify(felt, USUAL_NORM, people, observer, self.seed, samples)[1].probability
             return probability
 
-        whole = confusions(played, nominal, self.crowd, SAMPLES)
+        whole = confusions(self.played(variable), nominal, self.crowd, SAMPLES)
         invited = others.invited(len(few))
 
         def drawn(k: int) -> Array:

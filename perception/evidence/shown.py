@@ -21,6 +21,7 @@ from .identified import (
     wave_shapes,
 )
 from .predicted import Predicted
+from .pulses import short_pulses
 from .radiant import whole_body_warmth
 
 SIX = "six-icons"
@@ -81,6 +82,7 @@ def _experiments(
         partial(whole_body_warmth, variable, **drawn),
         partial(peak_lead, variable, **drawn),
         partial(first_and_return, variable, **drawn),
+        partial(short_pulses, variable, people, draws, seed),
     )
 
 

@@ -16,16 +16,18 @@ from thermicon.icons.language.parse import parse
 from thermicon.notebooks.cli.main import app
 from thermicon.perception import Observer, perceive
 from thermicon.perception.arrays import Array
+from thermicon.perception.evidence.pulses import short_pulses
 from thermicon.perception.identification.carry_over import carry_over
 from thermicon.perception.identification.confusion import embed
 from thermicon.perception.identification.delivered import judge_delivered
 from thermicon.perception.identification.episodes import EpisodesError
 from thermicon.perception.identification.map import stress
+from thermicon.perception.observer.observer import DATA
 from thermicon.perception.observer.people import draw_people
 from thermicon.perception.selection.appraise import population_dprime
 from thermicon.perception.selection.pool import Pool
 
-CUES, RIG = Path(__file__).with_name("short-pulses.cue"), "tcs2"
+CUES, RIG = DATA / "short-pulses.cue", "tcs2"
 HEAD = "cue 1\nset pulses { site thenar; control skin; baseline 32 °C }\n"
 
 
@@ -111,3 +113,12 @@ def test_it_is_named_wherever_it_is_met() -> None:
     ):
         with pytest.raises(EpisodesError, match=r"^long: felt as"):
             met()
+
+
+@pytest.mark.slow
+def test_chosen_pulses_are_named_better_than_those_of_chance_and_fewer_better_than_more() -> None:
+    found = {one.quantity.removeprefix("proportion correct, "): one for one in short_pulses("temperature", 12, 6, 0)}
+    most, fewer, chance = (found[name].value for name in ("best 22", "best 16", "mean of random 22"))
+    assert chance + 0.05 < most < fewer < 1.0
+    assert all(found[f"best {count}"].low < found[f"best {count}"].value for count in (22, 16))
+    assert found["best 22"].baseline < most - 0.1
