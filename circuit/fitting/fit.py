@@ -87,12 +87,12 @@ def fit(
     runs = runs_of(read, True, rig)
     alone = all(run.driven_by == DISPLAY for run in runs)
     notes = [note for log in read for note in log.notes] + [note for run in runs for note in run.notes]
+    runs = aligned(rig, runs)
     if free is None:
         free = _told(rig, runs, alone, offset_K, fixed_skin)
         notes.insert(0, f"no keys were named; the logs tell best {', '.join(free)}")
     keys = free_keys((free,) if isinstance(free, str) else free, rig, alone)
-    begin = _explicit(rig, keys)
-    problem = aligned(Problem.of(begin, keys, runs, offset_K, fixed_skin))
+    problem = Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)
     check_sensors(problem)
     solution = solve(problem)
     linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs))
@@ -106,7 +106,7 @@ def fit(
 def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_skin: bool) -> tuple[str, ...]:
     """The keys that runs can tell together; FitError where there is none."""
     keys = possible_keys(rig, alone)
-    told = tellable(aligned(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)))
+    told = tellable(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin))
     if not told and alone:  # with the outermost layer, in series
         return (CONTACT,)
     if not told:

@@ -74,7 +74,7 @@ def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[st
     sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
     for r, run in enumerate(problem.runs):
         for clock, name in enumerate(run.clocks, 1):
-            shift = problem.nuisance(theta, "shift", r, clock)
+            shift = run.shifts[clock - 1] + problem.nuisance(theta, "shift", r, clock)
             drift = problem.nuisance(theta, "drift", r, clock)
             sentences.append(
                 f"{name}: its clock was shifted by {shift:.3f} s against {run.name}, and drifts by "

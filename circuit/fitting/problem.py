@@ -32,8 +32,8 @@ OFFSET_SD_K = 0.1
 STEP_LOG, STEP_LINEAR = 1e-3, 5e-3
 """Steps of derivatives: 0.1 % of a scale, 5 mK or 5 ms of the others."""
 
-SHIFT_SD_S, DRIFT_SD = 30.0, 0.02
-"""How far clocks may be from each other, where the fit decides: standard deviations."""
+SHIFT_ROOM_S, DRIFT_SD = 5.0, 0.02
+"""How far a clock may be from where the correlation puts it, and how fast (standard deviation)."""
 
 ROW_SHARE = 0.5
 """A row's temperature may belong half a row earlier or later than its drive (standard deviation): a logged current is
@@ -179,7 +179,7 @@ class Problem:
         if not channel.clock:
             return time
         shift, drift = (self.nuisance(theta, kind, run, channel.clock) for kind in ("shift", "drift"))
-        return np.asarray(time + shift + drift * (time - time[0]))
+        return np.asarray(time + self.runs[run].shifts[channel.clock - 1] + shift + drift * (time - time[0]))
 
     def modelled(self, theta: Array, run: int, place: int, rows: Prediction) -> Array:
         """What a channel should read at its rows: the simulation on its clock, with its sensor's offset."""
@@ -280,7 +280,7 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
             extra += [Unknown("phase", r, k, 1.0, low=-PHASES, high=PHASES, step=1e-2) for k in range(2)]
         for clock in range(1, len(run.clocks) + 1):
             extra += [
-                Unknown("shift", r, clock, SHIFT_SD_S),
+                Unknown("shift", r, clock, SHIFT_ROOM_S, low=-SHIFT_ROOM_S, high=SHIFT_ROOM_S),
                 Unknown("drift", r, clock, DRIFT_SD, low=-0.2, high=0.2, step=1e-6),
             ]
         if offset_sd_K > 0:

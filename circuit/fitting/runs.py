@@ -66,7 +66,8 @@ class Run:
     """One run from its first row on: `drive` (rows,) of the column `driven_by` at `time_s`, and what was measured.
 
     `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
-    first row by the drive's own clock; `clocks` names the files of the further clocks. `unknown` (rows − 1,) is the SD
+    first row by the drive's own clock; `clocks` names the files of the further clocks, and `shifts` are about what to
+    add to their times. `unknown` (rows − 1,) is the SD
     of the drive's mean between rows, None where the rows tell it; `phase` (2, rows) what all rows are wrong by, as
     SDs, if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
     `logged`: the drive of each row, where `drive` has means of several.
@@ -80,6 +81,7 @@ class Run:
     begin_s: float
     channels: tuple[Channel, ...]
     clocks: tuple[str, ...] = ()
+    shifts: tuple[float, ...] = ()
     unknown: Array | None = None
     phase: Array | None = None
     step_s: float = 0.0
@@ -171,7 +173,8 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
         notes.append(f"{log.name}: is long: {what}; to fit another part, cut it out")
     return Run(
         log.name, driven_by, time - begin, drive, held and not alone, begin, tuple(channels),
-        tuple(sensor.name for sensor in sensors), unknown, phase, step, points, tuple(notes), logged,
+        tuple(sensor.name for sensor in sensors), (0.0,) * len(sensors), unknown, phase, step, points, tuple(notes),
+        logged,
     )  # fmt: skip
 
 

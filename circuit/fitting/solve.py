@@ -7,9 +7,7 @@ from typing import Literal
 import numpy as np
 
 from ..arrays import Array
-from ..rig.rigfile import RigError
 from .between import MAD_TO_SD
-from .keys import FitError
 from .problem import Problem
 
 ROUNDS: tuple[tuple[float, Literal["linear", "huber"]], ...] = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
@@ -47,18 +45,10 @@ class Solution:
 
 
 def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_EVALUATIONS) -> Solution:
-    """Fit, from the problem's own first point or another, with so many evaluations a round at most.
-
-    Raises FitError where a run cannot be simulated on the rig to begin with.
-    """
+    """Fit, from the problem's own first point or another, with so many evaluations a round at most."""
     from scipy.optimize import least_squares
 
     theta = np.clip(problem.first if begin is None else begin, *problem.bounds)
-    try:
-        problem.simulated(theta)
-    except RigError as fault:
-        names = ", ".join(run.name for run in problem.runs)
-        raise FitError(f"{names}: cannot be played on the rig to begin with: {fault}") from None
     scale = np.array([item.sd for item in problem.unknowns])
     sigma, converged = spreads(problem, theta), False
     for close, loss in ROUNDS:

@@ -189,4 +189,4 @@ def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
     with pytest.raises(LogError, match=r"meter.csv: its clock drifts, 0.21 % fast against drive.csv; correct its"):
         check_clocks(problem, theta)
     with pytest.raises(LogError, match=r"meter.csv: does not fit in time to drive.csv, which lasts 9.9 s: no shift"):
-        aligned(problem)
+        aligned(thenar, problem.runs)
