@@ -28,34 +28,29 @@ CHOICES = (
 
 PLAN_HZ = 10.0
 
-DRIVE_SET, DRIVE_ICON = "calibration-drive", "calibration"
-
 
 def calibration_icon() -> Icon:
     """Return the shipped calibration drive: 60 s, designed so that a log of it identifies contact and module."""
-    return load_library(DRIVE_SET)[DRIVE_ICON]
+    return load_library("calibration-drive")["calibration"]
 
 
 def synthetic_log(
     rig: Rig,
     *,
     seed: int,
-    icon: Icon | None = None,
     columns: Sequence[str] = COLUMNS,
     rate_Hz: float = 100.0,
     noise_K: float = NOISE_K,
     noise_V: float = NOISE_V,
     offset_sd_K: float = OFFSET_SD_K,
-    tail_s: float = 0.0,
     name: str = "synthetic.csv",
 ) -> Log:
-    """Return the log of a cue (None: the calibration drive) played on a rig; the same seed gives the same log.
+    """Return the log of the calibration drive played on a rig; the same seed gives the same log.
 
     `rate_Hz` is that of rows and of the driver's updates, `noise_K` and `noise_V` the SD of a reading, `offset_sd_K`
-    that of each temperature sensor's zero. The log goes on for `tail_s` after the cue.
+    that of each temperature sensor's zero.
     """
-    played = rig.with_(**{"driver.update_Hz": rate_Hz})
-    trace = simulate(icon or calibration_icon(), played, rate_Hz=rate_Hz, tail_s=tail_s)
+    trace = simulate(calibration_icon(), rig.with_(**{"driver.update_Hz": rate_Hz}), rate_Hz=rate_Hz)
     random = np.random.default_rng(seed)
     values = {"time_s": trace.time_s, "current_A": trace.current_A}
     for column in columns:

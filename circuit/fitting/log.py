@@ -78,10 +78,10 @@ class Log:
         _check_lengths(name, values)
         time = values.pop("time_s")
         _check_times(name, time)
-        for key in filter(is_known, values):
-            if not np.isfinite(values[key]).any():
-                raise LogError(f"{name}: {key} holds no number at all; remove the column, or connect the sensor")
         used = {key: column for key, column in values.items() if is_known(key)}
+        for key, column in used.items():
+            if not np.isfinite(column).any():
+                raise LogError(f"{name}: {key} holds no number at all; remove the column, or connect the sensor")
         if not used:
             raise LogError(
                 f"{name}: no column of a log; needed is one of {', '.join(DRIVES)}, and any of "

@@ -154,8 +154,7 @@ class Problem:
                 self._kept.clear()
             rig = self.rig_at(theta)
             self._kept[token] = tuple(
-                predict(rig, run, [self.nuisance(theta, "phase", r, k) for k in range(2)])
-                for r, run in enumerate(self.runs)
+                predict(rig, run, self.nuisance(theta, "phase", r, 0)) for r, run in enumerate(self.runs)
             )
         return self._kept[token]
 
@@ -277,7 +276,7 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
             step = run.step_s or float(np.median(np.diff(run.time_s)))
             extra.append(Unknown("row", r, 0, ROW_SHARE * step, step=1e-3))
         if run.phase is not None:
-            extra += [Unknown("phase", r, k, 1.0, low=-PHASES, high=PHASES, step=1e-2) for k in range(2)]
+            extra.append(Unknown("phase", r, 0, 1.0, low=-PHASES, high=PHASES, step=1e-2))
         for clock in range(1, len(run.clocks) + 1):
             extra += [
                 Unknown("shift", r, clock, SHIFT_ROOM_S, low=-SHIFT_ROOM_S, high=SHIFT_ROOM_S),

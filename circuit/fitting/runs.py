@@ -67,10 +67,9 @@ class Run:
 
     `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
     first row by the drive's own clock; `clocks` names the files of the further clocks, and `shifts` are about what to
-    add to their times. `unknown` (rows − 1,) is the SD
-    of the drive's mean between rows, None where the rows tell it; `phase` (2, rows) what all rows are wrong by, as
-    SDs, if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
-    `logged`: the drive of each row, where `drive` has means of several.
+    add to their times. `unknown` (rows − 1,) is the SD of the drive's mean between rows, None where the rows tell it;
+    `phase` (rows,) what all rows are wrong by, as one SD, if a loop was read at one phase of its steps. `points`: the
+    rows, `step_s` apart, miss updates of the driver. `logged`: the drive of each row, where `drive` has means.
     """
 
     name: str

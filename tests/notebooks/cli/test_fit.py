@@ -57,7 +57,8 @@ def test_what_a_log_does_not_show_is_named_with_the_cure(cli: Cli, log: Path, tm
     said = cli("fit", log, "--rig", "fingertip", "--free", keys, "--fixed-skin", *RATE)
     row = next(line for line in said.stdout.splitlines() if line.startswith(CONTACT))
     assert row.split()[2:] == ["not", "known", "unknown"]
-    assert "widened as far as a rig file may state" in " ".join(said.stdout.split())
+    assert "uncertainty of the fitted rig, widened: " in " ".join(said.stdout.split())
+    assert "is the most that a rig file may state" in " ".join(said.stderr.split())
 
 
 @pytest.mark.parametrize(
