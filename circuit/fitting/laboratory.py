@@ -92,7 +92,7 @@ def plan(
         raise FitError(f"rig {rig.name} is a thermode, and a plan is of the calibration drive of a module")
     rig = rig.with_(**{"driver.update_Hz": PLAN_HZ})  # so that the drive is known
     log = synthetic_log(rig, seed=0, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=PLAN_HZ)
-    runs = runs_of([log], held=False)
+    runs = runs_of([log])
     if free is None:
         problem = Problem.of(rig, possible_keys(rig), runs, offset_K, fixed_skin)
         free = tellable(with_channels(problem, problem.first, CHOICES[-1], only=True))

@@ -22,8 +22,8 @@ SHIFTED_BY = ("display_C", "skin_C", "voltage_V", "current_A", "hot_plate_C")
 STEPS = 4000
 """Raster of the search, in the longer recording; a parabola through the best three shifts finds the rest."""
 
-LEAST_SHARE = 0.5
-"""Share of the shorter recording that must overlap."""
+LEAST_SHARE, NOTHING = 0.5, 1e-12
+"""Share of the shorter recording that must overlap; products of changes that are none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,11 +135,8 @@ def _alike(a: Array, b: Array, lag: int) -> float:
     """Correlation of b, moved later by `lag` steps, with a, over what overlaps."""
     first, last = max(0, lag), min(len(a), len(b) + lag)
     x, y = a[first:last], b[first - lag : last - lag]
-    if last - first < 3:
-        return -1.0
     x, y = x - x.mean(), y - y.mean()
-    size = float(np.sqrt((x @ x) * (y @ y)))
-    return float(x @ y) / size if size > 0 else 0.0
+    return float(x @ y) / max(float(np.sqrt((x @ x) * (y @ y))), NOTHING)
 
 
 STUCK_S, STUCK_STEPS = 3.0, 20.0

@@ -273,8 +273,7 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
     extra = []
     for r, run in enumerate(runs):
         if any(not channel.clock for channel in run.channels):
-            step = run.step_s or float(np.median(np.diff(run.time_s)))
-            extra.append(Unknown("row", r, 0, ROW_SHARE * step, step=1e-3))
+            extra.append(Unknown("row", r, 0, ROW_SHARE * run.step_s, step=1e-3))
         if run.phase is not None:
             extra.append(Unknown("phase", r, 0, 1.0, low=-PHASES, high=PHASES, step=1e-2))
         for clock in range(1, len(run.clocks) + 1):

@@ -69,7 +69,7 @@ def _responses(rig: Rig, run: Run) -> tuple[Array, list[Array]]:
     size, level = STEP.get(run.driven_by, OTHER_STEP), float(np.median(run.drive))
     time, begin = np.arange(0.0, MEMORY_S, 0.01), 0.02
     drive, times = level + size * np.array([0.0, 1.0, 1.0]), np.array([0.0, begin, begin + MEMORY_S])
-    step = replace(run, time_s=times, drive=drive, phase=None, logged=None, held=run.driven_by != DISPLAY)
+    step = replace(run, time_s=times, drive=drive, phase=None, logged=None)
     found, out = predict(rig, step), []
     for each in run.channels:
         after = found.at(each.column, time + begin) - found.at(each.column, np.zeros(1))

@@ -85,7 +85,7 @@ def logged(
 def bound(log: Log, rig: Rig, truth: dict[str, float]) -> float:
     """Half width of contact that the log allows at best, at the truth and with the noise that is true."""
     start = rig.with_(**truth)
-    problem = Problem.of(start, free_keys(COMMON, start), runs_of([log], False, start))
+    problem = Problem.of(start, free_keys(COMMON, start), runs_of([log], start))
     sigma = [NOISE[channel.column[-1]] for _, _, channel in problem.channels()]
     deviations = covariance_of(problem, problem.jacobian(problem.first, sigma), [1.0] * len(sigma))
     return half_width(True, math.sqrt(deviations[0, 0]))

@@ -186,7 +186,7 @@ def trace(true_rig: Rig) -> Trace:
 def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> None:
     late = Log.of("late.csv", {"time_s": log.time_s - shift, **dict(log.columns)})
     found = overlay(trace, late)
-    assert found.shift_s == pytest.approx(shift, abs=0.01)
+    assert found.shift_s == pytest.approx(shift, abs=0.002)
     display = next(each for each in found.columns if each.column == "display_C")
     assert display.rms == pytest.approx(float(np.mean(display.difference**2)) ** 0.5)
     assert abs(display.largest) == pytest.approx(float(np.abs(display.difference).max()))

@@ -84,34 +84,35 @@ def drive(**columns: object) -> Log:
          r"current_A is not known from 1.5 to 4 s, and differs on both sides \(0.1 and 0.4\)"),
         ({"current_A": np.where(TIME < 1, np.nan, PLAIN["current_A"])}, "current_A is empty until 1 s; cut the rows"),
         ({"current_A": np.full(100, 0.2)}, "current_A is 0.2 in every row: nothing changes"),
+        ({"display_C": 32 + 0.3 * (TIME > 2), "skin_C": 32 - (TIME > 2)}, "skin_C changes by 1 K, and display_C, w"),
         ({"current_A": np.where(TIME > 3, np.nan, PLAIN["current_A"])}, "current_A is known for 3 s; a fit needs"),
     ],
 )  # fmt: skip
 def test_a_drive_must_be_known_throughout(columns: dict[str, object], message: str) -> None:
     with pytest.raises(LogError, match=message):
-        runs_of([drive(**columns)], held=False)
+        runs_of([drive(**columns)])
 
 
 def test_a_short_gap_is_bridged_and_a_long_one_under_a_constant_drive() -> None:
     current = np.where((TIME > 4) & (TIME < 8), np.nan, PLAIN["current_A"])
-    run = runs_of([drive(current_A=current)], held=False)[0]
+    run = runs_of([drive(current_A=current)])[0]
     assert len(run.time_s) == np.isfinite(current).sum()
-    assert runs_of([drive(current_A=at(0, np.nan, "current_A"))], held=False)[0].begin_s == 0.1
+    assert runs_of([drive(current_A=at(0, np.nan, "current_A"))])[0].begin_s == 0.1
 
 
 def test_logs_without_a_drive_or_without_a_sensor(thenar: Rig) -> None:
     with pytest.raises(LogError, match=r"no log has a drive: one of current_A or com.*meter.csv has display_C"):
-        runs_of([METER], held=False)
+        runs_of([METER])
     with pytest.raises(LogError, match=r"drive.csv: nothing measured beside the drive; log display_C, and voltage_V"):
-        runs_of([ALONE], held=False)
+        runs_of([ALONE])
     with pytest.raises(LogError, match="no log; name one or several files"):
         fit([], thenar, free=CONTACT)
-    run = runs_of([ALONE, METER], held=False)[0]
+    run = runs_of([ALONE, METER])[0]
     assert (run.clocks, run.channels[0].clock) == (("meter.csv",), 1)
 
 
 def problem_of(log: Log, rig: Rig) -> Problem:
-    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log], held=False))
+    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log]))
 
 
 @pytest.mark.parametrize("part", [slice(None), slice(200, 700)])
@@ -180,7 +181,7 @@ def test_each_rig_offers_its_own_keys(thenar: Rig) -> None:
 
 
 def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
-    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([ALONE, METER], held=True))
+    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([ALONE, METER]))
     drift = [item.kind for item in problem.unknowns].index("drift")
     theta = problem.first.copy()
     theta[drift] = 0.0019
