@@ -247,12 +247,11 @@ class Problem:
         return wide
 
     def mesh_error(self, theta: Array, sigma: Sequence[float]) -> Array:
-        """What a fine mesh of the skin would change in `residuals`."""
-        fine = finely_divided(self.rig)
-        here = self.residuals(theta, sigma)
-        if fine is None:
+        """What a fine mesh of the skin would change in `residuals`; nothing where the rig states its elements."""
+        skin, here = self.rig.skin, self.residuals(theta, sigma)
+        if skin.elements is not None:
             return 0.0 * here
-        other = replace(self, rig=fine)
+        other = replace(self, rig=self.rig.with_(**{"skin.elements": [FINE_ELEMENTS] * len(skin.layers)}))
         other._shared = self._shared
         return other.residuals(theta, sigma) - here
 
@@ -303,10 +302,3 @@ def changed_layers(rig: Rig, factors: Factors) -> dict[str, float]:
         changes[f"skin.layer.{k}.density_kg_per_m3"] = layer.density_kg_per_m3 * heavier * thicker
         changes[f"skin.layer.{k}.perfusion_per_s"] = layer.perfusion_per_s * thicker
     return changes
-
-
-def finely_divided(rig: Rig) -> Rig | None:
-    """The rig with a fine mesh of its skin; None where it states its elements."""
-    if rig.skin.elements is not None:
-        return None
-    return rig.with_(**{"skin.elements": [FINE_ELEMENTS] * len(rig.skin.layers)})

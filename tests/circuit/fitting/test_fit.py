@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, Trace, fit, simulate
-from thermicon.circuit.fitting.forward import steady_level
 from thermicon.circuit.fitting.identify import half_width
 from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
@@ -211,8 +210,6 @@ def test_noise_and_likeness_of_rows_are_those_of_known_series() -> None:
     assert np.diff([huber(np.array([size])) for size in (0.0, 2.0, 3.0, 4.0, 9.0)]).tolist() == [4.0, 5.0, 6.0, 30.0]
     slow = Channel("display_C", "a.csv", 0, time, np.sin(time / 5) + 0.02 * random.standard_normal(600))
     assert slow.noise == pytest.approx(0.02, rel=0.1)
-    assert steady_level(np.array([0.1, 0.1, 0.5, 0.5])) == 0.1
-    assert round(steady_level(np.array([0.1, 0.11, 0.1, 0.5, 0.51])), 3) == 0.103
     shift, same = best_shift_s(time[:300], np.sin(time[:300] / 3), time[:300], np.sin((time[:300] + 1.3) / 3))
     assert (round(shift, 2), round(same, 3)) == (1.3, 1.0)
     assert best_shift_s(time[:50], np.ones(50), time[:50], np.sin(time[:50])) == (0.0, 0.0)

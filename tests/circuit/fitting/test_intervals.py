@@ -24,8 +24,6 @@ from thermicon.circuit.rig.rig import rig_names
 
 from .conftest import TRUTH, altered
 
-FREE = [*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
-        "heat_sink.temperature_C", "heat_sink.resistance_K_per_W"]  # fmt: skip
 THICK = {"skin.layer.0.thickness_mm": 0.20}
 """One standard deviation of people more than the rig has."""
 
@@ -99,16 +97,6 @@ def test_a_late_column_is_named_with_its_delay(log: Log, true_rig: Rig, column: 
     told = [re.match(rf"{column} of late.csv is (\S+) s {word} against the other", note) for note in found.notes]
     assert [float(each[1]) for each in told if each] == [pytest.approx(abs(delay_s), rel=0.02)]
     assert found.misfit
-
-
-@pytest.mark.slow
-def test_a_late_column_that_other_keys_make_up_for_is_named_and_narrows_nothing(
-    log: Log, true_rig: Rig, thenar: Rig
-) -> None:
-    moved = np.interp(log.time_s - 0.15, log.time_s, log.column("display_C"))
-    found = fit(altered(log, "late.csv", display_C=moved), true_rig, free=FREE)
-    assert any("display_C of late.csv is 0.15 s late against the other" in note for note in found.notes)
-    assert found.rig.uncertainty.plates_relative >= thenar.uncertainty.plates_relative
 
 
 def test_a_plan_is_what_a_fit_then_finds() -> None:
