@@ -136,7 +136,7 @@ def _result(
     notes: list[str],
 ) -> RigFit:  # fmt: skip
     missed = beyond_noise(problem, solution.theta, solution.inflation)
-    late = late_column(problem, solution) if solution.converged else ""
+    late = late_column(problem, solution)
     parameters, correlation = identified(problem, solution, start, late=bool(late))
     unknown = tuple(item for item in parameters if not item.identified)
     disagreed, why = disagreement(problem, solution, missed, late, unknown)

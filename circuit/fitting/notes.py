@@ -1,7 +1,7 @@
 """What a fit says beside its numbers: on drives, starts, sensors and clocks, and what is not narrowed for which reason.
 
-Of several causes of one misfit the first is named: a fit that did not come to rest, a start that was not steady, a
-column that is late, and only then keys that are held fixed.
+Of several causes of one misfit the first is named: a column that is late and explains it all, a fit that did not come to
+rest, a start that was not steady, and only then keys that are held fixed.
 """
 
 import math
@@ -35,10 +35,10 @@ def disagreement(
 
     `missed` are sentences on channels, `late` that on a column which explains them; `unknown` was not identified.
     """
-    if not solution.converged:
-        return (*missed, "free fewer keys, so that the fit comes to rest"), "the fit did not come to rest"
     if late:
         return (late,), "the columns of a log are not of one time"
+    if not solution.converged:
+        return (*missed, "free fewer keys, so that the fit comes to rest"), "the fit did not come to rest"
     if not missed:
         combined = _combined(problem, solution.theta, unknown) if unknown else ()
         return combined, NO_MATCH if combined else ""
