@@ -75,6 +75,8 @@ def test_the_error_of_the_mesh_is_some_millikelvin(thenar: Rig, log: Log) -> Non
     problem = Problem.of(thenar, free_keys([CONTACT], thenar), runs_of([log]))
     display, voltage, rest = np.split(problem.mesh_error(problem.first, [1.0, 1.0]), [1201, 2402])
     assert 5e-4 < np.abs(display).max() < 5e-3 and np.abs(voltage).max() < 1e-3 and not rest.any()
+    beyond = problem.residuals(problem.first + 50.0, [1.0, 1.0])  # no rig has a contact of e⁵⁰
+    assert beyond.shape == (2402 + len(rest),) and beyond.min() > 100
     own = Rig.load("shani2021")
     stated = Problem.of(own, free_keys([CONTACT], own), runs_of([log]))
     assert not stated.mesh_error(stated.first, spreads(stated, stated.first)).any()
@@ -157,7 +159,6 @@ def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None
     assert all(isinstance(each.verdict, Gate) or each.verdict is not None for each in result.prepared)
 
 
-@pytest.mark.slow
 def test_an_exported_drive_and_a_thermometer_of_its_own_clock_make_a_log(tmp_path: Path) -> None:
     rig, icon = Rig.load("thenar"), calibration_icon()
     played = deliver(icon, rig, Device.load("dac-16"))

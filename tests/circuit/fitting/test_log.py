@@ -180,6 +180,20 @@ def test_each_rig_offers_its_own_keys(thenar: Rig) -> None:
     assert all(value_of(thenar, key) is not None for key in fittable(thenar))
 
 
+@pytest.mark.parametrize(("after_s", "fits"), [(30.0, True), (90.0, False)])
+def test_half_of_what_a_thermometer_read_must_lie_within_the_run(
+    after_s: float, fits: bool, log: Log, true_rig: Rig
+) -> None:
+    electric = Log.of("daq.csv", {"time_s": log.time_s, "current_A": log.column("current_A")})
+    display = np.append(log.column("display_C"), np.full(round(20 * after_s), log.column("display_C")[-1]))
+    meter = Log.of("meter.csv", {"time_s": 100.0 + np.arange(len(display)) / 20, "display_C": display})
+    if fits:
+        assert aligned(true_rig, runs_of([electric, meter]))[0].shifts == pytest.approx((-100.0,), abs=0.01)
+        return
+    with pytest.raises(LogError, match=r"meter.csv: does not fit in time to daq.csv, which lasts 60 s"):
+        aligned(true_rig, runs_of([electric, meter]))
+
+
 def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
     problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([ALONE, METER]))
     drift = [item.kind for item in problem.unknowns].index("drift")
