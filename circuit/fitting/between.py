@@ -47,7 +47,7 @@ def noise_sd(values: Array, resolution: float) -> float:
 
 def unknown_display(display_C: Array) -> Array:
     """SD (rows − 1,) of the mean of a display between two rows: the noise of both readings, and what bends there."""
-    bends = np.abs(np.diff(display_C, 2, prepend=display_C[0], append=display_C[-1]))
+    bends = np.abs(np.diff(np.pad(display_C, 1, mode="edge"), 2))
     return np.asarray(np.hypot(noise_sd(display_C, 0.0) / np.sqrt(2.0), 0.125 * (bends[:-1] + bends[1:])))
 
 

@@ -183,8 +183,8 @@ def trace(true_rig: Rig) -> Trace:
 
 @pytest.mark.parametrize("shift", [-1000.0, 0.37, 12.0])
 def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> None:
-    late = Log.of("late.csv", {"time_s": log.time_s - shift, **dict(log.columns)})
-    found = overlay(trace, late)
+    later = {name: column[7:] for name, column in log.columns}  # begins between two shifts of the search
+    found = overlay(trace, Log.of("late.csv", {"time_s": log.time_s[7:] - shift, **later}))
     assert found.shift_s == pytest.approx(shift, abs=0.002)
     display = next(each for each in found.columns if each.column == "display_C")
     assert display.rms == pytest.approx(float(np.mean(display.difference**2)) ** 0.5)
