@@ -129,6 +129,10 @@ def test_a_sensor_in_the_room_and_the_wrong_sign_are_named(log: Log, thenar: Rig
         check_sensors(problem_of(altered(log, display_C=room), thenar))
     with pytest.raises(LogError, match="display_C goes the other way than the rig: positive current cools"):
         check_sensors(problem_of(altered(log, current_A=-log.column("current_A")), thenar))
+    with pytest.raises(
+        FitError, match=r"rig.csv: cannot be played on the rig to begin with: .* under 40.09 A; use less current"
+    ):
+        fit(altered(log, current_A=40.0 + log.column("current_A")), thenar, free=CONTACT)
     with pytest.raises(FitError, match="an offset of -1 K is not possible for a sensor; give 0 to 10 K"):
         fit(log, thenar, free=CONTACT, offset_K=-1.0)
 
