@@ -84,7 +84,6 @@ def drive(**columns: object) -> Log:
          r"current_A is not known from 1.5 to 4 s, and differs on both sides \(0.1 and 0.4\)"),
         ({"current_A": np.where(TIME < 1, np.nan, PLAIN["current_A"])}, "current_A is empty until 1 s; cut the rows"),
         ({"current_A": np.full(100, 0.2)}, "current_A is 0.2 in every row: nothing changes"),
-        ({"display_C": 32 + 0.3 * (TIME > 2), "skin_C": 32 - (TIME > 2)}, "skin_C changes by 1 K, and display_C, w"),
         ({"current_A": np.where(TIME > 3, np.nan, PLAIN["current_A"])}, "current_A is known for 3 s; a fit needs"),
     ],
 )  # fmt: skip
@@ -98,6 +97,12 @@ def test_a_short_gap_is_bridged_and_a_long_one_under_a_constant_drive() -> None:
     run = runs_of([drive(current_A=current)])[0]
     assert len(run.time_s) == np.isfinite(current).sum()
     assert runs_of([drive(current_A=at(0, np.nan, "current_A"))])[0].begin_s == 0.1
+
+
+def test_a_skin_that_seems_to_move_a_little_more_than_the_display_is_not_exchanged() -> None:
+    assert runs_of([drive(display_C=32 + 0.30 * (TIME > 2), skin_C=32 + 0.33 * (TIME > 2))])
+    with pytest.raises(LogError, match="exchange both columns"):
+        runs_of([drive(display_C=32 + 0.30 * (TIME > 2), skin_C=32 + 0.39 * (TIME > 2))])
 
 
 def test_logs_without_a_drive_or_without_a_sensor(thenar: Rig) -> None:
