@@ -47,34 +47,22 @@ def noise_sd(values: Array, resolution: float) -> float:
 
 def unknown_display(display_C: Array) -> Array:
     """SD (rows − 1,) of the mean of a display between two rows: the noise of both readings, and what bends there."""
-    bends = np.abs(np.diff(display_C, 2, prepend=display_C[0], append=display_C[-1]))
-    bends = np.append(bends, 0.0)[: len(display_C)]
+    bends = np.abs(np.diff(np.pad(display_C, 1, mode="edge"), 2))
     return np.asarray(np.hypot(noise_sd(display_C, 0.0) / np.sqrt(2.0), 0.125 * (bends[:-1] + bends[1:])))
 
 
 def one_phase(time_s: Array, current: Array, display_C: Array) -> Array:
-    """What (2, rows) a current is wrong by, each as one SD, if a loop was always read at one phase of its steps.
+    """What (rows,) a current is wrong by, as one SD, if a loop was always read at one phase of its steps.
 
     A loop whose set-points are held answers each step with the same course, as large as the step. Steps are what the
-    display moves by, and, as it follows them late, a share of how its rate changes. Both are greatest at half of the
-    greatest difference between neighbouring readings.
+    display moves by, the greatest of them half of the greatest difference between neighbouring readings.
     """
     there = np.isfinite(display_C)
-    step, rows = float(np.median(np.diff(time_s))), np.interp(time_s, time_s[there], display_C[there])
-    rate = _slope(_smooth(rows, SMOOTH_S / step))
-    change = _slope(_smooth(rate, 2 * SMOOTH_S / step))
-    most = 0.5 * float(np.abs(np.diff(current)).max())
-    return np.array([most * each / max(float(np.abs(each).max()), 1e-12) for each in (rate, change)])
-
-
-def _smooth(values: Array, rows: float) -> Array:
-    width = max(1, round(rows))
-    padded = np.pad(values, (width // 2, width - 1 - width // 2), mode="edge")
-    return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
-
-
-def _slope(values: Array) -> Array:
-    return np.append(np.diff(values), 0.0)
+    rows = np.interp(time_s, time_s[there], display_C[there])
+    width = max(1, round(SMOOTH_S / float(np.median(np.diff(time_s)))))
+    padded = np.pad(rows, (width // 2, width - 1 - width // 2), mode="edge")
+    rate = np.append(np.diff(np.convolve(padded, np.full(width, 1.0), mode="valid")), 0.0)
+    return np.asarray(0.5 * np.abs(np.diff(current)).max() * rate / max(float(np.abs(rate).max()), 1e-12))
 
 
 def means(time_s: Array, drive: Array, many: int) -> tuple[Array, Array]:

@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from ..cores import quiet_blas
@@ -12,12 +11,12 @@ from ..rig.rig import Rig
 from .identify import identified, in_series, tellable
 from .keys import CONTACT, FitError, FitKey, free_keys, possible_keys
 from .log import Log, LogError, read_log
-from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow, unsteady
+from .notes import beyond_noise, disagreement, far_off, kept, late_column, remarks, too_narrow
 from .overlay import aligned, check_clocks, check_sensors
 from .problem import OFFSET_SD_K, Problem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
 from .runs import DISPLAY, Run, runs_of
-from .solve import Solution, fits_better, solve
+from .solve import Solution, solve
 
 LAYER_DIGITS = 5
 """Significant digits of the layers in the fitted rig."""
@@ -65,12 +64,11 @@ def fit(
 
     Notes
     -----
-    The rig is taken as steady at the first row. Its drive lasts until the next row or is linear between rows, whichever
-    fits the logs better.
-    Robust least squares (Huber, beyond three standard deviations) with bounds, by `scipy.optimize.least_squares`. The
-    noise of each channel comes from its residuals; where neighbouring residuals are alike, because the model leaves
-    something out, intervals are widened accordingly, as by the error of the skin's mesh. Intervals allow for skin that
-    differs as it does between people, and hold if what else is not free is right.
+    The rig is taken as steady at the first row, and its current lasts until the next. Robust least squares (Huber,
+    beyond three standard deviations) with bounds, by `scipy.optimize.least_squares`. The noise of each channel comes
+    from its residuals; where neighbouring residuals are alike, because the model leaves something out, intervals are
+    widened accordingly, as by the error of the skin's mesh. Intervals allow for skin that differs as it does between
+    people, and hold if what else is not free is right.
 
     Examples
     --------
@@ -84,20 +82,17 @@ def fit(
     if not (math.isfinite(offset_K) and 0 <= offset_K <= MOST_OFFSET_K):
         raise FitError(f"an offset of {offset_K:g} K is not possible for a sensor; give 0 to {MOST_OFFSET_K:g} K")
     read = _logs(logs)
-    runs = runs_of(read, True, rig)
+    runs = runs_of(read, rig)
     alone = all(run.driven_by == DISPLAY for run in runs)
     notes = [note for log in read for note in log.notes] + [note for run in runs for note in run.notes]
+    runs = aligned(rig, runs)
     if free is None:
         free = _told(rig, runs, alone, offset_K, fixed_skin)
         notes.insert(0, f"no keys were named; the logs tell best {', '.join(free)}")
     keys = free_keys((free,) if isinstance(free, str) else free, rig, alone)
-    begin = _explicit(rig, keys)
-    problem = aligned(Problem.of(begin, keys, runs, offset_K, fixed_skin))
+    problem = Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)
     check_sensors(problem)
     solution = solve(problem)
-    linear = replace(problem, runs=tuple(replace(run, held=False) for run in problem.runs))
-    if fits_better(linear, problem, solution):
-        problem, solution = linear, solve(linear, solution.theta)
     check_clocks(problem, solution.theta)
     sources = tuple((log.name, log.sha256) for log in read)
     return _result(problem, solution, rig, keys, sources, notes)
@@ -106,7 +101,7 @@ def fit(
 def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_skin: bool) -> tuple[str, ...]:
     """The keys that runs can tell together; FitError where there is none."""
     keys = possible_keys(rig, alone)
-    told = tellable(aligned(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin)))
+    told = tellable(Problem.of(_explicit(rig, keys), keys, runs, offset_K, fixed_skin))
     if not told and alone:  # with the outermost layer, in series
         return (CONTACT,)
     if not told:
@@ -141,8 +136,7 @@ def _result(
     notes: list[str],
 ) -> RigFit:  # fmt: skip
     missed = beyond_noise(problem, solution.theta, solution.inflation)
-    other_cause = not solution.converged or unsteady(problem, solution.theta)
-    late = "" if other_cause else late_column(problem, solution)
+    late = late_column(problem, solution)
     parameters, correlation = identified(problem, solution, start, late=bool(late))
     unknown = tuple(item for item in parameters if not item.identified)
     disagreed, why = disagreement(problem, solution, missed, late, unknown)

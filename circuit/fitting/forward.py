@@ -7,7 +7,6 @@ thermistor of its controller, or else the plate itself.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,7 +60,7 @@ class Prediction:
         return np.asarray(np.interp(time_s, self.trace.time_s, values), dtype=np.float64)
 
 
-def predict(rig: Rig, run: Run, phase: Sequence[float] = (0.0, 0.0)) -> Prediction:
+def predict(rig: Rig, run: Run, phase: float = 0.0) -> Prediction:
     """Simulate a run from rest under its first drive; RigError where it is not physical on this rig.
 
     `phase`: how many times what is wrong with all rows of a drive, if they were read at one phase, is taken from it.
@@ -71,8 +70,8 @@ def predict(rig: Rig, run: Run, phase: Sequence[float] = (0.0, 0.0)) -> Predicti
         return _under_display(rig, run, rate)
     sensed, display_probe = _with_thermistor(rig)
     gain = rig.driver.transconductance_A_per_V if run.driven_by == "command_V" else 1.0
-    change = 0.0 if run.phase is None else np.asarray(phase) @ run.phase
-    drive = Drive(run.time_s, gain * (run.drive - change), run.held)
+    wrong = 0.0 if run.phase is None else phase * run.phase
+    drive = Drive(run.time_s, gain * (run.drive - wrong), run.held)
     level, state = gain * steady_level(run.drive), None
     if level != drive.current_A[0]:
         try:

@@ -63,10 +63,15 @@ class Parameter:
 
     @property
     def interval(self) -> str:
-        """The half width as people write it, ±3 % or ±0.4 °C."""
-        if not self.log:
-            return f"±{self.half_width:.2g} {'K' if self.unit == '°C' else self.unit}"
-        return f"±{100 * self.half_width:.2g} %" if self.half_width < WHOLE else "unknown"
+        """The half width as people write it, ±3 % or ±0.4 K."""
+        return width_text(self.log, self.half_width, self.unit)
+
+
+def width_text(log: bool, width: float, unit: str) -> str:
+    """Half of an interval as people write it."""
+    if not log:
+        return f"±{width:.2g} {'K' if unit == '°C' else unit}"
+    return f"±{100 * width:.2g} %" if width < WHOLE else "unknown"
 
 
 def half_width(log: bool, sd: float) -> float:
@@ -213,7 +218,6 @@ def _cure(problem: Problem, place: int, gains: dict[str, Array], correlation: Ar
     why = f"cannot be separated from {' and '.join(with_what)} here; " if with_what else ""
     if good:
         best = min(good, key=lambda name: good[name])
-        width = half_width(key.log, float(good[best]))
-        size = f"±{100 * width:.2g} %" if key.log else f"±{width:.2g}"
+        size = width_text(key.log, half_width(key.log, float(good[best])), unit_of(key.key))
         return f"{why}log {best} as well: it would then be known to about {size}"
     return f"{why}measure it directly: {key.direct}"

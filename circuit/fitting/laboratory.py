@@ -28,34 +28,29 @@ CHOICES = (
 
 PLAN_HZ = 10.0
 
-DRIVE_SET, DRIVE_ICON = "calibration-drive", "calibration"
-
 
 def calibration_icon() -> Icon:
     """Return the shipped calibration drive: 60 s, designed so that a log of it identifies contact and module."""
-    return load_library(DRIVE_SET)[DRIVE_ICON]
+    return load_library("calibration-drive")["calibration"]
 
 
 def synthetic_log(
     rig: Rig,
     *,
     seed: int,
-    icon: Icon | None = None,
     columns: Sequence[str] = COLUMNS,
     rate_Hz: float = 100.0,
     noise_K: float = NOISE_K,
     noise_V: float = NOISE_V,
     offset_sd_K: float = OFFSET_SD_K,
-    tail_s: float = 0.0,
     name: str = "synthetic.csv",
 ) -> Log:
-    """Return the log of a cue (None: the calibration drive) played on a rig; the same seed gives the same log.
+    """Return the log of the calibration drive played on a rig; the same seed gives the same log.
 
     `rate_Hz` is that of rows and of the driver's updates, `noise_K` and `noise_V` the SD of a reading, `offset_sd_K`
-    that of each temperature sensor's zero. The log goes on for `tail_s` after the cue.
+    that of each temperature sensor's zero.
     """
-    played = rig.with_(**{"driver.update_Hz": rate_Hz})
-    trace = simulate(icon or calibration_icon(), played, rate_Hz=rate_Hz, tail_s=tail_s)
+    trace = simulate(calibration_icon(), rig.with_(**{"driver.update_Hz": rate_Hz}), rate_Hz=rate_Hz)
     random = np.random.default_rng(seed)
     values = {"time_s": trace.time_s, "current_A": trace.current_A}
     for column in columns:
@@ -97,7 +92,7 @@ def plan(
         raise FitError(f"rig {rig.name} is a thermode, and a plan is of the calibration drive of a module")
     rig = rig.with_(**{"driver.update_Hz": PLAN_HZ})  # so that the drive is known
     log = synthetic_log(rig, seed=0, columns=["display_C"], noise_K=0.0, offset_sd_K=0.0, rate_Hz=PLAN_HZ)
-    runs = runs_of([log], held=False)
+    runs = runs_of([log])
     if free is None:
         problem = Problem.of(rig, possible_keys(rig), runs, offset_K, fixed_skin)
         free = tellable(with_channels(problem, problem.first, CHOICES[-1], only=True))

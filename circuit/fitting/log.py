@@ -78,10 +78,10 @@ class Log:
         _check_lengths(name, values)
         time = values.pop("time_s")
         _check_times(name, time)
-        for key in filter(is_known, values):
-            if not np.isfinite(values[key]).any():
-                raise LogError(f"{name}: {key} holds no number at all; remove the column, or connect the sensor")
         used = {key: column for key, column in values.items() if is_known(key)}
+        for key, column in used.items():
+            if not np.isfinite(column).any():
+                raise LogError(f"{name}: {key} holds no number at all; remove the column, or connect the sensor")
         if not used:
             raise LogError(
                 f"{name}: no column of a log; needed is one of {', '.join(DRIVES)}, and any of "
@@ -146,16 +146,15 @@ def _check_times(name: str, time: Array) -> None:
         row, why = order_fault(time) or (int(np.argmin(np.diff(time))) + 1, "write times with more decimals")
         what = f"time_s {time[row]:g} s does not come after {time[row - 1]:g} s; times must increase"
         raise LogError(f"{name}, row {row + 1}: {what}: {why}")
-    length, whole = float(time[-1] - time[0]), like_units_of_time(time)
-    step, like = float(np.median(np.diff(time))), like_units_of_time(time, whole=False)
-    if step > SLOWEST_S or (like and step < SHORTEST_S):
-        cure = f"s; a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
-        if like:
-            cure = f"over {length:g}: these look like {like[0]}; {like[1]} to have s"
-        raise LogError(f"{name}: time_s goes in steps of {step:g} {cure}")
-    if whole and length > LONGEST_S:
-        what = f"time_s goes in steps of {step:g} over {length:g}: these look like {whole[0]}"
-        raise LogError(f"{name}: {what}; {whole[1]} to have s; of a run that is as long in s, keep an hour")
+    length, step = float(time[-1] - time[0]), float(np.median(np.diff(time)))
+    usual = SHORTEST_S <= step <= SLOWEST_S
+    like = like_units_of_time(time, whole=usual)
+    if like and (length > LONGEST_S or not usual):
+        what = f"time_s goes in steps of {step:g} over {length:g}: these look like {like[0]}; {like[1]} to have s"
+        raise LogError(f"{name}: {what}{'; of a run that is as long in s, keep an hour' if usual else ''}")
+    if step > SLOWEST_S:
+        cure = f"a fit needs rows at most {SLOWEST_S:g} s apart: log faster"
+        raise LogError(f"{name}: time_s goes in steps of {step:g} s; {cure}")
 
 
 MOST_MB = 200.0

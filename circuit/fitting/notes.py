@@ -1,7 +1,7 @@
 """What a fit says beside its numbers: on drives, starts, sensors and clocks, and what is not narrowed for which reason.
 
-Of several causes of one misfit the first is named: a fit that did not come to rest, a start that was not steady, a
-column that is late, and only then keys that are held fixed.
+Of several causes of one misfit the first is named: a column that is late and explains it all, a fit that did not come
+to rest, a start that was not steady, and only then keys that are held fixed.
 """
 
 import math
@@ -35,10 +35,10 @@ def disagreement(
 
     `missed` are sentences on channels, `late` that on a column which explains them; `unknown` was not identified.
     """
-    if not solution.converged:
-        return (*missed, "free fewer keys, so that the fit comes to rest"), "the fit did not come to rest"
     if late:
         return (late,), "the columns of a log are not of one time"
+    if not solution.converged:
+        return (*missed, "free fewer keys, so that the fit comes to rest"), "the fit did not come to rest"
     if not missed:
         combined = _combined(problem, solution.theta, unknown) if unknown else ()
         return combined, NO_MATCH if combined else ""
@@ -74,7 +74,7 @@ def remarks(problem: Problem, theta: Array, *, misfit: bool = False) -> tuple[st
     sentences += [_offset(channel, offset, problem.offset_sd_K, misfit) for channel, offset in far_off(problem, theta)]
     for r, run in enumerate(problem.runs):
         for clock, name in enumerate(run.clocks, 1):
-            shift = problem.nuisance(theta, "shift", r, clock)
+            shift = run.shifts[clock - 1] + problem.nuisance(theta, "shift", r, clock)
             drift = problem.nuisance(theta, "drift", r, clock)
             sentences.append(
                 f"{name}: its clock was shifted by {shift:.3f} s against {run.name}, and drifts by "
@@ -115,12 +115,9 @@ def unsteady(problem: Problem, theta: Array) -> list[str]:
     """Runs whose first seconds fit much worse than the rest."""
     names = []
     for each, (_, _, channel) in zip(channel_fits(problem, theta), problem.channels(), strict=True):
-        residual, noise = (
-            np.abs(each.difference),
-            float(np.median(np.abs(np.diff(channel.values)))) + channel.resolution,
-        )
+        residual = np.abs(each.difference)
         early = residual[each.time_s < EARLY_S]
-        most = max(EARLY_TIMES * float(np.median(residual)), EARLY_NOISE * noise, 1e-3)
+        most = max(EARLY_TIMES * float(np.median(residual)), EARLY_NOISE * channel.noise, 1e-3)
         if channel.temperature and early.size and np.median(early) > most:
             names.append(each.run)
     return [
@@ -200,9 +197,8 @@ def late_column(problem: Problem, solution: Solution) -> str:
         late, sd = float(found.theta[-1]), float(np.sqrt(found.covariance[-1, -1]))
         left = huber(wide.residuals(found.theta, solution.sigma))
         explained = not beyond_noise(wide, found.theta, found.inflation)
-        least = (
-            LEAST_LATE_S if problem.runs[r].unknown is None else problem.runs[r].step_s
-        )  # columns may share no instant
+        known = problem.runs[r].unknown is None  # else columns may share no instant
+        least = LEAST_LATE_S if known else problem.runs[r].step_s
         if explained and abs(late) > max(least, LATE_SDS * sd) and left < best:
             best, word = left, "late" if late > 0 else "early"
             sentence = (
@@ -222,10 +218,8 @@ def explaining(problem: Problem, solution: Solution) -> list[str]:
     others = [key.key for key in possible_keys(rig, problem.alone) if key.key not in own]
     wide = problem.again(rig, free_keys([*own, *others], rig, problem.alone), problem.runs)
     theta = np.concatenate([wide.first[: len(wide.keys)], solution.theta[len(own) :]])
-    residuals = wide.residuals(theta, solution.sigma)
-    if wide.predictions(theta) is None:
-        return []
-    jacobian, clipped = wide.jacobian(theta, solution.sigma), np.clip(residuals, -10.0, 10.0)
+    jacobian = wide.jacobian(theta, solution.sigma)
+    clipped = np.clip(wide.residuals(theta, solution.sigma), -10.0, 10.0)
     usual = [*range(len(own)), *range(len(wide.keys), len(theta))]
 
     def left(columns: list[int]) -> float:

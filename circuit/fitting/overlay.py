@@ -1,24 +1,29 @@
 """A measured log laid beside a simulated trace, on the trace's clock."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Array
+from ..rig.rig import Rig
+from ..rig.rigfile import RigError
 from ..solver.trace import Trace
+from .forward import Prediction, predict
+from .keys import FitError
 from .log import Log, LogError
 from .problem import Problem
-from .runs import Channel
+from .runs import Channel, Run
 
 SHIFTED_BY = ("display_C", "skin_C", "voltage_V", "current_A", "hot_plate_C")
 """Columns that a shift is found from, the best first."""
 
 
-STEP_S, MOST_STEPS = 0.05, 4000
-"""Raster of the search; a parabola through the best three shifts finds the rest."""
+STEPS = 4000
+"""Raster of the search, in the longer recording; a parabola through the best three shifts finds the rest."""
 
-LEAST_SHARE = 0.5
-"""Share of the shorter recording that must overlap."""
+LEAST_SHARE, NOTHING = 0.5, 1e-12
+"""Share of the shorter recording that must overlap; products of changes that are none."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,8 +113,7 @@ def best_shift_s(reference_s: Array, reference: Array, time_s: Array, values: Ar
     if not (there.any() and other.any()):
         return 0.0, 0.0
     reference_s, reference, time_s, values = reference_s[there], reference[there], time_s[other], values[other]
-    spans = reference_s[-1] - reference_s[0], time_s[-1] - time_s[0]
-    step = max(STEP_S, max(spans) / MOST_STEPS)
+    step = max(reference_s[-1] - reference_s[0], time_s[-1] - time_s[0]) / STEPS
     a = np.interp(np.arange(reference_s[0], reference_s[-1], step), reference_s, reference)
     b = np.interp(np.arange(time_s[0], time_s[-1], step), time_s, values)
     if len(a) < 3 or len(b) < 3 or np.ptp(a) == 0.0 or np.ptp(b) == 0.0:
@@ -131,11 +135,8 @@ def _alike(a: Array, b: Array, lag: int) -> float:
     """Correlation of b, moved later by `lag` steps, with a, over what overlaps."""
     first, last = max(0, lag), min(len(a), len(b) + lag)
     x, y = a[first:last], b[first - lag : last - lag]
-    if last - first < 3:
-        return -1.0
     x, y = x - x.mean(), y - y.mean()
-    size = float(np.sqrt((x @ x) * (y @ y)))
-    return float(x @ y) / size if size > 0 else 0.0
+    return float(x @ y) / max(float(np.sqrt((x @ x) * (y @ y))), NOTHING)
 
 
 STUCK_S, STUCK_STEPS = 3.0, 20.0
@@ -154,46 +155,40 @@ MOST_DRIFT = 2e-3
 LEAST_OVERLAP = 0.5
 """Share of the rows of a further clock that must lie within the run, once it is shifted."""
 
-SHIFT_ROOM_S = 5.0
-"""How far a clock may still move from where the correlation puts it."""
 
+def aligned(rig: Rig, runs: Sequence[Run]) -> tuple[Run, ...]:
+    """Return the runs with the shift of every further clock, by correlation with the simulation of a rig.
 
-def aligned(problem: Problem) -> Problem:
-    """Return the problem with a first guess of the shift of every further clock, by correlation with the simulation.
-
-    Raises LogError for a file whose rows hardly overlap with its run.
+    Raises FitError for a run that the rig cannot play, and LogError for a file whose rows hardly overlap with its run.
     """
-    found = problem.predictions(problem.first)
-    if found is None:
-        return problem
-    unknowns = list(problem.unknowns)
-    for place, item in enumerate(unknowns):
-        if item.kind != "shift":
-            continue
-        run = problem.runs[item.run]
-        channels = [channel for channel in run.channels if channel.clock == item.place]
-        best = (0.0, -1.0)
-        for channel in channels:
-            reference = found[item.run].at(channel.column, run.time_s)
-            shift, alike = best_shift_s(run.time_s, reference, channel.time_s - run.begin_s, channel.values)
-            best = max(best, (shift, alike), key=lambda pair: pair[1])
-        unknowns[place] = replace(item, first=best[0], low=best[0] - SHIFT_ROOM_S, high=best[0] + SHIFT_ROOM_S)
-        name = run.clocks[item.place - 1]
-        time = channels[0].time_s - run.begin_s + best[0] if channels else np.zeros(0)
-        inside = (time >= 0) & (time <= run.time_s[-1])
-        if not channels or best[1] <= 0 or inside.mean() < LEAST_OVERLAP:
-            raise LogError(
-                f"{name}: does not fit in time to {run.name}, which lasts {run.time_s[-1]:g} s: no shift makes the two "
-                f"alike; check that both are from the same run"
-            )
-    return replace(problem, unknowns=tuple(unknowns))
+    out = []
+    for run in runs:
+        try:
+            found = predict(rig, run)
+        except RigError as fault:
+            raise FitError(f"{run.name}: cannot be played on the rig to begin with: {fault}") from None
+        out.append(replace(run, shifts=tuple(_shift_s(run, found, clock) for clock in range(1, len(run.clocks) + 1))))
+    return tuple(out)
+
+
+def _shift_s(run: Run, found: Prediction, clock: int) -> float:
+    best, inside = (0.0, 0.0), 0.0
+    for channel in run.channels:
+        if channel.clock == clock:
+            time, reference = channel.time_s - run.begin_s, found.at(channel.column, run.time_s)
+            best = max(best, best_shift_s(run.time_s, reference, time, channel.values), key=lambda pair: pair[1])
+            inside = float(np.mean((time + best[0] >= 0) & (time + best[0] <= run.time_s[-1])))
+    if best[1] <= 0 or inside < LEAST_OVERLAP:
+        raise LogError(
+            f"{run.clocks[clock - 1]}: does not fit in time to {run.name}, which lasts {run.time_s[-1]:g} s: no shift "
+            f"makes the two alike; check that both are from the same run"
+        )
+    return best[0]
 
 
 def check_sensors(problem: Problem) -> None:
     """Raise LogError for every sensor that is stuck, unplugged or of the wrong sign, as the rig to begin with says."""
-    found = problem.predictions(problem.first)
-    if found is None:
-        return
+    found = problem.simulated(problem.first)
     faults = [
         f"{channel.file}: {fault}"
         for r, c, channel in problem.channels()

@@ -32,8 +32,8 @@ OFFSET_SD_K = 0.1
 STEP_LOG, STEP_LINEAR = 1e-3, 5e-3
 """Steps of derivatives: 0.1 % of a scale, 5 mK or 5 ms of the others."""
 
-SHIFT_SD_S, DRIFT_SD = 30.0, 0.02
-"""How far clocks may be from each other, where the fit decides: standard deviations."""
+SHIFT_ROOM_S, DRIFT_SD = 5.0, 0.02
+"""How far a clock may be from where the correlation puts it, and how fast (standard deviation)."""
 
 ROW_SHARE = 0.5
 """A row's temperature may belong half a row earlier or later than its drive (standard deviation): a logged current is
@@ -154,8 +154,7 @@ class Problem:
                 self._kept.clear()
             rig = self.rig_at(theta)
             self._kept[token] = tuple(
-                predict(rig, run, [self.nuisance(theta, "phase", r, k) for k in range(2)])
-                for r, run in enumerate(self.runs)
+                predict(rig, run, self.nuisance(theta, "phase", r, 0)) for r, run in enumerate(self.runs)
             )
         return self._kept[token]
 
@@ -179,7 +178,7 @@ class Problem:
         if not channel.clock:
             return time
         shift, drift = (self.nuisance(theta, kind, run, channel.clock) for kind in ("shift", "drift"))
-        return np.asarray(time + shift + drift * (time - time[0]))
+        return np.asarray(time + self.runs[run].shifts[channel.clock - 1] + shift + drift * (time - time[0]))
 
     def modelled(self, theta: Array, run: int, place: int, rows: Prediction) -> Array:
         """What a channel should read at its rows: the simulation on its clock, with its sensor's offset."""
@@ -248,12 +247,11 @@ class Problem:
         return wide
 
     def mesh_error(self, theta: Array, sigma: Sequence[float]) -> Array:
-        """What a fine mesh of the skin would change in `residuals`."""
-        fine = finely_divided(self.rig)
-        here = self.residuals(theta, sigma)
-        if fine is None:
+        """What a fine mesh of the skin would change in `residuals`; nothing where the rig states its elements."""
+        skin, here = self.rig.skin, self.residuals(theta, sigma)
+        if skin.elements is not None:
             return 0.0 * here
-        other = replace(self, rig=fine)
+        other = replace(self, rig=self.rig.with_(**{"skin.elements": [FINE_ELEMENTS] * len(skin.layers)}))
         other._shared = self._shared
         return other.residuals(theta, sigma) - here
 
@@ -274,13 +272,12 @@ def _along(runs: Sequence[Run], offset_sd_K: float) -> list[Unknown]:
     extra = []
     for r, run in enumerate(runs):
         if any(not channel.clock for channel in run.channels):
-            step = run.step_s or float(np.median(np.diff(run.time_s)))
-            extra.append(Unknown("row", r, 0, ROW_SHARE * step, step=1e-3))
+            extra.append(Unknown("row", r, 0, ROW_SHARE * run.step_s, step=1e-3))
         if run.phase is not None:
-            extra += [Unknown("phase", r, k, 1.0, low=-PHASES, high=PHASES, step=1e-2) for k in range(2)]
+            extra.append(Unknown("phase", r, 0, 1.0, low=-PHASES, high=PHASES, step=1e-2))
         for clock in range(1, len(run.clocks) + 1):
             extra += [
-                Unknown("shift", r, clock, SHIFT_SD_S),
+                Unknown("shift", r, clock, SHIFT_ROOM_S, low=-SHIFT_ROOM_S, high=SHIFT_ROOM_S),
                 Unknown("drift", r, clock, DRIFT_SD, low=-0.2, high=0.2, step=1e-6),
             ]
         if offset_sd_K > 0:
@@ -305,10 +302,3 @@ def changed_layers(rig: Rig, factors: Factors) -> dict[str, float]:
         changes[f"skin.layer.{k}.density_kg_per_m3"] = layer.density_kg_per_m3 * heavier * thicker
         changes[f"skin.layer.{k}.perfusion_per_s"] = layer.perfusion_per_s * thicker
     return changes
-
-
-def finely_divided(rig: Rig) -> Rig | None:
-    """The rig with a fine mesh of its skin; None where it states its elements."""
-    if rig.skin.elements is not None:
-        return None
-    return rig.with_(**{"skin.elements": [FINE_ELEMENTS] * len(rig.skin.layers)})

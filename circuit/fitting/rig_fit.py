@@ -148,7 +148,6 @@ def channel_fits(problem: Problem, theta: Array) -> tuple[ChannelFit, ...]:
 
 
 DIGEST_DIGITS = 16
-MOST_LOGS_NAMED = 5
 PLATES = ("module.hot_plate_J_per_K", "module.cold_plate_J_per_K")
 MISFIT = (
     "Rig and logs do not agree, so that the intervals cannot be trusted: [uncertainty] is as wide as before the fit, "
@@ -220,9 +219,7 @@ def reason_of(rig: Rig, sources: Sequence[tuple[str, str]]) -> str:
 
 def named(sources: Sequence[tuple[str, str]]) -> str:
     """Logs with the beginning of their digests."""
-    few = [f"{name} (sha256 {digest[:DIGEST_DIGITS] or 'not from a file'})" for name, digest in sources]
-    more = [f"{len(few) - MOST_LOGS_NAMED} more"] if len(few) > MOST_LOGS_NAMED else []
-    return ", ".join([*few[:MOST_LOGS_NAMED], *more])
+    return ", ".join(f"{name} (sha256 {digest[:DIGEST_DIGITS] or 'not from a file'})" for name, digest in sources)
 
 
 def _rounded_up(value: float) -> float:

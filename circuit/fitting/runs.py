@@ -33,6 +33,9 @@ SAME_SHARE = 0.05
 
 SHORTEST_S = 5.0
 
+MOST_MOVED = 1.2
+"""Skin follows a display and moves less; noise and a slow rest may make it seem to move more by so much."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Channel:
@@ -65,30 +68,35 @@ class Channel:
 class Run:
     """One run from its first row on: `drive` (rows,) of the column `driven_by` at `time_s`, and what was measured.
 
-    `held`: each row's drive lasts until the next, otherwise it is linear between rows. `begin_s` is the time of the
-    first row by the drive's own clock; `clocks` names the files of the further clocks. `unknown` (rows − 1,) is the SD
-    of the drive's mean between rows, None where the rows tell it; `phase` (2, rows) what all rows are wrong by, as
-    SDs, if a loop was read at one phase of its steps. `points`: the rows, `step_s` apart, miss updates of the driver.
-    `logged`: the drive of each row, where `drive` has means of several.
+    `begin_s` is the time of the first row by the drive's own clock; `clocks` names the files of the further clocks, and
+    `shifts` are about what to add to their times. `unknown` (rows − 1,) is the SD of the drive's mean between rows,
+    None where the rows tell it; `phase` (rows,) what all rows are wrong by, as one SD, if a loop was read at one phase
+    of its steps. `points`: the rows, `step_s` apart, miss updates of the driver. `logged`: the drive of each row, where
+    `drive` has means.
     """
 
     name: str
     driven_by: str
     time_s: Array
+    step_s: float
     drive: Array
-    held: bool
     begin_s: float
     channels: tuple[Channel, ...]
     clocks: tuple[str, ...] = ()
+    shifts: tuple[float, ...] = ()
     unknown: Array | None = None
     phase: Array | None = None
-    step_s: float = 0.0
     points: bool = False
     notes: tuple[str, ...] = ()
     logged: Drive | None = None
 
+    @property
+    def held(self) -> bool:
+        """Whether each row's drive lasts until the next, as a current does; a display is linear between rows."""
+        return self.driven_by != DISPLAY
 
-def runs_of(logs: Sequence[Log], held: bool, rig: Rig | None = None) -> tuple[Run, ...]:
+
+def runs_of(logs: Sequence[Log], rig: Rig | None = None) -> tuple[Run, ...]:
     """Return the runs of logs; a log without a drive goes with the one before it, or with the only one there is.
 
     Without a current, and on a thermode, the display drives what is deeper. A `rig` says how often its driver changes;
@@ -116,7 +124,7 @@ def runs_of(logs: Sequence[Log], held: bool, rig: Rig | None = None) -> tuple[Ru
             last = log
         else:
             groups[id(last)].append(log)
-    runs = tuple(_run(log, drives[id(log)], groups[id(log)], held, rig) for log in driven)
+    runs = tuple(_run(log, drives[id(log)], groups[id(log)], rig) for log in driven)
     silent = [run.name for run in runs if not run.channels]
     if silent:
         raise LogError(
@@ -131,7 +139,7 @@ def _deeper(name: str) -> bool:
     return name == "skin_C" or name.startswith("probe_")
 
 
-def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig | None) -> Run:
+def _run(log: Log, driven_by: str, sensors: Sequence[Log], rig: Rig | None) -> Run:
     part = _part(log.time_s, log.column(driven_by), alone=not sensors)
     time, drive = log.time_s[part], log.column(driven_by)[part]
     known = np.isfinite(drive)
@@ -142,8 +150,9 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
             f"{log.name}: {driven_by} is {drive[0]:g} in every row: nothing changes, so that nothing can be fitted; "
             f"log a run that warms and cools, such as the shipped cue calibration-drive"
         )
-    if rig is not None:
-        for each in (log, *sensors):
+    for each in (log, *sensors):
+        _check_exchanged(each)
+        if rig is not None:
             _check_probes(each, rig)
     begin, step, alone = float(time[0]), float(np.median(np.diff(time))), driven_by == DISPLAY
     columns = [(each, name, clock) for clock, each in enumerate((log, *sensors)) for name in each.measured]
@@ -163,15 +172,15 @@ def _run(log: Log, driven_by: str, sensors: Sequence[Log], held: bool, rig: Rig 
             phase = one_phase(time, drive, display[part][known])
     logged, many = None, max(int(FINEST_S / step + 1e-6), len(time) // MOST_STEPS)
     if unknown is None and many > 1:
-        logged = Drive(time - begin, drive, held)
+        logged = Drive(time - begin, drive, held=True)
         time, drive = means(time, drive, many)
     notes = []
     if part.stop is not None:
         what = f"{time[0] - log.time_s[0]:.0f} to {time[-1] - log.time_s[0]:.0f} s are fitted"
         notes.append(f"{log.name}: is long: {what}; to fit another part, cut it out")
     return Run(
-        log.name, driven_by, time - begin, drive, held and not alone, begin, tuple(channels),
-        tuple(sensor.name for sensor in sensors), unknown, phase, step, points, tuple(notes), logged,
+        log.name, driven_by, time - begin, step, drive, begin, tuple(channels),
+        tuple(sensor.name for sensor in sensors), (0.0,) * len(sensors), unknown, phase, points, tuple(notes), logged,
     )  # fmt: skip
 
 
@@ -184,6 +193,17 @@ def _part(time: Array, drive: Array, alone: bool) -> slice:
     moved = there[np.abs(drive[there] - drive[there[:1]]) > SAME_SHARE * np.ptp(drive[there])]
     begin = time[moved[0]] - REST_S if moved.size else time[0]
     return slice(int(np.searchsorted(time, begin)), int(np.searchsorted(time, begin + length)))
+
+
+def _check_exchanged(log: Log) -> None:
+    """Raise LogError for a skin that moves more than the display above it."""
+    if {DISPLAY, "skin_C"} <= set(log.measured):
+        moves = [float(np.subtract(*np.nanpercentile(log.column(name), [95, 5]))) for name in (DISPLAY, "skin_C")]
+        if moves[1] > MOST_MOVED * moves[0]:
+            raise LogError(
+                f"{log.name}: skin_C changes by {moves[1]:.2g} K, and {DISPLAY}, which moves it, by {moves[0]:.2g} K "
+                f"alone: exchange both columns, or remove the wrong one"
+            )
 
 
 def _check_probes(log: Log, rig: Rig) -> None:

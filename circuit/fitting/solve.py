@@ -7,9 +7,7 @@ from typing import Literal
 import numpy as np
 
 from ..arrays import Array
-from ..rig.rigfile import RigError
 from .between import MAD_TO_SD
-from .keys import FitError
 from .problem import Problem
 
 ROUNDS: tuple[tuple[float, Literal["linear", "huber"]], ...] = ((1e-3, "linear"), (1e-5, "huber"), (1e-6, "huber"))
@@ -24,9 +22,8 @@ OUTLIER = 3.0
 LEAST_SD = {True: 1e-4, False: 1e-5}
 """Least standard deviation of a temperature in K and of a voltage in V, below any instrument."""
 
-NOISE_STEPS, ROUGH = 4, 1.7
-"""Steps in which noise is found where rows err alike; there as many rows count as one at least, since half a difference
-says only roughly what a drive does between rows."""
+ROUGH = 1.7
+"""So many rows that err alike count as one at least: half a difference says only roughly what a drive does between."""
 MOST_EVALUATIONS = 30
 FEWEST_INDEPENDENT = 8.0
 """However alike neighbouring residuals are, a channel counts as at least so many independent rows."""
@@ -47,18 +44,10 @@ class Solution:
 
 
 def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_EVALUATIONS) -> Solution:
-    """Fit, from the problem's own first point or another, with so many evaluations a round at most.
-
-    Raises FitError where a run cannot be simulated on the rig to begin with.
-    """
+    """Fit, from the problem's own first point or another, with so many evaluations a round at most."""
     from scipy.optimize import least_squares
 
     theta = np.clip(problem.first if begin is None else begin, *problem.bounds)
-    try:
-        problem.simulated(theta)
-    except RigError as fault:
-        names = ", ".join(run.name for run in problem.runs)
-        raise FitError(f"{names}: cannot be played on the rig to begin with: {fault}") from None
     scale = np.array([item.sd for item in problem.unknowns])
     sigma, converged = spreads(problem, theta), False
     for close, loss in ROUNDS:
@@ -78,16 +67,6 @@ def solve(problem: Problem, begin: Array | None = None, evaluations: int = MOST_
     return Solution(theta, covariance, sigma, inflation, converged)
 
 
-def fits_better(other: Problem, problem: Problem, solution: Solution) -> bool:
-    """Whether a variant of a problem would fit better than its solution: judged after one step of Gauss and Newton."""
-    residuals = other.residuals(solution.theta, solution.sigma)
-    weight = np.minimum(1.0, OUTLIER / np.maximum(np.abs(residuals), 1e-12)) ** 0.5
-    jacobian = other.jacobian(solution.theta, solution.sigma)
-    step = np.linalg.lstsq(weight[:, np.newaxis] * jacobian, -weight * residuals)[0]
-    there = residuals + jacobian @ step
-    return huber(there) < huber(problem.residuals(solution.theta, solution.sigma))
-
-
 def huber(residuals: Array) -> float:
     """Huber's sum: squares, and beyond OUTLIER linear."""
     size = np.abs(residuals)
@@ -101,24 +80,15 @@ def parts_of(problem: Problem, residuals: Array) -> list[Array]:
 
 
 def spreads(problem: Problem, theta: Array, before: Sequence[float] = ()) -> tuple[float, ...]:
-    """Robust standard deviation of each channel's residuals, at least that of its sensor's rounding.
+    """Robust standard deviation of each channel's residuals, at least that of what changes from row to row.
 
-    Where rows err alike, it is found in some steps, from what changes from row to row or from that `before`.
+    Where rows err alike, residuals are made independent by the noise found `before`, at first by that least one.
     """
     channels = [channel for _, _, channel in problem.channels()]
-    known = all(run.unknown is None for run in problem.runs)
-    sigma = tuple(1.0 if known else channel.noise for channel in channels) if known or not before else tuple(before)
-    for _ in range(1 if known else NOISE_STEPS):
-        parts = parts_of(problem, problem.residuals(theta, sigma))
-        sigma = tuple(
-            max(
-                sd * MAD_TO_SD * float(np.median(np.abs(part - np.median(part)))),
-                channel.resolution / np.sqrt(12.0) if known else channel.noise,
-                LEAST_SD[channel.temperature],
-            )
-            for sd, part, channel in zip(sigma, parts, channels, strict=True)
-        )
-    return sigma
+    least = [max(channel.noise, LEAST_SD[channel.temperature]) for channel in channels]
+    sigma = before or least
+    found = zip(sigma, parts_of(problem, problem.residuals(theta, sigma)), least, strict=True)
+    return tuple(max(low, sd * MAD_TO_SD * float(np.median(np.abs(part - np.median(part))))) for sd, part, low in found)
 
 
 def alike(residuals: Array) -> float:

@@ -67,11 +67,9 @@ def shared(rig: Rig, run: Run, times: Sequence[Array]) -> Shared | None:
 def _responses(rig: Rig, run: Run) -> tuple[Array, list[Array]]:
     """Times (n,) in s after a step of the drive, and what a step of one does to each channel (n,), but I·R."""
     size, level = STEP.get(run.driven_by, OTHER_STEP), float(np.median(run.drive))
-    end = min(MEMORY_S, float(run.time_s[-1]))
-    time, begin = np.arange(0.0, end, 0.01), 0.02
-    drive = level + size * np.array([0.0, 1.0, 1.0, 1.0, 1.0])
-    times, held = np.array([0.0, begin, begin + 0.01, end / 2, end + 0.1]), run.driven_by != DISPLAY
-    step = replace(run, time_s=times, drive=drive, phase=None, logged=None, held=held)
+    time, begin = np.arange(0.0, MEMORY_S, 0.01), 0.02
+    drive, times = level + size * np.array([0.0, 1.0, 1.0]), np.array([0.0, begin, begin + MEMORY_S])
+    step = replace(run, time_s=times, drive=drive, phase=None, logged=None)
     found, out = predict(rig, step), []
     for each in run.channels:
         after = found.at(each.column, time + begin) - found.at(each.column, np.zeros(1))

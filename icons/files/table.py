@@ -198,7 +198,8 @@ def read_table(
             if theirs.get(name) != own or unit[1:] != (1, 0)]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
     lost = [f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header]
-    notes += [f"no column is called {', and none '.join(lost)}"] if lost else []
+    there = ", ".join(ours.header[:FEW])
+    notes += [f"no column is called {', and none '.join(lost)}; found {there}"] if lost else []
     decimal = "" if mark == "," and QUOTED_DECIMAL.search(text) else mark
     return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes))
 

@@ -33,11 +33,14 @@ def fit_report(fitted: RigFit, before: Rig) -> list[Block]:
 
 def plan_report(expected: Sequence[Expected]) -> list[Block]:
     """Report how well each choice of sensors will identify the keys: a row per key, a column per choice."""
-    choices = [" ".join(LETTERS[column] for column in each.columns) for each in expected]
-    rows = [
-        (key.key, *(_width(each.half_widths[k], key.log, each.identified[k], key.key) for each in expected))
-        for k, key in enumerate(expected[0].keys)
-    ]
+    from thermicon.circuit.fitting.identify import width_text
+    from thermicon.circuit.rig.faults import unit_of
+
+    choices, rows = [" ".join(LETTERS[column] for column in each.columns) for each in expected], []
+    for k, key in enumerate(expected[0].keys):
+        texts = [width_text(key.log, each.half_widths[k], unit_of(key.key)) for each in expected]
+        known = [each.identified[k] for each in expected]
+        rows.append((key.key, *(text if sure else f"({text})" for text, sure in zip(texts, known, strict=True))))
     return [Text(PLAN_HEAD), grid(("key", *choices), rows, choices, ("key",))]
 
 
@@ -83,7 +86,6 @@ def doubts(fitted: RigFit) -> list[str]:
 
 def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     """What the safety gate and virtual people vary from now on, where it is not what it was before."""
-    from thermicon.circuit.fitting.rig_fit import LARGEST
     from thermicon.circuit.rig.uncertainty import WORDS
 
     changed = [
@@ -95,26 +97,15 @@ def uncertainty_line(fitted: RigFit, before: Rig) -> str | None:
     if not changed:
         return None
     if all(getattr(fitted.rig.uncertainty, key) >= getattr(before.uncertainty, key) for key in WORDS):
-        most = any(getattr(fitted.rig.uncertainty, key) == limit for key, limit in LARGEST.items())
-        how = "as far as a rig file may state" if most else "to hold all that the rig before held"
-        return f"uncertainty of the fitted rig, widened {how}: {', '.join(changed)}"
+        return f"uncertainty of the fitted rig, widened: {', '.join(changed)}"
     return (
         f"uncertainty of the fitted rig, for the person, contact and room of these logs: {', '.join(changed)}; widen "
         f"it with --set uncertainty.KEY=VALUE for other people"
     )
 
 
-def _width(width: float, log: bool, known: bool, key: str) -> str:
-    if log:
-        text = f"±{100 * width:.2g} %" if width < 1.0 else "unknown"
-    else:
-        text = f"±{width:.2g} {'s' if key.endswith('_s') else 'K'}"
-    return text if known else f"({text})"
-
-
-def _short(value: float, digits: int | None) -> str:
-    text = f"{value:.{USUAL_DIGITS}g}" if digits is None else f"{value:#.{digits}g}"
-    return text.replace("-", "−").removesuffix(".")
+def _short(value: float, digits: int) -> str:
+    return f"{value:#.{digits}g}".replace("-", "−").removesuffix(".")
 
 
 def _digits(value: float, half: float) -> int:

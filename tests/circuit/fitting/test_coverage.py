@@ -3,14 +3,15 @@
 import math
 import os
 from collections import defaultdict
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
 
 from thermicon.circuit import Drive, Rig, fit, simulate_current
 from thermicon.circuit.fitting.identify import half_width
-from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
-from thermicon.circuit.fitting.laboratory import calibration_icon
+from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys, value_of
+from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
 from thermicon.circuit.fitting.log import Log
 from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, layer_priors
 from thermicon.circuit.fitting.runs import runs_of
@@ -23,20 +24,22 @@ LOGS = int(os.environ.get("THERMICON_FIT_LOGS", "18"))
 KINDS, RATES_HZ = ("held set-points", "ramps", "currents"), (100, 50, 20, 10, 5, 2)
 LOOP_HZ, FINE_HZ, END_S, NOISE = 80.0, 400.0, 60.0, {"C": 0.02, "V": 0.005, "A": 0.0}
 SPREADS = dict(zip(COMMON, (0.15, 0.025, 0.05), strict=True))
-"""SD of the logarithm: half of what the rig's own uncertainty states."""
+"""SD of the logarithm: half of what the rig's own uncertainty states; 0.1 of other scales, 1 K of a temperature."""
+FREE = (*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
+        "heat_sink.temperature_C", "heat_sink.resistance_K_per_W")  # fmt: skip
 
 
-def person(rig: Rig, random: np.random.Generator) -> tuple[Rig, dict[str, float]]:
+def person(rig: Rig, random: np.random.Generator, keys: Sequence[str] = COMMON) -> tuple[Rig, dict[str, float]]:
     """A rig with the skin, contact and module of one laboratory, and its truth."""
-    skin = {}
+    skin, truth = {}, {}
     for (kind, k), sd in layer_priors(rig).items():
         layer, place = rig.skin.layers[k], LAYER_KINDS.index(kind)
         key = ("thickness_mm", "conductivity_W_per_mK", "heat_capacity_J_per_kgK")[place]
         value = (layer.thickness_m * 1e3, layer.conductivity_W_per_mK, layer.heat_capacity_J_per_kgK)[place]
         skin[f"skin.layer.{k}.{key}"] = value * math.exp(sd * random.normal())
-    known = (rig.contact.resistance_m2K_per_W, rig.module.seebeck_V_per_K, rig.module.resistance_ohm)
-    pairs = zip(SPREADS.items(), known, strict=True)
-    truth = {key: value * math.exp(sd * random.normal()) for (key, sd), value in pairs}
+    for key, value in ((each, value_of(rig, each.key)) for each in free_keys(keys, rig)):
+        away = SPREADS.get(key.key, 0.1 if key.log else 1.0) * random.normal()
+        truth[key.key] = value * math.exp(away) if key.log else value + away
     return rig.with_(**skin, **truth), truth
 
 
@@ -82,7 +85,7 @@ def logged(
 def bound(log: Log, rig: Rig, truth: dict[str, float]) -> float:
     """Half width of contact that the log allows at best, at the truth and with the noise that is true."""
     start = rig.with_(**truth)
-    problem = Problem.of(start, free_keys(COMMON, start), runs_of([log], False, start))
+    problem = Problem.of(start, free_keys(COMMON, start), runs_of([log], start))
     sigma = [NOISE[channel.column[-1]] for _, _, channel in problem.channels()]
     deviations = covariance_of(problem, problem.jacobian(problem.first, sigma), [1.0] * len(sigma))
     return half_width(True, math.sqrt(deviations[0, 0]))
@@ -115,3 +118,18 @@ def test_the_truth_lies_in_what_is_printed_and_written_for_logs_of_every_kind() 
     every = np.array(table["all"], dtype=float)
     assert np.mean(every[:, 2]) >= 0.92 and np.mean(every[:, 3]) >= 0.95, table["all"]
     assert not every[:, 5:].any() and np.median(every[:, 4]) <= 2.0, table["all"]
+
+
+@pytest.mark.slow
+def test_intervals_of_many_keys_hold_the_truth_on_ten_rigs_of_other_skin() -> None:
+    rig, random = Rig.load("thenar").with_(**{"driver.update_Hz": 10.0}), np.random.default_rng(41)
+    held, written = [], []
+    for seed in range(10):
+        true, truth = person(rig, random, FREE)
+        other_mesh = true.with_(**{"skin.elements": [60] * len(rig.skin.layers)})
+        found = fit(synthetic_log(other_mesh, seed=100 + seed, rate_Hz=10.0), rig, free=FREE)
+        held.append([item.low <= truth[item.key] <= item.high for item in found.parameters])
+        for key in (each for each in free_keys(FREE, rig) if each.uncertainty):
+            value, width = value_of(found.rig, key.key), getattr(found.rig.uncertainty, key.uncertainty)
+            written.append(abs(truth[key.key] - value) <= width * (value if key.log else 1.0))
+    assert np.mean(held) >= 0.9 and np.mean(held, axis=0)[0] >= 0.9 and np.mean(written) >= 0.95, held

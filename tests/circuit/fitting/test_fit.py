@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Rig, Trace, fit, simulate
-from thermicon.circuit.fitting.forward import steady_level
 from thermicon.circuit.fitting.identify import half_width
 from thermicon.circuit.fitting.keys import FitError
 from thermicon.circuit.fitting.laboratory import calibration_icon, synthetic_log
@@ -93,10 +92,6 @@ def test_two_clocks_one_shifted_and_one_that_drifts(true_rig: Rig, thenar: Rig, 
     wrong = Log.of("thermometer.csv", {"time_s": log.time_s * 1.01, "display_C": columns["display_C"]})
     with pytest.raises(LogError, match=r"thermometer.csv: its clock drifts, (0.99|1) % fast against daq.csv; correct"):
         fit([drive, wrong], thenar, free=KEYS)
-    other = np.random.default_rng(1).normal(31.0, 0.5, 300)
-    foreign = Log.of("thermometer.csv", {"time_s": np.arange(300) / 1, "display_C": other})
-    with pytest.raises(LogError, match=r"thermometer.csv: (does not fit in time|display_C changes|display_C goes)"):
-        fit([drive, foreign], thenar, free=KEYS)
 
 
 @pytest.mark.slow
@@ -184,9 +179,9 @@ def trace(true_rig: Rig) -> Trace:
 
 @pytest.mark.parametrize("shift", [-1000.0, 0.37, 12.0])
 def test_the_shift_of_a_clock_is_found(shift: float, log: Log, trace: Trace) -> None:
-    late = Log.of("late.csv", {"time_s": log.time_s - shift, **dict(log.columns)})
-    found = overlay(trace, late)
-    assert found.shift_s == pytest.approx(shift, abs=0.01)
+    later = {name: column[7:] for name, column in log.columns}  # begins between two shifts of the search
+    found = overlay(trace, Log.of("late.csv", {"time_s": log.time_s[7:] - shift, **later}))
+    assert found.shift_s == pytest.approx(shift, abs=0.002)
     display = next(each for each in found.columns if each.column == "display_C")
     assert display.rms == pytest.approx(float(np.mean(display.difference**2)) ** 0.5)
     assert abs(display.largest) == pytest.approx(float(np.abs(display.difference).max()))
@@ -211,8 +206,6 @@ def test_noise_and_likeness_of_rows_are_those_of_known_series() -> None:
     assert np.diff([huber(np.array([size])) for size in (0.0, 2.0, 3.0, 4.0, 9.0)]).tolist() == [4.0, 5.0, 6.0, 30.0]
     slow = Channel("display_C", "a.csv", 0, time, np.sin(time / 5) + 0.02 * random.standard_normal(600))
     assert slow.noise == pytest.approx(0.02, rel=0.1)
-    assert steady_level(np.array([0.1, 0.1, 0.5, 0.5])) == 0.1
-    assert round(steady_level(np.array([0.1, 0.11, 0.1, 0.5, 0.51])), 3) == 0.103
     shift, same = best_shift_s(time[:300], np.sin(time[:300] / 3), time[:300], np.sin((time[:300] + 1.3) / 3))
     assert (round(shift, 2), round(same, 3)) == (1.3, 1.0)
     assert best_shift_s(time[:50], np.ones(50), time[:50], np.sin(time[:50])) == (0.0, 0.0)

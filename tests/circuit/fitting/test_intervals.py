@@ -1,4 +1,4 @@
-"""What a log knows: said before measuring, of skin that is not the rig's, and of the truth in 200 logs."""
+"""What a log knows: said before measuring, and of skin that is not the rig's."""
 
 import math
 import re
@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 
 from thermicon.circuit import Device, Drive, Gate, Rig, export, fit, simulate, simulate_current
-from thermicon.circuit.cores import quiet_blas
 from thermicon.circuit.delivery.deliver import deliver
 from thermicon.circuit.delivery.device import device_names
 from thermicon.circuit.delivery.formats import format_names, load_format
 from thermicon.circuit.fitting.identify import Parameter, cures, identified
-from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys, value_of
+from thermicon.circuit.fitting.keys import COMMON, CONTACT, free_keys
 from thermicon.circuit.fitting.laboratory import calibration_icon, plan, synthetic_log
 from thermicon.circuit.fitting.log import Log, read_log
-from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, changed_layers, layer_priors
+from thermicon.circuit.fitting.problem import LAYER_KINDS, Problem, changed_layers
 from thermicon.circuit.fitting.rig_fit import RigFit
 from thermicon.circuit.fitting.runs import runs_of
 from thermicon.circuit.fitting.solve import Solution, spreads
@@ -25,8 +24,6 @@ from thermicon.circuit.rig.rig import rig_names
 
 from .conftest import TRUTH, altered
 
-FREE = [*COMMON, "module.thermal_resistance_K_per_W", "module.cold_plate_J_per_K", "module.hot_plate_J_per_K",
-        "heat_sink.temperature_C", "heat_sink.resistance_K_per_W"]  # fmt: skip
 THICK = {"skin.layer.0.thickness_mm": 0.20}
 """One standard deviation of people more than the rig has."""
 
@@ -59,11 +56,6 @@ def test_fixed_skin_is_what_the_rig_has(true_rig: Rig, thenar: Rig) -> None:
     assert found[CONTACT].low > TRUTH[CONTACT]  # the layer passes for contact
 
 
-def test_every_layer_has_a_prior(thenar: Rig) -> None:
-    priors = layer_priors(thenar)
-    assert (len(priors), round(priors["thickness", 0], 3)) == (15, 0.182)
-
-
 def test_layers_times_factors_are_what_a_log_sees_of_other_layers(thenar: Rig, log: Log) -> None:
     layer, factors = (
         thenar.skin.layers[1],
@@ -80,11 +72,13 @@ def test_layers_times_factors_are_what_a_log_sees_of_other_layers(thenar: Rig, l
 
 
 def test_the_error_of_the_mesh_is_some_millikelvin(thenar: Rig, log: Log) -> None:
-    problem = Problem.of(thenar, free_keys([CONTACT], thenar), runs_of([log], held=True))
+    problem = Problem.of(thenar, free_keys([CONTACT], thenar), runs_of([log]))
     display, voltage, rest = np.split(problem.mesh_error(problem.first, [1.0, 1.0]), [1201, 2402])
     assert 5e-4 < np.abs(display).max() < 5e-3 and np.abs(voltage).max() < 1e-3 and not rest.any()
+    beyond = problem.residuals(problem.first + 50.0, [1.0, 1.0])  # no rig has a contact of e⁵⁰
+    assert beyond.shape == (2402 + len(rest),) and beyond.min() > 100
     own = Rig.load("shani2021")
-    stated = Problem.of(own, free_keys([CONTACT], own), runs_of([log], held=True))
+    stated = Problem.of(own, free_keys([CONTACT], own), runs_of([log]))
     assert not stated.mesh_error(stated.first, spreads(stated, stated.first)).any()
 
 
@@ -97,7 +91,7 @@ def test_a_sensor_that_is_far_off_narrows_nothing(log: Log, thenar: Rig) -> None
     assert found.notes[0].endswith("calibrate it")
 
 
-@pytest.mark.parametrize(("column", "delay_s"), [("display_C", 0.15), ("voltage_V", 0.15), ("display_C", -0.1)])
+@pytest.mark.parametrize(("column", "delay_s"), [("display_C", 0.3), ("voltage_V", 0.15), ("display_C", -0.1)])
 def test_a_late_column_is_named_with_its_delay(log: Log, true_rig: Rig, column: str, delay_s: float) -> None:
     moved = np.interp(log.time_s - delay_s, log.time_s, log.column(column))
     found = fit(altered(log, "late.csv", **{column: moved}), true_rig, free=[CONTACT])
@@ -105,88 +99,6 @@ def test_a_late_column_is_named_with_its_delay(log: Log, true_rig: Rig, column: 
     told = [re.match(rf"{column} of late.csv is (\S+) s {word} against the other", note) for note in found.notes]
     assert [float(each[1]) for each in told if each] == [pytest.approx(abs(delay_s), rel=0.02)]
     assert found.misfit
-
-
-@pytest.mark.slow
-def test_a_late_column_that_other_keys_make_up_for_is_named_and_narrows_nothing(
-    log: Log, true_rig: Rig, thenar: Rig
-) -> None:
-    moved = np.interp(log.time_s - 0.15, log.time_s, log.column("display_C"))
-    found = fit(altered(log, "late.csv", display_C=moved), true_rig, free=FREE)
-    assert any("display_C of late.csv is 0.15 s late against the other" in note for note in found.notes)
-    assert found.rig.uncertainty.plates_relative >= thenar.uncertainty.plates_relative
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("spread", ["ten per cent", "people"])
-def test_intervals_hold_the_truth_on_ten_rigs_of_other_skin(spread: str) -> None:
-    rig, random = Rig.load("thenar").with_(**{"driver.update_Hz": 10.0}), np.random.default_rng(41)
-    held, contact, written = [], 0, 0
-    for seed in range(10):
-        skin = {"skin.elements": [60] * len(rig.skin.layers)}  # another mesh than that of the fit
-        for (kind, k), sd in layer_priors(rig).items():
-            factor = math.exp(sd * random.normal()) if spread == "people" else random.uniform(0.9, 1.1)
-            layer = rig.skin.layers[k]
-            names = ("thickness_mm", "conductivity_W_per_mK", "heat_capacity_J_per_kgK")
-            values = (layer.thickness_m * 1e3, layer.conductivity_W_per_mK, layer.heat_capacity_J_per_kgK)
-            place = LAYER_KINDS.index(kind)
-            skin[f"skin.layer.{k}.{names[place]}"] = factor * values[place]
-        truth = {}
-        for key in free_keys(FREE, rig):
-            value = value_of(rig, key.key)
-            truth[key.key] = value * math.exp(0.1 * random.normal()) if key.log else value + random.normal()
-        log = synthetic_log(rig.with_(**skin, **truth), seed=100 + seed, rate_Hz=10.0)
-        with quiet_blas():
-            found = fit(log, rig, free=FREE)
-        held += [item.low <= truth[item.key] <= item.high for item in found.parameters]
-        contact += found[CONTACT].low <= truth[CONTACT] <= found[CONTACT].high
-        written += holds_all(found.rig, truth)
-    print(f"{spread}: {sum(held)} of {len(held)} keys, contact {contact} of 10, uncertainty {written} of 10")
-    assert np.mean(held) >= 0.9 and contact >= 9 and written >= 9, (sum(held), contact, written)
-
-
-def holds_all(rig: Rig, truth: dict[str, float]) -> bool:
-    """Whether every uncertainty that a fit may write holds the truth about the value of the rig."""
-    return all(
-        abs(truth[key.key] - (value_of(rig, key.key) or 0.0))
-        <= getattr(rig.uncertainty, key.uncertainty) * ((value_of(rig, key.key) or 0.0) if key.log else 1.0)
-        for key in free_keys(list(truth), rig)
-        if key.uncertainty
-    )
-
-
-LOGS = 200
-LEAST, MOST = 0.91, 0.98
-"""Of 200 logs, 182 to 196: what 95 % allows within two standard deviations or so."""
-
-RATE_HZ = 10
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["thenar", "forearm", "shani2021"])
-def test_intervals_hold_the_truth_of_200_logs(name: str) -> None:
-    rig = Rig.load(name).with_(**{"driver.update_Hz": RATE_HZ})
-    share = np.random.default_rng(0)
-    held = dict.fromkeys(TRUTH, 0)
-    for seed in range(LOGS):
-        # Another truth each time, so that the fit has a way to go.
-        truth = {key: (value_of(rig, key) or 0.0) * float(np.exp(share.normal(0.0, 0.1))) for key in TRUTH}
-        log = synthetic_log(rig.with_(**truth), seed=seed, rate_Hz=RATE_HZ, noise_K=0.02)
-        found = fit(log, rig, free=list(TRUTH), fixed_skin=True)
-        for key, value in truth.items():
-            held[key] += found[key].low <= value <= found[key].high
-    shares = {key: count / LOGS for key, count in held.items()}
-    assert all(value >= LEAST for value in shares.values()), shares
-    # The mesh's error counts as noise in the contact's interval, which is wider for it than these logs need.
-    assert all(value <= MOST for key, value in shares.items() if key != "contact.resistance_m2K_per_W"), shares
-
-
-def test_display_and_voltage_identify_what_the_display_alone_does_not() -> None:
-    alone, both, *_ = plan(Rig.load("thenar"), FREE, fixed_skin=True)
-    assert (alone.columns, both.columns) == (("display_C",), ("display_C", "voltage_V"))
-    assert 0.01 < both.half_widths[0] < 0.04 and max(both.half_widths[1:3]) < 0.01
-    assert alone.half_widths[0] > 3 * both.half_widths[0]
-    assert not all(alone.identified) and all(both.identified)
 
 
 def test_a_plan_is_what_a_fit_then_finds() -> None:
@@ -203,14 +115,14 @@ def test_rounding_is_noise_and_a_truth_out_of_reach_is_not_known(log: Log, thena
     coarse, fine = (fit(each, thenar, free=list(TRUTH), fixed_skin=True) for each in (rounded, log))
     assert coarse[CONTACT].low < TRUTH[CONTACT] < coarse[CONTACT].high
     assert coarse[CONTACT].half_width > 2 * fine[CONTACT].half_width
-    far = Problem.of(true_rig, free_keys(["skin.rest_C"], true_rig), runs_of([log], held=True))
+    far = Problem.of(true_rig, free_keys(["skin.rest_C"], true_rig), runs_of([log]))
     for share, known in ((0.999, False), (0.99, True), (-0.999, False), (-0.99, True)):
         theta = far.first.copy()
         theta[0] += share * (far.bounds[1][0] - theta[0])
         small = Solution(theta, 1e-6 * np.eye(len(theta)), (0.02, 0.005), (1.0, 1.0), True)
         (item,), _ = identified(far, small, true_rig)
         assert item.identified is known and bool(item.cure) is not known, share
-    contact = Problem.of(true_rig, free_keys([CONTACT], true_rig), runs_of([log], held=True))
+    contact = Problem.of(true_rig, free_keys([CONTACT], true_rig), runs_of([log]))
     for sd, known in ((0.3, True), (0.4, False)):  # fitted a third as large, and known to its own size or not
         less = Solution(
             contact.first - math.log(3.0), sd**2 * np.eye(len(contact.first)), (0.02, 0.005), (1.0, 1.0), True
@@ -223,7 +135,7 @@ def test_rounding_is_noise_and_a_truth_out_of_reach_is_not_known(log: Log, thena
 
 def test_a_pair_is_named_from_a_correlation_of_nine_tenths_on(log: Log, thenar: Rig) -> None:
     keys = free_keys(["ambient.temperature_C", "skin.rest_C"], thenar)
-    problem = Problem.of(thenar, keys, runs_of([log], held=True))
+    problem = Problem.of(thenar, keys, runs_of([log]))
     for size, named in ((0.85, False), (0.95, True), (-0.95, True)):
         pair = np.array([[1.0, size], [size, 1.0]])
         assert ("cannot be separated from skin at rest" in cures(problem, problem.first, [0], pair)[0]) is named
@@ -247,7 +159,6 @@ def test_the_calibration_drive_is_exported_for_every_device(device: str) -> None
     assert all(isinstance(each.verdict, Gate) or each.verdict is not None for each in result.prepared)
 
 
-@pytest.mark.slow
 def test_an_exported_drive_and_a_thermometer_of_its_own_clock_make_a_log(tmp_path: Path) -> None:
     rig, icon = Rig.load("thenar"), calibration_icon()
     played = deliver(icon, rig, Device.load("dac-16"))

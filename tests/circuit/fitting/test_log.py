@@ -89,29 +89,35 @@ def drive(**columns: object) -> Log:
 )  # fmt: skip
 def test_a_drive_must_be_known_throughout(columns: dict[str, object], message: str) -> None:
     with pytest.raises(LogError, match=message):
-        runs_of([drive(**columns)], held=False)
+        runs_of([drive(**columns)])
 
 
 def test_a_short_gap_is_bridged_and_a_long_one_under_a_constant_drive() -> None:
     current = np.where((TIME > 4) & (TIME < 8), np.nan, PLAIN["current_A"])
-    run = runs_of([drive(current_A=current)], held=False)[0]
+    run = runs_of([drive(current_A=current)])[0]
     assert len(run.time_s) == np.isfinite(current).sum()
-    assert runs_of([drive(current_A=at(0, np.nan, "current_A"))], held=False)[0].begin_s == 0.1
+    assert runs_of([drive(current_A=at(0, np.nan, "current_A"))])[0].begin_s == 0.1
+
+
+def test_a_skin_that_seems_to_move_a_little_more_than_the_display_is_not_exchanged() -> None:
+    assert runs_of([drive(display_C=32 + 0.30 * (TIME > 2), skin_C=32 + 0.33 * (TIME > 2))])
+    with pytest.raises(LogError, match="exchange both columns"):
+        runs_of([drive(display_C=32 + 0.30 * (TIME > 2), skin_C=32 + 0.39 * (TIME > 2))])
 
 
 def test_logs_without_a_drive_or_without_a_sensor(thenar: Rig) -> None:
     with pytest.raises(LogError, match=r"no log has a drive: one of current_A or com.*meter.csv has display_C"):
-        runs_of([METER], held=False)
+        runs_of([METER])
     with pytest.raises(LogError, match=r"drive.csv: nothing measured beside the drive; log display_C, and voltage_V"):
-        runs_of([ALONE], held=False)
+        runs_of([ALONE])
     with pytest.raises(LogError, match="no log; name one or several files"):
         fit([], thenar, free=CONTACT)
-    run = runs_of([ALONE, METER], held=False)[0]
+    run = runs_of([ALONE, METER])[0]
     assert (run.clocks, run.channels[0].clock) == (("meter.csv",), 1)
 
 
 def problem_of(log: Log, rig: Rig) -> Problem:
-    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log], held=False))
+    return Problem.of(rig, free_keys(CONTACT, rig), runs_of([log]))
 
 
 @pytest.mark.parametrize("part", [slice(None), slice(200, 700)])
@@ -128,6 +134,10 @@ def test_a_sensor_in_the_room_and_the_wrong_sign_are_named(log: Log, thenar: Rig
         check_sensors(problem_of(altered(log, display_C=room), thenar))
     with pytest.raises(LogError, match="display_C goes the other way than the rig: positive current cools"):
         check_sensors(problem_of(altered(log, current_A=-log.column("current_A")), thenar))
+    with pytest.raises(
+        FitError, match=r"rig.csv: cannot be played on the rig to begin with: .* under 40.09 A; use less current"
+    ):
+        fit(altered(log, current_A=40.0 + log.column("current_A")), thenar, free=CONTACT)
     with pytest.raises(FitError, match="an offset of -1 K is not possible for a sensor; give 0 to 10 K"):
         fit(log, thenar, free=CONTACT, offset_K=-1.0)
 
@@ -179,8 +189,22 @@ def test_each_rig_offers_its_own_keys(thenar: Rig) -> None:
     assert all(value_of(thenar, key) is not None for key in fittable(thenar))
 
 
+@pytest.mark.parametrize(("after_s", "fits"), [(30.0, True), (90.0, False)])
+def test_half_of_what_a_thermometer_read_must_lie_within_the_run(
+    after_s: float, fits: bool, log: Log, true_rig: Rig
+) -> None:
+    electric = Log.of("daq.csv", {"time_s": log.time_s, "current_A": log.column("current_A")})
+    display = np.append(log.column("display_C"), np.full(round(20 * after_s), log.column("display_C")[-1]))
+    meter = Log.of("meter.csv", {"time_s": 100.0 + np.arange(len(display)) / 20, "display_C": display})
+    if fits:
+        assert aligned(true_rig, runs_of([electric, meter]))[0].shifts == pytest.approx((-100.0,), abs=0.01)
+        return
+    with pytest.raises(LogError, match=r"meter.csv: does not fit in time to daq.csv, which lasts 60 s"):
+        aligned(true_rig, runs_of([electric, meter]))
+
+
 def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
-    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([ALONE, METER], held=True))
+    problem = Problem.of(thenar, free_keys(CONTACT, thenar), runs_of([ALONE, METER]))
     drift = [item.kind for item in problem.unknowns].index("drift")
     theta = problem.first.copy()
     theta[drift] = 0.0019
@@ -189,4 +213,4 @@ def test_a_clock_of_another_rate_is_named(thenar: Rig) -> None:
     with pytest.raises(LogError, match=r"meter.csv: its clock drifts, 0.21 % fast against drive.csv; correct its"):
         check_clocks(problem, theta)
     with pytest.raises(LogError, match=r"meter.csv: does not fit in time to drive.csv, which lasts 9.9 s: no shift"):
-        aligned(problem)
+        aligned(thenar, problem.runs)

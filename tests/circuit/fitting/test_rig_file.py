@@ -6,10 +6,11 @@ import pandas as pd
 import pytest
 
 from thermicon.circuit import Rig, fit
-from thermicon.circuit.fitting.keys import FitError
+from thermicon.circuit.fitting.identify import Parameter
+from thermicon.circuit.fitting.keys import FitError, free_keys, value_of
 from thermicon.circuit.fitting.laboratory import synthetic_log, write_log
 from thermicon.circuit.fitting.log import Log
-from thermicon.circuit.fitting.rig_fit import RigFit
+from thermicon.circuit.fitting.rig_fit import RigFit, uncertainties
 from thermicon.circuit.program import own_version
 from thermicon.circuit.safety.corners import corners_of
 
@@ -68,6 +69,25 @@ def test_a_fit_that_misses_the_log_never_narrows_what_the_gate_varies(log: Log, 
     assert not any("calibrate it" in note for note in found.notes)
     found.save(tmp_path / "monday.toml")
     assert any("is as wide as before the fit, or wider" in note for note in Rig.load(tmp_path / "monday.toml").notes)
+
+
+@pytest.mark.parametrize(
+    ("key", "ends", "known", "width"),
+    [
+        ("ambient.temperature_C", (25.0, 26.0, 27.0), True, 2.0 + 3.0),
+        ("ambient.temperature_C", (25.0, 26.0, 40.0), True, 14.0),
+        ("ambient.temperature_C", (10.0, 20.0, 30.0), False, 4.0),
+        ("contact.resistance_m2K_per_W", (5e-4, 6e-4, 7e-4), True, 0.37),  # from 0.7 of 5.4e-4 to 6e-4
+        ("contact.resistance_m2K_per_W", (1e-4, 9e-4, 9e-3), False, 0.67),
+    ],
+)
+def test_after_a_misfit_the_rig_holds_all_that_it_held_before(
+    key: str, ends: tuple[float, float, float], known: bool, width: float, thenar: Rig
+) -> None:
+    low, value, high = ends
+    item = Parameter(key, "", "", value_of(thenar, key), value, low, high, key.startswith("contact"), known)
+    stated = uncertainties(free_keys([key], thenar), [item], before=thenar.uncertainty, misfit=True)
+    assert list(stated.values()) == [width]
 
 
 def test_a_log_of_another_site_leaves_what_it_cannot_say(log: Log, thenar: Rig) -> None:

@@ -27,7 +27,7 @@ def every(log: Log, step: int, begin: int = 0, **columns: np.ndarray) -> Log:
 @pytest.fixture(scope="module")
 def fast(true_rig: Rig) -> Log:
     """A log of a driver that changes 100 times a second."""
-    return synthetic_log(true_rig, seed=3, rate_Hz=100.0)
+    return synthetic_log(true_rig, seed=3)
 
 
 def test_rows_coarser_than_the_driver_hold_the_truth_and_narrow_nothing(fast: Log) -> None:
@@ -62,11 +62,11 @@ def test_what_rows_tell_of_a_driver() -> None:
     noise, bend = np.random.default_rng(1).normal(0.0, 0.02, 4000), 3.0 * np.sin(np.arange(4000) / 40)
     assert noise_sd(bend + noise, 0.0) == pytest.approx(0.02, rel=0.1)
     assert noise_sd(np.zeros(50), 0.5) == pytest.approx(0.5 / 12**0.5)
-    assert np.median(unknown_display(noise)) == pytest.approx(0.02, rel=0.5)
+    assert np.median(unknown_display(noise)) == pytest.approx(0.02, rel=0.25)
     steps = np.repeat([0.0, 1.0, 0.5], 100)
     wrong = one_phase(np.arange(300) / 10, steps, 32.0 - 2 * np.clip(np.arange(300) - 100, 0, 50) / 10)
-    assert np.abs(wrong).max(axis=1) == pytest.approx([0.5, 0.5])
-    assert np.flatnonzero(np.abs(wrong[0]) > 0.25)[[0, -1]] == pytest.approx([100, 149], abs=2)
+    assert np.abs(wrong).max() == pytest.approx(0.5)
+    assert np.flatnonzero(np.abs(wrong) > 0.25)[[0, -1]] == pytest.approx([100, 149], abs=2)
 
 
 def test_a_start_is_steady_until_the_drive_moves_by_more_than_noise() -> None:
@@ -78,9 +78,9 @@ def test_a_start_is_steady_until_the_drive_moves_by_more_than_noise() -> None:
 
 def test_what_is_unknown_of_a_drive_reaches_all_rows_after_it(fast: Log) -> None:
     rig = Rig.load("thenar")
-    (run,) = runs_of([every(fast, 20)], False, rig)
+    (run,) = runs_of([every(fast, 20, hot_plate_C=fast.column("display_C"))], rig)
     alike = shared(rig, run, [channel.time_s for channel in run.channels])
-    assert alike is not None and runs_of([every(fast, 1)], False, rig)[0].unknown is None
+    assert alike is not None and runs_of([every(fast, 1)], rig)[0].unknown is None
     spread = np.sqrt(np.diag(alike.covariance[0]))[
         : np.count_nonzero(run.channels[0].time_s <= run.channels[0].time_s[100])
     ]
@@ -109,7 +109,7 @@ def test_without_a_current_the_display_is_the_drive(skin: Log, thenar: Rig) -> N
     assert found.notes[0] == "no keys were named; the logs tell best contact.resistance_m2K_per_W"
     assert found[CONTACT].low < TRUTH[CONTACT] < found[CONTACT].high and found[CONTACT].half_width < 0.3
     assert any(note.startswith("the display is the drive: contact and") for note in found.notes)
-    problem = Problem.of(thenar, free_keys([CONTACT], thenar, True), runs_of([alone], True, thenar))
+    problem = Problem.of(thenar, free_keys([CONTACT], thenar, True), runs_of([alone], thenar))
     assert [item.sd for item in problem.unknowns if item.kind == "offset"] == pytest.approx([0.1 * 2**0.5])  # of both
     with pytest.raises(FitError, match=r"seebeck_V_per_K: no log has a current, so that the display is the drive, and"):
         fit(alone, thenar, free=[COMMON[1]])
@@ -155,7 +155,7 @@ def test_without_keys_what_the_log_can_tell_is_fitted(log: Log, thenar: Rig) -> 
 def test_of_a_long_log_five_minutes_with_a_change_are_fitted(log: Log, true_rig: Rig) -> None:
     time = np.arange(20_000) / 20.0
     columns = {name: np.r_[np.full(len(time) - len(value), value[0]), value] for name, value in log.columns}
-    (run,) = runs_of([Log.of("long.csv", {"time_s": time, **columns})], True, true_rig)
+    (run,) = runs_of([Log.of("long.csv", {"time_s": time, **columns})], true_rig)
     assert (run.begin_s, run.time_s[-1], len(run.time_s)) == pytest.approx((931.95, 68.0, 1361), abs=0.3)
     assert run.notes[0].endswith("to fit another part, cut it out")
     assert (run.channels[0].time_s[0], len(run.channels[0].values)) == (run.begin_s, len(run.time_s))
@@ -167,7 +167,7 @@ def test_of_a_long_log_five_minutes_with_a_change_are_fitted(log: Log, true_rig:
             "display_C": np.linspace(30, 34, 100_000),
         },
     )
-    (thin,) = runs_of([fine], True, true_rig)
+    (thin,) = runs_of([fine], true_rig)
     assert len(thin.drive) == 10_001 and len(thin.channels[0].values) <= 8000
     assert thin.drive @ np.diff(thin.time_s, append=99.999) == pytest.approx(0.1 * 50 + 0.2 * 49.999, rel=1e-6)
 

@@ -53,11 +53,11 @@ def test_what_a_log_does_not_show_is_named_with_the_cure(cli: Cli, log: Path, tm
     text = " ".join(said.stdout.split())
     assert "not identified: ambient.temperature_C; cannot be separated from skin at rest" in text
     assert "strongly correlated: ambient.temperature_C and skin.rest_C (1.00)" in text
-    keys = f"{CONTACT},heat_sink.temperature_C,{SEEBECK}"
-    said = cli("fit", log, "--rig", "fingertip", "--free", keys, "--fixed-skin", *RATE)
+    said = cli("fit", log, "--rig", "fingertip", "--free", f"{CONTACT},{SEEBECK}", "--fixed-skin", *RATE)
     row = next(line for line in said.stdout.splitlines() if line.startswith(CONTACT))
     assert row.split()[2:] == ["not", "known", "unknown"]
-    assert "widened as far as a rig file may state" in " ".join(said.stdout.split())
+    assert "uncertainty of the fitted rig, widened: " in " ".join(said.stdout.split())
+    assert "is the most that a rig file may state" in " ".join(said.stderr.split())
 
 
 @pytest.mark.parametrize(
@@ -66,10 +66,11 @@ def test_what_a_log_does_not_show_is_named_with_the_cure(cli: Cli, log: Path, tm
         (("display_C", "Displey_C"), RATE, 1, "Displey_C: did you mean display_C?"),
         ((r"\n(\d\.450000,[^,]*),[^,]*", r"\n\1,n/a"), RATE, 0, "display_C is 'n/a' in 10 of"),
         (("current_A", "amps"), RATE, 1, "no log has a drive: one of current_A or"),
+        (("", ""), (*RATE, "--column", "skin_C=T9"), 2, "no column is called 'T9', to be skin_C; found time_s, curr"),
         (("", ""), (*RATE, "rig.csv"), 1, ["has the same content as", "name it once"]),
         (("", ""), ("--rig", "tcs2"), 1, "rig tcs2 is a thermode, whose display is the drive: display_C with skin_C"),
     ],
-    ids=["column", "cells", "drive", "twice", "thermode"],
+    ids=["column", "cells", "drive", "lost", "twice", "thermode"],
 )
 def test_a_doubtful_log_is_told_and_a_useless_one_leaves_nothing(
     cli: Cli, log: Path, tmp_path: Path, change: tuple[str, str], more: tuple[str, ...], code: int, words: str
