@@ -58,8 +58,11 @@ def meshed(rig: Json) -> tuple[Array, Array, Array]:
 
 def receptors(rig: Json) -> tuple[float, float]:
     """Depths in m of cold and warm receptors below the surface."""
-    above = rig["skin"]["layer"][0]["thickness_mm"] if "corneum" in rig["skin"].get("depth_from", "") else 0.0
-    return tuple((rig["skin"][f"{kind}_receptor_mm"] + above) * 1e-3 for kind in ("cold", "warm"))  # type: ignore[return-value]
+    skin, first = rig["skin"], rig["skin"]["layer"][0]
+    usual = {"cold_receptor_mm": 0.10, "warm_receptor_mm": 0.21, "depth_from": first["name"]}
+    own = {key: skin.get(key, default) for key, default in usual.items()}
+    above = first["thickness_mm"] if own["depth_from"] == "stratum corneum" else 0.0
+    return tuple((own[f"{kind}_receptor_mm"] + above) * 1e-3 for kind in ("cold", "warm"))  # type: ignore[return-value]
 
 
 def worlds_of(rig: Json, inside: np.random.Generator | None = None, extra: int = 0) -> list[dict[str, float]]:
