@@ -59,7 +59,8 @@ def meshed(rig: Json) -> tuple[Array, Array, Array]:
 def receptors(rig: Json) -> tuple[float, float]:
     """Depths in m of cold and warm receptors below the surface."""
     skin, first = rig["skin"], rig["skin"]["layer"][0]
-    usual = {"cold_receptor_mm": 0.10, "warm_receptor_mm": 0.21, "depth_from": first["name"]}
+    said = "cold_receptor_mm" in skin or "warm_receptor_mm" in skin
+    usual = {"cold_receptor_mm": 0.10, "warm_receptor_mm": 0.21, "depth_from": "surface" if said else first["name"]}
     own = {key: skin.get(key, default) for key, default in usual.items()}
     above = first["thickness_mm"] if own["depth_from"] == "stratum corneum" else 0.0
     return tuple((own[f"{kind}_receptor_mm"] + above) * 1e-3 for kind in ("cold", "warm"))  # type: ignore[return-value]
