@@ -37,7 +37,7 @@ def test_every_target_and_row_is_there_for_every_variant(report: ValidationRepor
                 assert (one.verdict.holds is None) == (not line.row.judged)
                 assert one.predicted.unit == line.row.unit
     assert report.counts(0)[1] == report.counts(1)[1] == sum(r.judged for t in load_targets() for r in t.rows)
-    assert repr(report).startswith("ValidationReport(8 targets; hold: temperature ")
+    assert repr(report).startswith("ValidationReport(9 targets; hold: temperature ")
 
 
 def test_six_icons_are_those_of_rank(report: ValidationReport) -> None:
