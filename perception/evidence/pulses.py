@@ -22,7 +22,7 @@ from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
 from ..selection.choose import choose
 from ..selection.request import Selection
-from .identified import correct, show
+from .identified import Shown, correct, show
 from .predicted import DRAWS, Predicted
 
 RIG, COUNTS, SETS = "tcs2", (22, 16), 100
@@ -42,20 +42,26 @@ def best_pulses(count: int, seed: int) -> tuple[Icon, ...]:
     return tuple(icon for icon in _ranked(seed).job.icons if icon.name in chosen)
 
 
+@lru_cache(maxsize=4)
+def _shown(count: int | None, people: int, seed: int) -> Shown:
+    """The best sequences, or all, as both variants are asked of them."""
+    return show(_ranked(seed).job.icons if count is None else best_pulses(count, seed), Rig.load(RIG), people, seed)
+
+
 def short_pulses(variable: Variable, people: int, draws: int, seed: int) -> tuple[Predicted, ...]:
     """Proportion correct of the best sequences, and the mean of sets that chance draws, each as a set of its own."""
-    rig, icons, made = Rig.load(RIG), _ranked(seed).job.icons, []
+    made = []
     for count in COUNTS:
-        found = show(best_pulses(count, seed), rig, min(people, SHOWN), seed).identify(variable, min(draws, DRAWS))
+        found = _shown(count, min(people, SHOWN), seed).identify(variable, min(draws, DRAWS))
         asked = f"proportion correct, best {count}"
         made.append(found.predicted("short pulses", asked, "proportion", correct, top=1.0))
-    every, observer = show(icons, rig, RANKED, seed), Observer.load(variable=variable)
+    every, observer = _shown(None, RANKED, seed), Observer.load(variable=variable)
     felt = respond(every.played(variable), every.crowd, observer, detection=False)
     apart = memory_dprime(felt, USUAL_NORM, every.crowd.memory, observer, USUAL)
     chance, said = np.random.default_rng(np.random.SeedSequence([seed, 31])), f"{SETS} sets of {RANKED} people, {RIG}"
     scores = []
     for _ in range(SETS):
-        own = np.sort(chance.choice(len(icons), COUNTS[0], replace=False))
+        own = np.sort(chance.choice(len(every.icons), COUNTS[0], replace=False))
         among = apart[:, own][:, :, own]
         scores.append(correct(confuse(among, lapse=every.crowd.lapse, seed=seed, samples=SAMPLES).probability))
     asked = f"proportion correct, mean of random {COUNTS[0]}"
