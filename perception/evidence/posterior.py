@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ from ..observer.channels import Variable
 from ..observer.constants import names_of, offsets_in
 from ..observer.observer import Observer
 from ..observer.priors import LABORATORIES, WITHIN_95, Priors, load_priors, priors_of
-from .rows import Row, load_rows
+from .rows import SAME_PEOPLE, Row, load_rows
 
 BoolArray = NDArray[np.bool_]
 FARTHEST = 30.0
@@ -38,7 +39,7 @@ class Posterior:
 
     >>> posterior = Posterior()
     >>> len(posterior.priors), len(posterior.rows)
-    (52, 54)
+    (52, 56)
     """
 
     variable: Variable = "temperature"
@@ -65,12 +66,13 @@ class Posterior:
     @cached_property
     def rows(self) -> tuple[Row, ...]:
         """The rows that count."""
-        return tuple(row for row in load_rows() if row.experiment not in self.left_out)
+        return tuple(compress(load_rows(), self.counted))
 
     @cached_property
     def counted(self) -> BoolArray:
-        """Which of all rows count."""
-        return np.array([row.experiment not in self.left_out for row in load_rows()])
+        """Which of all rows count; people are left out with all experiments that they took part in."""
+        left_out = {SAME_PEOPLE.get(each, each) for each in self.left_out}
+        return np.array([row.people not in left_out for row in load_rows()])
 
     def values(self, vector: Array) -> dict[str, float]:
         """Constants by name from a vector in SDs of the prior."""
@@ -184,21 +186,21 @@ class LeftOut:
 
 
 def leave_each_out(whole: Maximum, progress: Callable[[int, int, str], None] | None = None) -> tuple[LeftOut, ...]:
-    """Refit without each experiment in turn, from the maximum of all; rows in the order of the likelihood.
+    """Refit without each group of people in turn, from the maximum of all; rows in the order of the likelihood.
 
     What the constants leave open is in the covariance of the refitted maximum. Laboratory offsets of an experiment
     whose rows are gone stay at their prior, so that what a new laboratory may differ by is in it too.
     """
-    experiments = tuple(dict.fromkeys(row.experiment for row in load_rows()))
-    results = []
+    experiments = tuple(dict.fromkeys(row.people for row in load_rows()))
+    results = {}
     for done, experiment in enumerate(experiments):
         if progress is not None:
             progress(done, len(experiments), experiment)
         refitted = maximise(Posterior(whole.posterior.variable, frozenset({experiment})), whole.vector)
-        rows = [row for row in load_rows() if row.experiment == experiment]
+        rows = [row for row in load_rows() if row.people == experiment]
         for row, sd in zip(rows, prediction_sd(refitted, rows).tolist(), strict=True):
-            results.append(LeftOut(row, refitted.predictions[row.key], math.hypot(sd, row.sd)))
-    return tuple(results)
+            results[row.key] = LeftOut(row, refitted.predictions[row.key], math.hypot(sd, row.sd))
+    return tuple(results[row.key] for row in load_rows())
 
 
 def prediction_sd(maximum: Maximum, rows: list[Row]) -> Array:
