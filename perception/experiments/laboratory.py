@@ -171,14 +171,8 @@ class Laboratory:
         )  # fmt: skip
         return times.reshape(-1, TRIALS), passed.reshape(-1, SHARES.size)
 
-    def outrun(
-        self, drive: Array, samples: Samples, channel: Channel, gain: float, *, site: str, compared: bool = True
-    ) -> Array:
-        """Share (people,) of speeded choices that noise of the other channel decides, or a guess at the end.
-
-        Noise that passes first decides if its channel is still further above its criterion one choice time later; not
-        `compared`, it always does.
-        """
+    def outrun(self, drive: Array, samples: Samples, channel: Channel, gain: float, *, site: str) -> Array:
+        """Share (people,) of speeded choices that noise of the other channel decides, or a guess at the end."""
         from ..kernels.crossing import outrun
 
         constants, both = self.constants, (channel, CHANNELS[1 - CHANNELS.index(channel)])
@@ -190,8 +184,7 @@ class Laboratory:
         outrun(
             risen, time, gain**constants.p * raised, constants.a, constants.criteria(constants.criterion, cautions),
             constants.noise_correlation_s, constants.criteria(constants.criterion, others), moments,
-            np.interp(together, time, np.arange(float(time.size))),
-            np.interp(together + constants.choice_s, time, risen), constants.choice_s, compared, wrong,
+            np.interp(together, time, np.arange(float(time.size))), wrong,
         )  # fmt: skip
         shares: Array = wrong.reshape(len(self.people), -1).mean(axis=1)
         return shares

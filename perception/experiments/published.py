@@ -68,14 +68,14 @@ STRIPS = range(1, 6)
 """Numbers of strips of E1, E2 and E8."""
 
 
-def quality_in_haste(laboratory: Laboratory, *, compared: bool = True) -> Iterator[tuple[Key, float]]:
+def quality_in_haste(laboratory: Laboratory) -> Iterator[tuple[Key, float]]:
     """E8: the task of E1, and how often its answers name the wrong quality, in the mean over its areas."""
     for (channel, (rate, size)), other in zip(RAMPS.items(), reversed(CHANNELS), strict=True):
         played, shares = Played.of(laboratory, Ramp("forearm", channel, 31.0, size, rate, 6.0)), []
         for strips in STRIPS:
             at = strips * STRIP_CM2, "E1", "forearm", MEAN_AGE_YEARS["E1"]
             gain, warm_gain = laboratory.gain(channel, *at), laboratory.gain("warm", *at)
-            shares.append(played.misnamed(gain, warm_gain, "forearm", compared=compared).mean())
+            shares.append(played.misnamed(gain, warm_gain, "forearm").mean())
         yield ("E8", f"share_{channel}_called_{other}_all_fast", channel), float(np.mean(shares))
 
 

@@ -70,15 +70,15 @@ class Played:
         samples = samples_of(self.ramp.corners, self.ramp.end_s)
         return self.laboratory.answers_s(self.drive, samples, self.ramp.channel, gain, site=site, choice=choice)
 
-    def misnamed(self, gain: float, warm_gain: float, site: str, *, compared: bool = True) -> Array:
+    def misnamed(self, gain: float, warm_gain: float, site: str) -> Array:
         """Share of trials (people,) in which a choice of warm or cold in haste names the wrong one.
 
-        Noise of the other channel decides (`compared` with the stimulated one or not), or cold is called warm: the
-        warmth that lingers is that of the baseline.
+        Noise of the other channel passes first, or cold is called warm: the warmth that lingers is that of the
+        baseline.
         """
         laboratory, ramp = self.laboratory, self.ramp
         samples = samples_of(ramp.corners, ramp.end_s)
-        mistaken = laboratory.outrun(self.drive, samples, ramp.channel, gain, site=site, compared=compared)
+        mistaken = laboratory.outrun(self.drive, samples, ramp.channel, gain, site=site)
         constants = laboratory.constants
         resting = laboratory.drive(ramp.site_rig, "warm", ramp.baseline_C, (), DT_S)
         return constants.mislabelled(ramp.channel, mistaken, float(constants.psi(warm_gain * resting)[0]))

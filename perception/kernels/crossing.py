@@ -103,19 +103,14 @@ def _passage(risen: Any, time: Any, raised: Any, a: float, criterion: Any, tau: 
 
 def _outrun(
     risen: Any, time: Any, raised: Any, a: float, criterion: Any, tau: float, other: Any, moments: Any, place: Any,
-    later: Any, choice: float, compared: bool, wrong: Any,
+    wrong: Any,
 ) -> None:  # fmt: skip
     """Fill the share (lanes,) of trials that the noise of another channel, with the criterion `other`, decides.
 
     That noise counts from the same start; what passes at a moment arrives together with the sample `place` (moments,)
-    of the channel that rises, of which `later` (moments,) is `risen` one `choice` in s after that. If it is `compared`,
-    it decides only where it is then further above its criterion. Who has not answered by the end guesses. Noise that
-    has just risen through c is h later ρ·(c + h·√(π/2)/τ) in the mean, ρ = e^(−h²/2τ²), with what is left of its
-    variance and that of its slope (Slepian 1963).
+    of the channel that rises. Who has not answered by the end guesses.
     """
-    samples, h = time.size, choice / tau
-    kept = math.exp(-0.5 * h * h)
-    rise, sd = math.sqrt(0.5 * math.pi) * h, math.sqrt(2.0 + kept * kept * ((1.0 - 0.5 * math.pi) * h * h - 1.0))
+    samples = time.size
     steps, logs, room = np.empty(samples), np.empty(samples), np.empty((2, SAMPLES_AT_ONCE + 1))
     steps[1:] = time[1:] - time[:-1]
     for lane in range(raised.size):
@@ -127,8 +122,7 @@ def _outrun(
         share, before, seldom = 0.0, 0.0, 1.0 - below + rate * time[samples - 1] < SELDOM
         for t in range(moments.size):
             log_left = between(logs, place[t])
-            ahead = kept * (o + rise) - o - (a * log1p(raised[lane] * later[t]) - c)
-            decided = math.exp(log_left) * (cumulative(ahead / sd) if compared else 1.0)
+            decided = math.exp(log_left)
             still = below * math.exp(-rate * moments[t])
             share += (1.0 - below) * decided if t == 0 else 0.5 * (quiet - still) * (decided + before)
             quiet, before = still, decided

@@ -25,7 +25,7 @@ from .observer import DATA, Observer
 
 MOST_MB, LARGEST = 200.0, 1e9
 """Size of a file, and of a number in it: far more than any constant in its unit."""
-FORM = 1
+FORM = 2
 """Version of the form; a table of another one is refused."""
 FIGURES = 6
 TABLE = "sha256 of the table"

@@ -23,7 +23,7 @@ class Criterion(Mechanism):
     unhurried: float = constant("criterion of yes and no", task=True)
     caution_after_pulse: float = constant("caution after a pre-pulse", task=True)
     noise_correlation_s: float = constant("noise correlation time")
-    criterion_floor: float = constant("floor of the criterion", FROM_0, default=0.0)
+    criterion_floor: float = constant("floor of the criterion", FROM_0)
 
     def criteria(self, level: float, person: ArrayLike) -> Array:
         """Criteria in d′ of people whose own are these multiples of a level."""

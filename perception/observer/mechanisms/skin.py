@@ -18,7 +18,7 @@ class Skin(Mechanism):
 
     equation = "depth = share · stratum corneum + own depth; √(kρc) of living layers × effusivity"
     source = "Ho 2018 for depths; Ho & Jones for contact; contact with glass (1957) for effusivity"
-    corneum_share: float = constant("share of the stratum corneum that counts", SHARE, default=1.0)
+    corneum_share: float = constant("share of the stratum corneum that counts", SHARE)
     depth_m: Both[float] = constant("{} receptor depth", scale=1e-3, task=True)
     contact_m2K_per_W: float = constant("contact resistance of a thermode", task=True)
     effusivity: float = constant("effusivity of living skin", task=True)

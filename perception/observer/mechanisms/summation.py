@@ -26,7 +26,7 @@ class Summation(Mechanism):
     source = "Somatosensory Research 1985 for n; Campero et al. 2001; Hardy & Oppel 1937"
     area_exponent: Both[float] = constant("{} area exponent", ANY)
     reference_area_m2: float = constant("reference area", scale=CM2)
-    least_area_m2: float = constant("smallest area that counts", scale=CM2, default=0.5 * CM2)
+    least_area_m2: float = constant("smallest area that counts", scale=CM2)
 
     def sensitivity(self, channel: Channel, area_m2: float | None, site: str | None) -> float:
         """The area's part of it, on which the others go on; a ValueError for an area of 0."""
