@@ -6,10 +6,12 @@ import json
 import textwrap
 from collections.abc import Iterator
 from functools import lru_cache
+from importlib import resources
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import signed
 
+from ..records import load_records
 from .faults import sentence, unit_of
 from .modules import build_of, module_names
 from .rigfile import Thermode
@@ -18,6 +20,7 @@ from .skin import STRATUM_CORNEUM
 from .uncertainty import tightened
 
 if TYPE_CHECKING:
+    from .parts import Contact
     from .rig import Rig
 
 WIDTH = 118
@@ -69,10 +72,19 @@ def _rows(rig: Rig) -> list[tuple[str, str]]:
         ("receptors", rig.skin.receptor_words()),
     ]
     return [
-        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact"),
+        ("site", f"{rig.site}, {rig.contact.area_m2 * 1e4:g} cm² in contact{_resistance(rig.contact)}"),
         *skin,
         ("module", rig.module_source) if rig.thermode is None else ("thermode", _thermode(rig.thermode)),
     ]
+
+
+def _resistance(contact: Contact) -> str:
+    """The resistance of a contact, and what those of its kind have."""
+    for record in load_records(resources.files("thermicon.circuit") / "data" / "contacts.toml"):
+        low, high = record.interval
+        if low <= contact.resistance_m2K_per_W <= high:
+            return f", {contact.resistance_m2K_per_W:g} m²K/W ({record.method}: {low:g} to {high:g})"
+    return f", {contact.resistance_m2K_per_W:g} m²K/W"
 
 
 def _thermode(thermode: Thermode) -> str:

@@ -37,7 +37,8 @@ def validate_report(report: ValidationReport) -> list[Block]:
     return [
         *made,
         Text(
-            f"✓ holds, ✗ misses, no mark: shown and not judged. Hold: {counted}.\n"
+            f"✓ holds, ✗ misses, no mark: shown and not judged; with the share of draws in which the row holds where\n"
+            f"more than a fifth of them say otherwise. Hold: {counted}.\n"
             f"nearer: to what was published. Of {sum(nearer.values())} results that were not fitted and that skin "
             f"temperature predicts too, the model (temp.) is nearer to {nearer['model']}, skin temperature to "
             f"{nearer['baseline']}; {nearer['both']} are equal.\n"
@@ -50,7 +51,7 @@ def validate_report(report: ValidationReport) -> list[Block]:
 
 def _line(line: Line) -> Sequence[str]:
     """A row of a target: name with its unit, what was published, and each prediction with its verdict."""
-    cells = [f"{_predicted(line, one)} {MARK[one.verdict.word]}" for one in line.judged]
+    cells = [f"{_predicted(line, one)} {MARK[one.verdict.word]}{_share(one)}" for one in line.judged]
     unit = "" if line.row.unit == line.published.unit else unit_text(line.row.unit)
     skin = "–" if line.baseline is None else plain(line.baseline)
     name = f"{line.row.label}{',' if unit else ''}{unit}"
@@ -61,6 +62,11 @@ def _predicted(line: Line, one: Judged) -> str:
     if one.predicted.value is None:
         return "not felt"
     return value_text(line.row, one.predicted.value, line.published)
+
+
+def _share(one: Judged) -> str:
+    """Share of the draws in which a row on a knife edge holds."""
+    return f" {100 * one.held:.0f} %" if one.held is not None and one.knife_edge else ""
 
 
 def unit_text(unit: str) -> str:

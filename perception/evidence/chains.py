@@ -174,8 +174,8 @@ def diagnose(names: tuple[str, ...], chains: Array) -> Diagnostics:
 
 
 AROUND, ROUNDS = 2400, (1200, 1200)
-"""Points from the normal approximation, and from each next surrogate; a quadratic has 1431 coefficients a row."""
-CHAINS, CHAIN_ROUNDS, CHAIN_STEPS = 4, 6, 250
+"""Points from the normal approximation, and from each next surrogate; a quadratic has 1596 coefficients a row."""
+CHAINS, CHAIN_ROUNDS, CHAIN_STEPS = 4, 14, 250
 """Chains that visit the posterior while the surrogate learns, how often it learns from them, and steps in between."""
 WALKERS, WARM_UP, BETWEEN = 12, 20, 2
 """Walkers along the surrogate, and trajectories before the first and between two points."""

@@ -250,6 +250,7 @@ def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted
         main, mixed = partial(_main, places, pair), partial(_mixed, places, pair)
         for asked, unit, score, top in (
             (f"confusion of {both} over any other", "1", main, math.inf),
+            (f"confusion of {both} over the mean of others", "1", partial(_main, places, pair, mean=True), math.inf),
             (f"confusion of {both}", "proportion", mixed, 1.0),
         ):
             made.append(found.predicted("wave shapes", asked, unit, score, conditions=said, top=top))
@@ -259,16 +260,21 @@ def wave_shapes(found: Identified, alike: Sequence[Likeness]) -> tuple[Predicted
     return tuple(made)
 
 
-def _main(places: dict[str, list[int]], pair: tuple[str, str], probability: Array) -> float:
-    """Confusion of a pair of shapes over that of either with an icon of another group, least of all groups."""
+def _main(places: dict[str, list[int]], pair: tuple[str, str], probability: Array, *, mean: bool = False) -> float:
+    """Confusion of a pair of shapes over that of either with an icon of another group.
+
+    That of the least group over that with any other icon, or the `mean` of groups over the mean of other icons.
+    """
     pooled = normalised(probability.mean(axis=0))
-    mixed, ratios = 0.5 * (pooled + pooled.T), []
+    mixed, pairs, others = 0.5 * (pooled + pooled.T), [], []
     for group in range(len(GROUPS)):
         own = [places[shape][group] for shape in SHAPES]
         first, second = (places[shape][group] for shape in pair)
-        others = [k for k in range(len(pooled)) if k not in own]
-        ratios.append(float(mixed[first, second]) / float(mixed[[first, second]][:, others].max()))
-    return min(ratios)
+        pairs.append(mixed[first, second])
+        others.append(np.delete(mixed[[first, second]], own, axis=1))
+    if mean:
+        return float(np.mean(pairs) / np.mean(others))
+    return float(min(one / bystanders.max() for one, bystanders in zip(pairs, others, strict=True)))
 
 
 def _mixed(places: dict[str, list[int]], pair: tuple[str, str], probability: Array) -> float:

@@ -39,7 +39,7 @@ class Posterior:
 
     >>> posterior = Posterior()
     >>> len(posterior.priors), len(posterior.rows)
-    (52, 56)
+    (55, 61)
     """
 
     variable: Variable = "temperature"

@@ -25,14 +25,25 @@ if TYPE_CHECKING:
     from .shown import Evidence
 
 PEOPLE, TRIALS = 200, 48
+SURE = 0.8
+"""Share of the draws that must agree with a verdict; below it the row stands on a knife edge."""
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A row as one variant predicts it: what was made of the prediction, and the verdict."""
+    """A row as one variant predicts it: what was made of the prediction, and the verdict.
+
+    `held` is the share of the draws in which the row holds; None where nothing is judged or drawn.
+    """
 
     predicted: Predicted
     verdict: Verdict
+    held: float | None
+
+    @property
+    def knife_edge(self) -> bool:
+        """Whether many of the draws disagree with the verdict."""
+        return self.held is not None and abs(self.held - float(self.verdict.holds is False)) < SURE
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,7 +194,8 @@ def judged(row: Row, was: Published, table: Table, evidence: Evidence, variable:
             factor = table.one(row.times).central if row.apply == "times" else -1.0 if row.apply == "negative" else 1.0
             made = _linear(made, factor, 1.0 if row.apply == "one plus" else 0.0)
     made = replace(made, unit=row.unit)
-    return Judged(made, judge_row(row, made.value, was))
+    held = [judge_row(row, each, was).holds is True for each in made.draws] if row.judged else []
+    return Judged(made, judge_row(row, made.value, was), sum(held) / len(held) if held else None)
 
 
 def _both(row: Row, cold: Predicted, warm: Predicted) -> Predicted:

@@ -60,6 +60,7 @@ def _judged(one: Judged) -> dict[str, Any]:
         **_data(verdict, "text", verdict="word"),
         "value": _finite(found.value),
         "interval": [_finite(found.low), _finite(found.high)],
+        "held_in_draws": one.held,
     }
 
 

@@ -25,7 +25,7 @@ from .observer import DATA, Observer
 
 MOST_MB, LARGEST = 200.0, 1e9
 """Size of a file, and of a number in it: far more than any constant in its unit."""
-FORM = 2
+FORM = 1
 """Version of the form; a table of another one is refused."""
 FIGURES = 6
 TABLE = "sha256 of the table"
@@ -34,6 +34,7 @@ FIRST_LINE = "# written by thermicon calibrate from inputs "
 LABORATORY_LINE = "# written by thermicon observed from inputs "
 """How the draws of one laboratory begin."""
 CURE = "write it again with python -m thermicon.perception.evidence sample -o FILE"
+KEEP_AGAIN = "keep it again from its answers: pilot FILE --answers TRIALS.csv --keep LAB.toml"
 CONSTANTS = DATA / "constants.csv"
 APPROXIMATE = "normal approximation"
 
@@ -192,17 +193,18 @@ def _numbers(file: str, names: Sequence[str], rows: Sequence[Sequence[str]], fir
 
 def _header(name: str, head: Sequence[str]) -> DrawsHeader:
     known = dict(line[2:].split(": ", 1) for line in head[1:] if ": " in line)
+    cure = KEEP_AGAIN if head[0].startswith(LABORATORY_LINE) else CURE
     if known.get("form") != str(FORM):
         raise RecordError(
-            f"{name}, line 2: form {known.get('form', 'none')} of draws, this program reads {FORM}: {CURE}"
+            f"{name}, line 2: form {known.get('form', 'none')} of draws, this program reads {FORM}: {cure}"
         )
     missing = [label for label in LABELS.values() if label not in known]
     if missing:
-        raise RecordError(f"{name}: the header has no line {missing[0]!r}: {CURE}")
+        raise RecordError(f"{name}: the header has no line {missing[0]!r}: {cure}")
     inputs = head[0].removeprefix(FIRST_LINE).removeprefix(LABORATORY_LINE).strip()
     current = current_inputs()
     if inputs != current:
-        raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {CURE}")
+        raise RecordError(f"{name}, line 1: made from evidence and priors {inputs}, this program has {current}: {cure}")
     labels = {**LABELS, **OF_LABORATORY}
     read: dict[str, Any] = {"inputs": inputs, **{field: known.get(label, "") for field, label in labels.items()}}
     for field in ("seed", "likelihoods", "r_hat", "ess"):

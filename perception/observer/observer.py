@@ -85,7 +85,7 @@ class Observer(
         Ratings, points of 100.
     timing_noise, rated_share, missing_cost, episode_bar, lapse
         Memory: noise of rates (ln), λ, cost of a missing episode, the bar in d′, share of trials with any name.
-    lost_per_decade, area_exponent, reference_area_m2, forearm_factor
+    lost_per_decade, area_exponent, reference_area_m2, least_area_m2, forearm_factor
         What sensitivity depends on: age (ln), area in m², and site.
     limit_C, softness_K, integration_s, adaptation_s, neutral_C, neutral_flux
         Limits of quality in °C and their softness in K; time constants, s; range of complete adaptation, °C and W/m².

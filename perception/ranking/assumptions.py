@@ -45,7 +45,6 @@ COLUMNS = (
 NOT_VARIED = (
     "module, driver and heat sink",
     "room and resting temperature of the skin",
-    "depths of the receptors",
     "what the skin touched before",
 )
 

@@ -40,7 +40,7 @@ def test_a_wrong_row_is_named_by_line_and_column(tmp_path: Path, before: str, af
 
 def test_rows_are_published_numbers_with_errors() -> None:
     rows = {row.key: row for row in load_rows()}
-    assert len(rows) == len(load_rows()) == 56
+    assert len(rows) == len(load_rows()) == 61
     limits = rows["E3", "threshold_gm", "warm"]
     assert limits.value == pytest.approx(math.log(1.859))
     assert limits.shown(limits.value) == pytest.approx(1.859)
