@@ -6,7 +6,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import signed
-from thermicon.perception.evidence.results import PredictedRow, load_missed, load_predictions, median_half_width
+from thermicon.perception.evidence.results import (
+    PredictedRow,
+    judging_predictions,
+    load_missed,
+    load_predictions,
+    median_half_width,
+)
 from thermicon.perception.evidence.targets import plain
 from thermicon.perception.evidence.verdicts import value_text
 from thermicon.perception.observer.channels import VARIABLES
@@ -37,7 +43,7 @@ def validate_report(report: ValidationReport) -> list[Block]:
     return [
         *made,
         Text(
-            f"✓ holds, ✗ misses, no mark: shown and not judged; with the share of draws in which the row holds where\n"
+            f"✓ holds, ✗ misses, no mark: shown and not judged; with the share of draws in which the row holds where "
             f"more than a fifth of them say otherwise. Hold: {counted}.\n"
             f"nearer: to what was published. Of {sum(nearer.values())} results that were not fitted and that skin "
             f"temperature predicts too, the model (temp.) is nearer to {nearer['model']}, skin temperature to "
@@ -76,8 +82,8 @@ def unit_text(unit: str) -> str:
 
 def summary_text() -> str:
     """State how many left-out rows are covered, and how wide the intervals are."""
-    known = load_predictions()
-    inside, rows = len(known) - len(load_missed()), len(known)
+    known, spreads = judging_predictions(), [each for each in load_predictions() if each.row.kind == "spread"]
+    inside, rows = sum(each.covered for each in known), len(known)
     logs = sum(each.log for each in known)
     factor, share = (median_half_width(log=log) for log in (True, False))
     return (
@@ -85,7 +91,8 @@ def summary_text() -> str:
         f"prediction ({0.95 * rows:.0f} expected). Median interval: a factor {plain(factor)} either way for {logs} "
         f"rows on a log scale, ±{100 * share:.0f} % of the published number for the others. Fitted numbers say "
         "nothing of prediction. Intervals of published numbers contain their standard error and the discrepancy that "
-        "the inference allows a model of this kind."
+        "the inference allows a model of this kind; that of spreads was chosen on such rows, so that they do not count "
+        f"({sum(each.covered for each in spreads)} of {len(spreads)} inside)."
     )
 
 

@@ -18,7 +18,7 @@ from typing import Any
 from ..observer.channels import Variable
 from ..observer.observer import DATA
 from ..observer.priors import WITHIN_95, load_priors
-from .rows import load_evidence, load_rows
+from .rows import Row, load_evidence, load_rows
 
 UNMOVED_SD = 0.9
 """A constant that keeps more of its prior's SD was hardly moved by the evidence."""
@@ -69,10 +69,15 @@ class PredictedRow:
     log_score: float
 
     @property
+    def row(self) -> Row:
+        """The row of the likelihood."""
+        key = self.experiment, self.statistic, self.channel
+        return next(row for row in load_rows() if row.key == key)
+
+    @property
     def log(self) -> bool:
         """Whether it is judged on a log scale."""
-        key = self.experiment, self.statistic, self.channel
-        return next(row.log for row in load_rows() if row.key == key)
+        return self.row.log
 
     @property
     def covered(self) -> bool:
@@ -128,9 +133,14 @@ def load_missed() -> tuple[PredictedRow, ...]:
     return tuple(sorted((row for row in load_predictions() if not row.covered), key=lambda row: -abs(row.score)))
 
 
+def judging_predictions() -> tuple[PredictedRow, ...]:
+    """Predictions of the rows by which coverage is judged."""
+    return tuple(each for each in load_predictions() if each.row.judges)
+
+
 def median_half_width(*, log: bool) -> float:
-    """Median of the half widths of the rows on one scale."""
-    return median(row.half_width for row in load_predictions() if row.log == log)
+    """Median of the half widths of these rows on one scale."""
+    return median(each.half_width for each in judging_predictions() if each.log == log)
 
 
 @lru_cache(maxsize=1)

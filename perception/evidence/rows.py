@@ -163,6 +163,11 @@ class Row:
         """The experiment by whose name its people are known; all rows of the same people are left out together."""
         return SAME_PEOPLE.get(self.experiment, self.experiment)
 
+    @property
+    def judges(self) -> bool:
+        """Whether coverage is judged by it: no form or number of the model was chosen by such rows."""
+        return self.kind not in ("spread", "order") and self.experiment != "E8"
+
     def shown(self, place: float) -> float:
         """A value or prediction in the row's own unit."""
         return math.exp(min(place, 20.0)) if self.log else place

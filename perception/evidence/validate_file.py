@@ -6,7 +6,7 @@ from typing import Any
 
 from ..observer.channels import VARIABLES
 from .predicted import Predicted
-from .results import PredictedRow, load_missed, load_predictions, median_half_width
+from .results import PredictedRow, judging_predictions, load_predictions, median_half_width
 from .rows import load_evidence
 from .validate import Judged, Line, ValidationReport
 from .verdicts import criterion_of_row
@@ -79,15 +79,15 @@ def _finite(value: float | None) -> float | None:
 
 def conditioning_file() -> dict[str, Any]:
     """Rows that the constants were inferred from, each predicted without its experiment; numbers with their units."""
-    rows = load_predictions()
+    judging = judging_predictions()
     return {
-        "rows": [_row(each) for each in rows],
+        "rows": [_row(each) for each in load_predictions()],
         "summary": {
-            "rows": len(rows),
-            "covered": len(rows) - len(load_missed()),
-            "expected": 0.95 * len(rows),
+            "rows": len(judging),
+            "covered": sum(each.covered for each in judging),
+            "expected": 0.95 * len(judging),
             "median_factor": median_half_width(log=True),
-            "rows_on_log_scale": sum(each.log for each in rows),
+            "rows_on_log_scale": sum(each.log for each in judging),
             "median_share_of_published": median_half_width(log=False),
         },
     }

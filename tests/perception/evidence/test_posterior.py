@@ -37,7 +37,7 @@ def test_maximum_and_evidence_of_a_line_are_those_of_algebra() -> None:
 
 
 def test_a_left_out_row_is_judged_with_both_errors() -> None:
-    row = Row(("a", "b", "cold"), 1.0, 0.3, False, "s", "a row")
+    row = Row(("a", "b", "cold"), 1.0, 0.3, False, "s", "a row", "level")
     found = maximise(Line())  # type: ignore[arg-type]
     # The sum has the variance of its gradient (1, 1) through the covariance: 2/9 of the prior's 2.
     (sd,) = prediction_sd(found, [row])

@@ -14,7 +14,7 @@ from thermicon.perception.observer.constants import BETWEEN_LABORATORIES, Both
 from thermicon.perception.observer.draws import PosteriorDraws
 from thermicon.perception.observer.observer import Observer
 
-FOREARM = Rig.load("forearm").with_(**{"contact.area_cm2": 9.8})
+FOREARM = Rig.load("tcs2")
 LIMITS, CHOICE, YES_NO = (
     Condition("threshold", method, "warm", 32.0, size, 1.0, hold)
     for method, size, hold in (("limits", 12.0, 0.0), ("forced_choice", None, 3.0), ("yes_no", None, 1.5))
@@ -75,7 +75,7 @@ def test_wrong_qualities_are_a_matter_of_chance_for_what_is_not_felt_and_seldom_
     assert nothing.value == pytest.approx(0.5, abs=0.1)
     assert 0.0 < warm.low < warm.value < warm.high < nothing.low
     assert warm.value < cold.value < 0.5
-    assert repr(cold).startswith("Measurement(cold, wrong quality of a speeded choice, 8 K at 5 K/s: 0.1")
+    assert repr(cold).startswith("Measurement(cold, wrong quality of a speeded choice, 8 K at 5 K/s: 0.0")
 
 
 @pytest.mark.parametrize("strips", [(1,), (5,)])

@@ -55,13 +55,14 @@ def test_whatever_is_needed_is_asked_for(variable: Variable) -> None:
         except RecordError as wrong:
             assert f"no quantity '{quantity}'" in str(wrong).replace(" from heat flow", "")
             needed.add(quantity)
-    assert len(needed) == 33 and ("limit" in needed) == (variable == "temperature")
+    assert len(needed) == 36 and ("limit" in needed) == (variable == "temperature")
 
 
 @pytest.fixture
 def draws_file(tmp_path: Path) -> Path:
     """The shipped draws, of which each needs five times the drive to feel cold."""
     lines = (DATA / "posterior.csv").read_text(encoding="utf-8").splitlines()
+    lines = [line for line in lines if "sha256" not in line]
     head = [line for line in lines if line.startswith("#")]
     names = lines[len(head)].split(",")
     place = names.index("cold threshold drive")
