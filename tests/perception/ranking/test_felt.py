@@ -72,7 +72,7 @@ def test_what_a_device_loses_is_lost_for_people_too() -> None:
     still = simulate(parse("cue 1; icon still { hold for 3 s }")["still"], RIG, tail_s=10.0)
     found = detected_as_delivered(made, designed, still, people=PEOPLE)
     # Their skins differ in lag too, which the scaled change leaves: a tenth of the icon.
-    assert found.drop > 0.4 > found.delivered
+    assert found.drop > 0.3 and found.delivered < 0.55 * found.designed
 
 
 def test_the_same_people_whatever_the_batches(ranking: Ranking, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -126,13 +126,13 @@ def test_of_the_sets_held_at_the_end_the_goal_chooses(
     monkeypatch.setattr(searching, "_merit", lambda *given: merits.append(true_merit(*given)) or merits[-1])
     goal = "correct >= 99 % for 95 % of people"
     result = search(
-        small, rig, goal=goal, parameters=8, count=4, objective="correct", evaluations=150, people=12, seed=5
+        small, rig, goal=goal, parameters=8, count=4, objective="correct", evaluations=150, people=12, seed=4
     )
     assert result.finalists == len(merits) > 1
     assert result.chosen_by == "correct for 95 % of people"
     best = max(merits)
     # Nearness to the goal first, then what 95 % of people reach: the same number as in a ranking.
-    ranking = rank(result.found, rig, people=12, seed=5, parameters=8)
+    ranking = rank(result.found, rig, people=12, seed=4, parameters=8)
     assert judge_goal(goal, ranking).parts[0].value == pytest.approx(best[1], abs=0.02)
     assert best[0] == pytest.approx(-max(0.0, 1.0 - best[1] / 0.99))
     with pytest.raises(GoalError, match="needs draws of the posterior"):
