@@ -22,7 +22,7 @@ from ..arrays import Array
 from ..safety.checks import Before, Check, CutOff, Scenario, worst_of
 from ..safety.ensemble import LaneDrives
 from ..safety.held import BEYOND_K, inwards
-from ..safety.single_faults import AFTER_ROWS_S, STUCK_ROWS_S
+from ..safety.single_faults import AFTER_ROWS_S, HANG_ROWS_S
 from ..safety.tally import HOTTEST_C, WATCHED, Tally
 from ..solver.batch_inputs import Bank, State, run_follow
 from ..solver.network import COLD, COMPLIANCE_V, HIGHEST_A, LOWEST_A
@@ -127,13 +127,13 @@ class AnyLoop:
         gets without a fault.
         """
         ensemble, amperes = self.module.ensemble, signed(limit_A, "g")
-        values, _ = ensemble.hold(limit_A, warm, STUCK_ROWS_S)
+        values, _ = ensemble.hold(limit_A, warm, HANG_ROWS_S)
         out = values[WATCHED.index("display_C")] < cut.low - SENSOR_K
-        acted_s = np.where(out.any(axis=1), STUCK_ROWS_S[out.argmax(axis=1)] + REACTIONS_S[0], np.inf)
+        acted_s = np.where(out.any(axis=1), HANG_ROWS_S[out.argmax(axis=1)] + REACTIONS_S[0], np.inf)
         what = f"display at the upper cut-off, then {amperes} A until the lower has acted"
         tally = Tally(ensemble.rig.limits, ensemble.corners, Scenario(way=what, before=Before("any")))
-        until = np.where(acted_s[:, np.newaxis] >= STUCK_ROWS_S, values, values[:, :, :1])
-        tally.add(STUCK_ROWS_S, until, rates=False, sums=False)
+        until = np.where(acted_s[:, np.newaxis] >= HANG_ROWS_S, values, values[:, :, :1])
+        tally.add(HANG_ROWS_S, until, rates=False, sums=False)
         shown_C = []
         for network, gain in zip(ensemble.networks, ensemble.gain, strict=True):
             try:
