@@ -151,7 +151,7 @@ def test_a_cut_off_keeps_the_limit_with_a_sensor_wrong_by_0_3_K_and_asks_for_no_
     assert check.since_s is not None and 0.0 < check.since_s < check.time_s < 1.0, "the skin is hottest once it is cut"
 
 
-def exported(changes: dict[str, object]) -> tuple[Loop, Json]:
+def exported(changes: dict[str, float]) -> tuple[Loop, Json]:
     """A loop on the independent circuit of a small rig, with what its export demands, which is green."""
     rig = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5}, **changes)
     icon, form = icon_of("warm by 1 °C at 2 °C/s; hold for 1 s"), load_format("setpoint-csv")
