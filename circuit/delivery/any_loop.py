@@ -1,9 +1,10 @@
 """What no loop around a module can pass, whatever its gains, lag, delay and supply: within current limits and cut-offs.
 
-The skin moves fastest, and the hot plate gets hottest, where a loop swings from one cut-off to the other at its current
-limits. Every temperature of skin lies between those of a display held at either cut-off indefinitely, since more heat
-in means warmer everywhere; from there the driver gets stuck at its limit until the cut-off on a second sensor acts.
-That the swings are the worst ones is a search, not a proof, so some room is kept.
+The skin moves fastest where a loop swings from one cut-off to the other at its current limits. Every temperature of
+skin lies between those of a display held at either cut-off indefinitely, since more heat in means warmer everywhere;
+from there the driver gets stuck at its limit until the cut-off on a second sensor acts. The hot plate gets hottest on
+the way from the upper cut-off to the lower. A loop may also run to its limit from a start that is too warm, and stay
+there, where more current cools less. That the swings are the worst ones is a search, not a proof, so some room is kept.
 """
 
 from __future__ import annotations
@@ -20,11 +21,12 @@ from thermicon.icons.number_text import signed
 from ..arrays import Array
 from ..safety.checks import Before, Check, CutOff, Scenario, worst_of
 from ..safety.ensemble import LaneDrives
-from ..safety.held import inwards
-from ..safety.single_faults import AFTER_ROWS_S
-from ..safety.tally import Tally
+from ..safety.held import BEYOND_K, inwards
+from ..safety.single_faults import AFTER_ROWS_S, HANG_ROWS_S
+from ..safety.tally import HOTTEST_C, WATCHED, Tally
 from ..solver.batch_inputs import Bank, State, run_follow
-from ..solver.network import COMPLIANCE_V, HIGHEST_A, LOWEST_A
+from ..solver.network import COLD, COMPLIANCE_V, HIGHEST_A, LOWEST_A
+from ..solver.steady import state_under_current
 from .delivered_drive import loss_limit
 from .samples import Samples
 from .shaped import regulated
@@ -44,6 +46,7 @@ BEYONDS_K = ((1.0, 1.0), (1.0, 0.5), (0.5, 0.5))
 """How far below and above what the display reaches a cut-off may be: more than its sensor may be wrong."""
 REACTIONS_S = (0.2, 0.1, 0.05, 0.02)
 """Reactions of cut-offs that are tried, the slowest first, with the sensor's own lag."""
+WARMER = "what it reaches without a fault: a loop does not know that more current than its module's best cools less"
 
 Limits_A = tuple[float, float]
 
@@ -67,21 +70,23 @@ class AnyLoop:
         return replace(self.bank, plates=plates)
 
     def limits_A(self, cut: CutOff, plays: Sequence[Samples]) -> tuple[Limits_A, tuple[Check, ...]]:
-        """The widest current limits within the driver's at which no loop moves skin or heats the hot plate too much.
+        """The widest current limits within the driver's at which no loop moves skin or heats a plate too much.
 
         Where the set-points need more than these, the checks, which are returned too, are those of the driver's limits.
         """
         driver = self.module.ensemble.rig.driver
         given = limits = driver.current_min_A, driver.current_max_A
-        checks = wide = self._swings(cut, given)
+        cold, warm = (self._held_at(level) for level in (cut.low - SENSOR_K, cut.high + SENSOR_K))
+        warm = replace(warm, nodes_C=np.maximum(cold.nodes_C, warm.nodes_C))
+        checks = wide = (*self._swings(cut, given), *self._at_limit(cut, warm, given[1]))
         for _ in range(TRIES):
             share = {(check.quantity, check.upper): check.value / check.limit / ROOM for check in checks}
             warming, cooling = share["rate of skin temperature", True], share["rate of skin temperature", False]
-            hot = 1.1 if share["hot plate", True] * ROOM > 1.0 else 0.0
+            hot = 1.1 if any(check.unit == "°C" and not check.passed for check in checks) else 0.0
             if max(warming, cooling, hot) <= 1.0:
                 break
             limits = -_whole_A(-limits[0] / max(1.0, warming)), _whole_A(limits[1] / max(1.0, cooling, hot))
-            checks = self._swings(cut, limits)
+            checks = (*self._swings(cut, limits), *self._at_limit(cut, warm, limits[1]))
         slower_K = max(
             float(np.sqrt(np.mean((self._shown(one, limits) - self._shown(one, given)) ** 2))) for one in plays
         )
@@ -97,7 +102,7 @@ class AnyLoop:
         return regulated(rig, self.within(limits_A), goals, rest)[1]
 
     def _swings(self, cut: CutOff, limits_A: Limits_A) -> tuple[Check, ...]:
-        """Rates and hot plate where a loop swings between the cut-offs, from a display without power on."""
+        """Rates where a loop swings between the cut-offs, from a display without power on."""
         ensemble = self.module.ensemble
         period = 1.0 / ensemble.rig.driver.update_Hz
         counts = [max(1, round(swing / period)) for swing in SWINGS_S]
@@ -114,8 +119,34 @@ class AnyLoop:
         tally = Tally(ensemble.rig.limits, ensemble.corners, what)
         for (rows, values), _ in ensemble.play(drives, start):
             tally.add(rows, values, sums=False)
-        wanted = ("rate of skin temperature", "hot plate")
-        return tuple(check for check in tally.checks() if check.quantity in wanted)
+        return tuple(check for check in tally.checks() if check.quantity == "rate of skin temperature")
+
+    def _at_limit(self, cut: CutOff, warm: State, limit_A: float) -> tuple[Check, ...]:
+        """The hot plate of a driver stuck at its limit, from nodes as `warm` as in any display held inside the cut-offs
+        until the lower has acted; and a loop that stays there for good, which may warm the display no farther than it
+        gets without a fault.
+        """
+        ensemble, amperes = self.module.ensemble, signed(limit_A, "g")
+        values, _ = ensemble.hold(limit_A, warm, HANG_ROWS_S)
+        out = values[WATCHED.index("display_C")] < cut.low - SENSOR_K
+        acted_s = np.where(out.any(axis=1), HANG_ROWS_S[out.argmax(axis=1)] + REACTIONS_S[0], np.inf)
+        what = f"display at the upper cut-off, then {amperes} A until the lower has acted"
+        tally = Tally(ensemble.rig.limits, ensemble.corners, Scenario(way=what, before=Before("any")))
+        until = np.where(acted_s[:, np.newaxis] >= HANG_ROWS_S, values, values[:, :, :1])
+        tally.add(HANG_ROWS_S, until, rates=False, sums=False)
+        shown_C = []
+        for network, gain in zip(ensemble.networks, ensemble.gain, strict=True):
+            try:
+                shown_C.append(float(state_under_current(network, limit_A * gain)[COLD]))
+            except ArithmeticError:  # it heats without limit
+                shown_C.append(HOTTEST_C)
+        most_C, reach_C = max(shown_C), cut.high - BEYOND_K
+        stays = Check(
+            "display of a loop at its limit", "hard", most_C, reach_C, "°C", math.nan,
+            math.nan if most_C > reach_C else None, WARMER,
+            run=Scenario(ensemble.corners[shown_C.index(most_C)].deviations, f"{amperes} A for good"),
+        )  # fmt: skip
+        return (*(check for check in tally.checks() if check.quantity == "hot plate"), stays)
 
     def cut_off(
         self, reach_C: tuple[float, float], limits_A: Limits_A, used_A: Limits_A

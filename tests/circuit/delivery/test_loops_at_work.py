@@ -14,8 +14,11 @@ import numpy as np
 import pytest
 
 from tests.circuit.delivery.adversarial import BASES, between
+from tests.circuit.delivery.benches import Loop
 from tests.circuit.delivery.exported_files import Course, read_file, sidecar_in
 from tests.circuit.delivery.followed import Follower
+from tests.circuit.delivery.independent import Circuit, Json, worlds_of
+from tests.circuit.delivery.lanes import Lanes
 from tests.circuit.delivery.loops_at_work import Controllers, at_work
 from tests.circuit.delivery.one_drive import icon_of, prepare, worst_case
 from tests.circuit.surerig import sure_rig
@@ -146,6 +149,48 @@ def test_a_cut_off_keeps_the_limit_with_a_sensor_wrong_by_0_3_K_and_asks_for_no_
     (check,) = judged(relay_C - 0.015).findings[:1]
     assert "display at the cut-off" in check.scenario
     assert check.since_s is not None and 0.0 < check.since_s < check.time_s < 1.0, "the skin is hottest once it is cut"
+
+
+def exported(changes: dict[str, float]) -> tuple[Loop, Json]:
+    """A loop on the independent circuit of a small rig, with what its export demands, which is green."""
+    rig = sure_rig().with_(**{"driver.update_Hz": 20.0, "skin.elements": [1] * 5}, **changes)
+    icon, form = icon_of("warm by 1 °C at 2 °C/s; hold for 1 s"), load_format("setpoint-csv")
+    ready = prepare(icon, rig, Device.load("closed-loop-controller"), form)
+    assert not ready.refusals
+    files = pack([ready], form)
+    course, demands, document = read_file(files, "a"), ready.verdict.demanded, json.loads(rig.document)
+    assert isinstance(course, Course)
+    lanes = Lanes.of(Circuit.of(document, worlds_of(document)))
+    return Loop(lanes, course, demands, rig.driver.update_Hz, np.random.default_rng(0)), demands
+
+
+def test_a_driver_stuck_while_the_display_is_warm_keeps_the_hot_plate_within_its_limit() -> None:
+    poor = {"heat_sink.resistance_K_per_W": 0.6, "module.hot_plate_J_per_K": 1.5}
+
+    def hottest(highest_C: float) -> tuple[float, float]:
+        """The hot plate until the cut-off has acted, and the current limit, at a limit of its own."""
+        bench, demands = exported(poor | {"safety.hot_plate_highest_C": highest_C})
+        cut, flows = demands["cut_off_display_C"], bench.settling(demands["cut_off_display_C"]["high"])
+        state, most = bench.lanes.steady(flows, flows**2), bench.flow(demands["current_limit_A"][1])
+        ends = np.array([[cut["low"], np.inf, cut["react_within_s"]]])
+        return float(bench.lanes.hold(state, bench.every, most, 60.0, ends)[0, 7]), float(most[0, 0])
+
+    usual_C, usual_A = hottest(60.0)
+    assert hottest(usual_C + 1.0) == (usual_C, usual_A), "no narrower than it must be"
+    assert hottest(usual_C - 0.2)[0] < usual_C - 0.2
+
+
+def test_a_loop_that_stays_at_its_limit_leaves_the_display_inside_the_cut_off() -> None:
+    """From no power it runs there, where it then cools less than with less current."""
+    weak = {"heat_sink.temperature_C": 38.0, "module.seebeck_V_per_K": 0.0214}
+    for driver_A, too_strong in ((1.75, False), (2.2, True)):
+        bench, demands = exported(weak | {"driver.current_limit_A": driver_A})
+        given, high = (-driver_A, driver_A), demands["cut_off_display_C"]["high"]
+        assert (demands["current_limit_A"] != given) == too_strong
+        assert bench.wait(bench.unpowered(), 120.0)[0, 5] < high
+        bench.least, bench.most = (end * bench.gain for end in given)
+        bench.loop[:, 4:6] = given
+        assert (bench.wait(bench.unpowered(), 120.0)[0, 5] > high) == too_strong
 
 
 def test_a_loop_that_swings_when_one_update_late_is_told_to_be_quicker_and_a_weaker_one_is_not() -> None:
