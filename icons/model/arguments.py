@@ -1,0 +1,170 @@
+"""Arguments of public functions: what each takes follows from its annotation, and what does not fit is named."""
+
+import builtins
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import update_wrapper
+from importlib import import_module
+from numbers import Integral, Real
+from pathlib import Path
+from types import FunctionType, NoneType, UnionType
+from typing import Any, Literal, TypeVar, Union, cast, get_args, get_origin, is_typeddict
+
+from ..near_words import did_you_mean
+from .context import clean
+
+F = TypeVar("F", bound=Callable[..., Any])
+RENAMED = {"norm": "memory"}
+LONGEST = 60
+WORDS = {str: "a text", bytes: "bytes", Path: "a path", float: "a number", int: "a whole number",
+         bool: "True or False", NoneType: "None"}  # fmt: skip
+MADE_BY = {"Icon": 'load_library("six-icons")["cooling-step"]', "IconSet": 'load_library("six-icons")',
+           "Rig": 'Rig.load("thenar")', "Trace": "simulate(icon)", "Ranking": "rank(icons)",
+           "Selection": "Selection(3)", "Drive": "Drive([0, 1], [0, 0.5])", "Trials": "read_trials(path)"}  # fmt: skip
+"""How an object of a class is made, for those who gave something else."""
+
+
+class InputError(ValueError):
+    """Bad input, reported in plain words (what, where, value, limit, unit, cure) without control characters.
+
+    Examples
+    --------
+    >>> str(InputError("hand.toml: contact.area_cm2 = 0; it must be above 0 cm²"))
+    'hand.toml: contact.area_cm2 = 0; it must be above 0 cm²'
+    """
+
+    def __init__(self, *texts: object) -> None:
+        super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))
+
+
+def checked(function: F) -> F:
+    """Refuse arguments of another type than the annotation of a function, or of a class's fields, with an `InputError`.
+
+    >>> @checked
+    ... def cooled(by: float) -> float:
+    ...     return -by
+    >>> cooled("6 °C")
+    Traceback (most recent call last):
+    ...
+    thermicon.icons.model.arguments.InputError: cooled: by takes a number, not '6 °C'
+    """
+    if isinstance(function, type):
+        function.__init__ = checked(function.__init__)
+        return function
+    own, hints = cast(FunctionType, function), dict[str, Any]()
+    place = own.__qualname__.removesuffix(".__init__")
+    names = own.__code__.co_varnames[: own.__code__.co_argcount]
+    rest = own.__code__.co_varnames[own.__code__.co_argcount + own.__code__.co_kwonlyargcount :][:1]
+
+    def check(args: tuple[Any, ...], given: dict[str, Any]) -> None:
+        if not hints:
+            hints.update(_hints(own))
+        values = [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
+        for name, value in (*values, *given.items()):
+            if name not in hints and name in given:
+                now = f"is called {RENAMED[name]} now" if name in RENAMED else did_you_mean(name, hints)
+                raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is no argument; '}{now}")
+            if not _fits(value, hints.get(name, Any)):
+                raise InputError(f"{place}: {name} takes {_words(hints[name])}, not {_shown(value)}")
+
+    def call(*args: Any, **given: Any) -> Any:
+        check(args, given)
+        return function(*args, **given)
+
+    # With the function's own globals: doctest looks by them for the examples of a module.
+    made = FunctionType(call.__code__, own.__globals__, own.__name__, None, call.__closure__)
+    return cast(F, update_wrapper(made, function))
+
+
+class _Names(dict[str, Any]):
+    """Names that annotations use; those imported for type checkers alone are looked up at the front doors."""
+
+    def __missing__(self, name: str) -> Any:
+        if name == "pd":
+            return import_module("pandas")
+        doors = (import_module(f"thermicon.{package}") for package in ("icons", "circuit", "perception"))
+        return next((getattr(door, name) for door in doors if name in door.__all__), Any)
+
+
+def _hints(function: FunctionType) -> dict[str, Any]:
+    """What each argument takes; of keywords that a typed dictionary describes, each."""
+    found, names = dict[str, Any](), _Names({**vars(builtins), **function.__globals__})
+    for name, text in function.__annotations__.items():
+        if name == "return":
+            continue
+        hint = eval(text, {}, names) if isinstance(text, str) else text
+        words = next((each for each in get_args(hint) if is_typeddict(each)), None)
+        if words is None:
+            found[name] = hint
+        else:
+            theirs = _Names({**names, **vars(sys.modules[words.__module__])})
+            found |= {key: eval(each.__forward_arg__, {}, theirs) for key, each in words.__annotations__.items()}
+    return found
+
+
+def _fits(value: Any, hint: Any) -> bool:
+    """Whether a value is of the type that an annotation names; an annotation that is not understood takes anything."""
+    origin, inner = get_origin(hint) or hint, get_args(hint)
+    if origin in (Union, UnionType):
+        return _numeric(value) if _is_array(inner) else any(_fits(value, each) for each in inner)
+    if origin is Literal:
+        return isinstance(value, str) and value in inner
+    if origin in (int, float):
+        return isinstance(value, Integral if origin is int else Real) and not isinstance(value, bool)
+    if origin is Callable:
+        return callable(value)
+    if origin in (Sequence, Iterable):
+        some = hasattr(value, "__getitem__" if origin is Sequence else "__iter__") and hasattr(value, "__iter__")
+        if not some or isinstance(value, str | bytes | Mapping) or getattr(value, "ndim", 1) != 1:
+            return False
+        return iter(value) is value or all(_fits(each, inner[0]) for each in value)
+    return isinstance(value, origin) if isinstance(origin, type) and origin is not Any else True
+
+
+def _is_array(inner: tuple[Any, ...]) -> bool:
+    """Whether these are the parts of numpy's `ArrayLike`."""
+    return any(getattr(each, "__module__", "").startswith("numpy._typing") for each in inner)
+
+
+def _numeric(value: Any) -> bool:
+    import numpy as np
+
+    try:
+        return (
+            value is not None and not isinstance(value, str | bytes) and bool(np.asarray(value, np.float64).shape or 1)
+        )
+    except (TypeError, ValueError):
+        return False
+
+
+def _words(hint: Any) -> str:
+    """What an annotation takes, in words."""
+    origin, inner = get_origin(hint) or hint, get_args(hint)
+    if origin in (Union, UnionType):
+        text = "an array of numbers" if _is_array(inner) else _or([*dict.fromkeys(map(_words, inner))])
+        return text.replace("a text", "a name") if Path in inner else text
+    if origin is Literal:
+        return _or([repr(each) for each in inner])
+    if origin in (Sequence, Iterable):
+        parts = get_args(inner[0]) if get_origin(inner[0]) in (Union, UnionType) else inner[:1]
+        plural = [f"{WORDS.get(each, getattr(each, '__name__', 'object')).removeprefix('a ')}s" for each in parts]
+        return f"a list of {_or(plural).replace('ys', 'ies')}"
+    name = getattr(origin, "__name__", str(origin))
+    made = f" such as {MADE_BY[name]}" if name in MADE_BY else ""
+    return WORDS.get(origin) or ("a function" if origin is Callable else _a(name) + made)
+
+
+def _or(each: list[str]) -> str:
+    return " or ".join([", ".join(each[:-1]), each[-1]] if each[1:] else each)
+
+
+def _a(name: str) -> str:
+    return f"a{'n' if name[0] in 'AEIO' else ''} {name}"
+
+
+def _shown(value: object) -> str:
+    """A value as a message shows it: plain ones as they are, others by their class."""
+    if isinstance(value, str | bytes | bool | int | float | list | tuple | NoneType):
+        text = repr(value)
+        return text if len(text) <= LONGEST else f"{text[: LONGEST - 2]}…{text[-1]}"
+    return f"the class {value.__name__}" if isinstance(value, type) else _a(type(value).__name__)
