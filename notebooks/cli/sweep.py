@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from thermicon.icons.model.arguments import checked
 from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, SITE
 
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
@@ -61,6 +62,7 @@ class Measured:
     seed: int = 0
 
 
+@checked
 def sweep(
     icons: Iterable[Icon],
     rig: Rig,

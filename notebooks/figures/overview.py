@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.icons.model.arguments import checked
+
 from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, on_one_clock
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ WIDEST, MOST_LINES = 110, 6
 """Letters of a line, and lines, of what the figure of a scene says."""
 
 
+@checked
 def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
     """Draw one icon on one clock: temperatures, heat flow, current and, with a percept, sensation.
 

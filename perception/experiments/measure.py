@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 
+from thermicon.icons.model.arguments import checked
+
 from ..arrays import Array
 from ..kernels.parallel import in_order
 from ..observer.channels import CHANNELS, Channel
@@ -235,6 +237,7 @@ class Measurement:
         return f"Measurement({self.condition.label}: {span}, SD between people {self.between:.2f}{log})"
 
 
+@checked
 def measure(
     condition: Condition, rig: Rig, *, draws: int = DRAWS, seed: int = 0, posterior: PosteriorDraws | None = None
 ) -> Measurement:

@@ -18,6 +18,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermicon.icons.model.arguments import checked
+
 from ..arrays import Array
 from ..kernels.parallel import over_rows
 from ..observer.observer import Observer
@@ -63,6 +65,7 @@ class Confusion:
         return normalised(self.probability.mean(axis=0))
 
 
+@checked
 def confuse(
     d_prime: ArrayLike,
     *,

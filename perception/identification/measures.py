@@ -7,6 +7,8 @@ Published information is the plug-in estimate of a few dozen trials, which is bi
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.icons.model.arguments import checked
+
 from ..arrays import Array
 
 
@@ -20,6 +22,7 @@ def proportion_correct(confusion: ArrayLike) -> Array:
     return found
 
 
+@checked
 def information_bits(confusion: ArrayLike) -> Array:
     """Compute the information from icon to response in bits, with every icon presented equally often.
 

@@ -23,7 +23,7 @@ from ..identification.population import RATE_HZ, ReceptorTemperatures, identify,
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order
 from ..observer.observer import NORMS, Norm
-from ..observer.observer_model import ObserverModel
+from ..observer.observer_model import ObserverModel, Tracking
 from ..sensation.detection import Detection, report_step
 from ..sensation.detection import pooled as pooled_detection
 
@@ -78,7 +78,7 @@ class Job:
     people: int
     seed: int
     trials: int
-    tracking: str | None
+    tracking: Tracking | None
     norm: Norm
     task: Task = USUAL
     observer: ObserverModel | None = None

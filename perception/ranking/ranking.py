@@ -16,6 +16,7 @@ from thermicon.icons.number_text import count_of
 from ..arrays import Array
 from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
+from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .rules import RuleResult
 from .scores import IconScore, PairScore, counted
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from ..identification.carry_over import CarryOver
     from ..identification.task import Task
     from ..observer.observer import Norm
-    from ..observer.observer_model import ObserverModel
     from .batches import Job, PooledResult
 
 
@@ -44,7 +44,7 @@ class Ranking(Drawn):
     content_hash, digests
         Hash of icons, rig and observer, and of each.
     job
-        What was ranked, and how: icons, rig, seed and number of people, trials, tracking, norm, task.
+        What was ranked, and how: icons, rig, seed and number of people, trials, tracking, memory, task.
     model
         The observer with its people and draws.
     felt
@@ -119,9 +119,15 @@ class Ranking(Drawn):
         return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
 
     @property
-    def norm(self) -> Norm:
-        """How a difference over time is counted."""
+    def memory(self) -> Norm:
+        """How icons are remembered."""
         return self.job.norm
+
+    @property
+    def crowd(self) -> Crowd:
+        """Who feels and remembers the icons."""
+        job = self.job
+        return Crowd(job.people, job.seed, job.tracking, job.norm, self.model)
 
     @property
     def task(self) -> Task:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
@@ -86,6 +87,7 @@ class NoEdit:
     reason: str
 
 
+@checked
 def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUISHABLE_DPRIME) -> Edit | NoEdit:
     """Find the cheapest edit of one of two icons that separates them by a median d′.
 
