@@ -14,7 +14,9 @@ from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.tabled import Tabled
 
+from ..drawn import Drawn
 from ..experiments.measure import Setting
 from ..kernels.parallel import Progress, step_counter
 from ..observer.draws import PosteriorDraws
@@ -28,6 +30,8 @@ from .states import LaboratoryPrior
 from .trials import Trials
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
@@ -36,7 +40,7 @@ F = TypeVar("F", Fit, MeasurementFit)
 
 
 @dataclass(frozen=True, slots=True)
-class Observed(Generic[D, F]):
+class Observed(Drawn, Tabled, Generic[D, F]):
     """What participants answered or what was measured, how it fits the prediction, and what it makes of the prediction.
 
     Attributes
@@ -114,6 +118,16 @@ class Observed(Generic[D, F]):
             ],
             "constants": [asdict(each) for each in self.constants],
         }
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row for each set before the data were seen, and one after."""
+        import pandas as pd
+
+        kinds = ("proportion_correct", "information_bits")
+        names = [f"{kind}{end}" for kind in kinds for end in ("", "_low", "_high")]
+        both = ((when, getattr(each, when)) for each in self.predictions for when in ("before", "after"))
+        rows = [(one.title, when, *one.proportion_correct, *one.information_bits) for when, one in both]
+        return pd.DataFrame(rows, columns=["set", "data", *names])
 
     def to_json(self) -> str:
         """Every number as JSON text."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..kernels.parallel import Progress, step_counter
@@ -27,6 +28,9 @@ from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
 from .prediction import SetPrediction, Three, three
 from .states import LaboratoryPrior
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DRAWS, EXPERIMENTS = 300, 600
 PARTICIPANTS, TRIALS = (4, 8, 12, 16, 24, 32, 48), (12, 24, 48, 96)
@@ -58,7 +62,7 @@ class Design:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class Plan(Tabled):
     """Designs that were simulated, and the one to take.
 
     Attributes
@@ -110,6 +114,12 @@ class Plan:
             "designs": [each.to_dict() for each in self.designs],
             "cheapest": None if cheapest is None else cheapest.to_dict(),
         }
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per design."""
+        import pandas as pd
+
+        return pd.DataFrame([{**each.to_dict(), "enough": self.enough(each)} for each in self.designs])
 
     def to_json(self) -> str:
         """Every number as JSON text."""

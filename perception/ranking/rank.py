@@ -80,7 +80,7 @@ def rank(
 
     See Also
     --------
-    choose, judge_goal, cheapest_edits : What to ask of a ranking next.
+    choose, judge_goal, cheapest_edit : What to ask of a ranking next.
 
     Examples
     --------

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermicon.icons.number_text import count_of
+from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..drawn import Drawn
@@ -34,7 +35,7 @@ PERCENTAGE_POINT = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Ranking(Drawn):
+class Ranking(Drawn, Tabled):
     """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
 
     Attributes

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import product
 from typing import TYPE_CHECKING, Unpack
 
@@ -22,6 +22,7 @@ import numpy as np
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..drawn import Drawn
@@ -37,6 +38,8 @@ from .assumptions import explained, explained_together, scores_of
 from .ranking import with_changes
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from thermicon.icons import Icon
 
 
@@ -144,7 +147,7 @@ class Reduction:
 
 
 @dataclass(frozen=True, slots=True)
-class Sensitivity(Drawn):
+class Sensitivity(Drawn, Tabled):
     """Effects of constants, and reductions by measurements, on a prediction; the largest first.
 
     The prediction is the median over draws (0–1, and bits) and the 95 % of them, for a new laboratory; contact and skin
@@ -168,6 +171,12 @@ class Sensitivity(Drawn):
     def first(self) -> tuple[Reduction, ...]:
         """Measurements that would take away at least 2 % of the variance of the proportion correct."""
         return tuple(each for each in self.reductions if each.proportion_correct >= NOTEWORTHY)
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per constant, the largest effect first."""
+        import pandas as pd
+
+        return pd.DataFrame([asdict(effect) for effect in self.effects])
 
     def __repr__(self) -> str:
         first = self.first[0].measurement if self.first else "nothing"

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 from thermicon.circuit.rig.rig import AnyRig
 from thermicon.icons.files.shipped import Icons
 from thermicon.icons.model.arguments import checked
+from thermicon.icons.tabled import Tabled
 
 from ..drawn import Drawn
 from ..identification.laboratory import DRAWS
@@ -33,7 +34,7 @@ MOST = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Frontier(Drawn):
+class Frontier(Drawn, Tabled):
     """Best choices of rising size, the `points`, from one pool as it was ranked, with `draws` of the posterior.
 
     `goals` say of each point whether it meets the goal; empty without one.
