@@ -51,7 +51,7 @@ def checked(function: F) -> F:
     if isinstance(function, type):
         function.__init__ = checked(function.__init__)
         return function
-    own, hints = cast(FunctionType, function), dict[str, Any]()
+    own, hints, error = cast(FunctionType, function), dict[str, Any](), InputError
     place = own.__qualname__.removesuffix(".__init__")
     names = own.__code__.co_varnames[: own.__code__.co_argcount]
     rest = own.__code__.co_varnames[own.__code__.co_argcount + own.__code__.co_kwonlyargcount :][:1]
@@ -69,7 +69,12 @@ def checked(function: F) -> F:
 
     def call(*args: Any, **given: Any) -> Any:
         check(args, given)
-        return function(*args, **given)
+        try:
+            return function(*args, **given)
+        except ValueError as wrong:
+            if type(wrong) is not ValueError:
+                raise
+            raise error(f"{place}: {wrong}") from wrong
 
     # With the function's own globals: doctest looks by them for the examples of a module.
     made = FunctionType(call.__code__, own.__globals__, own.__name__, None, call.__closure__)

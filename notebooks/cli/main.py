@@ -107,7 +107,7 @@ class Commands(TyperGroup):
             if isinstance(error, typer.BadParameter):
                 reworded(error)
                 raise
-            if not is_ours(error):
+            if not is_ours(error) or type(error.__cause__) is ValueError:  # which may be a mistake of ours
                 raise
             fail(str(error))
         else:

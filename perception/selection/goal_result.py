@@ -16,11 +16,11 @@ import numpy as np
 from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
+from .choose import Choice
 from .goal import SAFETY, VERDICTS, Goal, GoalPart
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
-    from .choose import Choice
 
 TOLERANCE = 1e-9
 
