@@ -49,7 +49,7 @@ def checked(function: F) -> F:
     thermicon.icons.model.arguments.InputError: cooled: by takes a number, not '6 °C'
     """
     if isinstance(function, type):
-        function.__init__ = checked(function.__init__)
+        setattr(function, "__init__", checked(vars(function)["__init__"]))  # noqa: B010
         return function
     own, hints, error = cast(FunctionType, function), dict[str, Any](), InputError
     place = own.__qualname__.removesuffix(".__init__")

@@ -19,8 +19,9 @@ from thermicon.icons.files.table import as_number
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import nearest_words
 
-from ..arrays import Array, own_arrays
+from ..arrays import Array
 from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
+from ..kernels.parallel import own_arrays
 from ..observer.channels import CHANNELS, Channel
 from .trials_file import TrialsError, check_labels, label, require, table_in
 

@@ -123,11 +123,8 @@ class Observed(Drawn, Tabled, Generic[D, F]):
         """One row for each set before the data were seen, and one after."""
         import pandas as pd
 
-        kinds = ("proportion_correct", "information_bits")
-        names = [f"{kind}{end}" for kind in kinds for end in ("", "_low", "_high")]
-        both = ((when, getattr(each, when)) for each in self.predictions for when in ("before", "after"))
-        rows = [(one.title, when, *one.proportion_correct, *one.information_bits) for when, one in both]
-        return pd.DataFrame(rows, columns=["set", "data", *names])
+        rows = [row for each in self.predictions for row in (each.before.row("before"), each.after.row("after"))]
+        return pd.DataFrame(rows)
 
     def to_json(self) -> str:
         """Every number as JSON text."""

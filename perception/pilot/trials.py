@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import Array, own_arrays
+from ..arrays import Array
+from ..kernels.parallel import own_arrays
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
-from thermicon.icons.files.shipped import Icons, set_of
+from thermicon.icons import IconSet
+from thermicon.icons.files.shipped import set_of
 from thermicon.icons.files.table import NOTHINGS, Table, as_number, read_table
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean, nearest_words
@@ -38,7 +39,9 @@ class TrialsError(InputError):
 
 
 @checked
-def read_trials(path: str | Path, icons: Icons | Sequence[str], columns: Mapping[str, str] | None = None) -> Trials:
+def read_trials(
+    path: str | Path, icons: IconSet | str | Path | Sequence[str], columns: Mapping[str, str] | None = None
+) -> Trials:
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
     A CSV file has the columns participant, trial, presented and responded, where trials are numbered anew in each block
