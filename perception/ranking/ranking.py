@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from ..identification.carry_over import CarryOver
+    from ..identification.map import PerceptualMap
     from ..identification.task import Task
     from ..observer.observer import Norm
     from .batches import Job, PooledResult
@@ -259,6 +260,12 @@ class Ranking(Drawn, Tabled):
             }
             for icon in sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name))
         ]
+
+    def map(self) -> PerceptualMap:
+        """The icons as points, near where they are hard to distinguish."""
+        from ..identification.map import map_of
+
+        return map_of(self)
 
     def to_frame(self) -> pd.DataFrame:
         """The rows as a table."""
