@@ -17,7 +17,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 RENAMED = {"norm": "memory"}
 LONGEST = 60
 WORDS = {str: "a text", bytes: "bytes", Path: "a path", float: "a number", int: "a whole number",
-         bool: "True or False", NoneType: "None"}  # fmt: skip
+         bool: "True or False", NoneType: "None", Callable: "a function"}  # fmt: skip
 MADE_BY = {"Icon": 'load_library("six-icons")["cooling-step"]', "IconSet": 'load_library("six-icons")',
            "Rig": 'Rig.load("thenar")', "Trace": "simulate(icon)", "Ranking": "rank(icons)",
            "Selection": "Selection(3)", "Drive": "Drive([0, 1], [0, 0.5])", "Trials": "read_trials(path)"}  # fmt: skip
@@ -85,25 +85,19 @@ class _Names(dict[str, Any]):
     """Names that annotations use; those imported for type checkers alone are looked up at the front doors."""
 
     def __missing__(self, name: str) -> Any:
-        if name == "pd":
-            return import_module("pandas")
         doors = (import_module(f"thermicon.{package}") for package in ("icons", "circuit", "perception"))
-        return next((getattr(door, name) for door in doors if name in door.__all__), Any)
+        found = next((getattr(door, name) for door in doors if name in door.__all__), Any)
+        return import_module("pandas") if name == "pd" else found
 
 
-def _hints(function: FunctionType) -> dict[str, Any]:
+def _hints(function: Any) -> dict[str, Any]:
     """What each argument takes; of keywords that a typed dictionary describes, each."""
-    found, names = dict[str, Any](), _Names({**vars(builtins), **function.__globals__})
+    found, names = dict[str, Any](), _Names({**vars(builtins), **vars(sys.modules[function.__module__])})
     for name, text in function.__annotations__.items():
-        if name == "return":
-            continue
+        text = getattr(text, "__forward_arg__", text)
         hint = eval(text, {}, names) if isinstance(text, str) else text
-        words = next((each for each in get_args(hint) if is_typeddict(each)), None)
-        if words is None:
-            found[name] = hint
-        else:
-            theirs = _Names({**names, **vars(sys.modules[words.__module__])})
-            found |= {key: eval(each.__forward_arg__, {}, theirs) for key, each in words.__annotations__.items()}
+        words = [each for each in get_args(hint) if is_typeddict(each)]
+        found |= _hints(words[0]) if words else {} if name == "return" else {name: hint}
     return found
 
 
@@ -116,14 +110,14 @@ def _fits(value: Any, hint: Any) -> bool:
         return isinstance(value, str) and value in inner
     if origin in (int, float):
         return isinstance(value, Integral if origin is int else Real) and not isinstance(value, bool)
-    if origin is Callable:
-        return callable(value)
     if origin in (Sequence, Iterable):
-        some = hasattr(value, "__getitem__" if origin is Sequence else "__iter__") and hasattr(value, "__iter__")
+        some = hasattr(value, "__getitem__" if origin is Sequence else "__iter__")
         if not some or isinstance(value, str | bytes | Mapping) or getattr(value, "ndim", 1) != 1:
             return False
         return iter(value) is value or all(_fits(each, inner[0]) for each in value)
-    return isinstance(value, origin) if isinstance(origin, type) and origin is not Any else True
+    if origin is Callable or origin is Any or not isinstance(origin, type):
+        return origin is not Callable or callable(value)
+    return isinstance(value, origin)
 
 
 def _is_array(inner: tuple[Any, ...]) -> bool:
@@ -132,12 +126,9 @@ def _is_array(inner: tuple[Any, ...]) -> bool:
 
 
 def _numeric(value: Any) -> bool:
-    import numpy as np
-
     try:
-        return (
-            value is not None and not isinstance(value, str | bytes) and bool(np.asarray(value, np.float64).shape or 1)
-        )
+        import_module("numpy").asarray(value, float)
+        return not isinstance(value, str | bytes | NoneType)
     except (TypeError, ValueError):
         return False
 
@@ -146,21 +137,20 @@ def _words(hint: Any) -> str:
     """What an annotation takes, in words."""
     origin, inner = get_origin(hint) or hint, get_args(hint)
     if origin in (Union, UnionType):
-        text = "an array of numbers" if _is_array(inner) else _or([*dict.fromkeys(map(_words, inner))])
+        text = "an array of numbers" if _is_array(inner) else _or(dict.fromkeys(map(_words, inner)))
         return text.replace("a text", "a name") if Path in inner else text
     if origin is Literal:
-        return _or([repr(each) for each in inner])
+        return _or(map(repr, inner))
     if origin in (Sequence, Iterable):
-        parts = get_args(inner[0]) if get_origin(inner[0]) in (Union, UnionType) else inner[:1]
-        plural = [f"{WORDS.get(each, getattr(each, '__name__', 'object')).removeprefix('a ')}s" for each in parts]
-        return f"a list of {_or(plural).replace('ys', 'ies')}"
+        return f"a list, each {_words(inner[0])}"
     name = getattr(origin, "__name__", str(origin))
     made = f" such as {MADE_BY[name]}" if name in MADE_BY else ""
-    return WORDS.get(origin) or ("a function" if origin is Callable else _a(name) + made)
+    return WORDS.get(origin) or _a(name) + made
 
 
-def _or(each: list[str]) -> str:
-    return " or ".join([", ".join(each[:-1]), each[-1]] if each[1:] else each)
+def _or(parts: Iterable[str]) -> str:
+    *most, last = parts
+    return f"{', '.join(most)} or {last}" if most else last
 
 
 def _a(name: str) -> str:

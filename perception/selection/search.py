@@ -145,8 +145,6 @@ def search(
     >>> result.after.d_prime >= result.before.d_prime
     True
     """
-    from thermicon.icons import IconSet
-
     icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
     seed, wanted = crowd.seed, Goal.parse(goal) if isinstance(goal, str) else goal
     if wanted is not None:
@@ -182,8 +180,7 @@ def search(
     scores = [appraise(each, rig, crowd=crowd) for each in sets]
     persons: list[dict[str, Array]] = [{} for _ in sets]
     if any(part.people is not None for part in parts):
-        members = [IconSet("", "", each[0].context, each[0].metadata, each) for each in sets]
-        ranked = [rank(one, rig, crowd=crowd, parameters=draws) for one in members]
+        ranked = [rank(one, rig, crowd=crowd, parameters=draws) for one in sets]
         persons = [one.new_laboratory.persons for one in ranked if one.new_laboratory is not None]
     place = max(range(len(sets)), key=lambda k: _merit(parts, objective, scores[k], persons[k]))
     best, after = finalists[place], scores[place]
