@@ -1,6 +1,7 @@
 '''thermicon: write thermal icons, see what display, skin and receptors do, and predict which of them people confuse.
 
     from thermicon import parse, perceive, rank, simulate
+
     icons = parse("""cue 1
     icon dip  { cool by 4 °C at 2 °C/s; hold for 2 s; return at 2 °C/s }
     icon glow { warm by 3 °C at 1 °C/s; hold for 2 s; return at 1 °C/s }""")
