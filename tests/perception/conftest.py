@@ -25,6 +25,11 @@ class FakeTrace:
     site: str = "thenar"
     area_m2: float = 9e-4
     rig: None = None
+
+    def but(self, **changes: object) -> "FakeTrace":
+        """As `dataclasses.replace`."""
+        return FakeTrace(**vars(self) | changes)
+
     __class__ = property(lambda self: Trace)  # type: ignore[assignment]  # passes for one where its type is checked
 
 
