@@ -13,7 +13,7 @@ import numpy as np
 from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import checked
+from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.tabled import Tabled
 
 from ..drawn import Drawn
@@ -200,6 +200,8 @@ def observed(
     >>> len(found.data.each), found.data.pooled.trials
     (2, 24)
     """
+    if "people" in words:
+        raise InputError("observed: people are the participants; leave it out")
     icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
     names, seed = tuple(icon.name for icon in icons), crowd.seed
     if isinstance(trials, Trials) and trials.icons != names:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.shipped import Icons, set_of
-from thermicon.icons.model.arguments import checked
+from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
@@ -183,6 +183,8 @@ def plan(
     True
     """
     _check(participants, trials, wanted, draws)
+    if "people" in words:
+        raise InputError("plan: people are the participants; leave it out")
     rig, crowd = Rig.of(rig), crowd.but(**words)
     sets, seed = [set_of(each) for each in (icons, other) if each is not None], crowd.seed
     prior = LaboratoryPrior.of(crowd.observer, crowd.memory)
