@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
 from thermicon.icons.files.table import Fault
-from thermicon.icons.model.context import clean, clean_line, first_control
+from thermicon.icons.model.arguments import InputError as InputError
+from thermicon.icons.model.context import clean_line, first_control
 
 if TYPE_CHECKING:
     from pydantic import ValidationError
@@ -27,19 +28,6 @@ LONGEST_QUOTE = 62
 
 TEXT_FAULT = "text"
 """Type of pydantic's error for a text that may not stand where it does."""
-
-
-class InputError(Exception):
-    """Bad input, reported in plain words (what, where, value, limit, unit, cure) without control characters.
-
-    Examples
-    --------
-    >>> str(InputError("hand.toml: contact.area_cm2 = 0; it must be above 0 cm²"))
-    'hand.toml: contact.area_cm2 = 0; it must be above 0 cm²'
-    """
-
-    def __init__(self, *texts: object) -> None:
-        super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))
 
 
 def line_fault(text: str, longest: int = LONGEST_LINE, allowed: str = "") -> str | None:

@@ -11,6 +11,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from thermicon.icons.model.arguments import InputError
 from thermicon.icons.near_words import did_you_mean
 
 from .inputs import read_text, read_toml
@@ -22,7 +23,7 @@ MOST_MB = 1.0
 _NUMBERS = ("value", "low", "high")
 
 
-class RecordError(ValueError):
+class RecordError(InputError):
     """A table or a look-up in it is wrong; the message names file, entry and cure."""
 
 

@@ -7,7 +7,7 @@ from .model.family import Family as Family
 from .model.errors import CueErrors as CueErrors
 from .language.layout import format_text as format_text
 from .files.exchange import to_json as to_json
-from .recordings.recorded import from_csv as from_csv
+from .recordings.recorded import from_csv as from_csv, from_samples as from_samples
 from .model.builders import cool as cool, warm as warm, ramp as ramp, current as current
 from .model.builders import hold as hold, rest as rest, back as back
 from .model.builders import step as step, pulse as pulse, wave as wave

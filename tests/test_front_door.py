@@ -1,8 +1,10 @@
 """Front doors load a room when one of its names is asked for, and list each name once, for people and type checkers."""
 
 import ast
+import pydoc
 import subprocess
 import sys
+import textwrap
 from importlib import import_module
 from pathlib import Path
 
@@ -47,3 +49,14 @@ def test_the_short_names_are_there_wherever_python_starts_and_load_nothing_heavy
     )
     run = subprocess.run([sys.executable, "-c", code], cwd=ROOT / start, capture_output=True, text=True, check=True)
     assert run.stdout.splitlines() == ["[]", "True True"]
+
+
+def test_help_fits_two_screens_and_begins_with_the_eight_lines_of_the_readme() -> None:
+    import thermicon
+
+    lines = textwrap.dedent((thermicon.__doc__ or "").partition("\n\n")[2].partition("\n\nSets")[0])
+    assert len(lines.replace("\n\n", "\n").splitlines()) == 8
+    assert f"```python\n{lines}\n# →" in (ROOT / "README.md").read_text(encoding="utf-8")
+    said = pydoc.plain(pydoc.render_doc(thermicon)).splitlines()
+    assert said[6].strip() == lines.splitlines()[0]
+    assert len(said) <= 100

@@ -9,6 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
@@ -82,6 +83,7 @@ class Device:
         return f"Device({self.name!r}, {self.driven_by}, {'' if self.played else 'never '}played)"
 
     @staticmethod
+    @checked
     def load(source: str | Path) -> Device:
         """Return a shipped device by name, or a device from a `.toml` file; raises DeviceError with every fault.
 

@@ -1,16 +1,17 @@
 """Export in one call: icons, a rig, a device and a format give the files that play them, or the reasons against it."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from thermicon.icons import Icon
 from thermicon.icons.atomic import OutputError
+from thermicon.icons.files.shipped import Icons, icons_of
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.number_text import count_of
 
 from ..inputs import InputError
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from .device import Device
 from .export_folder import HOW, check_export_folder, publish
 from .formats import Format, load_format
@@ -127,9 +128,10 @@ class Export:
         return publish(self.files, Path(folder), replace, how)
 
 
+@checked
 def export(
-    icons: Icon | Iterable[Icon],
-    rig: Rig | str,
+    icons: Icons,
+    rig: AnyRig = "thenar",
     device: Device | str | None = None,
     format: Format | str = "csv",
     *,
@@ -147,7 +149,7 @@ def export(
     Parameters
     ----------
     icons
-        One icon, or those of a set, which may later be played in any order.
+        A set, its name or file, or icons, which may later be played in any order.
     rig
         The rig, or the name or file of one.
     device
@@ -188,8 +190,8 @@ def export(
     """
     form = load_format(format) if isinstance(format, str) else format
     played = device if isinstance(device, Device) else Device.load(device or form.device)
-    on = rig if isinstance(rig, Rig) else Rig.load(rig)
-    chosen = [icons] if isinstance(icons, Icon) else list(icons)
+    on = Rig.of(rig)
+    chosen = icons_of(icons)
     if not chosen:
         raise ExportError("there is no icon to export; give at least one")
     where = None if folder is None else Path(folder)

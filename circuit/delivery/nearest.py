@@ -5,9 +5,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from thermicon.icons import Icon
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.model.statements import Broken, Play, Pulse, Ramp, Repeat, Return, Statement, Step, Total, Wave
 
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError
 from ..solver.inverse import baseline_C
 from ..solver.simulate import simulate
@@ -40,7 +41,8 @@ class Nearest:
         return f"it is reached with its changes {self.smaller:.3g} times as large, in the same time"
 
 
-def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
+@checked
+def nearest_reachable(icon: Icon, rig: AnyRig = "thenar") -> Nearest | None:
     """Return the nearest cue that the rig reaches.
 
     Parameters
@@ -48,7 +50,7 @@ def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
     icon
         The cue.
     rig
-        The rig.
+        The rig, or the name or file of one.
 
     Returns
     -------
@@ -67,11 +69,12 @@ def nearest_reachable(icon: Icon, rig: Rig) -> Nearest | None:
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
     'it is reached with its changes 0.8 times as large, in the same time'
     """
-    if icon.context.control == "current" or _reached(icon, rig):
+    on = Rig.of(rig)
+    if icon.context.control == "current" or _reached(icon, on):
         return None
-    base = baseline_C(icon, rig)
-    slower = _least(lambda by: _reached(changed(icon, base, slower=by), rig), FARTHEST)
-    smaller = _least(lambda by: _reached(changed(icon, base, smaller=1.0 / by), rig), FARTHEST)
+    base = baseline_C(icon, on)
+    slower = _least(lambda by: _reached(changed(icon, base, slower=by), on), FARTHEST)
+    smaller = _least(lambda by: _reached(changed(icon, base, smaller=1.0 / by), on), FARTHEST)
     if slower is None and smaller is None:
         return None
     if smaller is None or (slower is not None and slower <= smaller):

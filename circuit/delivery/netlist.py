@@ -11,10 +11,12 @@ from importlib import resources
 
 import numpy as np
 
+from thermicon.icons.model.arguments import checked
+
 from ..inputs import InputError
 from ..program import own_version
 from ..rig.module import ZERO_C_IN_K
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from ..solver.drive import Drive
 from ..solver.network import HOT, RECORDED, Network, network_of
 from ..solver.steady import state_under_current
@@ -38,8 +40,9 @@ WRITTEN_BY_NGSPICE = ("i(vsense)", "v(plus)", *(f"v({probe})" for probe in RECOR
 """What ngspice writes besides the time: current, voltage at the module, and the RECORDED quantities."""
 
 
+@checked
 def netlist(
-    rig: Rig,
+    rig: AnyRig,
     drive: Drive,
     *,
     rest_A: float | None = None,
@@ -51,7 +54,7 @@ def netlist(
     Parameters
     ----------
     rig, drive
-        A rig with a module, and the current that it plays.
+        A rig with a module, or the name or file of one, and the current that it plays.
     rest_A
         Current in A whose steady state the run starts from (`Design.rest_A`); the drive's first current follows 1 µs
         later. None: the drive's first current.
@@ -76,6 +79,7 @@ def netlist(
     >>> [line for line in text.splitlines() if line.startswith(("Gdriver", "Rcontact"))]
     ['Gdriver 0 plus command 0 0.1', 'Rcontact cold skin 0.6']
     """
+    rig = Rig.of(rig)
     net = network_of(rig)
     names, skin = _skin(rig, net)
     end, step = float(drive.time_s[-1]), 1.0 / ROWS_HZ

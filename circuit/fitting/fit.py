@@ -1,13 +1,18 @@
 """Fit rig parameters to measured logs."""
 
+from __future__ import annotations
+
 import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+from thermicon.icons.model.arguments import checked
 
 from ..cores import quiet_blas
 from ..rig.faults import PARAMETERS
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from .identify import identified, in_series, tellable
 from .keys import CONTACT, FitError, FitKey, free_keys, possible_keys
 from .log import Log, LogError, read_log
@@ -17,6 +22,9 @@ from .problem import OFFSET_SD_K, Problem, changed_layers
 from .rig_fit import RigFit, channel_fits, reason_of, uncertainties
 from .runs import DISPLAY, Run, runs_of
 from .solve import Solution, solve
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LAYER_DIGITS = 5
 """Significant digits of the layers in the fitted rig."""
@@ -28,9 +36,10 @@ MOST_OFFSET_K = 10.0
 
 
 @quiet_blas()
+@checked
 def fit(
-    logs: Log | str | Path | Sequence[Log | str | Path],
-    rig: Rig,
+    logs: Log | str | Path | pd.DataFrame | Sequence[Log | str | Path | pd.DataFrame],
+    rig: AnyRig = "thenar",
     *,
     free: str | Sequence[str] | None = None,
     offset_K: float = OFFSET_SD_K,
@@ -41,10 +50,10 @@ def fit(
     Parameters
     ----------
     logs
-        Logs or names of files (see `read_log`). A log without a drive has a clock of its own and belongs to the log
-        before it.
+        A log or several: a `Log`, the name of its file (see `read_log`), or a table of pandas with the same columns. A
+        log without a drive has a clock of its own and belongs to the log before it.
     rig
-        The rig to begin with; what is not free stays as it is.
+        The rig to begin with, or its name or file; what is not free stays as it is.
     free
         A dotted key to fit, such as `contact.resistance_m2K_per_W`, or several; None for those that logs tell together.
     offset_K
@@ -81,7 +90,7 @@ def fit(
     """
     if not (math.isfinite(offset_K) and 0 <= offset_K <= MOST_OFFSET_K):
         raise FitError(f"an offset of {offset_K:g} K is not possible for a sensor; give 0 to {MOST_OFFSET_K:g} K")
-    read = _logs(logs)
+    rig, read = Rig.of(rig), _logs(logs)
     runs = runs_of(read, rig)
     alone = all(run.driven_by == DISPLAY for run in runs)
     notes = [note for log in read for note in log.notes] + [note for run in runs for note in run.notes]
@@ -109,8 +118,8 @@ def _told(rig: Rig, runs: tuple[Run, ...], alone: bool, offset_K: float, fixed_s
     return told
 
 
-def _logs(logs: Log | str | Path | Sequence[Log | str | Path]) -> list[Log]:
-    several = [logs] if isinstance(logs, Log | str | Path) else list(logs)
+def _logs(logs: Log | str | Path | pd.DataFrame | Sequence[Log | str | Path | pd.DataFrame]) -> list[Log]:
+    several = list(logs) if isinstance(logs, Sequence) and not isinstance(logs, str) else [logs]
     read = [log if isinstance(log, Log) else read_log(log) for log in several]
     for place, log in enumerate(read):
         for earlier in read[:place]:

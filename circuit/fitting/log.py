@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from thermicon.icons.near_words import nearest_words
 from ..arrays import Array
 from ..inputs import read_bytes, table_fault
 from .keys import FitError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DRIVES = ("current_A", "command_V")
 """What can drive a run, in the order of preference; a column behind the first that is there counts as measured."""
@@ -164,10 +168,11 @@ MISSPELT = 0.85
 """A name of a column that is so much alike a known one, and of its unit, is taken for a slip of the pen."""
 
 
-def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
+def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None = None) -> Log:
     r"""Read a measured log: a table with a line of names, its cells separated by commas, semicolons or tabs.
 
-    `columns` says what the file calls ours, such as {"display_C": "T1"}, where that does not follow from its names.
+    A table of pandas is read as the file that it would write. `columns` says what the file calls ours, such as
+    {"display_C": "T1"}, where that does not follow from its names.
     Raises LogError for a file that is not a log, with its line or column and the cure.
 
     >>> import tempfile
@@ -178,8 +183,10 @@ def read_log(path: str | Path, columns: Mapping[str, str] | None = None) -> Log:
     ...     read_log(path)
     Log('rig.csv', 30 rows, 2.9 s: current_A, display_C)
     """
-    where = Path(path)
-    data = read_bytes(where, "log", MOST_MB, LogError)
+    if isinstance(path, str | Path):
+        where, data = Path(path), read_bytes(Path(path), "log", MOST_MB, LogError)
+    else:
+        where, data = Path("table"), path.to_csv(index=False).encode()
     table = read_table(data, table_fault(where, LogError), "time_s,current_A,…", MOST_ROWS, NAMES, columns)
     wanted = [name for name in dict.fromkeys(table.header) if is_known(name)]
     absent = {name.lower(): name for name in NAMES if name not in table.header}

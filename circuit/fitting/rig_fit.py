@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
+from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..inputs import LONGEST_NAME
@@ -42,7 +43,7 @@ class ChannelFit(Beside):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RigFit:
+class RigFit(Tabled):
     """A rig fitted to logs, with the intervals in its uncertainty, and the layers of the skin that was logged.
 
     Layers keep their thickness, and what was not identified stays as it was before. `parameters` are the free keys in

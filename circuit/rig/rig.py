@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean
 
 from ..inputs import read_text
@@ -105,6 +106,12 @@ class Rig:
         return isinstance(other, Rig) and self.document == other.document
 
     @staticmethod
+    def of(rig: AnyRig) -> Rig:
+        """A rig as it is, or that of a name or file."""
+        return rig if isinstance(rig, Rig) else Rig.load(rig)
+
+    @staticmethod
+    @checked
     def load(source: str | Path) -> Rig:
         """Return a shipped rig by name, or a rig from a `.toml` file.
 
@@ -216,6 +223,10 @@ class Rig:
         """Return a new rig with changes given as `key=value` texts, as on the command line."""
         changes = read_settings(settings)
         return self.with_(**changes) if changes else self
+
+
+AnyRig = Rig | str | Path
+"""What is taken where a rig is needed: the rig, or its name or file."""
 
 
 def rig_names() -> tuple[str, ...]:

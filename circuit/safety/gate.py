@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from thermicon.icons.model.arguments import checked
+
 from ..cores import quiet_blas
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from ..rig.rules import Limits
 from ..rig.uncertainty import Uncertainty, tightened
 from ..solver.drive import Drive, DriveError
@@ -119,9 +121,10 @@ class Gate(Judged):
         }
 
 
+@checked
 def gate(
     drive: Drive,
-    rig: Rig,
+    rig: AnyRig = "thenar",
     *,
     rest_A: float | None = None,
     bridge_A: float | None = None,
@@ -139,7 +142,7 @@ def gate(
     drive
         The current that the hardware receives.
     rig
-        The rig as given; its uncertainty determines the corners.
+        The rig, or the name or file of one; its uncertainty determines the corners.
     rest_A
         Current in A held before the drive and in the pauses; None: the drive's first current.
     bridge_A
@@ -176,7 +179,7 @@ def gate(
     True
     """
     return gate_set(
-        [(drive, _rest_of(drive, rest_A, bridge_A))], rig, bridge_A=bridge_A, limits=limits, pause_s=pause_s
+        [(drive, _rest_of(drive, rest_A, bridge_A))], Rig.of(rig), bridge_A=bridge_A, limits=limits, pause_s=pause_s
     )[0]
 
 

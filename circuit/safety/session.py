@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.icons import IconSet
+from thermicon.icons.tabled import Tabled
 
 from ..inputs import InputError, read_text
 from ..rig.rules import Limits
@@ -176,7 +177,7 @@ class Play:
 
 
 @dataclass(frozen=True, slots=True)
-class Session(Judged):
+class Session(Tabled, Judged):
     """A session on a rig.
 
     Attributes

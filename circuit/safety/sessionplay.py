@@ -9,18 +9,20 @@ between the block within one run without breaks and the block from rest: both ar
 """
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from thermicon.icons import Icon
+from thermicon.icons.files.shipped import Icons, icons_of
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
 from ..cores import quiet_blas
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from ..rig.rules import Limits
 from ..solver.batch_inputs import bank_of, run_follow, run_regulate
 from ..solver.drive import Drive
@@ -177,10 +179,11 @@ class WorstCase(Judged):
     recovery_s: float | None
 
 
+@checked
 def play_session(
-    icons: Iterable[Icon],
+    icons: Icons,
     plan: SessionPlan,
-    rig: Rig,
+    rig: AnyRig = "thenar",
     *,
     tracking: str = "replay",
     limits: Limits | None = None,
@@ -191,11 +194,11 @@ def play_session(
     Parameters
     ----------
     icons
-        The icons that the plan names.
+        The icons that the plan names: a set, its name or file, or several.
     plan
         Order of play and gap.
     rig
-        The rig.
+        The rig, or the name or file of one.
     tracking
         `replay` plays the current of each icon, designed from rest, open loop, as exported drives are, and its holding
         current in the gaps; with `display` the driver follows each icon's display temperature, as a thermode does.
@@ -223,8 +226,8 @@ def play_session(
     >>> play_session(load_library("six-icons"), plan, Rig.load("thenar"))
     Session(green: 2 plays in 26 s on thenar, skin 26.92 … 34.77 °C, baseline drift -0.80 K, 0 min CEM43)
     """
-    planned = set(plan.names)
-    known = {icon.name: icon for icon in icons if icon.name in planned}
+    rig, planned = Rig.of(rig), set(plan.names)
+    known = {icon.name: icon for icon in icons_of(icons) if icon.name in planned}
     for name in plan.names:
         if name not in known:
             raise SessionError(f"the plan names {name}, which is not among the icons; {did_you_mean(name, known)}")

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermicon.icons import Icon
+from thermicon.icons.files.shipped import Icons, icons_of
+from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array, Index
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import Bank, Intervals, cut, run_follow, run_forward, run_regulate
 from .displayed import displays_on
@@ -56,11 +58,12 @@ def usual_tracking(icon: Icon) -> str:
     return "display" if icon.context.control == "display" else "replay"
 
 
+@checked
 def simulate_many(
-    icons: Sequence[Icon],
-    rigs: Sequence[Rig],
+    icons: Icons,
+    rigs: Sequence[AnyRig],
     *,
-    nominal: Rig,
+    nominal: AnyRig,
     end_s: float,
     rate_Hz: float = 100.0,
     tracking: str | None = None,
@@ -71,11 +74,11 @@ def simulate_many(
     Parameters
     ----------
     icons
-        The cues.
+        The cues: a set, its name or file, or several.
     rigs
-        The rigs, such as one for each virtual person. With a PID loop in the rig file, it is simulated.
+        The rigs, their names or files, such as one for each virtual person. A PID loop of a rig is simulated.
     nominal
-        The rig for which the currents are designed.
+        The rig for which the currents are designed, or its name or file.
     end_s
         Time in s until which every run continues.
     rate_Hz
@@ -105,22 +108,23 @@ def simulate_many(
     >>> simulate_many(tuple(load_library("six-icons"))[:2], rigs, nominal=thenar, end_s=9.0)
     Batch(2 icons on 2 rigs, 901 rows, 9 s: skin_C, cold_receptor_C, warm_receptor_C)
     """
+    icons, nominal, on = icons_of(icons), Rig.of(nominal), tuple(Rig.of(rig) for rig in rigs)
     if tracking is not None and tracking not in TRACKINGS:
         raise RigError(f"tracking {tracking!r} is not known; it is one of {', '.join(TRACKINGS)}")
-    if not rigs or not icons:
+    if not on or not icons:
         raise RigError("a batch needs at least one cue and one rig")
     if not 0 < end_s < np.inf:
         raise RigError(f"a batch cannot end at {end_s:g} s; it must be above 0")
-    if nominal.thermode is not None or any(rig.thermode is not None for rig in rigs):
+    if nominal.thermode is not None or any(rig.thermode is not None for rig in on):
         rows = rows_until(end_s, rate_Hz)
-        return _frozen(rows, probes, displays_on(icons, rigs, nominal, rows, tracking, probes))
-    if len({rig.controller is None for rig in (*rigs, nominal)}) > 1:
+        return _frozen(rows, probes, displays_on(icons, on, nominal, rows, tracking, probes))
+    if len({rig.controller is None for rig in (*on, nominal)}) > 1:
         raise RigError("rigs of one batch must all have a controller, or none")
-    if len({rig.driver.update_Hz for rig in (*rigs, nominal)}) > 1:
+    if len({rig.driver.update_Hz for rig in (*on, nominal)}) > 1:
         raise RigError("rigs of one batch must share driver.update_Hz")
     rows = rows_until(end_s, rate_Hz)
-    values = np.empty((len(probes), len(rigs), len(icons), len(rows)))
-    stage = _Stage(tuple(rigs), nominal, end_s, rows, tuple(probes), Bank.of([network_of(rig) for rig in rigs]))
+    values = np.empty((len(probes), len(on), len(icons), len(rows)))
+    stage = _Stage(on, nominal, end_s, rows, tuple(probes), Bank.of([network_of(rig) for rig in on]))
     groups: dict[tuple[str, str], list[int]] = {}
     for place, icon in enumerate(icons):
         groups.setdefault((icon.context.control, tracking or usual_tracking(icon)), []).append(place)

@@ -13,6 +13,7 @@ import numpy as np
 
 from thermicon.icons.files.measured_table import measured, missing
 from thermicon.icons.files.table import read_table
+from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
 from ..inputs import InputError, read_bytes, table_fault
@@ -107,6 +108,7 @@ class Drive:
         return np.asarray(np.interp(time_s, self.time_s, self.current_A), dtype=np.float64)
 
 
+@checked
 def read_drive(path: str | Path, hold: bool = False, columns: Mapping[str, str] | None = None) -> Drive:
     r"""Read a drive from a CSV file with the columns `time_s` and `current_A`; two currents at one time are a step.
 

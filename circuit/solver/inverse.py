@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from thermicon.icons import Icon
+from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array, Index
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from .batch_inputs import bank_of, cut, run_follow, run_forward, run_regulate
 from .drive import Drive
 from .network import network_of
@@ -65,7 +66,8 @@ def steps_at(icon: Icon, start: float) -> tuple[tuple[float, float], ...]:
     return tuple(steps)
 
 
-def design(icon: Icon, rig: Rig, end_s: float) -> Design:
+@checked
+def design(icon: Icon, rig: AnyRig, end_s: float) -> Design:
     """Return the current that plays a cue on a rig.
 
     Parameters
@@ -73,7 +75,7 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     icon
         The cue.
     rig
-        A rig with a module.
+        A rig with a module, or the name or file of one.
     end_s
         Time in s until which the current is designed; the last level is held.
 
@@ -94,6 +96,7 @@ def design(icon: Icon, rig: Rig, end_s: float) -> Design:
     >>> design(load_library("six-icons")["cooling-step"], Rig.load("thenar"), 8.0)
     Design(Drive(801 rows, 8 s, -0.477... … 1.108... A, held), rest 0.0828 A, reached)
     """
+    rig = Rig.of(rig)
     plan = design_ideal(icon, rig, end_s)
     if rig.controller is None or icon.context.control == "current":
         return plan

@@ -5,11 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from thermicon.icons import Icon
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.number_text import significant
 
 from ..arrays import Array
 from ..rig.module import ZERO_C_IN_K
-from ..rig.rig import Rig
+from ..rig.rig import AnyRig, Rig
 from ..rig.rigfile import RigError
 from .batch_inputs import FEWEST, bank_of, cut, run_forward
 from .displayed import play_display, refuse_current
@@ -42,7 +43,8 @@ def rows_until(end_s: float, rate_Hz: float) -> Array:
     return rows if end_s - rows[-1] < 1e-9 else np.append(rows, end_s)
 
 
-def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
+@checked
+def simulate(icon: Icon, rig: AnyRig = "thenar", *, rate_Hz: float = 100.0, tail_s: float = 0.0) -> Trace:
     """Simulate a cue on a rig: find the current that produces it, then run the circuit with that current.
 
     A thermode needs no current: its display follows the cue within its own limits, and the skin follows the display.
@@ -52,7 +54,7 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
     icon
         The cue.
     rig
-        The rig.
+        The rig, or the name or file of one.
     rate_Hz
         Rows of the trace per second.
     tail_s
@@ -76,6 +78,7 @@ def simulate(icon: Icon, rig: Rig, *, rate_Hz: float = 100.0, tail_s: float = 0.
     Trace('cooling-step' on thenar, 801 rows, 8 s, skin 26.92 … 32.04 °C, -0.48 … 1.11 A)
 
     """
+    rig = Rig.of(rig)
     if not (0 <= tail_s < np.inf):
         raise RigError(f"a tail of {tail_s:g} s is not possible; it must be 0 or more")
     end = duration_s(icon, rig) + tail_s
@@ -125,7 +128,10 @@ def _target(icon: Icon, rig: Rig, rows: Array) -> Array:
     return target_at(icon, baseline_C(icon, rig), rows)
 
 
-def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C: Array | None = None) -> Trace:
+@checked
+def simulate_current(
+    drive: Drive, rig: AnyRig = "thenar", *, rate_Hz: float = 100.0, start_C: Array | None = None
+) -> Trace:
     """Simulate a given drive on a rig, from the steady state of its first current to its last row.
 
     Parameters
@@ -133,7 +139,7 @@ def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C:
     drive
         The current; beyond the driver's limits it is still played, and the trace reports it.
     rig
-        A rig with a module.
+        A rig with a module, or the name or file of one.
     rate_Hz
         Rows of the trace per second.
     start_C
@@ -154,7 +160,7 @@ def simulate_current(drive: Drive, rig: Rig, *, rate_Hz: float = 100.0, start_C:
     >>> simulate_current(Drive([0, 1, 4], [0.08, 0.5, 0.5]), Rig.load("thenar"))
     Trace('drive' on thenar, 401 rows, 4 s, skin ... °C, 0.08 … 0.50 A)
     """
-    first = float(drive.current_A[0])
+    rig, first = Rig.of(rig), float(drive.current_A[0])
     try:
         state = state_under_current(network_of(rig), first) if start_C is None else start_C
     except ArithmeticError as problem:

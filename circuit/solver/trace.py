@@ -236,6 +236,10 @@ class Trace:
         columns.update({f"probe_{name}_C": values for name, values in self.probes})
         return pd.DataFrame(columns)
 
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table of `to_frame` as a CSV file, or as Parquet where the name ends in ``.parquet``."""
+        write_trace(self, path)
+
     def plot(self, ax: Axes | None = None, probes: bool = False) -> Axes:
         """Draw target, display, skin and receptor temperatures against time, optionally probes; returns the Axes."""
         from .draw import plot_temperatures

@@ -4,6 +4,7 @@ import json
 from dataclasses import fields
 from typing import Any
 
+from ..model.arguments import checked
 from ..model.context import Metadata
 from ..model.family import Family
 from ..model.format import Holes
@@ -15,6 +16,7 @@ from ..model.statements import Play, Repeat, Return, Statement
 _SAME_AS_LEFT_OUT = {"direction": "change", "cut": False}
 
 
+@checked
 def to_json(icons: IconSet) -> str:
     """Return a set as JSON text, with everything but comments.
 

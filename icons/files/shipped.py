@@ -2,7 +2,7 @@
 
 import errno
 import stat
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Literal
 
 from ..language.parse import parse
 from ..language.source import MOST_BYTES
+from ..model.arguments import checked
 from ..model.errors import whole_file
+from ..model.family import Family
+from ..model.icon import Icon
 from ..model.iconset import IconSet, UnknownIcon
 from ..model.words import nearest
 
@@ -168,6 +171,7 @@ def library_names() -> tuple[str, ...]:
     )
 
 
+@checked
 def load_library(name: str) -> IconSet:
     """Return a shipped set.
 
@@ -202,6 +206,26 @@ def load_library(name: str) -> IconSet:
     return parse(_folder().joinpath(f"{name}.cue").read_bytes(), f"{name}.cue")
 
 
+Icons = IconSet | Icon | Family | Iterable[Icon | Family] | str | Path
+"""What is taken where a set is needed: the set, its name or file, or icons."""
+
+
+def set_of(icons: Icons) -> IconSet:
+    """A set as it is, by its name or file, or of icons."""
+    if isinstance(icons, str | Path):
+        return read_cue(icons)
+    return icons if isinstance(icons, IconSet) else IconSet.of(icons)
+
+
+def icons_of(icons: Icons) -> tuple[Icon, ...]:
+    """The icons of what `set_of` takes, members of families among them; their contexts may differ."""
+    if isinstance(icons, IconSet | Family | str | Path):
+        return tuple(set_of(icons))
+    given = (icons,) if isinstance(icons, Icon) else icons
+    return tuple(icon for each in given for icon in (each if isinstance(each, Family) else (each,)))
+
+
+@checked
 def read_cue(source: str | Path) -> IconSet:
     """Return the set in a file, or a shipped set.
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
+from ..model.arguments import checked
 from ..model.format import header_lines
 from ..model.units import LONGEST_NUMBER
 from .parse import parse
@@ -13,6 +14,7 @@ _NO_BLANK_BEHIND = ("LSQB", "_DOTS", "LPAR")
 Item = tuple[str, str]
 
 
+@checked
 def format_text(text: str | bytes, file: str = "<text>") -> str:
     r"""Return a cue text in canonical layout.
 

@@ -1,5 +1,6 @@
 """Cue text in, icon set out: or everything that is wrong with it, each with a corrected line that was tried out."""
 
+from ..model.arguments import checked
 from ..model.errors import MOST_ERRORS, CueError, CueErrors
 from ..model.iconset import IconSet
 from .assemble import analyse
@@ -13,6 +14,7 @@ _LONGEST_LINE = 200
 _MOST_CURES = 4
 
 
+@checked
 def parse(text: str | bytes, file: str = "<text>") -> IconSet:
     """Return the icons of a cue text.
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from inspect import cleandoc, signature
 from typing import TYPE_CHECKING, TypeVar
 
+from .arguments import checked
 from .statements import (
     Bound,
     Current,
@@ -69,7 +70,7 @@ def _described(builder: Builder) -> Builder:
     }
     texts = [f"{title}\n{'-' * len(title)}\n{text}" for title, text in sections.items()]
     builder.__doc__ = "\n\n".join([summary, *texts])
-    return builder
+    return checked(builder)
 
 
 @_described

@@ -12,6 +12,7 @@ from importlib import resources
 from typing import Any
 
 from ..number_text import count_of
+from .arguments import InputError
 from .context import clean
 
 # Characters of a line that an error shows.
@@ -78,7 +79,7 @@ class CueError:
         return clean("\n".join(rows))
 
 
-class CueErrors(ValueError):
+class CueErrors(InputError):
     """Every error of a file, in the order of the file; the only exception of reading one.
 
     Parameters

@@ -5,8 +5,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
+from typing import Self
 
 from ..drawn import Drawn
+from .arguments import checked
 from .check import ASSUMED_BASELINE_C, Problem, problems
 from .context import Context, Metadata, name_fault
 from .corners import Corners, Quantity, corners
@@ -14,7 +16,7 @@ from .errors import CueError, CueErrors
 from .format import icon_text, statement_text
 from .motion import TOLERANCE
 from .statements import LEAVES, Play, Repeat, Statement
-from .units import exact, fault
+from .units import Control, exact, fault
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -51,6 +53,25 @@ class Icon(Drawn):
     statements: tuple[Statement, ...]
     context: Context = field(default_factory=Context)
     metadata: Metadata = field(default_factory=Metadata)
+
+    @classmethod
+    @checked
+    def of(
+        cls,
+        name: str,
+        *statements: Statement,
+        control: Control = "skin",
+        baseline_C: float | None = None,
+        site: str | None = None,
+        means: str | None = None,
+    ) -> Self:
+        """Return an icon of statements, with the control, the baseline in °C and the site that a cue file states.
+
+        >>> from thermicon.icons import back, cool
+        >>> Icon.of("dip", cool(by=4, at=2), back(at=2), control="display", baseline_C=33)
+        <Icon dip: 4 s, 29 to 33 °C, at most 2 °C/s, control display>
+        """
+        return cls(name, statements, Context(control, baseline_C, site), Metadata(means))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "statements", tuple(self.statements))

@@ -1,11 +1,14 @@
 """The icons of one file, families among them: a set that counts its members without making them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from pathlib import Path
 from typing import overload
 
+from ..atomic import complete_or_absent
 from ..drawn import Drawn
+from .arguments import InputError, checked
 from .context import Context, Metadata, name_fault, text_fault
 from .family import Family
 from .format import set_text
@@ -91,6 +94,29 @@ class IconSet(Drawn):
     context: Context
     metadata: Metadata
     entries: tuple[Icon | Family, ...]
+
+    @classmethod
+    @checked
+    def of(cls, icons: Icon | Family | Iterable[Icon | Family], name: str = "", title: str = "") -> "IconSet":
+        """Return a set of icons that have a context in common: one icon, or several in their order.
+
+        >>> from thermicon.icons import back, cool, warm
+        >>> dip, glow = Icon.of("dip", cool(by=4, at=2), back(at=2)), Icon.of("glow", warm(by=3, at=1), back(at=1))
+        >>> IconSet.of([dip, glow], "alerts")
+        <IconSet alerts: 2 icons, 4 to 6 s, control skin>
+        """
+        entries = (icons,) if isinstance(icons, Icon | Family) else tuple(icons)
+        if not entries:
+            raise InputError("a set needs at least one icon")
+        return cls(name, title, entries[0].context, Metadata(), entries)
+
+    @checked
+    def save(self, path: str | Path) -> None:
+        """Write the set as a `.cue` file, which `read_cue` reads as an equal set; an existing file is replaced."""
+        if Path(path).suffix != ".cue":
+            raise InputError(f"{path}: the name of a cue file ends in .cue; call it {Path(path).stem}.cue")
+        with complete_or_absent(Path(path)) as draft:
+            draft.write_text(str(self), encoding="utf-8", newline="\n")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "entries", tuple(self.entries))

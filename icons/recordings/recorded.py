@@ -3,7 +3,7 @@
 import math
 import re
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +13,7 @@ from ..files.measured_table import measured, missing
 from ..files.shipped import bytes_of
 from ..files.table import Table, read_table
 from ..files.units import like_units_of_time
+from ..model.arguments import InputError, checked
 from ..model.context import Context, name_fault
 from ..model.errors import CueErrors, whole_file
 from ..model.icon import Icon
@@ -38,6 +39,7 @@ _CODES = {"table": "E013", "size": "E004", "cell": "E014", "empty": "E005", "bin
           "time": "E015", "unit": "E219"}  # fmt: skip
 
 
+@checked
 def from_csv(
     path: str | Path,
     *,
@@ -89,18 +91,55 @@ def from_csv(
     ...     from_csv(path).corners().value
     (32.0, 26.0, 26.0, 32.0)
     """
-    if control not in ("display", "skin"):
-        raise ValueError(f'control must be "display" or "skin" for a recorded temperature, not {control!r}')
-    if isinstance(tolerance_K, bool) or not isinstance(tolerance_K, int | float) or not 0 < tolerance_K < math.inf:
-        what = "tolerance_K (--tolerance) must be a positive temperature difference in K"
-        raise ValueError(f"{what}, such as 0.05, not {tolerance_K!r}")
-    if name is not None and (wrong := name_fault(name)):
-        raise ValueError(f"name: {wrong}")
-    if baseline_C is not None and (found := fault(float(baseline_C), "absolute")):
-        raise ValueError(f"baseline_C: {found[1]}")
     read = read_readings(path, column, columns)
+    return _icon(read, name or _name(Path(path)), control, tolerance_K, baseline_C)
+
+
+@checked
+def from_samples(
+    time_s: Iterable[float],
+    temperature_C: Iterable[float],
+    *,
+    name: str = "recorded",
+    control: Literal["display", "skin"] = "display",
+    tolerance_K: float = 0.05,
+    baseline_C: float | None = None,
+) -> Icon:
+    """Return an icon that stays within a tolerance of every sample, as `from_csv` does for a file.
+
+    Parameters
+    ----------
+    time_s, temperature_C
+        Times in s from any start, and temperatures in °C; a time that occurs twice is a step.
+    name, control, tolerance_K, baseline_C
+        As in `from_csv`: name, what is controlled, largest deviation in K, and baseline in °C.
+
+    Returns
+    -------
+    Icon
+        The icon, with ramps and holds in place of the samples.
+
+    Examples
+    --------
+    >>> from_samples([0, 2, 4, 6, 8], [32, 26, 26.02, 25.98, 32]).corners().value
+    (32.0, 26.0, 26.0, 32.0)
+    """
+    times, levels = list(time_s), list(temperature_C)
+    if len(times) != len(levels):
+        raise InputError(f"from_samples: {len(times)} times for {len(levels)} temperatures; give as many of both")
+    rows = (f"{float(time)!r},{float(level)!r}\n" for time, level in zip(times, levels, strict=True))
+    read = _readings("samples", "".join([f"{EXAMPLE}\n", *rows]).encode(), None, None)
+    return _icon(read, name, control, tolerance_K, baseline_C)
+
+
+def _icon(read: "Readings", name: str, control: Control, tolerance_K: float, baseline_C: float | None) -> Icon:
+    if not 0 < tolerance_K < math.inf:
+        what = "tolerance_K (--tolerance) must be a positive temperature difference in K"
+        raise InputError(f"{what}, such as 0.05, not {tolerance_K!r}")
+    if baseline_C is not None and (found := fault(float(baseline_C), "absolute")):
+        raise InputError(f"baseline_C: {found[1]}")
     for note in read.notes:
-        warnings.warn(note, stacklevel=2)
+        warnings.warn(note, stacklevel=4)
     first = read.level_C[0]
     if baseline_C is not None and abs(baseline_C - first) > tolerance_K:
         what = f"the recording begins at {first:g} °C, baseline_C is {baseline_C:g} °C"
@@ -114,7 +153,7 @@ def from_csv(
         help = "give a larger tolerance (--tolerance, in Python tolerance_K), or smooth or cut the recording"
         raise whole_file("E220", read.file, str(problem), help) from None
     context = Context(CONTROL_OF.get(read.column) or control, corners[1][0])
-    return Icon(name or _name(Path(path)), tuple(_statements(*corners)), context)
+    return Icon(name, tuple(_statements(*corners)), context)
 
 
 def _statements(times: Sequence[float], levels: Sequence[float]) -> Iterator[Statement]:
@@ -161,17 +200,19 @@ def read_readings(path: str | Path, column: str | None = None, columns: Mapping[
 
     `columns` says what the file calls ours. Raises ValueError that says what is wrong with the file, and in which row.
     """
-    file = str(path)
+    most = int(MOST_MB * 1_000_000)
+    data = bytes_of(Path(path), "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
+    if data is None:
+        raise whole_file("E001", str(path), "no file has this name", "check its folder and its spelling")
+    return _readings(str(path), data, column, columns)
 
+
+def _readings(file: str, data: bytes, column: str | None, columns: Mapping[str, str] | None) -> Readings:
     def fault(kind: str, line: int | None, what: str, cure: str) -> CueErrors:
         return whole_file(_CODES[kind], f"{file}:{line}" if line else file, what, cure)
 
     own = None if column in (None, *NAMES) else column
     theirs = {**(columns or {}), **({"temperature_C": own} if own else {})}
-    most = int(MOST_MB * 1_000_000)
-    data = bytes_of(Path(path), "recording", ".csv", most, f"at most {most:,} are read; keep every tenth row")
-    if data is None:
-        raise whole_file("E001", file, "no file has this name", "check its folder and its spelling")
     table = read_table(data, fault, EXAMPLE, MOST_ROWS, NAMES, theirs)
     given = next((name for name in theirs if name in CONTROL_OF and name in table.names.renamed), column)
     chosen = _column(f"{file}:{table.line}", table, given)

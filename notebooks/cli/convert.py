@@ -82,7 +82,6 @@ def read(file: str, given: dict[str, Any]) -> IconSet:
     if not is_table(file):
         return read_set([file])
     from thermicon.icons import IconSet
-    from thermicon.icons.model.context import Metadata
     from thermicon.icons.recordings.recorded import from_csv
 
     try:
@@ -92,4 +91,4 @@ def read(file: str, given: dict[str, Any]) -> IconSet:
         fail(str(problem))
     corners = icon.corners()
     note(f"{icon.name}: {len(corners)} corners, {number(corners.duration_s, 2)} s")
-    return IconSet("", "", icon.context, Metadata(), (icon,))
+    return IconSet.of(icon)

@@ -45,6 +45,7 @@ SENTENCE = 400
 """More letters than any first sentence of a command's help has."""
 UNITS = {"S": " s", "HZ": " Hz", "J": " J", "K": " K", "POINTS": " percentage points", "PERCENT": " %"}
 """Units by the metavar of an option; others have none."""
+RENAMED = {"--norm": "--memory"}
 NUMBERS = {
     "int": "is not a whole number; write one, such as 12",
     "float": "is not a number; write digits with a decimal point and without a unit, such as 2.5",
@@ -100,10 +101,13 @@ class Commands(TyperGroup):
         except Exception as error:
             if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
                 fail(f"a path cannot be followed because its links form a circle: {str(error).partition('from ')[2]}")
+            if (option := getattr(error, "option_name", None)) in RENAMED:
+                error.message = f"{option} is called {RENAMED[option]} now"  # type: ignore[attr-defined]
+                raise
             if isinstance(error, typer.BadParameter):
                 reworded(error)
                 raise
-            if not is_ours(error):
+            if not is_ours(error) or type(error.__cause__) is ValueError:  # which may be a mistake of ours
                 raise
             fail(str(error))
         else:

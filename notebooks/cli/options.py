@@ -127,9 +127,11 @@ class ObserverOptions(Options):
     seed: Seed = 0
     tracking: Annotated[
         Literal["replay", "display", "ideal"] | None,
-        typer.Option(help="What is the same for all people: current, display or target.  [default: by control]"),
+        typer.Option(
+            help="What all people receive alike: current, display or skin temperature.  [default: by control]"
+        ),
     ] = None
-    norm: Annotated[Literal["episodes", "naming"], typer.Option(help="How icons are remembered.")] = "episodes"
+    memory: Annotated[Literal["episodes", "naming"], typer.Option(help="How icons are remembered.")] = "episodes"
     observer: Annotated[
         Path | None,
         opt(
@@ -142,7 +144,7 @@ class ObserverOptions(Options):
     @property
     def asked(self) -> dict[str, Any]:
         """Arguments of functions that predict."""
-        return {"seed": self.seed, "tracking": self.tracking, "norm": self.norm}
+        return {"seed": self.seed, "tracking": self.tracking, "memory": self.memory}
 
     def load(self, rig: Rig, needs_draws: str = "") -> ObserverModel:
         """The observer; notes on stderr say what it cannot give. `needs_draws`: what cannot be done without draws."""

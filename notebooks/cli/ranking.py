@@ -45,19 +45,19 @@ TASK = {"trials": (1.0, 1e6, ""), "gap": (0.0, 600.0, " s")}
 class RankedBy(CrowdOptions):
     """Virtual people with a form of memory, or the rules of the literature, which have no draws."""
 
-    norm: Annotated[
+    memory: Annotated[
         Literal["episodes", "naming", "rules"],
-        typer.Option("--norm", "--by", help="How icons are remembered; rules: by the literature's rules, not people."),
+        typer.Option("--memory", "--by", help="Form of memory; rules: scores by rules of thumb instead of people."),
     ] = "episodes"  # type: ignore[assignment]  # one more than other commands know
 
     @property
     def asked(self) -> dict[str, Any]:
-        """Arguments of `rank`, whose result has the rules' scores whatever the norm."""
-        return {**super().asked, "norm": "episodes"} if self.norm == "rules" else super().asked
+        """Arguments of `rank`, whose result has the rules' scores whatever is remembered."""
+        return {**super().asked, "memory": "episodes"} if self.memory == "rules" else super().asked
 
     def draws(self, model: ObserverModel) -> int:
         """How many draws to use."""
-        return 0 if self.norm == "rules" else super().draws(model)
+        return 0 if self.memory == "rules" else super().draws(model)
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def rank_command(
         check_output(json, (".json",), "JSON")
     check_separate(files, [json, report, figure.figure])
     here = read_workers(workers)
-    if crowd.norm == "rules" and (doubt or report is not None):
+    if crowd.memory == "rules" and (doubt or report is not None):
         raise usage("is about predictions for people: leave out --by rules", "--doubt" if doubt else "--report")
     if doubt:
         given = {"--task": task.task, "--report": report, "--workers": workers, "--details": details}
@@ -173,7 +173,7 @@ def rank_command(
         write_text(page(found, icons, where, command, near), report)
     if json == STDOUT:
         typer.echo(found.to_json())
-    elif crowd.norm == "rules":
+    elif crowd.memory == "rules":
         show(rules_report(found.ranking, icons.title))
     else:
         show(rank_report(found, icons.title, near, _following(found.ranking, files, rig, crowd), details))
@@ -194,11 +194,11 @@ def doubt_about(
     warn_of_site(files[0], icons, where)
     model = crowd.load(where, "what carries the doubt is read from draws of a posterior")
     draws = check_draws(model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
-    asked = {name: value for name, value in crowd.asked.items() if name != "tracking"}
     with progress_bar("doubt") as progress:
-        found = sensitivity(icons, where, draws=draws, observer=model, progress=progress, **asked)
+        found = sensitivity(icons, where, draws=draws, observer=model, progress=progress, **crowd.asked)
     if json is not None:
-        write_text(dumps(asdict(found), ensure_ascii=False, indent=1) + "\n", json)
+        keys = {"norm" if name == "memory" else name: value for name, value in asdict(found).items()}
+        write_text(dumps(keys, ensure_ascii=False, indent=1) + "\n", json)
     if figure.figure is not None:
         figure.write(found.plot().figure)
     if json != STDOUT:

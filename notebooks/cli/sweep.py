@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from thermicon.icons.model.arguments import checked
 from thermicon.perception.ranking.swept import AGE, ALL, MEASURES, SITE
 
 from ..files.outputs import TRACE_SUFFIXES, check_output, check_separate
@@ -61,9 +63,10 @@ class Measured:
     seed: int = 0
 
 
+@checked
 def sweep(
-    icons: Iterable[Icon],
-    rig: Rig,
+    icons: IconSet | Icon | Iterable[Icon] | str | Path,
+    rig: Rig | str | Path,
     key: str,
     values: Sequence[float | str],
     *,
@@ -76,9 +79,9 @@ def sweep(
     Parameters
     ----------
     icons
-        Icons to play; those that `measured` measures must be among its set.
+        Icons to play, or the name or file of a set; those that `measured` measures must be among its set.
     rig
-        Rig to change.
+        Rig to change, or its name or file.
     key
         Dotted key of the rig file, `site` or `people.age_years`.
     values
@@ -116,14 +119,16 @@ def sweep(
     """
     import pandas as pd
 
+    from thermicon.circuit import Rig
     from thermicon.circuit.safety.verdict import Summary
+    from thermicon.icons.files.shipped import icons_of
     from thermicon.perception.ranking.swept import check_conditions
 
+    rig, played = Rig.of(rig), icons_of(icons)
     for value in values if key in (SITE, AGE) else values[:1]:
         check_conditions({key: value}, rig)
     if key == AGE and measured is None:
         raise ValueError(f"{AGE} changes what people perceive only; say what to measure, such as correct")
-    played: list[Icon] = list(icons)
     rows: list[dict[str, Any]] = []
     for value in values:
         runs = [{"icon": icon.name, key: value, **_run(icon, rig, {key: value}, tail_s)} for icon in played]

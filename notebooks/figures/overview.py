@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.circuit.solver.trace import Trace
+from thermicon.icons.model.arguments import checked
+
+from .set_figures import set_figure
 from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, on_one_clock
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from thermicon.circuit import Trace
-    from thermicon.perception import Percept
+    from thermicon.perception import Percept, Ranking
 
     from ..timeline.scene import Scene
 
@@ -26,13 +29,14 @@ WIDEST, MOST_LINES = 110, 6
 """Letters of a line, and lines, of what the figure of a scene says."""
 
 
-def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
-    """Draw one icon on one clock: temperatures, heat flow, current and, with a percept, sensation.
+@checked
+def overview(trace: Trace | Ranking, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
+    """Draw one icon on one clock (temperatures, heat flow, current, with a percept sensation), or a ranking.
 
     Parameters
     ----------
     trace
-        The run.
+        The run, or a ranking, of which distances and confusions are drawn side by side.
     percept
         What is felt of it; None: no panel of sensation.
     rig_changes
@@ -53,6 +57,8 @@ def overview(trace: Trace, percept: Percept | None = None, rig_changes: Sequence
     """
     from matplotlib.figure import Figure
 
+    if not isinstance(trace, Trace):
+        return set_figure(trace)
     panels = [_temperatures, _heat_flow, *([_current] if trace.has_current else [])]
     figure = Figure(figsize=(8.0, 8.4 if percept is not None else 6.4), layout="constrained")
     count = len(panels) + (percept is not None)

@@ -73,7 +73,7 @@ def crowd_text(result: Mapping[str, Any]) -> str:
 
 def caveat(result: Mapping[str, Any]) -> str:
     """Return the sentences that state what the numbers rest on and what they are not."""
-    norm = "" if result["norm"] == "episodes" else f", {result['norm']} norm"
+    norm = "" if result["norm"] == "episodes" else f", memory: {result['norm']}"
     gap_s = result["task"]["gap_s"]
     gap = "" if gap_s is None else f", {gap_s:g} s between icons"
     return (
@@ -113,7 +113,7 @@ def _range(result: Mapping[str, Any], interval: str) -> str:
 
 
 def norm_points(result: Mapping[str, Any]) -> Iterator[str]:
-    """Yield whether the order would change with another norm of memory; nothing for one icon.
+    """Yield whether the order would change with the other form of memory; nothing for one icon.
 
     >>> whole = {"norm_sensitivity": {"naming": 0.7}, "norm_changes": {"naming": [["a", "b"], ["a", "c"]]}}
     >>> list(norm_points({"pairs": [{}], "set": whole}))

@@ -194,7 +194,7 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
         Text(
             "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that "
             "shares need not add up to 100 %. Beside them the proportion correct expected at both ends of the "
-            f"interval. {found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, "
-            f"{found.norm} norm): contact and outermost layer of the skin vary too, unlike in the intervals of rank."
+            f"interval. {found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, memory: "
+            f"{found.memory}): contact and outermost layer of the skin vary too, unlike in the intervals of rank."
         ),
     ]

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from thermicon.circuit.records import Table
+from thermicon.icons.model.arguments import checked
 
 from ..identification.laboratory import DRAWS
 from ..observer.channels import VARIABLES, Variable
@@ -116,6 +117,7 @@ class ValidationReport:
         return f"ValidationReport({len(self.sections)} targets; hold: {said}; {self.draws} draws, {self.people} people)"
 
 
+@checked
 def validate(
     *,
     people: int = PEOPLE,

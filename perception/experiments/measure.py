@@ -10,9 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 import numpy as np
+
+from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
 from ..kernels.parallel import in_order
@@ -24,9 +27,6 @@ from ..observer.mechanisms.site import on_forearm
 from ..observer.observer import Observer
 from .laboratory import PEOPLE, SEED, Laboratory
 from .tasks import UNSTATED, Played, Ramp, yes_no_logs
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
 
 Kind = Literal["threshold", "reaction_time", "rating", "wrong_quality"]
 METHODS: dict[Kind, tuple[str, ...]] = {
@@ -215,11 +215,21 @@ def misnamed_of(laboratory: Laboratory, setting: Setting, condition: Condition) 
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """What new laboratories would measure under a condition: `value` with its 95 % interval `low` to `high`.
+    """What new laboratories would measure under a condition; medians over laboratories.
 
-    `value` is the geometric mean over people in the unit of the condition, `between` the SD of its natural log between
-    people, `within` that of one trial of the median person; all are medians over laboratories. Of wrong qualities they
-    are mean and SDs of the share itself.
+    Attributes
+    ----------
+    condition
+        What is measured.
+    value, low, high
+        Geometric mean over people in the unit of the condition, and its 95 % interval.
+    between, within
+        SD of the natural log of a value between people, and of one trial of the median person. Of wrong qualities they,
+        like `value`, are of the share itself.
+
+    See Also
+    --------
+    measure : Predicts it.
     """
 
     condition: Condition
@@ -235,8 +245,14 @@ class Measurement:
         return f"Measurement({self.condition.label}: {span}, SD between people {self.between:.2f}{log})"
 
 
+@checked
 def measure(
-    condition: Condition, rig: Rig, *, draws: int = DRAWS, seed: int = 0, posterior: PosteriorDraws | None = None
+    condition: Condition,
+    rig: AnyRig = "thenar",
+    *,
+    draws: int = DRAWS,
+    seed: int = 0,
+    posterior: PosteriorDraws | None = None,
 ) -> Measurement:
     """Predict what a laboratory that nobody knows would measure of young people.
 
@@ -245,7 +261,7 @@ def measure(
     condition
         What is measured, and with which ramp.
     rig
-        Its site, contact and area count; the display is taken to follow the ramp.
+        The rig, or its name or file: site, contact and area count; the display is taken to follow the ramp.
     draws
         Laboratories, each with constants of another draw of the posterior and an offset of its own.
     seed
@@ -280,6 +296,7 @@ def measure(
     """
     if draws < LEAST_DRAWS:
         raise ValueError(f"an interval needs at least {LEAST_DRAWS} laboratories, not {draws}")
+    rig = Rig.of(rig)
     setting, known = Setting.of(rig), posterior or PosteriorDraws.load()
     chosen = np.linspace(0, len(known) - 1, draws).round().astype(np.int64).tolist()
     standard = np.random.default_rng(seed).standard_normal((draws, len(CHANNELS)))

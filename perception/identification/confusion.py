@@ -18,6 +18,8 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermicon.icons.model.arguments import checked
+
 from ..arrays import Array
 from ..kernels.parallel import over_rows
 from ..observer.observer import Observer
@@ -63,6 +65,7 @@ class Confusion:
         return normalised(self.probability.mean(axis=0))
 
 
+@checked
 def confuse(
     d_prime: ArrayLike,
     *,
@@ -109,9 +112,9 @@ def confuse(
     """
     distances = np.asarray(d_prime, dtype=np.float64)
     distances = distances[None] if distances.ndim == 2 else distances
-    people, icons = distances.shape[0], distances.shape[-1]
-    if distances.ndim != 3 or distances.shape[1] != icons or not icons:
+    if distances.ndim != 3 or distances.shape[1] != distances.shape[2] or not distances.shape[2]:
         raise ValueError(f"d_prime must have shape (people, icons, icons), not {np.shape(d_prime)}")
+    people, icons = distances.shape[:2]
     if not np.isfinite(distances).all():
         raise ValueError("d_prime must be finite: a pair without a distance cannot be named")
     if samples < 1:

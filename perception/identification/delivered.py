@@ -16,7 +16,7 @@ import numpy as np
 from thermicon.circuit.delivery.delivered_drive import loss_limit
 
 from ..arrays import Array
-from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm, check_norm
+from ..observer.channels import CHANNELS, USUAL_NORM, Channel, Norm
 from ..observer.observer import Observer
 from ..observer.people import draw_people
 from ..sensation.features import receptor_C
@@ -104,7 +104,7 @@ def judge_delivered(
     designed: Sequence[Trace],
     delivered: Sequence[Trace],
     observer: Observer | None = None,
-    norm: str = USUAL_NORM,
+    norm: Norm = USUAL_NORM,
 ) -> tuple[PerceivedChange, ...]:
     """Compare designed and delivered icons of a set for a nominal person, or another observer.
 
@@ -118,9 +118,9 @@ def judge_delivered(
     >>> judge_delivered(["cooling-step", "warming-step"], traces, traces)[0].losses()
     ()
     """
-    person, chosen = Observer.load() if observer is None else observer, check_norm(norm)
+    person = Observer.load() if observer is None else observer
     percepts = [[perceive(trace, person) for trace in traces] for traces in (designed, delivered)]
-    before, after = (_d_primes(each, names, person, chosen) for each in percepts)
+    before, after = (_d_primes(each, names, person, norm) for each in percepts)
     return tuple(
         PerceivedChange(
             name,

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from thermicon.icons.model.arguments import InputError
+
 from ..arrays import Array
 from ..kernels.parallel import over_rows
 from ..observer.channels import CHANNELS, Channel, Norm
@@ -23,7 +25,7 @@ PARTS = ("direction", "intensity", "rate", "duration", "pause")
 """Parts of a distance in the order of the kernel: episodes of one icon alone, and the features of shared ones."""
 
 
-class EpisodesError(ValueError):
+class EpisodesError(InputError):
     """An icon that is felt as more episodes than are compared from memory."""
 
     def __init__(self, icon: str, felt: int, most: int) -> None:

@@ -7,7 +7,12 @@ Published information is the plug-in estimate of a few dozen trials, which is bi
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.icons.model.arguments import InputError, checked
+
 from ..arrays import Array
+
+ROUNDED = 1e-3
+"""Rows may miss 1 by this much, as proportions of three decimals do."""
 
 
 def proportion_correct(confusion: ArrayLike) -> Array:
@@ -20,6 +25,7 @@ def proportion_correct(confusion: ArrayLike) -> Array:
     return found
 
 
+@checked
 def information_bits(confusion: ArrayLike) -> Array:
     """Compute the information from icon to response in bits, with every icon presented equally often.
 
@@ -33,13 +39,28 @@ def information_bits(confusion: ArrayLike) -> Array:
     ndarray
         Information (...,) in bits, 0 to log2 m.
 
+    Raises
+    ------
+    InputError
+        For another shape, negative cells, and rows that do not sum to 1, such as counts.
+
     Examples
     --------
     >>> import numpy as np
-    >>> round(float(information_bits(np.eye(6))), 3)
-    2.585
+    >>> counts = np.array([[8, 2, 0], [1, 9, 0], [0, 0, 10]])
+    >>> round(float(information_bits(counts / counts.sum(axis=1, keepdims=True))), 3)
+    1.183
     """
-    joint = np.asarray(confusion, dtype=np.float64) / np.shape(confusion)[-1]
+    given = np.asarray(confusion, dtype=np.float64)
+    if given.ndim < 2 or given.shape[-1] != given.shape[-2]:
+        raise InputError(f"information_bits: one row and one column for each icon are needed, not shape {given.shape}")
+    worst = float(given.sum(axis=-1).flat[np.abs(given.sum(axis=-1) - 1.0).argmax()])
+    if not (given.min() >= 0.0 and abs(worst - 1.0) <= ROUNDED):
+        what = f"a row sums to {worst:g}" if given.min() >= 0.0 else f"a cell is {given.min():g}"
+        raise InputError(
+            f"information_bits: {what}; rows of probabilities sum to 1: divide each row of counts by its sum"
+        )
+    joint = given / given.shape[-1]
     return np.maximum(_mutual_information(joint), 0.0)
 
 

@@ -15,14 +15,6 @@ NORMS: tuple[Norm, ...] = get_args(Norm)
 USUAL_NORM: Norm = "episodes"
 
 
-def check_norm(norm: str) -> Norm:
-    """The norm itself, or an error that lists the norms there are."""
-    for known in NORMS:
-        if norm == known:
-            return known
-    raise ValueError(f"there is no norm {norm!r}: choose one of {', '.join(NORMS)}")
-
-
 def sign_of(channel: Channel) -> float:
     """Direction that a channel answers to: −1 cooling, +1 warming."""
     return -1.0 if channel == "cold" else 1.0

@@ -18,7 +18,8 @@ import numpy as np
 from thermicon.circuit.records import Table
 from thermicon.icons.near_words import did_you_mean
 
-from ..arrays import Array, own_arrays
+from ..arrays import Array
+from ..kernels.parallel import own_arrays
 from .channels import CHANNELS, Variable, check_variable
 from .constants import BETWEEN_LABORATORIES, name_of
 from .draws_file import DrawsHeader, read_draws, shipped_file

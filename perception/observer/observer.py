@@ -22,7 +22,6 @@ from .channels import (
     Channel,
     Norm,
     Variable,
-    check_norm,
     check_variable,
     source_of,
 )
@@ -44,7 +43,7 @@ from .mechanisms.spreads import Spreads
 from .mechanisms.summation import Summation
 from .mechanisms.transducer import Transducer
 
-__all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "check_norm", "load_thresholds"]
+__all__ = ["CHANNELS", "NORMS", "Channel", "Norm", "Observer", "load_thresholds"]
 DATA = Path(__file__).parents[1] / "data"
 CURE = (
     f"begin with a copy of the shipped file, {DATA / 'observer.toml'}, and change numbers there; or infer all of them "

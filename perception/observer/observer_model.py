@@ -10,13 +10,15 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Self
+from typing import Literal, Self, TypedDict, Unpack
 
 import numpy as np
 
+from thermicon.circuit.inputs import InputError
 from thermicon.circuit.records import RecordError, Table
+from thermicon.icons.model.arguments import checked
 
-from .channels import CHANNELS, VARIABLES
+from .channels import CHANNELS, USUAL_NORM, VARIABLES, Norm
 from .draws import PosteriorDraws
 from .observer import DATA, Observer, read_records, variant_records
 from .people import People, draw_people
@@ -115,3 +117,75 @@ class ObserverModel:
     def __repr__(self) -> str:
         draws = "no posterior draws" if self.posterior is None else f"{len(self.posterior)} posterior draws"
         return f"ObserverModel({self.name}, {draws})"
+
+
+Tracking = Literal["replay", "display", "ideal"]
+AnyObserver = ObserverModel | Path | str
+
+
+class CrowdWords(TypedDict, total=False):
+    """The words of a `Crowd` as keywords of a function."""
+
+    people: int
+    seed: int
+    tracking: Tracking | None
+    memory: Norm
+    observer: AnyObserver | None
+
+
+@checked
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """Who feels icons and remembers them: what `rank` and its kin take as `crowd`, or each word of it by its name.
+
+    Attributes
+    ----------
+    people
+        Number of virtual people; `plan` and `observed` have the participants of every laboratory instead.
+    seed
+        What they and all noise are drawn from.
+    tracking
+        What is the same for all of them: `replay` (the current), `display` (the temperature of the display) or `ideal`
+        (that of the skin); None: what suits the control of each icon.
+    memory
+        How icons are remembered: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
+        directly).
+    observer
+        Another observer with its posterior, or the file of one; None: the shipped one. One without draws gives no
+        intervals for a new laboratory.
+
+    Raises
+    ------
+    InputError
+        For fewer than one person, a negative seed, and words that there are not.
+
+    Examples
+    --------
+    >>> Crowd(people=50).but(seed=3)
+    Crowd(people=50, seed=3, tracking=None, memory='episodes', observer=None)
+    """
+
+    people: int = 200
+    seed: int = 0
+    tracking: Tracking | None = None
+    memory: Norm = USUAL_NORM
+    observer: AnyObserver | None = None
+
+    def __post_init__(self) -> None:
+        if self.people < 1:
+            raise InputError(f"at least one person is needed, not {self.people}")
+        if self.seed < 0:
+            raise InputError(f"a seed is 0 or more, not {self.seed}")
+
+    def but(self, **words: Unpack[CrowdWords]) -> Crowd:
+        """The same crowd with some words changed."""
+        return replace(self, **words)
+
+    @property
+    def model(self) -> ObserverModel:
+        """The observer with its people and its posterior."""
+        return ObserverModel.of(self.observer)
+
+
+EVERYBODY = Crowd()
+"""Who feels icons unless anything else is asked for."""

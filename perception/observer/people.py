@@ -14,6 +14,7 @@ import numpy as np
 
 from thermicon.circuit.records import Record
 from thermicon.circuit.rig.skin import layer_spreads
+from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
 from .channels import CHANNELS, Channel
@@ -103,6 +104,7 @@ def _as_met(rig: Rig, contact: float, layer: float, depths_m: Both[float] | None
     return rig.with_(**keys)
 
 
+@checked
 def draw_people(
     n: int,
     seed: int = 0,

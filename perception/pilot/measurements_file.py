@@ -9,21 +9,21 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import numpy as np
 
 from thermicon.circuit.inputs import quoted
+from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.files.table import as_number
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import nearest_words
 
-from ..arrays import Array, own_arrays
+from ..arrays import Array
 from ..experiments.measure import ADAPTIVE, METHODS, UNITS, Condition, Kind
+from ..kernels.parallel import own_arrays
 from ..observer.channels import CHANNELS, Channel
 from .trials_file import TrialsError, check_labels, label, require, table_in
-
-if TYPE_CHECKING:
-    from thermicon.circuit import Rig
 
 COLUMNS = ("participant", "kind", "channel", "value", "unit")
 OPTIONAL = ("method", "size_K", "rate_K_per_s", "hold_s", "baseline_C", "standard_error", "trials")
@@ -123,13 +123,32 @@ def is_measurements(path: str | Path, columns: Mapping[str, str] | None = None) 
     return "presented" not in table.header and any(mark in table.header for mark in ("kind", "value"))
 
 
-def read_measurements(path: str | Path, rig: Rig, columns: Mapping[str, str] | None = None) -> Measurements:
+@checked
+def read_measurements(
+    path: str | Path, rig: AnyRig = "thenar", columns: Mapping[str, str] | None = None
+) -> Measurements:
     """Read thresholds, reaction times and ratings of participants; a `TrialsError` says what is wrong, and where.
 
     A CSV file has the columns participant, kind, channel, value, unit and, where they apply, method, size_K,
     rate_K_per_s, hold_s, baseline_C, standard_error and trials. The resting skin of the rig, which the values were
     measured on, is the baseline where the table names none. Participants and conditions are in the order of the file.
 
+    Parameters
+    ----------
+    path
+        The file.
+    rig
+        The rig that the values were measured on, or its name or file.
+    columns
+        What the file calls ours, such as ``{"value": "threshold"}``.
+
+    Returns
+    -------
+    Measurements
+        Values of every participant and condition.
+
+    Examples
+    --------
     >>> import pathlib, tempfile
     >>> from thermicon.circuit import Rig
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -138,7 +157,7 @@ def read_measurements(path: str | Path, rig: Rig, columns: Mapping[str, str] | N
     ...     read_measurements(path, Rig.load("thenar"))
     Measurements(1 participant, 1 value, 1 condition)
     """
-    file = Path(path)
+    file, rig = Path(path), Rig.of(rig)
     table, digest = table_in(file, COLUMNS, EXAMPLE, WHAT, columns)
     require(file, table, COLUMNS, EXAMPLE)
     _check_columns(file, table.header)

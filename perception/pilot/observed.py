@@ -6,17 +6,21 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
 
 import numpy as np
 
 from thermicon.circuit.program import own_version
+from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.files.shipped import Icons, set_of
+from thermicon.icons.model.arguments import InputError, checked
+from thermicon.icons.tabled import Tabled
 
+from ..drawn import Drawn
 from ..experiments.measure import Setting
 from ..kernels.parallel import Progress, step_counter
-from ..observer.channels import USUAL_NORM, check_norm
 from ..observer.draws import PosteriorDraws
-from ..observer.observer_model import ObserverModel
+from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from .conditioning import Answered, Conditioned, Measured, condition
 from .laboratory_file import laboratory_draws, laboratory_texts
 from .measurements_file import Measurements
@@ -26,7 +30,8 @@ from .states import LaboratoryPrior
 from .trials import Trials
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
+    import pandas as pd
+
     from thermicon.icons import IconSet
 
 DRAWS, LEAST_DRAWS = 1000, 20
@@ -35,7 +40,7 @@ F = TypeVar("F", Fit, MeasurementFit)
 
 
 @dataclass(frozen=True, slots=True)
-class Observed(Generic[D, F]):
+class Observed(Drawn, Tabled, Generic[D, F]):
     """What participants answered or what was measured, how it fits the prediction, and what it makes of the prediction.
 
     Attributes
@@ -64,7 +69,7 @@ class Observed(Generic[D, F]):
     played: Stage
     rig: str
     rig_changes: tuple[str, ...]
-    norm: str
+    memory: str
     seed: int
     version: str
 
@@ -74,7 +79,7 @@ class Observed(Generic[D, F]):
         found = self.conditioned
         how = "weights" if not found.rounds else f"{found.rounds} rounds of fresh laboratories"
         return (
-            *self.data.provenance(f"on {self._where}, {self.norm} norm"),
+            *self.data.provenance(f"on {self._where}, memory: {self.memory}"),
             f"effective draws: {found.effective:.0f} of {len(found.before)}, by {how}",
             f"seed of the laboratories: {self.seed}",
         )
@@ -100,7 +105,7 @@ class Observed(Generic[D, F]):
             "version": self.version,
             "rig": self.rig,
             "rig_changes": list(self.rig_changes),
-            "norm": self.norm,
+            "norm": self.memory,
             "seed": self.seed,
             **self.data.to_dict(),
             "fit_before": _plain(self.fit),
@@ -113,6 +118,13 @@ class Observed(Generic[D, F]):
             ],
             "constants": [asdict(each) for each in self.constants],
         }
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row for each set before the data were seen, and one after."""
+        import pandas as pd
+
+        rows = [row for each in self.predictions for row in (each.before.row("before"), each.after.row("after"))]
+        return pd.DataFrame(rows)
 
     def to_json(self) -> str:
         """Every number as JSON text."""
@@ -133,18 +145,17 @@ def _plain(fit: Fit | MeasurementFit) -> dict[str, Any]:
     return own
 
 
+@checked
 def observed(
     trials: Trials | Measurements,
-    icons: IconSet,
-    rig: Rig,
+    icons: Icons,
+    rig: AnyRig = "thenar",
     *,
-    others: Sequence[IconSet] = (),
+    crowd: Crowd = EVERYBODY,
+    others: Sequence[IconSet | str | Path] = (),
     draws: int = DRAWS,
-    seed: int = 0,
-    norm: str = USUAL_NORM,
-    tracking: str | None = None,
-    observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
+    **words: Unpack[CrowdWords],
 ) -> Observed[Any, Any]:
     """Compare answers or measurements with their prediction, and condition the prediction on them.
 
@@ -156,19 +167,17 @@ def observed(
     icons
         The set whose prediction is wanted; its icons were all the answers that there were.
     rig
-        The rig that plays it, and on which the answers were given or the values measured.
+        The rig, or its name or file, that plays it, and on which the answers were given or the values measured.
+    crowd
+        Who feels and remembers the icons.
     others
         Other sets whose prediction is wanted for the same laboratory.
     draws
         Draws of the posterior, each with a laboratory around it.
-    seed
-        Seed of the laboratories and their people.
-    norm, tracking
-        As in `rank`.
-    observer
-        A table of posterior draws, or a model that has one (None: the shipped draws).
     progress
         Called with (laboratories simulated, laboratories in all; the second may grow).
+    **words
+        Single words of the crowd, such as ``people=50``.
 
     Returns
     -------
@@ -178,7 +187,7 @@ def observed(
     Raises
     ------
     ValueError
-        For fewer than 20 draws, an observer without draws, an unknown norm, a set of fewer than 2 or more than 64
+        For fewer than 20 draws, an observer without draws, a set of fewer than 2 or more than 64
         icons, for answers to another set, and for measurements on a rig at a site whose skin is not known.
 
     Examples
@@ -191,16 +200,19 @@ def observed(
     >>> len(found.data.each), found.data.pooled.trials
     (2, 24)
     """
-    names = tuple(icon.name for icon in icons)
+    if "people" in words:
+        raise InputError("observed: people are the participants; leave it out")
+    icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
+    names, seed = tuple(icon.name for icon in icons), crowd.seed
     if isinstance(trials, Trials) and trials.icons != names:
         raise ValueError(f"the answers are to other icons than those of the set ({', '.join(names[:6])})")
     if draws < LEAST_DRAWS:
         raise ValueError(f"an interval needs at least {LEAST_DRAWS} draws, not {draws}")
-    prior = LaboratoryPrior.of(observer, check_norm(norm))
-    number = laboratories_for(max(len(names), *(len(list(other)) for other in others), 2), draws)
+    prior, further = LaboratoryPrior.of(crowd.observer, crowd.memory), [set_of(each) for each in others]
+    number = laboratories_for(max(len(names), *(len(list(other)) for other in further), 2), draws)
     before, kept = prior.first(number, seed), max(number // 2, 2)
     step = step_counter(progress, (1 + len(others)) * (number + kept))
-    main = stage(icons, rig, prior, seed=seed, tracking=tracking)
+    main = stage(icons, rig, prior, seed=seed, tracking=crowd.tracking)
     data: Any = Answered(trials, main) if isinstance(trials, Trials) else Measured(trials, prior, Setting.of(rig))
     found: Conditioned = condition(data, before, seed=seed, kept=kept, step=step)
 
@@ -208,14 +220,14 @@ def observed(
         return played.confusions(before, step), played.confusions(found.after, step)
 
     pairs = [(found.simulated, found.simulated_after) if isinstance(trials, Trials) else both(main)]
-    pairs += [both(stage(other, rig, prior, seed=seed, tracking=tracking)) for other in others]
+    pairs += [both(stage(other, rig, prior, seed=seed, tracking=crowd.tracking)) for other in further]
     return Observed(
         data=data,
         fit=data.compare(found.simulated, seed),
         fit_after=data.compare(found.simulated_after, seed),
         predictions=tuple(
             ChangedPrediction(*(SetPrediction.of(each.title, one) for one in pair))
-            for each, pair in zip((icons, *others), pairs, strict=True)
+            for each, pair in zip((icons, *further), pairs, strict=True)
         ),
         constants=changed(
             prior.names, prior.values(before), prior.values(found.after), found.effective_after, prior.units
@@ -226,7 +238,7 @@ def observed(
         played=main,
         rig=rig.name,
         rig_changes=tuple(rig.changes),
-        norm=norm,
+        memory=crowd.memory,
         seed=seed,
         version=own_version(),
     )

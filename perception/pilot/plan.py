@@ -10,26 +10,27 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermicon.circuit.program import own_version
+from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.files.shipped import Icons, set_of
+from thermicon.icons.model.arguments import InputError, checked
+from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..kernels.parallel import Progress, step_counter
-from ..observer.channels import USUAL_NORM, check_norm
-from ..observer.observer_model import ObserverModel
+from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from .observed import LEAST_DRAWS
 from .playing import Confusions, laboratories_for, stage
 from .prediction import SetPrediction, Three, three
 from .states import LaboratoryPrior
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
+    import pandas as pd
 
 DRAWS, EXPERIMENTS = 300, 600
 PARTICIPANTS, TRIALS = (4, 8, 12, 16, 24, 32, 48), (12, 24, 48, 96)
@@ -61,7 +62,7 @@ class Design:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class Plan(Tabled):
     """Designs that were simulated, and the one to take.
 
     Attributes
@@ -82,7 +83,7 @@ class Plan:
     wanted: float
     rig: str
     rig_changes: tuple[str, ...]
-    norm: str
+    memory: str
     seed: int
     draws: int
     version: str
@@ -104,7 +105,7 @@ class Plan:
             "version": self.version,
             "rig": self.rig,
             "rig_changes": list(self.rig_changes),
-            "norm": self.norm,
+            "norm": self.memory,
             "seed": self.seed,
             "draws": self.draws,
             "sets": [asdict(each) for each in self.predictions],
@@ -114,6 +115,12 @@ class Plan:
             "cheapest": None if cheapest is None else cheapest.to_dict(),
         }
 
+    def to_frame(self) -> pd.DataFrame:
+        """One row per design."""
+        import pandas as pd
+
+        return pd.DataFrame([{**each.to_dict(), "enough": self.enough(each)} for each in self.designs])
+
     def to_json(self) -> str:
         """Every number as JSON text."""
         return json.dumps(self.to_dict(), ensure_ascii=False, indent=1)
@@ -122,20 +129,19 @@ class Plan:
         return f"Plan({len(self.designs)} designs, the cheapest {self.cheapest})"
 
 
+@checked
 def plan(
-    icons: IconSet,
-    rig: Rig,
-    other: IconSet | None = None,
+    icons: Icons,
+    rig: AnyRig = "thenar",
+    other: Icons | None = None,
     *,
+    crowd: Crowd = EVERYBODY,
     participants: Sequence[int] = PARTICIPANTS,
     trials: Sequence[int] = TRIALS,
     wanted: float | None = None,
     draws: int = DRAWS,
-    seed: int = 0,
-    norm: str = USUAL_NORM,
-    tracking: str | None = None,
-    observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
+    **words: Unpack[CrowdWords],
 ) -> Plan:
     """Simulate experiments of several sizes.
 
@@ -145,20 +151,18 @@ def plan(
         As in `rank`.
     other
         A second set, to be distinguished from the first by its proportion correct.
+    crowd
+        Who feels and remembers the icons; its observer must have draws of the posterior, as `observed` keeps them.
     participants, trials
         Sizes to try: participants, and trials of each participant with each set.
     wanted
         Power (two sets, None: 0.8), or width of the 95 % interval of the proportion correct (one set, None: 0.1).
     draws
         Draws of the posterior, each with a laboratory around it.
-    seed
-        Seed of all chance.
-    norm, tracking
-        As in `rank`.
-    observer
-        A table of posterior draws, such as `observed` keeps, or a model that has one (None: the shipped draws).
     progress
         Called with (steps done, steps in all).
+    **words
+        Single words of the crowd, such as ``people=50``.
 
     Returns
     -------
@@ -179,13 +183,17 @@ def plan(
     True
     """
     _check(participants, trials, wanted, draws)
-    sets = [icons] if other is None else [icons, other]
-    prior = LaboratoryPrior.of(observer, check_norm(norm))
+    if "people" in words:
+        raise InputError("plan: people are the participants; leave it out")
+    rig, crowd = Rig.of(rig), crowd.but(**words)
+    sets, seed = [set_of(each) for each in (icons, other) if each is not None], crowd.seed
+    prior = LaboratoryPrior.of(crowd.observer, crowd.memory)
     number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
     laboratories = prior.first(number, seed)
     total = number * len(sets) + len(participants) * len(trials)
     step = step_counter(progress, total)
-    played = [stage(each, rig, prior, seed=seed, tracking=tracking).confusions(laboratories, step) for each in sets]
+    stages = [stage(each, rig, prior, seed=seed, tracking=crowd.tracking) for each in sets]
+    played = [each.confusions(laboratories, step) for each in stages]
     apart = None if other is None else played[0].correct - played[1].correct
     designs = []
     for k, people in enumerate(participants):
@@ -199,7 +207,7 @@ def plan(
         wanted=wanted if wanted is not None else (WIDTH if other is None else POWER),
         rig=rig.name,
         rig_changes=tuple(rig.changes),
-        norm=norm,
+        memory=crowd.memory,
         seed=seed,
         draws=number,
         version=own_version(),

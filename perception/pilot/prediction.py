@@ -48,6 +48,16 @@ class SetPrediction:
         """Summarise the laboratories of a sample."""
         return cls(title, int(played.probability.shape[1]), three(played.correct), three(played.bits))
 
+    def row(self, data: str) -> dict[str, str | float]:
+        """A row of a table, for `data` of before or after."""
+        scores = zip(
+            ("proportion_correct", "information_bits"), (self.proportion_correct, self.information_bits), strict=True
+        )
+        ends = {
+            f"{name}{end}": one for name, score in scores for end, one in zip(("", "_low", "_high"), score, strict=True)
+        }
+        return {"set": self.title, "data": data, **ends}
+
 
 @dataclass(frozen=True, slots=True)
 class ChangedPrediction:

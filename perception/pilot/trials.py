@@ -13,17 +13,28 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..arrays import Array, own_arrays
+from ..arrays import Array
+from ..kernels.parallel import own_arrays
 
 
 @dataclass(frozen=True, slots=True)
 class Trials:
     """Answers of some participants to the icons of a set.
 
-    `icons` are the names of all that could be answered, in the order of the set; `counts` (participants, icons
-    presented, icons answered). `source` and `digest` are the name of the file and the first 16 digits of its SHA-256.
-    `unanswered` (participants, icons presented) are trials without an answer, `passed` rows of the file
-    with neither an icon nor an answer. `grouped` says that the counts of a group are given as those of one participant.
+    Attributes
+    ----------
+    icons, participants
+        Names of all icons that could be answered, in the order of the set, and of the participants.
+    counts
+        How often each answer was given (participants, icons presented, icons answered).
+    source, digest
+        Name of the file, and the first 16 digits of its SHA-256.
+    unanswered
+        Trials without an answer (participants, icons presented).
+    passed
+        Rows of the file with neither an icon nor an answer.
+    grouped
+        Whether the counts of a group are given as those of one participant.
 
     Examples
     --------

@@ -10,7 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from thermicon.circuit.inputs import InputError, line_fault, quoted, read_bytes, table_fault
+from thermicon.icons import IconSet
+from thermicon.icons.files.shipped import set_of
 from thermicon.icons.files.table import NOTHINGS, Table, as_number, read_table
+from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from ..arrays import Array
@@ -35,16 +38,39 @@ class TrialsError(InputError):
     """A table of answers cannot be used; the message says what, where and the cure."""
 
 
-def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, str] | None = None) -> Trials:
+@checked
+def read_trials(
+    path: str | Path, icons: IconSet | str | Path | Sequence[str], columns: Mapping[str, str] | None = None
+) -> Trials:
     """Read the answers of an identification experiment to icons of a set, whose names are all answers that there are.
 
     A CSV file has the columns participant, trial, presented and responded, where trials are numbered anew in each block
     also block; or one row a participant with icon_1, answer_1 and so on; or a matrix of counts, a row for each icon
     presented and a column for each answer, which is one group. Other columns are left alone, semicolons and tabs also
     separate them, and lines that begin with # are comments. Where nobody answered, the cell is empty or one of
-    `NOTHING`. `columns` says what the file calls ours. Participants are in the order of the file. A `TrialsError` says
-    what is wrong, where, and what helps.
+    `NOTHING`. Participants are in the order of the file.
 
+    Parameters
+    ----------
+    path
+        The file.
+    icons
+        The set, its name or file, or the names of its icons.
+    columns
+        What the file calls ours, such as ``{"responded": "answer"}``.
+
+    Returns
+    -------
+    Trials
+        The answers, counted.
+
+    Raises
+    ------
+    TrialsError
+        Says what is wrong, where, and what helps.
+
+    Examples
+    --------
     >>> import pathlib, tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = pathlib.Path(folder) / "trials.csv"
@@ -52,8 +78,9 @@ def read_trials(path: str | Path, icons: Sequence[str], columns: Mapping[str, st
     ...     read_trials(path, ["cool", "warm"])
     Trials(1 participant, 2 trials, 2 icons)
     """
-    file = Path(path)
-    names, places = tuple(icons), {name: place for place, name in enumerate(icons)}
+    file, given = Path(path), set_of(icons) if isinstance(icons, str | Path) else icons
+    names = tuple(each if isinstance(each, str) else each.name for each in given)
+    places = {name: place for place, name in enumerate(names)}
     table, digest = table_in(file, (*COLUMNS, "block"), EXAMPLE, WHAT, columns)
     if not set(COLUMNS) & set(table.header) and not any(map(WIDE.fullmatch, table.header)):
         grid, _ = table_in(file, names, EXAMPLE, WHAT)

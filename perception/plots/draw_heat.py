@@ -50,7 +50,7 @@ def plot_distance(ranking: Ranking, ax: Axes | None = None) -> Axes:
     axes = heat(names, names, matrix, ax, top=max(float(matrix.max()), 2.0 * DISTINGUISHABLE_DPRIME))
     axes.set_xlabel("… and")
     axes.set_ylabel("d′ between …")
-    axes.set_title(f"Predicted d′ between icons ({ranking.norm} norm)")
+    axes.set_title(f"Predicted d′ between icons (memory: {ranking.memory})")
     return axes
 
 

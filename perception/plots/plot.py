@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermicon.circuit.solver.draw import COOL, WARM, new_axes
+from thermicon.icons.model.arguments import InputError
 
 from ..identification.map import PerceptualMap
+from ..pilot.observed import Observed
 from ..ranking.ranking import Ranking
 from ..ranking.scores import PairScore
 from ..ranking.sensitivity import Sensitivity
@@ -40,7 +42,7 @@ def plot(result: object, ax: Axes | None = None) -> Axes:
     Parameters
     ----------
     result
-        A Percept, Ranking, PairScore, Sensitivity, Frontier or PerceptualMap.
+        A Percept, Ranking, PairScore, Sensitivity, Frontier, Observed or PerceptualMap.
     ax
         Axes to draw on; None: new ones.
 
@@ -51,17 +53,17 @@ def plot(result: object, ax: Axes | None = None) -> Axes:
 
     Raises
     ------
-    TypeError
+    InputError
         For what has no picture.
 
     Examples
     --------
     >>> plot([1.0, 2.0])
     Traceback (most recent call last):
-    TypeError: a list has no picture; a Percept, Ranking, PairScore, Sensitivity, Frontier or PerceptualMap has
+    thermicon.icons.model.arguments.InputError: plot: result takes a Percept, ..., Observed or PerceptualMap, not a list
     """
-    names = "Percept, Ranking, PairScore, Sensitivity, Frontier or PerceptualMap"
-    raise TypeError(f"a {type(result).__name__} has no picture; a {names} has")
+    names = "a Percept, Ranking, PairScore, Sensitivity, Frontier, Observed or PerceptualMap"
+    raise InputError(f"plot: result takes {names}, not a {type(result).__name__}")
 
 
 def plot_sensation(percept: Percept, ax: Axes | None = None) -> Axes:
@@ -136,6 +138,23 @@ def plot_sensitivity(found: Sensitivity, ax: Axes | None = None) -> Axes:
     return axes
 
 
+def plot_observed(found: Observed[Any, Any], ax: Axes | None = None) -> Axes:
+    """Draw the proportion correct of each set with its 95 % interval, before the data were seen and after."""
+    axes = new_axes(ax, (6.4, 1.4 + 0.6 * len(found.predictions)))
+    places = np.arange(len(found.predictions), dtype=np.float64)
+    for when, shift, colour in (("before", -HEIGHT / 3, GREY), ("after", HEIGHT / 3, DARK)):
+        shares = [getattr(each, when).proportion_correct for each in found.predictions]
+        middle, low, high = 100.0 * np.array(shares).T
+        axes.errorbar(middle, places + shift, xerr=(middle - low, high - middle), fmt="o", color=colour, label=when)
+    axes.set_yticks(places, [each.before.title or "set" for each in found.predictions])
+    axes.set_ylim(len(places) - 0.5, -0.5)
+    axes.spines[["top", "right", "left"]].set_visible(False)
+    axes.set_xlabel("correct (%), mean over people and 95 % of laboratories")
+    axes.set_title("Prediction before and after the data", loc="left")
+    axes.legend(frameon=False)
+    return axes
+
+
 def plot_roc(shown: Percept | PairScore, ax: Axes | None = None) -> Axes:
     """Draw the share of hits against that of false alarms over all criteria, h = Φ(d′ + Φ⁻¹(f)).
 
@@ -174,6 +193,7 @@ plot.register(Ranking, plot_confusion)
 plot.register(PairScore, plot_roc)
 plot.register(Sensitivity, plot_sensitivity)
 plot.register(Frontier, plot_frontier)
+plot.register(Observed, plot_observed)
 plot.register(PerceptualMap, plot_map)
 
 

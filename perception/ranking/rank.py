@@ -5,19 +5,19 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 from thermicon.circuit.program import own_version
+from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.files.shipped import Icons, set_of
+from thermicon.icons.model.arguments import checked
 
 from ..identification.carry_over import prepare_task
 from ..identification.laboratory import DRAWS, Nominal, new_laboratory
 from ..identification.population import RATE_HZ, run_end_s
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import Progress, step_counter
-from ..observer.channels import USUAL_NORM
-from ..observer.observer import check_norm
-from ..observer.observer_model import ObserverModel
+from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..sensation.percept import perceive
 from .batches import Job, collect_batches
 from .ranking import Ranking
@@ -25,24 +25,21 @@ from .rules import rig_rules
 from .scores import assemble, disagreements, objection, worst_of
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import IconSet
 
 
+@checked
 def rank(
-    icons: IconSet,
-    rig: Rig,
+    icons: Icons,
+    rig: AnyRig = "thenar",
     *,
-    people: int = 200,
-    seed: int = 0,
+    crowd: Crowd = EVERYBODY,
     trials: int = 48,
-    tracking: str | None = None,
-    norm: str = USUAL_NORM,
     parameters: int | None = None,
     task: Task = USUAL,
-    observer: ObserverModel | Path | str | None = None,
     workers: int | str | None = None,
     progress: Progress | None = None,
+    **words: Unpack[CrowdWords],
 ) -> Ranking:
     """Predict how well people identify the icons of a set from memory.
 
@@ -52,30 +49,24 @@ def rank(
     Parameters
     ----------
     icons
-        The set.
+        The set, its name or file, or its icons.
     rig
-        The rig that plays it.
-    people, seed
-        Number of virtual people, and the seed they and all noise are drawn from.
+        The rig that plays it, or its name or file.
+    crowd
+        Who feels and remembers the icons.
     trials
         Trials of the predicted experiment.
-    tracking
-        `replay`, `display` or `ideal` (None: what suits the control of each icon).
-    norm
-        How episodes are remembered: `episodes` (compared in logarithms) or `naming` (as ratings, each trial named
-        directly).
     parameters
         Draws from the posterior of the constants, for the intervals that a new laboratory will find (None: 128, or as
         many as the observer has; 0: none).
     task
-        The identification task: a gap so short that the icon before is still felt.
-    observer
-        Another posterior or observer in place of the shipped one: `ObserverModel`, or its file. One without draws
-        gives no intervals for a new laboratory.
+        The identification task, which may have so short a gap between icons that the previous one is still felt.
     workers
         Threads (None: one per core), or the address of the scheduler of a dask cluster.
     progress
         Called with (steps done, steps in all).
+    **words
+        Single words of the crowd, such as ``people=50``.
 
     Returns
     -------
@@ -89,7 +80,7 @@ def rank(
 
     See Also
     --------
-    choose, judge_goal, cheapest_edits : What to ask of a ranking next.
+    choose, judge_goal, cheapest_edit : What to ask of a ranking next.
 
     Examples
     --------
@@ -101,30 +92,27 @@ def rank(
     """
     from thermicon.circuit.solver.simulate import duration_s, simulate_all
 
-    members = list(icons)
-    if not members:
-        raise ValueError("there is no icon to rank: the set is empty")
-    chosen = check_norm(norm)
-    model = ObserverModel.of(observer)
+    icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
+    members, model = list(icons), crowd.model
     draws = model.draw_count(parameters, DRAWS)
     if isinstance(workers, int) and workers < 1:
         raise ValueError(f"at least one worker is needed, not {workers}")
     nominal = model.nominal
-    model.people(people, seed)  # refuses fewer than one person before anything is simulated
     durations = [duration_s(icon, rig) for icon in members]
     end = run_end_s(durations)
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.gap_s is None else [k for k, trace in enumerate(traces) if objection(trace) is None]
-    task, left = prepare_task(task, members, rig, end, fine, tracking, nominal)
+    task, left = prepare_task(task, members, rig, end, fine, crowd.tracking, nominal)
     # Batches need no draws, and of the shipped model nothing, which every worker has.
     other = replace(model, posterior=None) if model.key else None
-    job = Job(tuple(members), rig, end, people, seed, trials, tracking, chosen, task, other)
+    own = crowd.people, crowd.seed, trials, crowd.tracking, crowd.memory
+    job = Job(tuple(members), rig, end, *own, task, other)
     report = step_counter(progress, 2 + job.batches + draws)
     percepts = [perceive(trace, nominal) for trace in traces]
     report()
 
     felt = collect_batches(job, workers, report)
-    scored, pairs = assemble(members, traces, durations, percepts, felt, chosen, nominal)
+    scored, pairs = assemble(members, traces, durations, percepts, felt, crowd.memory, nominal)
     ranking = Ranking(
         version=own_version(),
         content_hash=hashlib.sha256("\0".join([str(icons), rig.document, model.digest]).encode("utf-8")).hexdigest(),

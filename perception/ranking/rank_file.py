@@ -49,7 +49,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "people": ranking.people,
             "tracking": ranking.tracking,
             "by": "model",
-            "norm": ranking.norm,
+            "norm": ranking.memory,
             "content_hash": ranking.content_hash,
             "sha256": ranking.digests,
             "task": {"gap_s": ranking.task.gap_s},
@@ -57,7 +57,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
                 {
                     **_icon(icon),
                     **intervals,
-                    "carry_over": left and left.worst_of(place, ranking.norm, ranking.task.counted),
+                    "carry_over": left and left.worst_of(place, ranking.memory, ranking.task.counted),
                 }
                 for place, (icon, intervals) in enumerate(zip(ranking.icons, elsewhere, strict=True))
             ],

@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from thermicon.icons.number_text import count_of
+from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
+from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .rules import RuleResult
 from .scores import IconScore, PairScore, counted
@@ -24,9 +26,9 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from ..identification.carry_over import CarryOver
+    from ..identification.map import PerceptualMap
     from ..identification.task import Task
     from ..observer.observer import Norm
-    from ..observer.observer_model import ObserverModel
     from .batches import Job, PooledResult
 
 
@@ -34,7 +36,7 @@ PERCENTAGE_POINT = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class Ranking(Drawn):
+class Ranking(Drawn, Tabled):
     """A predicted experiment: icons in file order, pairs, the pooled confusion matrix, the whole set.
 
     Attributes
@@ -44,7 +46,7 @@ class Ranking(Drawn):
     content_hash, digests
         Hash of icons, rig and observer, and of each.
     job
-        What was ranked, and how: icons, rig, seed and number of people, trials, tracking, norm, task.
+        What was ranked, and how: icons, rig, seed and number of people, trials, tracking, memory, task.
     model
         The observer with its people and draws.
     felt
@@ -119,9 +121,15 @@ class Ranking(Drawn):
         return self.job.tracking or ", ".join(sorted({usual_tracking(icon) for icon in self.job.icons}))
 
     @property
-    def norm(self) -> Norm:
-        """How a difference over time is counted."""
+    def memory(self) -> Norm:
+        """How icons are remembered."""
         return self.job.norm
+
+    @property
+    def crowd(self) -> Crowd:
+        """Who feels and remembers the icons."""
+        job = self.job
+        return Crowd(job.people, job.seed, job.tracking, job.norm, self.model)
 
     @property
     def task(self) -> Task:
@@ -252,6 +260,12 @@ class Ranking(Drawn):
             }
             for icon in sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name))
         ]
+
+    def map(self) -> PerceptualMap:
+        """The icons as points, near where they are hard to distinguish."""
+        from ..identification.map import map_of
+
+        return map_of(self)
 
     def to_frame(self) -> pd.DataFrame:
         """The rows as a table."""

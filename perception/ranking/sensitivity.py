@@ -13,12 +13,16 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from itertools import product
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+
+from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.files.shipped import Icons, set_of
+from thermicon.icons.model.arguments import checked
+from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..drawn import Drawn
@@ -26,17 +30,17 @@ from ..identification.depths import rungs
 from ..identification.laboratory_draws import LaboratoryDraws, Uncertain, laboratory_draws, latin
 from ..identification.population import ReceptorTemperatures, run_end_s
 from ..kernels.parallel import Progress, step_counter
-from ..observer.channels import USUAL_NORM
 from ..observer.constants import quantity_of
-from ..observer.observer import DATA, Observer, check_norm
-from ..observer.observer_model import ObserverModel
+from ..observer.observer import DATA, Observer
+from ..observer.observer_model import Crowd, CrowdWords, ObserverModel
 from ..observer.people import People, people_records
 from .assumptions import explained, explained_together, scores_of
 from .ranking import with_changes
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
-    from thermicon.icons import Icon, IconSet
+    import pandas as pd
+
+    from thermicon.icons import Icon
 
 
 RATE_HZ = 12.5
@@ -44,6 +48,7 @@ RATE_HZ = 12.5
 NODES = (0.0, 0.5, 1.0)
 CONTACT, LAYER = "contact resistance", "thickness of the outermost layer"
 DRAWS = 256
+FEW = Crowd(people=24)
 FEWEST_DRAWS = 64
 """Of fewer draws a share of some per cent is not distinguishable from chance."""
 NOTEWORTHY = 0.02
@@ -80,8 +85,9 @@ class UncertainRig:
 
     @classmethod
     def simulate(
-        cls, icons: Sequence[Icon], rig: Rig, people: People, end_s: float, observers: Sequence[Observer]
-    ) -> UncertainRig:
+        cls, icons: Sequence[Icon], rig: Rig, people: People, end_s: float, observers: Sequence[Observer],
+        tracking: str | None = None,
+    ) -> UncertainRig:  # fmt: skip
         """Simulate every icon for each person at the nodes, with the currents that are designed on the rig as it is."""
         resistance, layer_mm = rig.contact.resistance_m2K_per_W, rig.skin.layers[0].thickness_m * 1e3
         by = 1.0 + rig.uncertainty.contact_resistance_relative
@@ -93,7 +99,9 @@ class UncertainRig:
         for share, place in product(NODES, NODES):
             keys = {"contact.resistance_m2K_per_W": contact.at(share), "skin.layer.0.thickness_mm": layer.at(place)}
             met = rig.with_(**keys)
-            played = ReceptorTemperatures.at_depths(icons, people, met, depths, end_s, RATE_HZ, None, designed_on=rig)
+            played = ReceptorTemperatures.at_depths(
+                icons, people, met, depths, end_s, RATE_HZ, tracking, designed_on=rig
+            )
             grid.append(np.stack(played.rungs_C))
         return cls((contact, layer), np.stack(grid), played, people.outer_layer)
 
@@ -139,7 +147,7 @@ class Reduction:
 
 
 @dataclass(frozen=True, slots=True)
-class Sensitivity(Drawn):
+class Sensitivity(Drawn, Tabled):
     """Effects of constants, and reductions by measurements, on a prediction; the largest first.
 
     The prediction is the median over draws (0–1, and bits) and the 95 % of them, for a new laboratory; contact and skin
@@ -150,7 +158,7 @@ class Sensitivity(Drawn):
     rig_changes: tuple[str, ...]
     people: int
     seed: int
-    norm: str
+    memory: str
     draws: int
     observer: str
     proportion_correct: float
@@ -164,6 +172,12 @@ class Sensitivity(Drawn):
         """Measurements that would take away at least 2 % of the variance of the proportion correct."""
         return tuple(each for each in self.reductions if each.proportion_correct >= NOTEWORTHY)
 
+    def to_frame(self) -> pd.DataFrame:
+        """One row per constant, the largest effect first."""
+        import pandas as pd
+
+        return pd.DataFrame([asdict(effect) for effect in self.effects])
+
     def __repr__(self) -> str:
         first = self.first[0].measurement if self.first else "nothing"
         return (
@@ -172,23 +186,22 @@ class Sensitivity(Drawn):
         )
 
 
+@checked
 def sensitivity(
-    icons: IconSet,
-    rig: Rig,
+    icons: Icons,
+    rig: AnyRig = "thenar",
     *,
-    people: int = 24,
-    seed: int = 0,
+    crowd: Crowd = FEW,
     draws: int | None = None,
-    norm: str = USUAL_NORM,
-    observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
+    **words: Unpack[CrowdWords],
 ) -> Sensitivity:
     """Find the constants that carry the doubt about a set, and the measurement that would reduce it most.
 
-    The set needs at least two icons; the contact of the rig is uncertain as its own table of uncertainty says. `people`
-    are those of every draw, `draws` those of the posterior, at least 64 (None: 256, or as many as the observer has).
-    `seed`, `norm` and `observer` are as in `rank`; an observer without draws is refused. `progress` is called with
-    (draws done, draws in all).
+    The set needs at least two icons; the contact of the rig is uncertain as its own table of uncertainty says. `crowd`,
+    or words of it, is as in `rank`, but with 24 people, those of every draw; an observer without draws is refused.
+    `draws` are those of the posterior, at least 64 (None: 256, or as many as the observer has). `progress` is called
+    with (draws done, draws in all).
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
@@ -199,7 +212,8 @@ def sensitivity(
     """
     from thermicon.circuit.solver.simulate import duration_s
 
-    members, chosen, model = list(icons), check_norm(norm), ObserverModel.of(observer)
+    rig, crowd = Rig.of(rig), crowd.but(**words)
+    members, model, seed = list(set_of(icons)), crowd.model, crowd.seed
     if len(members) < 2:
         raise ValueError("a sensitivity needs at least two icons: one alone is never confused")
     if model.posterior is None:
@@ -213,14 +227,14 @@ def sensitivity(
         raise ValueError(
             f"a sensitivity needs {FEWEST_DRAWS} to {len(model.posterior)} draws of the posterior, not {draws}"
         )
-    crowd = model.people(people, seed)
+    people = model.people(crowd.people, seed)
     end = run_end_s((duration_s(icon, rig) for icon in members), RATE_HZ)
-    uncertain = UncertainRig.simulate(members, rig, crowd, end, model.some_draws(draws))
+    uncertain = UncertainRig.simulate(members, rig, people, end, model.some_draws(draws), crowd.tracking)
     shares = latin(2, draws, seed + 1)
     each = laboratory_draws(
         lambda place: uncertain.played(*shares[place].tolist()),
-        crowd,
-        chosen,
+        people,
+        crowd.memory,
         model,
         draws=draws,
         seed=seed,
@@ -244,9 +258,9 @@ def sensitivity(
     return Sensitivity(
         rig=rig.name,
         rig_changes=tuple(rig.changes),
-        people=people,
+        people=crowd.people,
         seed=seed,
-        norm=chosen,
+        memory=crowd.memory,
         draws=draws,
         observer=model.name,
         proportion_correct=middle,

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
+
+from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.files.shipped import Icons, icons_of
+from thermicon.icons.model.arguments import InputError, checked
 
 from ..arrays import Array
 from ..identification.measures import information_bits, proportion_correct
@@ -21,12 +25,12 @@ from ..identification.population import (
 )
 from ..identification.task import USUAL, Task
 from ..observer.channels import USUAL_NORM
-from ..observer.observer import Norm, Observer
-from ..observer.people import People, draw_people
+from ..observer.observer import Observer
+from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
+from ..observer.people import People
 from .request import Objective
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import Icon
 
 REACHED_BY = 0.95
@@ -67,18 +71,18 @@ class Appraisal:
         }
 
 
+@checked
 def appraise(
-    icons: Sequence[Icon],
-    rig: Rig,
+    icons: Icons,
+    rig: AnyRig = "thenar",
     *,
-    people: int | People = 200,
-    seed: int = 0,
-    tracking: str | None = None,
-    norm: Norm = USUAL_NORM,
+    crowd: Crowd = EVERYBODY,
     task: Task = USUAL,
-    observer: Observer | None = None,
+    **words: Unpack[CrowdWords],
 ) -> Appraisal:
     """Predict how well people identify two or more icons, with the same people and noise as `rank`.
+
+    `icons`, `rig`, `crowd` with its `words`, and `task` are as in `rank`.
 
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
@@ -86,12 +90,13 @@ def appraise(
     >>> appraise([six["cooling-step"], six["warming-step"]], Rig.load("thenar"), people=4).worst_pair
     ('cooling-step', 'warming-step')
     """
+    icons, rig, crowd = icons_of(icons), Rig.of(rig), crowd.but(**words)
     if len(icons) < 2:
-        raise ValueError("at least two icons are needed to be distinguished")
-    crowd = draw_people(people, seed) if isinstance(people, int) else people
-    nominal = Observer.load() if observer is None else observer
-    felt, durations = population_response(icons, rig, crowd, tracking, observer=nominal)
-    d_prime, named = identify(felt, norm, crowd, nominal, seed, task=task)
+        raise InputError("at least two icons are needed to be distinguished")
+    model = crowd.model
+    people, nominal = model.people(crowd.people, crowd.seed), model.nominal
+    felt, durations = population_response(icons, rig, people, crowd.tracking, observer=nominal)
+    d_prime, named = identify(felt, crowd.memory, people, nominal, crowd.seed, task=task)
     each, bits = proportion_correct(named.probability), float(information_bits(named.probability).mean())
     middle = np.median(d_prime, axis=0)
     a, b = nearest_two(middle)

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.model.arguments import checked
+
 from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
@@ -104,6 +106,7 @@ class Choice:
         return f"Choice({', '.join(self.icons)}: {self.objective} {self.value:.3g}, {how})"
 
 
+@checked
 def choose(
     ranking: Ranking, asked: Selection, *, parameters: int | None = None, progress: Progress | None = None
 ) -> Choice:
@@ -182,16 +185,7 @@ class Chooser:
         names, middle = [job.icons[k].name for k in chosen], felt.middle[np.ix_(chosen, chosen)]
         a, b = nearest_two(middle)
         task = task_among(job.task, ranking.carry_over, chosen)
-        own = appraise(
-            [job.icons[k] for k in chosen],
-            job.rig,
-            people=self.crowd,
-            seed=job.seed,
-            tracking=job.tracking,
-            norm=job.norm,
-            task=task,
-            observer=model.nominal,
-        )
+        own = appraise([job.icons[k] for k in chosen], job.rig, crowd=ranking.crowd, task=task)
         step()
         found = None
         if draws:

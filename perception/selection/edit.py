@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.near_words import did_you_mean
 
 from ..arrays import Array
@@ -86,6 +87,7 @@ class NoEdit:
     reason: str
 
 
+@checked
 def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUISHABLE_DPRIME) -> Edit | NoEdit:
     """Find the cheapest edit of one of two icons that separates them by a median d′.
 
@@ -122,7 +124,7 @@ def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUI
     names = ranking.labels
     for name in (a, b):
         if name not in names:
-            raise KeyError(f"no icon is called {name!r}; {did_you_mean(name, names)}")
+            raise InputError(f"no icon is called {name!r}; {did_you_mean(name, names)}")
     i, j = names.index(a), names.index(b)
     if (apart := ranking.d_prime[i, j]) >= wanted:
         return NoEdit(f"the pair is distinguishable already: d′ {apart:.1f}, criterion {wanted:.3g}")

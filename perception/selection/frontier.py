@@ -7,14 +7,17 @@ reach depends, as in a goal, on people and on the uncertainty of the model.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
+
+from thermicon.circuit.rig.rig import AnyRig
+from thermicon.icons.files.shipped import Icons
+from thermicon.icons.model.arguments import checked
+from thermicon.icons.tabled import Tabled
 
 from ..drawn import Drawn
 from ..identification.laboratory import DRAWS
 from ..kernels.parallel import Progress, step_counter
-from ..observer.channels import USUAL_NORM
-from ..observer.observer_model import ObserverModel
+from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank
 from ..ranking.ranking import Ranking
 from .choose import Choice, Chooser
@@ -25,15 +28,13 @@ from .request import ChoiceError, Objective, Selection
 if TYPE_CHECKING:
     import pandas as pd
 
-    from thermicon.circuit import Rig
-    from thermicon.icons import IconSet
 
 MOST = 12
 """Most icons that a choice has unless more are asked for."""
 
 
 @dataclass(frozen=True, slots=True)
-class Frontier(Drawn):
+class Frontier(Drawn, Tabled):
     """Best choices of rising size, the `points`, from one pool as it was ranked, with `draws` of the posterior.
 
     `goals` say of each point whether it meets the goal; empty without one.
@@ -84,45 +85,43 @@ class Frontier(Drawn):
         return f"Frontier({sizes} of {first.pool} icons by {first.objective} on {job.rig.name}, {job.people} people)"
 
 
+@checked
 def frontier(
-    icons: IconSet,
-    rig: Rig,
+    icons: Icons,
+    rig: AnyRig = "thenar",
     *,
+    crowd: Crowd = EVERYBODY,
     most: int = MOST,
     objective: Objective = "correct",
-    people: int = 200,
-    seed: int = 0,
-    tracking: str | None = None,
-    norm: str = USUAL_NORM,
     goal: Goal | str | None = None,
     parameters: int | None = None,
-    observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
+    **words: Unpack[CrowdWords],
 ) -> Frontier:
     """Choose the best 2, 3, … icons of a pool, and judge each choice with people who know it alone.
 
     Parameters
     ----------
     icons
-        The pool; families count with all their members.
+        The pool, its name or file; families count with all their members.
     rig
-        The rig that plays it.
+        The rig that plays it, or its name or file.
+    crowd
+        Who feels and remembers the icons.
     most
         Largest choice; fewer where the pool has fewer icons that can be played.
     objective
         What a choice maximises: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
-    people, seed, tracking, norm
-        As in `rank`.
     goal
         What is wanted: icons are left out that miss its `safety`, or for the nominal person its `detected` or `onset`,
         its `time` and `energy` are kept, and every choice is judged by it.
     parameters
         Draws from the posterior for what 95 % of people reach, as in `rank` (None: 128, or as many as there are; 0:
         none).
-    observer
-        An observer or its file, as in `rank`.
     progress
         Called with (steps done, steps in all).
+    **words
+        Single words of the crowd, such as ``people=50``.
 
     Returns
     -------
@@ -134,7 +133,7 @@ def frontier(
     ChoiceError
         Where not even two icons can be chosen, or no two keep the limits.
     ValueError
-        For an unknown norm, a single draw, and more draws than there are; a `GoalError` for a goal for a share of
+        For a single draw, and more draws than there are; a `GoalError` for a goal for a share of
         people without draws.
 
     Examples
@@ -145,17 +144,17 @@ def frontier(
     >>> [len(point.icons) for point in found.points]
     [2, 3]
     """
-    model = ObserverModel.of(observer)
+    crowd = crowd.but(**words)
+    crowd = crowd.but(observer=crowd.model)  # a file is read once
     if most < 2:
         raise ChoiceError(f"a choice of {most} has no pair to compare: give 2 or more")
     wanted = Goal.parse(goal) if isinstance(goal, str) else goal
-    draws = model.draw_count(parameters, DRAWS)
+    draws = crowd.model.draw_count(parameters, DRAWS)
     if wanted is not None:
         wanted.check_draws(draws)
     time, energy = (None, None) if wanted is None else wanted.totals
     asked = Selection(2, objective, most_s=time, most_J=energy)
-    how: dict[str, Any] = {"people": people, "seed": seed, "tracking": tracking, "norm": norm, "observer": model}
-    ranking = rank(icons, rig, parameters=0, progress=progress, **how)
+    ranking = rank(icons, rig, crowd=crowd, parameters=0, progress=progress)
     chooser = Chooser(ranking, asked, wanted)
     largest = min(most, len(chooser.pool))
     step = step_counter(progress, (largest - 1) * (1 + draws))

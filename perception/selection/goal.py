@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
+from thermicon.icons.model.arguments import InputError
 from thermicon.icons.near_words import did_you_mean
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ WORD: /(?!for\b)[a-z_][a-z_'′-]*/
 EXAMPLE = "correct >= 90 % for 95 % of people, time <= 10 s, safety green"
 
 
-class GoalError(ValueError):
+class GoalError(InputError):
     """A goal cannot be read, or its parts contradict each other; the text says where, and what would be right."""
 
 

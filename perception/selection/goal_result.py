@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.model.arguments import checked
+
 from ..arrays import Array
+from .choose import Choice
 from .goal import SAFETY, VERDICTS, Goal, GoalPart
 
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
-    from .choose import Choice
 
 TOLERANCE = 1e-9
 
@@ -145,11 +147,31 @@ class GoalResult:
         return f"GoalResult({self.goal.text}: {'met' if self.met else 'not met'})"
 
 
+@checked
 def judge_goal(goal: Goal | str, found: Ranking | SetOutcome, choice: Choice | None = None) -> GoalResult:
     """Judge every part of a goal for a whole ranking, or for a choice out of it as a set of its own.
 
-    A `GoalError` for a text that is no goal, and for a share of people where ranking or choice have no draws.
+    Parameters
+    ----------
+    goal
+        The goal, or its text, such as ``"correct >= 90 %, safety green"``.
+    found
+        The ranking.
+    choice
+        A choice out of it; None: the whole set.
 
+    Returns
+    -------
+    GoalResult
+        Whether each part is met, and what binds where one is not.
+
+    Raises
+    ------
+    GoalError
+        For a text that is no goal, and for a share of people where ranking or choice have no draws.
+
+    Examples
+    --------
     >>> from thermicon.circuit import Rig
     >>> from thermicon.icons import read_cue
     >>> from thermicon.perception import rank

@@ -5,13 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
+from thermicon.icons.model.arguments import InputError
 from thermicon.icons.number_text import count_of
 
 Objective = Literal["worst", "correct", "bits", "bits-per-s"]
 OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 
 
-class ChoiceError(ValueError):
+class ChoiceError(InputError):
     """The requested choice cannot be made; the text states why and what would help."""
 
 

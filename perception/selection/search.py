@@ -10,26 +10,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
+
+from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.files.shipped import Icons, set_of
+from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
 from ..identification.laboratory import DRAWS
 from ..kernels.parallel import Progress
-from ..observer.channels import USUAL_NORM
-from ..observer.observer import check_norm
-from ..observer.observer_model import ObserverModel
+from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank
 from .appraise import Appraisal, appraise
 from .candidates import at_ends, found_set, names_of
 from .goal import Goal, GoalPart
-from .request import OBJECTIVES, ChoiceError, Objective
+from .request import Objective
 from .search_run import PEOPLE, Evaluator, SearchRun
 
 if TYPE_CHECKING:
-    from thermicon.circuit import Rig
     from thermicon.icons import Icon, IconSet
 
 EVALUATIONS = 2000
@@ -80,21 +80,19 @@ class SearchResult:
         return f"SearchResult({len(self.found)} icons by {self.objective}: {before:.3g} → {after:.3g})"
 
 
+@checked
 def search(
-    icons: IconSet,
-    rig: Rig,
+    icons: Icons,
+    rig: AnyRig = "thenar",
     *,
+    crowd: Crowd = EVERYBODY,
     count: int | None = None,
     objective: Objective = "worst",
     evaluations: int = EVALUATIONS,
-    people: int = 200,
-    seed: int = 0,
-    tracking: str | None = None,
-    norm: str = USUAL_NORM,
     goal: Goal | str | None = None,
     parameters: int | None = None,
-    observer: ObserverModel | Path | str | None = None,
     progress: Progress | None = None,
+    **words: Unpack[CrowdWords],
 ) -> SearchResult:
     """Search the parameters of the families for a better set: one icon per family, or `count` in all.
 
@@ -104,31 +102,27 @@ def search(
     Parameters
     ----------
     icons
-        The set with its families.
+        The set with its families, or its name or file.
     rig
-        The rig that plays it.
+        The rig that plays it, or its name or file.
+    crowd
+        Who appraises the result; its seed is also that of the search.
     count
         Number of icons in all; None: one per family.
     objective
         What is maximised: `worst` (d′ of the worst pair), `correct`, `bits` or `bits-per-s`.
     evaluations
         Number of icons that are evaluated for the nominal person.
-    people, seed
-        Number of virtual people who appraise the result, and the seed of people, noise and search.
-    tracking
-        What every person gets: `replay`, `display` or `ideal`; None: what suits the control of each icon.
-    norm
-        What is remembered, as in `rank`.
     goal
         What is wanted of the set: its `count`, `time` and `energy` are kept, and icons left out that miss its
         `safety`, or for the nominal person its `detected` or `onset`. Of the sets held at the end, the one that comes
         nearest to its other parts is the result. `rank` says whether the result meets it.
     parameters
         Draws from the posterior, as in `rank`, for a goal for a share of people (None: 128, or as many as there are).
-    observer
-        An observer or its file, as in `rank`; None: the shipped one.
     progress
         Called with (steps done, steps in all).
+    **words
+        Single words of the crowd, such as ``people=50``.
 
     Returns
     -------
@@ -140,7 +134,7 @@ def search(
     ChoiceError
         For a file without families, for fewer than two icons, or where no set can be played.
     ValueError
-        For an unknown norm, draws that there are not, and a goal for a share of people without draws to judge it by.
+        For draws that there are not, and a goal for a share of people without draws to judge it by.
 
     Examples
     --------
@@ -151,17 +145,15 @@ def search(
     >>> result.after.d_prime >= result.before.d_prime
     True
     """
-    from thermicon.icons import IconSet
-
-    if objective not in OBJECTIVES:
-        raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {objective!r}")
-    wanted = Goal.parse(goal) if isinstance(goal, str) else goal
+    icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
+    seed, wanted = crowd.seed, Goal.parse(goal) if isinstance(goal, str) else goal
     if wanted is not None:
         wanted.check_count(count)
     if count is None and wanted is not None and wanted.of("count") is not None:
         count = int(wanted.of("count") or 0)
-    run, model = SearchRun(icons, count), ObserverModel.of(observer)
-    nominal = Evaluator(rig, objective, check_norm(norm), seed, model.nominal, tracking, wanted)
+    run, model = SearchRun(icons, count), crowd.model
+    crowd = crowd.but(observer=model)  # a file is read once
+    nominal = Evaluator(rig, objective, crowd.memory, seed, model.nominal, crowd.tracking, wanted)
     first = model.people(PEOPLE, seed)
     few = replace(nominal, crowd=first)
     draws, parts = model.draw_count(parameters, DRAWS), list[GoalPart]()
@@ -170,8 +162,6 @@ def search(
         # Those for a share of people first.
         judged = [part for part in wanted.parts if part.quantity in JUDGED or part.people is not None]
         parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
-    how: dict[str, Any] = {"seed": seed, "tracking": tracking, "norm": norm}
-    crowd = model.people(people, seed)
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
     def tell(tried: int) -> None:
@@ -187,11 +177,10 @@ def search(
     different = {frozenset(one.icon.name for one in each): each for each in (start, best, held)}
     finalists = list(different.values())
     sets = [tuple(candidate.icon for candidate in candidates) for candidates in finalists]
-    scores = [appraise(each, rig, people=crowd, observer=model.nominal, **how) for each in sets]
+    scores = [appraise(each, rig, crowd=crowd) for each in sets]
     persons: list[dict[str, Array]] = [{} for _ in sets]
     if any(part.people is not None for part in parts):
-        members = [IconSet("", "", each[0].context, each[0].metadata, each) for each in sets]
-        ranked = [rank(one, rig, people=people, parameters=draws, observer=model, **how) for one in members]
+        ranked = [rank(one, rig, crowd=crowd, parameters=draws) for one in sets]
         persons = [one.new_laboratory.persons for one in ranked if one.new_laboratory is not None]
     place = max(range(len(sets)), key=lambda k: _merit(parts, objective, scores[k], persons[k]))
     best, after = finalists[place], scores[place]

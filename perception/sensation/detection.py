@@ -16,9 +16,9 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arrays import Array, as_rows
+from ..arrays import Array
 from ..criteria import FELT_FROM
-from ..kernels.parallel import over_rows
+from ..kernels.parallel import as_rows, over_rows
 from ..observer.observer import CHANNELS, Channel, Observer
 
 

@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.icons.model.arguments import checked
+
 from ..arrays import Array
 from ..criteria import FELT_FROM
 from ..drawn import Drawn
@@ -138,6 +140,7 @@ class Percept(Drawn):
         )
 
 
+@checked
 def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | None = None) -> Percept:
     """Predict what the nominal person feels of one simulated trace: receptor drive, sensation, detection.
 

@@ -19,6 +19,9 @@ PICTURES = {
 ALONE = {"08_your_rig_from_a_log": 2}
 """A tutorial that stands beside the sequence."""
 
+DEEP = ("02_a_rig_of_your_own", "05_export_for_an_experiment", "07_validation", "08_your_rig_from_a_log")
+"""Tutorials that look behind the front doors."""
+
 MOST_SAVED = 300_000
 MOST_S = 60.0
 
@@ -49,6 +52,8 @@ def test_a_notebook_is_thin_and_has_no_outputs(name: str) -> None:
     assert all(len(text.splitlines()) <= 8 for text in python)
     assert all("def " not in text and "class " not in text for text in python)
     assert all(len(line) <= 120 for text in python for line in text.splitlines())
+    ours = [line for text in python for line in text.splitlines() if line.startswith("from thermicon")]
+    assert name in DEEP or (len(ours) <= 2 and all(line.split()[1].count(".") < 2 for line in ours))
 
 
 def test_each_tutorial_leads_to_the_next() -> None:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from thermicon.circuit import Trace
 from thermicon.perception import Observer
 from thermicon.perception.observer.constants import Both
 from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
@@ -24,6 +25,12 @@ class FakeTrace:
     site: str = "thenar"
     area_m2: float = 9e-4
     rig: None = None
+
+    def but(self, **changes: object) -> "FakeTrace":
+        """As `dataclasses.replace`."""
+        return FakeTrace(**vars(self) | changes)
+
+    __class__ = property(lambda self: Trace)  # type: ignore[assignment]  # passes for one where its type is checked
 
 
 Cue = Callable[..., FakeTrace]

@@ -1,7 +1,6 @@
 """Numbers that decide what is said: each is asked from both sides, or by its formula."""
 
 import math
-from dataclasses import replace
 from statistics import NormalDist
 from typing import Any
 
@@ -84,7 +83,7 @@ def test_a_side_counts_from_a_tenth_of_the_other_on(cue: Any) -> None:
     for warmth, moved in ((0.38, ("cold",)), (0.42, ("cold", "warm"))):
         warm = trace.warm_receptor_C.copy()
         warm[-1] = warm[0] + warmth
-        assert directions(replace(trace, warm_receptor_C=warm)) == moved
+        assert directions(trace.but(warm_receptor_C=warm)) == moved
 
 
 @pytest.mark.parametrize(("gap_s", "count"), [(0.26, 1), (0.34, 2)])

@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from thermicon.circuit.solver.modes import thermode_modes
-from thermicon.perception.arrays import Array, own_arrays
+from thermicon.perception.arrays import Array
 from thermicon.perception.experiments.laboratory import Corner, course_of, load_rig
+from thermicon.perception.kernels.parallel import own_arrays
 from thermicon.perception.observer.channels import CHANNELS, Channel, sign_of
 from thermicon.perception.observer.mechanisms.limits import NO_LIMIT_C
 from thermicon.perception.observer.observer import Observer

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...arrays import Array, as_rows
-from ...kernels.parallel import over_rows
+from ...arrays import Array
+from ...kernels.parallel import as_rows, over_rows
 from ..channels import Channel, sign_of
 from ..constants import Both, constant
 from .limits import Limits

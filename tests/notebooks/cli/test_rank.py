@@ -201,7 +201,9 @@ def test_the_table_of_doubt_says_what_to_measure_first(cli: Cli, two: Path, tmp_
     assert words.startswith("Two for a test constant 95 % of draws correct bits correct low–high ")
     assert "Measure first, by the share of the variance of the proportion correct that would go: - " in words
     assert effects[0]["constant"].split()[0] in words
-    assert "64 draws for 3 virtual people on the thenar rig with contact.area_cm2=4 (seed 0, episodes norm): " in words
+    assert (
+        "64 draws for 3 virtual people on the thenar rig with contact.area_cm2=4 (seed 0, memory: episodes): " in words
+    )
     units = {each["constant"]: each["unit"] for each in effects}
     assert (units["contact resistance"], units["thickness of the outermost layer"]) == ("m²·K/W", "mm")
     assert "memory noise (episodes)" in units and "degC" not in words and "d'" not in words

@@ -183,10 +183,10 @@ def test_the_command_writes_it_whole_or_not_at_all(cli: Cli, two: Path, tmp_path
 def test_the_command_can_be_given_again() -> None:
     assert command_text(["six-icons"], RigOptions(), CrowdOptions()) == "thermicon rank six-icons"
     changed = RigOptions("/home/x/watch.toml", ["driver.current_limit_A=1.2"])
-    asked = CrowdOptions(seed=3, norm="naming", tracking="ideal", observer=Path("/home/x/lab.csv"))
+    asked = CrowdOptions(seed=3, memory="naming", tracking="ideal", observer=Path("/home/x/lab.csv"))
     groups = (changed, asked, TaskOptions(["gap=8", "trials=24"]))
     assert command_text(["/home/x/my icons.cue", "b.cue"], *groups) == (
         "thermicon rank 'my icons.cue' b.cue --rig watch.toml --set driver.current_limit_A=1.2 --seed 3 "
-        "--tracking ideal --norm naming --observer lab.csv --task gap=8 --task trials=24"
+        "--tracking ideal --memory naming --observer lab.csv --task gap=8 --task trials=24"
     )
     assert "--observer /home/x/lab.csv" in command_text(["six-icons"], asked, paths=True)

@@ -177,7 +177,7 @@ def test_a_ranking_by_replay_counts_what_replay_leaves_behind() -> None:
 
 def test_names_are_given_after_ten_minutes_as_in_the_usual_task() -> None:
     usual, late = (
-        rank(ICONS, RIG, people=4, parameters=0, norm="naming", task=Task(gap_s=gap)) for gap in (None, 600.0)
+        rank(ICONS, RIG, people=4, parameters=0, memory="naming", task=Task(gap_s=gap)) for gap in (None, 600.0)
     )
     assert late.confusion == pytest.approx(usual.confusion, abs=0.005)
 

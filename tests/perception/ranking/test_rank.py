@@ -107,7 +107,7 @@ def test_rows_are_ranked_and_pictures_drawn(ranking: Ranking) -> None:
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("answered", "presented")
     assert ranking._repr_html_().startswith("<svg")
     apart = plot_distance(ranking)
-    assert apart.get_title() == "Predicted d′ between icons (episodes norm)"
+    assert apart.get_title() == "Predicted d′ between icons (memory: episodes)"
     assert (apart.get_xlabel(), apart.get_ylabel()) == ("… and", "d′ between …")
 
 
@@ -164,7 +164,7 @@ def test_what_does_not_exist_is_null() -> None:
 @pytest.mark.slow
 def test_changes_of_order_under_another_norm_are_told() -> None:
     icons = load_library("wave-confusions")
-    by = {norm: rank(icons, RIG, people=10, parameters=0, norm=norm) for norm in ("episodes", "naming")}
+    by = {norm: rank(icons, RIG, people=10, parameters=0, memory=norm) for norm in ("episodes", "naming")}
     changes = by["episodes"].norm_changes["naming"]
     assert changes
     places = {norm: {icon.name: icon.proportion_correct for icon in ranking.icons} for norm, ranking in by.items()}
@@ -198,7 +198,7 @@ def test_rules_use_no_number_of_the_model() -> None:
 
 def test_messages() -> None:
     for told, said in (
-        ({"norm": "mean"}, "there is no norm 'mean'"),
+        ({"norm": "naming"}, "rank: norm is called memory now"),
         ({"workers": 0}, "at least one worker is needed, not 0"),
         ({"people": 0}, "at least one person is needed, not 0"),
     ):
@@ -208,7 +208,7 @@ def test_messages() -> None:
 
 def test_direct_naming_states_the_error_of_its_own_trials() -> None:
     pair = parse("cue 1; icon dip { cool by 3 K at 2 K/s }; icon glow { warm by 3 K at 2 K/s }")
-    named = rank(pair, RIG, people=4, parameters=0, norm="naming")
+    named = rank(pair, RIG, people=4, parameters=0, memory="naming")
     assert named.felt.standard_error == pytest.approx(sampling_error(named.confusion, 4 * NAMED), rel=1e-12)
     assert named.felt.person_standard_error > named.felt.standard_error > 0.0
     assert rank(pair, RIG, people=4, parameters=0).felt.standard_error == 0.0

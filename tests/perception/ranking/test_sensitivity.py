@@ -116,7 +116,7 @@ def test_messages(rig: Rig) -> None:
     for icons, told, said in (
         (load_library("six-icons"), {"draws": 1001}, r"needs 64 to 1000 draws of the posterior, not 1001"),
         (load_library("six-icons"), {"draws": 63}, r"needs 64 to 1000 draws of the posterior, not 63"),
-        (load_library("six-icons"), {"norm": "mean"}, r"there is no norm 'mean'"),
+        (load_library("six-icons"), {"memory": "mean"}, r"memory takes 'episodes' or 'naming', not 'mean'"),
         (one, {}, r"needs at least two icons"),
     ):
         with pytest.raises(ValueError, match=said):

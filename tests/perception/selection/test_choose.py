@@ -74,7 +74,7 @@ def test_the_worst_pair_is_that_of_the_best_choice(pool: Pool, rig: Rig) -> None
 def test_it_is_judged_again_at_its_own_range(pool: Pool, rig: Rig) -> None:
     found = pool.choose(3, "bits")
     chosen = [icon for icon in pool.icons if icon.name in found.icons]
-    assert found.at_own_range == appraise(chosen, rig, people=CROWD, seed=1)
+    assert found.at_own_range == appraise(chosen, rig, people=len(CROWD), seed=1)
     assert found.optimal
     assert found.value == found.bound
     assert found.seen == 10

@@ -74,7 +74,7 @@ def test_what_needs_no_edit_and_what_no_edit_can_do_is_told(six: IconSet, rig: R
     assert edit.reason.startswith("no single edit separates them to d′ 30: the largest d′ of a safe and reachable one")
     assert "with numbers up to 256 times larger or smaller" in edit.reason
     assert 0.0 < float(edit.reason.rsplit(" ", 1)[1]) < 30.0
-    with pytest.raises(KeyError, match="nobody"):
+    with pytest.raises(ValueError, match="nobody"):
         cheapest_edit(ranking, "warming-step", "nobody")
     with pytest.raises(ValueError, match=r"^a pair is two icons, not double-dip twice"):
         cheapest_edit(ranking, "double-dip", "double-dip")

@@ -33,7 +33,7 @@ def test_every_size_has_its_best_choice(found: Frontier, six: IconSet, rig: Rig)
 
 def test_direct_naming_of_all_icons_is_that_of_rank(rig: Rig) -> None:
     icons = parse(THREE)
-    whole = rank(icons, rig, people=8, parameters=0, norm="naming")
+    whole = rank(icons, rig, people=8, parameters=0, memory="naming")
     own = choose(whole, Selection(3), parameters=0).at_own_range
     assert own.proportion_correct == pytest.approx(whole.proportion_correct, abs=1e-12)
     assert own.information_bits == pytest.approx(whole.information_bits, abs=1e-12)

@@ -1,6 +1,5 @@
 """Stimuli on a bench lie on their curves; what lies outside the data is said."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -66,7 +65,7 @@ def test_cold_and_hot_and_fast(cue: Any, change: float, rate: float, said: str) 
     trace = cue(change=change, rate=rate)
     assert outside_data(trace) == (said,)
     assert outside_data(cue(change=-6.0, rate=9.9)) == outside_data(cue(change=-6.0)) == ()
-    deeper = replace(trace, cold_receptor_C=np.full_like(trace.skin_C, 12.0))
+    deeper = trace.but(cold_receptor_C=np.full_like(trace.skin_C, 12.0))
     assert outside_data(deeper)[0] == "the cold receptor falls to 12 °C (0.0 s); data begin at 15 °C", "the furthest"
 
 

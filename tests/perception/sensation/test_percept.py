@@ -1,4 +1,3 @@
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -57,7 +56,7 @@ def test_a_percept_is_two_finite_traces_and_cannot_contradict_its_probability(ma
 
 def test_a_larger_area_and_a_shorter_path_are_felt_sooner(cue: Any, observer: Observer) -> None:
     trace = cue(change=1.0)
-    hand, forearm = perceive(trace, observer).onset_s, perceive(replace(trace, site="forearm"), observer).onset_s
+    hand, forearm = perceive(trace, observer).onset_s, perceive(trace.but(site="forearm"), observer).onset_s
     large = perceive(trace, observer, area_m2=36e-4).onset_s
     assert hand is not None and forearm is not None and large is not None
     assert hand - forearm == pytest.approx(0.15 / 0.5, abs=5e-3)

@@ -1,0 +1,165 @@
+"""Arguments of public functions: what each takes follows from its annotation, and what does not fit is named."""
+
+import builtins
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import update_wrapper
+from importlib import import_module
+from numbers import Integral, Real
+from pathlib import Path
+from types import FunctionType, NoneType, UnionType
+from typing import Any, Literal, TypeVar, Union, cast, get_args, get_origin, is_typeddict
+
+from ..near_words import did_you_mean
+from .context import clean
+
+F = TypeVar("F", bound=Callable[..., Any])
+RENAMED = {"norm": "memory"}
+LONGEST = 60
+WORDS = {str: "a text", bytes: "bytes", Path: "a path", float: "a number", int: "a whole number",
+         bool: "True or False", NoneType: "None", Callable: "a function"}  # fmt: skip
+MADE_BY = {"Icon": 'load_library("six-icons")["cooling-step"]', "IconSet": 'load_library("six-icons")',
+           "Rig": 'Rig.load("thenar")', "Trace": "simulate(icon)", "Ranking": "rank(icons)",
+           "Selection": "Selection(3)", "Drive": "Drive([0, 1], [0, 0.5])", "Trials": "read_trials(path)"}  # fmt: skip
+"""How an object of a class is made, for those who gave something else."""
+
+
+class InputError(ValueError):
+    """Bad input, reported in plain words (what, where, value, limit, unit, cure) without control characters.
+
+    Examples
+    --------
+    >>> str(InputError("hand.toml: contact.area_cm2 = 0; it must be above 0 cm²"))
+    'hand.toml: contact.area_cm2 = 0; it must be above 0 cm²'
+    """
+
+    def __init__(self, *texts: object) -> None:
+        super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))
+
+
+def checked(function: F) -> F:
+    """Refuse arguments of another type than the annotation of a function, or of a class's fields, with an `InputError`.
+
+    >>> @checked
+    ... def cooled(by: float) -> float:
+    ...     return -by
+    >>> cooled("6 °C")
+    Traceback (most recent call last):
+    ...
+    thermicon.icons.model.arguments.InputError: cooled: by takes a number, not '6 °C'
+    """
+    if isinstance(function, type):
+        setattr(function, "__init__", checked(vars(function)["__init__"]))  # noqa: B010
+        return function
+    own, hints, error = cast(FunctionType, function), dict[str, Any](), InputError
+    place = own.__qualname__.removesuffix(".__init__")
+    names = own.__code__.co_varnames[: own.__code__.co_argcount]
+    rest = own.__code__.co_varnames[own.__code__.co_argcount + own.__code__.co_kwonlyargcount :][:1]
+
+    def check(args: tuple[Any, ...], given: dict[str, Any]) -> None:
+        if not hints:
+            hints.update(_hints(own))
+        values = [*zip(names, args, strict=False), *((name, each) for name in rest for each in args[len(names) :])]
+        for name, value in (*values, *given.items()):
+            if name not in hints and name in given:
+                now = f"is called {RENAMED[name]} now" if name in RENAMED else did_you_mean(name, hints)
+                raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is no argument; '}{now}")
+            if not _fits(value, hints.get(name, Any)):
+                raise InputError(f"{place}: {name} takes {_words(hints[name])}, not {_shown(value)}")
+
+    def call(*args: Any, **given: Any) -> Any:
+        check(args, given)
+        try:
+            return function(*args, **given)
+        except ValueError as wrong:
+            if type(wrong) is not ValueError:
+                raise
+            raise error(f"{place}: {wrong}") from wrong
+
+    # With the function's own globals: doctest looks by them for the examples of a module.
+    made = FunctionType(call.__code__, own.__globals__, own.__name__, None, call.__closure__)
+    return cast(F, update_wrapper(made, function))
+
+
+class _Names(dict[str, Any]):
+    """Names that annotations use; those imported for type checkers alone are looked up at the front doors."""
+
+    def __missing__(self, name: str) -> Any:
+        doors = (import_module(f"thermicon.{package}") for package in ("icons", "circuit", "perception"))
+        found = next((getattr(door, name) for door in doors if name in door.__all__), Any)
+        return import_module("pandas") if name == "pd" else found
+
+
+def _hints(function: Any) -> dict[str, Any]:
+    """What each argument takes; of keywords that a typed dictionary describes, each."""
+    found, names = dict[str, Any](), _Names({**vars(builtins), **vars(sys.modules[function.__module__])})
+    for name, text in function.__annotations__.items():
+        text = getattr(text, "__forward_arg__", text)
+        hint = eval(text, {}, names) if isinstance(text, str) else text
+        words = [each for each in get_args(hint) if is_typeddict(each)]
+        found |= _hints(words[0]) if words else {} if name == "return" else {name: hint}
+    return found
+
+
+def _fits(value: Any, hint: Any) -> bool:
+    """Whether a value is of the type that an annotation names; an annotation that is not understood takes anything."""
+    origin, inner = get_origin(hint) or hint, get_args(hint)
+    if origin in (Union, UnionType):
+        return _numeric(value) if _is_array(inner) else any(_fits(value, each) for each in inner)
+    if origin is Literal:
+        return isinstance(value, str) and value in inner
+    if origin in (int, float):
+        return isinstance(value, Integral if origin is int else Real) and not isinstance(value, bool)
+    if origin in (Sequence, Iterable):
+        some = hasattr(value, "__getitem__" if origin is Sequence else "__iter__")
+        if not some or isinstance(value, str | bytes | Mapping) or getattr(value, "ndim", 1) != 1:
+            return False
+        return iter(value) is value or all(_fits(each, inner[0]) for each in value)
+    if origin is Callable or origin is Any or not isinstance(origin, type):
+        return origin is not Callable or callable(value)
+    return isinstance(value, origin)
+
+
+def _is_array(inner: tuple[Any, ...]) -> bool:
+    """Whether these are the parts of numpy's `ArrayLike`."""
+    return any(getattr(each, "__module__", "").startswith("numpy._typing") for each in inner)
+
+
+def _numeric(value: Any) -> bool:
+    try:
+        import_module("numpy").asarray(value, float)
+        return not isinstance(value, str | bytes | NoneType)
+    except (TypeError, ValueError):
+        return False
+
+
+def _words(hint: Any) -> str:
+    """What an annotation takes, in words."""
+    origin, inner = get_origin(hint) or hint, get_args(hint)
+    if origin in (Union, UnionType):
+        text = "an array of numbers" if _is_array(inner) else _or(dict.fromkeys(map(_words, inner)))
+        return text.replace("a text", "a name") if Path in inner else text
+    if origin is Literal:
+        return _or(map(repr, inner))
+    if origin in (Sequence, Iterable):
+        return f"a list, each {_words(inner[0])}"
+    name = getattr(origin, "__name__", str(origin))
+    made = f" such as {MADE_BY[name]}" if name in MADE_BY else ""
+    return WORDS.get(origin) or _a(name) + made
+
+
+def _or(parts: Iterable[str]) -> str:
+    *most, last = parts
+    return f"{', '.join(most)} or {last}" if most else last
+
+
+def _a(name: str) -> str:
+    return f"a{'n' if name[0] in 'AEIO' else ''} {name}"
+
+
+def _shown(value: object) -> str:
+    """A value as a message shows it: plain ones as they are, others by their class."""
+    if isinstance(value, str | bytes | bool | int | float | list | tuple | NoneType):
+        text = repr(value)
+        return text if len(text) <= LONGEST else f"{text[: LONGEST - 2]}…{text[-1]}"
+    return f"the class {value.__name__}" if isinstance(value, type) else _a(type(value).__name__)
