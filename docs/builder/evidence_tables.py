@@ -14,6 +14,7 @@ from thermicon.perception.evidence.results import (
     UNMOVED_SD,
     AblatedRow,
     Constant,
+    judging_predictions,
     load_ablation,
     load_constants,
     load_predictions,
@@ -113,8 +114,8 @@ def left_out_table() -> str:
 
 
 def coverage_sentence() -> str:
-    """How many rows lie inside the 95 % interval of their prediction without their experiment."""
-    rows = load_predictions()
+    """How many rows, of those that coverage is judged by, lie in the 95 % of a fit without their experiment."""
+    rows = judging_predictions()
     missed = [f"{row.label} ({row.experiment}, {signed(row.score, 1)} SD)" for row in rows if not row.covered]
     inside = f"{len(rows) - len(missed)} of {len(rows)} rows lie inside the 95 % interval"
     if not missed:

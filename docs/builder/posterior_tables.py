@@ -18,7 +18,7 @@ from table_text import UNITS, markdown, number, signed, span
 from thermicon.perception.arrays import Array
 from thermicon.perception.evidence.posterior import Posterior
 from thermicon.perception.evidence.results import UNMOVED_SD, load_constants, read_rows
-from thermicon.perception.evidence.rows import load_rows
+from thermicon.perception.evidence.rows import Row, load_rows
 from thermicon.perception.observer.channels import VARIABLES, Variable
 from thermicon.perception.observer.draws import PosteriorDraws
 
@@ -73,6 +73,11 @@ class LeftOutRow:
     k_hat: float
     method: str
 
+    @property
+    def row(self) -> Row:
+        """The row of the likelihood."""
+        return next(row for row in load_rows() if row.key == (self.experiment, self.statistic, self.channel))
+
     def covered(self, share: float) -> bool:
         """Whether the central interval of a share contains the published number."""
         return abs(self.probability - 0.5) <= 0.5 * share
@@ -99,7 +104,7 @@ def variant_log_scores() -> Array:
     """Log scores (variants, rows) in the order of VARIABLES and of the likelihood.
 
     >>> variant_log_scores().shape
-    (2, 54)
+    (2, 61)
     """
     rows = list(read_rows(SCORES, VariantScores))
     return np.array([[row.temperature for row in rows], [row.heat_flow for row in rows]])
@@ -203,10 +208,12 @@ def _names(found: Sequence[Summary]) -> str:
     return ", ".join(sorted(each.name for each in found)) or "none"
 
 
-def sampled_left_out_table() -> str:
-    """Every row predicted by draws that never saw its experiment; misses of the 95 % interval are bold."""
+def sampled_left_out_table(*, spreads: bool) -> str:
+    """Spreads, or all other rows, by draws that never saw their experiment; misses of the 95 % interval are bold."""
     rows = []
     for each in load_left_out():
+        if (each.row.kind == "spread") is not spreads:
+            continue
         mark = "" if each.covered(0.95) else "**"
         unit = {"1": "", "0-100": "of 100"}.get(each.unit, each.unit)
         naive = "" if math.isnan(each.naive) else signed(each.log_score - each.naive, 2)
@@ -229,15 +236,17 @@ def sampled_left_out_table() -> str:
 
 
 def scores_sentence(rows: Sequence[LeftOutRow]) -> str:
-    """Coverage, widths and log scores of left-out predictions."""
-    inside = [sum(each.covered(share) for each in rows) for share in (0.5, 0.95)]
-    logs = {row.key for row in load_rows() if row.log}
-    ratios = sorted(each.high / each.low for each in rows if (each.experiment, each.statistic, each.channel) in logs)
-    compared = [each for each in rows if not math.isnan(each.naive)]
+    """Coverage, widths and log scores of left-out predictions of the rows by which they are judged."""
+    every, rows = rows, [each for each in rows if each.row.judges]
+    spread = [each for each in every if each.row.kind == "spread"]
+    inside, wide = ([sum(each.covered(share) for each in some) for share in (0.5, 0.95)] for some in (rows, spread))
+    ratios = sorted(each.high / each.low for each in rows if each.row.log)
+    compared = [each for each in every if not math.isnan(each.naive)]
     gain = sum(each.log_score - each.naive for each in compared) / len(compared)
-    weighted = dict.fromkeys(each.experiment for each in rows if each.method == FROM_WEIGHTS)
+    weighted = dict.fromkeys(each.experiment for each in every if each.method == FROM_WEIGHTS)
     return (
-        f"{inside[0]} of {len(rows)} rows lie inside their 50 % interval and {inside[1]} inside their 95 % interval. "
+        f"{inside[0]} of {len(rows)} rows lie inside their 50 % interval and {inside[1]} inside their 95 % interval; "
+        f"of the {len(spread)} spreads, which judge nothing, {wide[0]} and {wide[1]}. E8 and E9 are not counted. "
         f"Half of the 95 % intervals of ratios span less than a factor of {ratios[len(ratios) // 2]:.1f}. "
         f"On {len(compared)} rows of a kind that two other experiments have, the log score is {signed(gain, 2)} a row "
         f"over the naive baseline. "
@@ -287,7 +296,8 @@ TABLES: Mapping[str, Callable[[], str]] = {
     "posterior": posterior_table,
     "sampled": sampled_sentence,
     "moved": moved_sentence,
-    "left out by draws": sampled_left_out_table,
+    "left out by draws": lambda: sampled_left_out_table(spreads=False),
+    "left out spreads": lambda: sampled_left_out_table(spreads=True),
     "scores": lambda: scores_sentence(load_left_out()),
     "variants": variants_sentence,
     "forms of memory": forms_table,
