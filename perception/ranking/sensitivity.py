@@ -207,7 +207,7 @@ def sensitivity(
     >>> sensitivity(read_cue("six-icons"), Rig.load("thenar"), draws=3)
     Traceback (most recent call last):
     ...
-    thermicon.icons.model.arguments.InputError: sensitivity: a sensitivity needs 64 to 1000 draws of the posterior, not 3
+    thermicon.icons.model.arguments.InputError: sensitivity: a sensitivity needs 64 to 1000 draws of the posterior, ...
     """
     from thermicon.circuit.solver.simulate import duration_s
 
