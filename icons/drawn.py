@@ -1,25 +1,49 @@
-"""Pictures of icons, as notebooks expect them; the room of pictures loads when one is first made."""
+"""How results show themselves: pictures, whose room loads when one is first made, and tables as files."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .atomic import complete_or_absent
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
+
+ROOMS = {"icons": "pictures.draw", "perception": "plots.plot"}
+"""Where a package draws what it makes."""
 
 
 class Drawn:
-    """An icon, a family or a set, which the room of pictures can draw."""
+    """A result that the drawing room of its package can draw."""
 
     __slots__ = ()
 
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw against time, on the axes or on new ones, and return them; up to 24 icons over one another."""
-        from .pictures.draw import plot
+    def _room(self) -> Any:
+        package = type(self).__module__.split(".")[1]
+        return import_module(f"thermicon.{package}.{ROOMS[package]}")
 
-        return plot(self, ax)
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw on the axes, or on new ones, and return them; of icons up to 24 over one another, against time."""
+        axes: Axes = self._room().plot(self, ax)
+        return axes
 
     def _repr_html_(self) -> str:
-        from .pictures.draw import as_svg
+        return str(self._room().as_svg(self.plot()))
 
-        return as_svg(self.plot())
+
+class Tabled:
+    """A result of which `to_frame` gives a table."""
+
+    __slots__ = ()
+
+    def to_frame(self) -> pd.DataFrame:
+        """The result as a table."""
+        raise NotImplementedError
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write the table as a CSV file; an existing file is replaced."""
+        with complete_or_absent(Path(path)) as draft:
+            self.to_frame().to_csv(draft, index=False, float_format="%.9g", lineterminator="\n")

@@ -1,5 +1,6 @@
 """What people give by mistake: every public function works, or says in an InputError which argument takes what."""
 
+import contextlib
 import importlib
 import inspect
 import re
@@ -13,7 +14,7 @@ import pytest
 
 from thermicon.circuit import Drive, InputError, SessionPlan, Trace, simulate
 from thermicon.icons import Icon, IconSet, back, cool, from_samples, load_library, read_cue
-from thermicon.perception import Condition, Ranking, Selection, Trials, information_bits, rank
+from thermicon.perception import Condition, Crowd, Ranking, Selection, Trials, information_bits, rank
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("icons", "circuit", "perception", "notebooks")
@@ -59,45 +60,40 @@ def test_a_wrong_argument_works_or_is_an_error_for_people(function: str, argumen
     package, _, name = function.partition(".")
     called = getattr(importlib.import_module(f"thermicon.{package}"), name)
     known = inspect.signature(called).parameters
-    for wrong in WRONG:
-        if wrong is None and known[argument].default is None:
-            continue
-        given = {
-            each: RIGHT[each] for each in known if known[each].default is inspect.Parameter.empty and each in RIGHT
-        }
-        given = {each: right() if inspect.isfunction(right) else right for each, right in given.items()}
-        first = argument == next(iter(given), argument) and known[argument].kind is not inspect.Parameter.KEYWORD_ONLY
-        try:
-            if known[argument].kind is inspect.Parameter.VAR_POSITIONAL:
-                called(*given.values(), wrong)
-            elif first:  # whatever it is called
-                called(wrong, **{each: right for each, right in given.items() if each != argument})
-            else:
-                called(**given | {argument: wrong})
-        except InputError as error:
-            assert len(str(error)) > 10
+    needed = [each for each in known if known[each].default is inspect.Parameter.empty and each in RIGHT]
+    given = {each: RIGHT[each]() if inspect.isfunction(RIGHT[each]) else RIGHT[each] for each in needed}
+    alone = [] if known[argument].kind is not inspect.Parameter.VAR_POSITIONAL else [*given.values()]
+    for wrong in WRONG if known[argument].default is not None else WRONG[1:]:
+        words = {} if alone else given | {argument: wrong}
+        first = [words.pop(argument)] if argument == next(iter(known)) and known[argument].kind.value < 2 else []
+        with contextlib.suppress(InputError):  # or it works
+            called(*first, *alone, *([wrong] if alone else []), **words)
 
 
-def test_the_error_names_the_argument_and_what_it_takes() -> None:
-    for call, words in (
-        (
-            lambda: simulate("six-icons", "thenar"),
-            "simulate: icon takes an Icon such as load_library.*, not 'six-icons'$",
-        ),
-        (
-            lambda: rank(pd.DataFrame({"a": [1]})),
-            r"rank: icons takes an IconSet .*, a name or a path, not a DataFrame$",
-        ),
-        (lambda: rank("six-icons", norm="naming"), "rank: norm is called memory now$"),
-        (lambda: rank("six-icons", peple=3), r"rank: peple is no argument; did you mean people\?$"),
-        (lambda: rank("six-icons", "thenr"), r"thenr: no such rig; did you mean thenar\?$"),
-        (
-            lambda: Icon.of("a", cool(by=4, at=2), control="skni"),
-            "control takes 'skin', 'display' or 'current', not 'skni'",
-        ),
-    ):
-        with pytest.raises(InputError, match=words):
-            call()  # type: ignore[no-untyped-call]
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        ('simulate("six-icons")', "simulate: icon takes an Icon such as load_library.*, not 'six-icons'$"),
+        ("rank(WRONG[-2])", "rank: icons takes an IconSet .*, a name or a path, not a DataFrame$"),
+        ('rank("six-icons", norm="naming")', "rank: norm is called memory now$"),
+        ('rank("six-icons", peple=3)', r"rank: peple is no argument; did you mean people\?$"),
+        ('rank("six-icons", "thenr")', r"thenr: no such rig; did you mean thenar\?$"),
+        ('Icon.of("a", cool(by=4, at=2), control="skni")', "control takes 'skin', 'display' or 'current', not 'skni'"),
+        ("from_samples([0, 1], [32])", "2 times for 1 temperatures; give as many of both"),
+        ('IconSet.of(DIP).save("dip.txt")', "call it dip.cue"),
+        ("IconSet.of([])", "at least one icon"),
+    ],
+)
+def test_the_error_names_the_argument_and_what_it_takes(call: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        eval(call)
+
+
+def test_a_crowd_and_its_words_are_the_same_people() -> None:
+    crowd = Crowd(people=3, memory="naming")
+    assert rank("six-icons", crowd=crowd, people=2, parameters=0) != ranked()
+    assert rank("six-icons", crowd=crowd, people=2, memory="episodes", parameters=0).to_json() == ranked().to_json()
+    assert ranked().crowd.but(observer=None) == Crowd(people=2)
 
 
 def test_information_is_of_proportions() -> None:
@@ -105,14 +101,13 @@ def test_information_is_of_proportions() -> None:
     counts = np.array([[8, 2, 0], [1, 9, 0], [0, 0, 10]])
     assert information_bits(counts / 10) == pytest.approx(1.1832, abs=1e-4)
     assert information_bits(np.array([[0.5, 0.4995], [0.5, 0.5]])) == pytest.approx(0.0, abs=1e-3)
-    for wrong in (
-        counts,
-        10 * counts,
+    negative, empty, cut, below = (
         [[1.2, -0.2], [0, 1]],
         [[0, 0], [0, 1]],
         [[0.5, 0.4], [0.4, 0.5]],
         [[0.498, 0.5], [0, 1]],
-    ):
+    )
+    for wrong in (counts, 10 * counts, negative, empty, cut, below):
         with pytest.raises(InputError, match="divide each row of counts by its sum"):
             information_bits(wrong)
 
@@ -122,40 +117,19 @@ def test_icons_of_code_and_of_arrays_are_read_back_equal(tmp_path: Path) -> None
     both = IconSet.of([DIP, glow], "alerts", "Two alerts")
     both.save(tmp_path / "both.cue")
     assert read_cue(tmp_path / "both.cue") == both
-    assert (DIP.context.control, DIP.context.baseline_C, DIP.context.site, DIP.metadata.means) == (
-        "display",
-        32,
-        "thenar",
-        "left",
-    )
-    trace = simulate(load_library("six-icons")["cooling-step"])
-    trace.to_csv(tmp_path / "trace.csv")
+    context = DIP.context
+    assert (context.control, context.baseline_C, context.site, DIP.metadata.means) == ("display", 32, "thenar", "left")
+    simulate(load_library("six-icons")["cooling-step"]).to_csv(tmp_path / "trace.csv")
     again = pd.read_csv(tmp_path / "trace.csv")
-    icon = from_samples(again.time_s, again.display_C, tolerance_K=0.1)
-    assert np.interp(again.time_s, *np.array([icon.corners().time_s, icon.corners().value])) == pytest.approx(
-        again.display_C, abs=0.11
-    )
-    for wrong in (lambda: from_samples([0, 1], [32]), lambda: both.save("both.txt"), lambda: IconSet.of([])):
-        with pytest.raises(InputError):
-            wrong()
+    corners = from_samples(again.time_s, again.display_C, tolerance_K=0.1).corners()
+    assert np.interp(again.time_s, corners.time_s, corners.value) == pytest.approx(again.display_C, abs=0.11)
 
 
 def test_what_pages_say_of_a_name_is_there() -> None:
     """`Trace.to_csv` in a page, for every class at a front door."""
     doors = [importlib.import_module(f"thermicon.{package}") for package in PACKAGES]
-    classes = {
-        name: getattr(door, name) for door in doors for name in door.__all__ if inspect.isclass(getattr(door, name))
-    }
-    named = [
-        (page.name, *match)
-        for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
-        for match in re.findall(r"`([A-Z]\w+)\.(\w+)", page.read_text(encoding="utf-8"))
-        if match[0] in classes
-    ]
+    pages = [page.read_text(encoding="utf-8") for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))]
+    said = {match for page in pages for match in re.findall(r"`([A-Z]\w+)\.(\w+)", page)}
+    named = [(getattr(door, name), own) for name, own in said for door in doors if name in door.__all__]
     assert len(named) > 10
-    wrong = [
-        each
-        for each in named
-        if not hasattr(classes[each[1]], each[2]) and each[2] not in classes[each[1]].__annotations__
-    ]
-    assert wrong == []
+    assert [each for each in named if not hasattr(*each) and each[1] not in each[0].__annotations__] == []

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
-from thermicon.icons.tabled import Tabled
+from thermicon.icons.drawn import Tabled
 
 from ..arrays import Array
 from ..inputs import LONGEST_NAME

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from thermicon.icons import IconSet
-from thermicon.icons.tabled import Tabled
+from thermicon.icons.drawn import Tabled
 
 from ..inputs import InputError, read_text
 from ..rig.rules import Limits

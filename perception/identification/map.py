@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.icons.drawn import Drawn
+
 from ..arrays import Array
-from ..drawn import Drawn
 from ..kernels.parallel import own_arrays
 
 if TYPE_CHECKING:

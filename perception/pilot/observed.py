@@ -12,11 +12,10 @@ import numpy as np
 
 from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import InputError, checked
-from thermicon.icons.tabled import Tabled
 
-from ..drawn import Drawn
 from ..experiments.measure import Setting
 from ..kernels.parallel import Progress, step_counter
 from ..observer.draws import PosteriorDraws

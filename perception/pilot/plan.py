@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from thermicon.circuit.program import own_version
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.drawn import Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import InputError, checked
-from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
 from ..kernels.parallel import Progress, step_counter

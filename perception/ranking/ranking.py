@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.number_text import count_of
-from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
-from ..drawn import Drawn
 from ..identification.laboratory import NewLaboratory
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of

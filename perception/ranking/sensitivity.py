@@ -20,12 +20,11 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 
 from thermicon.circuit.rig.rig import AnyRig, Rig
+from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
-from thermicon.icons.tabled import Tabled
 
 from ..arrays import Array
-from ..drawn import Drawn
 from ..identification.depths import rungs
 from ..identification.laboratory_draws import LaboratoryDraws, Uncertain, laboratory_draws, latin
 from ..identification.population import ReceptorTemperatures, run_end_s
@@ -208,7 +207,7 @@ def sensitivity(
     >>> sensitivity(read_cue("six-icons"), Rig.load("thenar"), draws=3)
     Traceback (most recent call last):
     ...
-    ValueError: a sensitivity needs 64 to 1000 draws of the posterior, not 3
+    thermicon.icons.model.arguments.InputError: sensitivity: a sensitivity needs 64 to 1000 draws of the posterior, ...
     """
     from thermicon.circuit.solver.simulate import duration_s
 

@@ -10,11 +10,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
 from thermicon.circuit.rig.rig import AnyRig
+from thermicon.icons.drawn import Drawn, Tabled
 from thermicon.icons.files.shipped import Icons
 from thermicon.icons.model.arguments import checked
-from thermicon.icons.tabled import Tabled
 
-from ..drawn import Drawn
 from ..identification.laboratory import DRAWS
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from thermicon.icons.drawn import Drawn
 from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
 from ..criteria import FELT_FROM
-from ..drawn import Drawn
 from ..observer.channels import CHANNELS, Channel
 from ..observer.observer import Observer
 from .coverage import outside_data
