@@ -173,7 +173,7 @@ def perceive(trace: Trace, observer: Observer | None = None, area_m2: float | No
     >>> from thermicon.icons import read_cue
     >>> trace = simulate(read_cue("six-icons")["cooling-step"], Rig.load("thenar"), tail_s=10.0)
     >>> percept = perceive(trace)
-    >>> percept.felt, percept.channel, 1.0 < percept.onset_s < 1.3
+    >>> percept.felt, percept.channel, 0.7 < percept.onset_s < 1.0
     (True, 'cold', True)
     """
     person = Observer.load() if observer is None else observer

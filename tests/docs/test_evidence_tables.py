@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 from posterior_tables import TABLES, load_left_out, stacking_weights, summarise, variant_weights
 
-from thermicon.perception.evidence.results import load_ablation, load_constants, load_predictions
+from thermicon.perception.evidence.results import (
+    judging_predictions,
+    load_ablation,
+    load_constants,
+    load_missed,
+    load_predictions,
+)
 from thermicon.perception.evidence.rows import load_rows
 from thermicon.perception.observer.draws import PosteriorDraws
 
@@ -34,8 +40,10 @@ def test_ablation_and_predictions_are_complete() -> None:
     assert len(body(tables.ablation_table())) == len(load_ablation())
     predicted = body(tables.left_out_table())
     assert len(predicted) == len(load_predictions())
-    missed = sum(row[1].startswith("**") for row in predicted)
-    assert tables.coverage_sentence().startswith(f"{len(predicted) - missed} of {len(predicted)} rows")
+    assert sum(row[1].startswith("**") for row in predicted) == len(load_missed())
+    judging = judging_predictions()
+    inside = sum(each.covered for each in judging)
+    assert tables.coverage_sentence().startswith(f"{inside} of {len(judging)} rows") and len(judging) == 34
 
 
 def test_stacking_mixes_variants_that_are_good_at_different_rows() -> None:
@@ -59,7 +67,7 @@ def test_left_out_predictions_by_draws_cover_and_beat_the_naive_baseline() -> No
 
 def test_summaries_say_what_was_not_moved() -> None:
     found = {each.name: each for each in summarise(PosteriorDraws.load())}
-    assert found["softness of the limits"].unmoved
+    assert found["smallest area that counts"].unmoved
     assert not found["warm threshold drive"].unmoved
     assert found["warm threshold drive"].narrowed < 0.4
 

@@ -57,7 +57,7 @@ def test_the_json_says_what_was_chosen_within_its_limits(ranked: Callable[..., d
 
 
 def test_without_families_and_questions_every_close_pair_gets_an_edit(ranked: Callable[..., dict[str, Any]]) -> None:
-    every = ranked()
+    every = ranked("--set", "contact.area_cm2=0.5")
     assert every["chosen"] is None
     edits = {(p["a"], p["b"]): p["edit"] for p in every["pairs"] if p["edit"] or p["no_edit"]}
     assert {(p["a"], p["b"]) for p in every["pairs"] if p["d_prime"] < 2.563} <= set(edits)

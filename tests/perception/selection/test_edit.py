@@ -76,7 +76,7 @@ def test_what_needs_no_edit_and_what_no_edit_can_do_is_told(six: IconSet, rig: R
     assert 0.0 < float(edit.reason.rsplit(" ", 1)[1]) < 30.0
     with pytest.raises(ValueError, match="nobody"):
         cheapest_edit(ranking, "warming-step", "nobody")
-    with pytest.raises(ValueError, match=r"^a pair is two icons, not double-dip twice"):
+    with pytest.raises(ValueError, match=r"^cheapest_edit: a pair is two icons, not double-dip twice"):
         cheapest_edit(ranking, "double-dip", "double-dip")
 
 

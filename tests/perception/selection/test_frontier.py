@@ -118,7 +118,7 @@ def test_draws_are_counted_and_refused_in_the_same_words(rig: Rig, six: IconSet)
     assert seen.draws == 6  # without a number all draws of a small observer are used
     assert seen.points[0].new_laboratory is not None
     for judge in (rank, frontier):
-        with pytest.raises(ValueError, match=r"^9 draws of the parameters were asked for; lab.csv has 6$"):
+        with pytest.raises(ValueError, match=r"^\w+: 9 draws of the parameters were asked for; lab.csv has 6$"):
             judge(six, rig, people=4, parameters=9, observer=lab)  # type: ignore[operator]
         with pytest.raises(ValueError, match=r"needs at least two draws of the parameters, or 0 for none, not 1$"):
             judge(six, rig, people=4, parameters=1)  # type: ignore[operator]
