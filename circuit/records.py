@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from thermicon.icons.model.arguments import InputError
-from thermicon.icons.near_words import did_you_mean
+from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from .inputs import read_text, read_toml
 
@@ -120,7 +120,8 @@ class Table:
         """All records that match every key given; a channel also matches records for both channels."""
         records = self._by_quantity.get(quantity, [])
         if not records:
-            raise RecordError(f"{self.name}: no quantity {quantity!r}; {did_you_mean(quantity, self._by_quantity)}")
+            near = "".join(f"; it has {each!r}" for each in nearest_words(quantity, self._by_quantity, cutoff=0.8))
+            raise RecordError(f"{self.name}: no quantity {quantity!r}{near}")
         for key, value in {"channel": channel, "site": site, "method": method}.items():
             if not value:
                 continue

@@ -82,11 +82,22 @@ def test_a_wrong_argument_works_or_is_an_error_for_people(function: str, argumen
         ("from_samples([0, 1], [32])", "2 times for 1 temperatures; give as many of both"),
         ('IconSet.of(DIP).save("dip.txt")', "call it dip.cue"),
         ("IconSet.of([])", "at least one icon"),
+        ("rank([DIP, None])", r"a path, but icons\[1\] is None$"),
+        ("cool(by=4)", "^cool: needs either at or over, and not both$"),
+        ("cool(by=4, over=-1)", "^cool: over = -1.0: a time is positive$"),
+        ("hold(-1)", "^hold: duration = -1.0: a time is positive$"),
+        ("current(to=99, at=1)", "^current: to = 99.0: 99 A is outside"),
+        ('export([DIP, Icon.of("dip", hold(1))])', "two icons are called dip; give each a name of its own$"),
+        ("play_session([DIP, DIP], SessionPlan(['dip']))", "two icons are called dip"),
+        ('Rig.load("thenar").with_(contact=4)', "^contact: this is a table; name one of its keys, such as contact"),
+        ('Rig.load("thenar").with_set("contact.area_cm2=4")', "settings takes a list, each a text, not 'contact"),
     ],
 )
 def test_the_error_names_the_argument_and_what_it_takes(call: str, words: str) -> None:
+    doors = [importlib.import_module(f"thermicon.{package}") for package in PACKAGES]
+    names = {name: getattr(door, name) for door in doors for name in door.__all__}
     with pytest.raises(InputError, match=words):
-        eval(call)
+        eval(call, globals() | names)
 
 
 def test_a_crowd_and_its_words_are_the_same_people() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from thermicon.icons.atomic import OutputError
-from thermicon.icons.files.shipped import Icons, icons_of
+from thermicon.icons.files.shipped import Icons, by_name
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.number_text import count_of
 
@@ -191,7 +191,7 @@ def export(
     form = load_format(format) if isinstance(format, str) else format
     played = device if isinstance(device, Device) else Device.load(device or form.device)
     on = Rig.of(rig)
-    chosen = icons_of(icons)
+    chosen = tuple(by_name(icons).values())
     if not chosen:
         raise ExportError("there is no icon to export; give at least one")
     where = None if folder is None else Path(folder)

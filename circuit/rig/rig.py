@@ -219,6 +219,7 @@ class Rig:
         texts = tuple(f"{key}={value}" for key, value in stated.items())
         return replace(_build(document, f"rig {self.name}"), changes=texts)
 
+    @checked
     def with_set(self, settings: Iterable[str]) -> Rig:
         """Return a new rig with changes given as `key=value` texts, as on the command line."""
         changes = read_settings(settings)

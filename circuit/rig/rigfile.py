@@ -285,6 +285,9 @@ def _table_in(annotation: Any) -> type[BaseModel] | None:
 
 def unknown_key(key: str) -> str:
     """Return the message for an unknown key."""
+    inside = [known for known in rig_keys() if known.startswith(f"{key}.") and ".0." not in known]
+    if inside:
+        return f"{key}: this is a table; name one of its keys, such as {inside[0]}"
     return f"{key}: unknown key; {_nearest(key.split('.'))}"
 
 

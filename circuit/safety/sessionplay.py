@@ -16,7 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from thermicon.icons import Icon
-from thermicon.icons.files.shipped import Icons, icons_of
+from thermicon.icons.files.shipped import Icons, by_name
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean
 
@@ -227,7 +227,7 @@ def play_session(
     Session(green: 2 plays in 26 s on thenar, skin 26.92 … 34.77 °C, baseline drift -0.80 K, 0 min CEM43)
     """
     rig, planned = Rig.of(rig), set(plan.names)
-    known = {icon.name: icon for icon in icons_of(icons) if icon.name in planned}
+    known = {name: icon for name, icon in by_name(icons).items() if name in planned}
     for name in plan.names:
         if name not in known:
             raise SessionError(f"the plan names {name}, which is not among the icons; {did_you_mean(name, known)}")

@@ -44,7 +44,7 @@ def missing(table: Table, name: str, what: str) -> Exception:
     said = f"{' and '.join(several)} may be {name}" if several else ""
     said = said or f"the column {name} ({what}) is missing; found {table.found}"
     quote = '"' if set(theirs) & set(" ()[]/&;*|<>$'°#") else ""
-    cure = f'--column {quote}{name}={theirs}{quote} (in Python columns={{"{name}": "{theirs}"}})'
+    cure = f'--column {quote}{name}={theirs}{quote} (in Python read_log or from_csv, columns={{"{name}": "{theirs}"}})'
     return table.fault("table", table.line, said, f"say which it is: {cure}")
 
 

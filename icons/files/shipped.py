@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 from ..language.parse import parse
 from ..language.source import MOST_BYTES
-from ..model.arguments import checked
+from ..model.arguments import InputError, checked
 from ..model.errors import whole_file
 from ..model.family import Family
 from ..model.icon import Icon
@@ -223,6 +223,16 @@ def icons_of(icons: Icons) -> tuple[Icon, ...]:
         return tuple(set_of(icons))
     given = (icons,) if isinstance(icons, Icon) else icons
     return tuple(icon for each in given for icon in (each if isinstance(each, Family) else (each,)))
+
+
+def by_name(icons: Icons) -> dict[str, Icon]:
+    """What `icons_of` returns, each by its name; an `InputError` where two have one name."""
+    known: dict[str, Icon] = {}
+    for icon in icons_of(icons):
+        if icon.name in known:
+            raise InputError(f"two icons are called {icon.name}; give each a name of its own")
+        known[icon.name] = icon
+    return known
 
 
 @checked

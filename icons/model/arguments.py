@@ -20,7 +20,8 @@ WORDS = {str: "a text", bytes: "bytes", Path: "a path", float: "a number", int: 
          bool: "True or False", NoneType: "None", Callable: "a function"}  # fmt: skip
 MADE_BY = {"Icon": 'load_library("six-icons")["cooling-step"]', "IconSet": 'load_library("six-icons")',
            "Rig": 'Rig.load("thenar")', "Trace": "simulate(icon)", "Ranking": "rank(icons)",
-           "Selection": "Selection(3)", "Drive": "Drive([0, 1], [0, 0.5])", "Trials": "read_trials(path)"}  # fmt: skip
+           "Selection": "Selection(3)", "Drive": "Drive([0, 1], [0, 0.5])", "Trials": "read_trials(path)",
+           "Crowd": "Crowd(people=50)", "Ramp": "cool(by=4, at=2)"}  # fmt: skip
 """How an object of a class is made, for those who gave something else."""
 
 
@@ -65,7 +66,7 @@ def checked(function: F) -> F:
                 now = f"is called {RENAMED[name]} now" if name in RENAMED else did_you_mean(name, hints)
                 raise InputError(f"{place}: {name} {'' if name in RENAMED else 'is no argument; '}{now}")
             if not _fits(value, hints.get(name, Any)):
-                raise InputError(f"{place}: {name} takes {_words(hints[name])}, not {_shown(value)}")
+                raise InputError(f"{place}: {name} takes {_words(hints[name])}, {_refused(name, value, hints[name])}")
 
     def call(*args: Any, **given: Any) -> Any:
         check(args, given)
@@ -155,6 +156,15 @@ def _or(parts: Iterable[str]) -> str:
 
 def _a(name: str) -> str:
     return f"a{'n' if name[0] in 'AEIO' else ''} {name}"
+
+
+def _refused(name: str, value: Any, hint: Any) -> str:
+    """What was given instead; of a list, its first item that does not fit."""
+    inner = [get_args(each)[0] for each in (hint, *get_args(hint)) if get_origin(each) in (Sequence, Iterable)]
+    for place, each in enumerate(value if inner and isinstance(value, list | tuple) else ()):
+        if not _fits(each, inner[0]):
+            return f"but {name}[{place}] is {_shown(each)}"
+    return f"not {_shown(value)}"
 
 
 def _shown(value: object) -> str:

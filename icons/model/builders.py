@@ -3,11 +3,13 @@
 The statements themselves check what they are made of, and name their fields: a `by` is ``by_K``, an `at` a rate.
 """
 
+import re
 from collections.abc import Callable
+from functools import wraps
 from inspect import cleandoc, signature
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeVar, cast
 
-from .arguments import checked
+from .arguments import InputError, checked
 from .statements import (
     Bound,
     Current,
@@ -51,6 +53,8 @@ ARGUMENTS = {
     "bound": "``exactly``, ``at most`` or ``at least``.",
 }
 """What an argument of a builder is, by its name, or by builder and name where one is different."""
+FIELDS = r"\b(by_K|to_C|to_A|rate_\w+|period_s|duration_s)\b"
+"""Fields of statements that errors name, and builders call otherwise."""
 
 
 def _described(builder: Builder) -> Builder:
@@ -70,7 +74,22 @@ def _described(builder: Builder) -> Builder:
     }
     texts = [f"{title}\n{'-' * len(title)}\n{text}" for title, text in sections.items()]
     builder.__doc__ = "\n\n".join([summary, *texts])
-    return checked(builder)
+    told = checked(builder)
+    ours = {"rate": "at", "period": "every", "duration": "over" if "over" in call.parameters else "duration"}
+
+    def spoken(field: re.Match[str]) -> str:
+        stem = field[0].partition("_")[0]
+        return field[0] if field[0] in call.parameters else ours.get(stem, stem)
+
+    @wraps(told)
+    def made(*args: object, **given: object) -> object:
+        try:
+            return told(*args, **given)
+        except InputError as wrong:
+            text = re.sub(": [A-Z][a-z]+[. ]", ": ", str(wrong), count=1)
+            raise InputError(re.sub(FIELDS, spoken, text)) from None
+
+    return cast(Builder, made)
 
 
 @_described

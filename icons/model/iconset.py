@@ -129,7 +129,7 @@ class IconSet(Drawn):
         known: dict[str, Icon | Family] = {}
         for entry in self.entries:
             if entry.name in known:
-                raise ValueError(f"two icons are called {entry.name}")
+                raise ValueError(f"two icons are called {entry.name}; give each a name of its own")
             if entry.context != self.context:
                 raise ValueError(
                     f"the context of icon {entry.name} is not that of the set: {entry.context} and {self.context}"
@@ -192,6 +192,8 @@ class IconSet(Drawn):
             raise UnknownIcon(f"no icon is called {name!r}; {help}")
         close = nearest(str(name), names)
         hint = f"did you mean {close}? " if close else ""
+        hint = hint if isinstance(name, str) else f"by place, ask .icons[{name!r}]; "
+        names = [entry.name if isinstance(entry, Icon) else f"{entry[0].name}, …" for entry in self.entries]
         more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
         raise UnknownIcon(f"no icon is called {name!r}; {hint}the set has: {', '.join(names[:_MOST_NAMES])}{more}")
 

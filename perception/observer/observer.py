@@ -132,7 +132,7 @@ class Observer(
         try:
             return cls.from_values(values_in(table, cls, check_variable(variable)), variable)
         except RecordError as wrong:
-            raise RecordError(f"{wrong}. Cure: {CURE}") from None
+            raise RecordError(f"{wrong}; the file is incomplete or of another version. Cure: {CURE}") from None
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any], variable: Variable = "temperature") -> Observer:

@@ -89,6 +89,8 @@ def test_a_set_counts_and_slices_members() -> None:
     for index in (22, -23):
         with pytest.raises(IndexError, match=f"no icon at {index}: the set has 22"):
             SET.icons[index]
+    with pytest.raises(KeyError, match=r"called 0; by place, ask .icons\[0\]; the set has: .*ramp_amount=-6_rate=1, …"):
+        _ = SET[0]
     with pytest.raises(KeyError, match="ramp is a family of 20, with members such as ramp_amount=-6_rate=1"):
         SET["ramp"]
 
