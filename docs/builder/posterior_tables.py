@@ -250,7 +250,7 @@ def scores_sentence(rows: Sequence[LeftOutRow]) -> str:
         f"Half of the 95 % intervals of ratios span less than a factor of {ratios[len(ratios) // 2]:.1f}. "
         f"On {len(compared)} rows of a kind that two other experiments have, the log score is {signed(gain, 2)} a row "
         f"over the naive baseline. "
-        f"Weights were enough for {', '.join(weighted) if weighted else 'no experiment'}; the others were refitted."
+        f"Weights were taken for {', '.join(weighted) if weighted else 'no experiment'}; the others were refitted."
     )
 
 
@@ -288,7 +288,7 @@ def forms_table() -> str:
             lines.append((f"`{norm}`", one.row, one.published, number(one.predicted), ends, f"{one.log_score:.1f}"))
         total = f"**{sum(one.log_score for one in own):.1f}**"
         lines.append((f"`{norm}`", "**all rows**", "", "", "", total))
-    return markdown(("norm", "row", "published", "predicted", "95 %", "log score"), lines)
+    return markdown(("memory", "row", "published", "predicted", "95 %", "log score"), lines)
 
 
 TABLES: Mapping[str, Callable[[], str]] = {
