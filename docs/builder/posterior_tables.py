@@ -7,6 +7,7 @@ first line says by which version and from what they were made.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -244,8 +245,9 @@ def scores_sentence(rows: Sequence[LeftOutRow]) -> str:
     compared = [each for each in every if not math.isnan(each.naive)]
     gain = sum(each.log_score - each.naive for each in compared) / len(compared)
     weighted = dict.fromkeys(each.experiment for each in every if each.method == FROM_WEIGHTS)
+    kinds = ", ".join(f"{count} {kind}s" for kind, count in Counter(each.row.kind for each in rows).items())
     return (
-        f"{inside[0]} of {len(rows)} rows lie inside their 50 % interval and {inside[1]} inside their 95 % interval; "
+        f"{inside[0]} of {len(rows)} rows ({kinds}) lie inside their 50 % interval and {inside[1]} inside their 95 % interval; "
         f"of the {len(spread)} spreads, which judge nothing, {wide[0]} and {wide[1]}. E8 and E9 are not counted. "
         f"Half of the 95 % intervals of ratios span less than a factor of {ratios[len(ratios) // 2]:.1f}. "
         f"On {len(compared)} rows of a kind that two other experiments have, the log score is {signed(gain, 2)} a row "
