@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy
 
+from thermicon.icons.model.arguments import InputError
 from thermicon.icons.near_words import did_you_mean
 from thermicon.icons.number_text import number, span
 
@@ -30,7 +31,7 @@ HELD = ("current_A", "voltage_V")
 CLOSE_S = 1e-9
 
 
-class LogError(Exception):
+class LogError(InputError):
     """A trace or log that cannot be read or compared; the text says where and what to change."""
 
 

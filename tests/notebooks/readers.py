@@ -101,7 +101,7 @@ KINDS = {
         SETTINGS, 2, "a.txt", lambda path: Rig.load("thenar").with_set([path.read_bytes().decode("utf-8", "replace")])
     ),
     "log": Kind(
-        LOGS, 2, "a.csv", lambda path: read_log(path).column("skin_C").tolist(),
+        LOGS, 2, "a.csv", lambda path: [values.tolist() for _, values in read_log(path).columns],
         "fit a.csv --free contact.resistance_m2K_per_W",
     ),
     "trace": Kind(LOGS, 2, "a.csv", read_compared, "compare a.csv b.csv"),

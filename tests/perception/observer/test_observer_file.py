@@ -106,7 +106,7 @@ def test_a_ranking_with_other_draws_follows_them_throughout(draws_file: Path) ->
     # Cold needs five times the change: the percept, the d′ to its neighbour and the interval all follow.
     assert numb.icons[place].onset_s is None or numb.icons[place].onset_s > usual.icons[place].onset_s + 0.1  # type: ignore[operator]
     neighbour = usual.labels.index("linear-cooling")
-    assert abs(numb.d_prime[place, neighbour] - usual.d_prime[place, neighbour]) > 0.1
+    assert abs(numb.d_prime[place, neighbour] - usual.d_prime[place, neighbour]) > 0.01
     # Six strong icons are remembered by ratios, so that one point of per cent correct is all they lose.
     assert numb.proportion_correct < usual.proportion_correct - 0.005
     assert numb.new_laboratory.proportion_correct[1] < usual.new_laboratory.proportion_correct[1]
