@@ -137,7 +137,7 @@ def test_icons_of_code_and_of_arrays_are_read_back_equal(tmp_path: Path) -> None
 
 
 def test_what_pages_say_of_a_name_is_there() -> None:
-    """`Trace.to_csv` in a page, for every class at a front door."""
+    """Each public class has the methods by which README and pages call it, such as `Trace.to_csv`."""
     doors = [importlib.import_module(f"thermicon.{package}") for package in PACKAGES]
     pages = [page.read_text(encoding="utf-8") for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))]
     said = {match for page in pages for match in re.findall(r"`([A-Z]\w+)\.(\w+)", page)}

@@ -177,7 +177,7 @@ class Row:
 def load_rows() -> tuple[Row, ...]:
     """All rows of the likelihood, experiment by experiment."""
     evidence = load_evidence()
-    return (*_from_statistics(evidence), *in_haste(evidence), *_from_thresholds())
+    return (*_from_statistics(evidence), *_in_haste(evidence), *_from_thresholds())
 
 
 def _from_statistics(evidence: Evidence) -> list[Row]:
@@ -215,7 +215,7 @@ HASTE_DISCREPANCY = 0.003
 """What a model of this kind may miss a share of wrong qualities by; assumed."""
 
 
-def in_haste(evidence: Evidence) -> list[Row]:
+def _in_haste(evidence: Evidence) -> list[Row]:
     """Shares of wrong qualities in a speeded choice, over all areas."""
     rows = []
     for channel, wrong in zip(CHANNELS, ("cold called warm", "warm called cold"), strict=True):
