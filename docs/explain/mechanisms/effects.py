@@ -90,13 +90,13 @@ def adaptation_effect() -> Effect:
 
 
 def depth_effect() -> Effect:
-    """A fall by 5 K in 0.5 s at the cold receptors of thenar and forearm, for both ways to count their depth."""
-    time, depth = _clock(4.0), Observer.load().depth_m.cold
+    """A fall by 5 K in 0.5 s at the cold receptors of thenar and forearm, for two ways to count their depth."""
+    time, observer = _clock(4.0), Observer.load()
     sites: tuple[tuple[str, Look, Look], ...] = (("forearm", "cold", "off"), ("thenar", "reference", "other"))
     curves = []
     for site, below, surface in sites:
         for counted, at, look in (
-            ("below the stratum corneum", load_rig(site).skin.corneum_m + depth, below),
+            ("below a share of the corneum", observer.depths_m(load_rig(site).skin.corneum_m).cold, below),
             ("0.15 mm from the surface", 0.15e-3, surface),
         ):
             change = _course(site, at, 32.0, [(0.5, -5.0)], time.size)
