@@ -14,6 +14,7 @@ import numpy as np
 
 from thermicon.icons import IconSet
 from thermicon.icons.drawn import Tabled
+from thermicon.icons.model.arguments import checked
 
 from ..inputs import InputError, read_text
 from ..rig.rules import Limits
@@ -39,6 +40,7 @@ class SessionError(InputError):
     """A session that cannot be planned or played; the text gives the reason and what to change."""
 
 
+@checked
 @dataclass(frozen=True, slots=True)
 class SessionPlan:
     """The order of play in a session, and the gap between plays.

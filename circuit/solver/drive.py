@@ -34,6 +34,7 @@ class DriveError(InputError):
     """A drive that cannot be played, or a drive file that cannot be read."""
 
 
+@checked
 @dataclass(frozen=True, slots=True)
 class Drive:
     """A current against time.

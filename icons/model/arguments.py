@@ -111,7 +111,7 @@ def _fits(value: Any, hint: Any) -> bool:
         return isinstance(value, str) and value in inner
     if origin in (int, float):
         return isinstance(value, Integral if origin is int else Real) and not isinstance(value, bool)
-    if origin in (Sequence, Iterable):
+    if origin in (Sequence, Iterable, tuple):
         some = hasattr(value, "__getitem__" if origin is Sequence else "__iter__")
         if not some or isinstance(value, str | bytes | Mapping) or getattr(value, "ndim", 1) != 1:
             return False
@@ -142,7 +142,7 @@ def _words(hint: Any) -> str:
         return text.replace("a text", "a name") if Path in inner else text
     if origin is Literal:
         return _or(map(repr, inner))
-    if origin in (Sequence, Iterable):
+    if origin in (Sequence, Iterable, tuple):
         return f"a list, each {_words(inner[0])}"
     name = getattr(origin, "__name__", str(origin))
     made = f" such as {MADE_BY[name]}" if name in MADE_BY else ""
@@ -160,7 +160,7 @@ def _a(name: str) -> str:
 
 def _refused(name: str, value: Any, hint: Any) -> str:
     """What was given instead; of a list, its first item that does not fit."""
-    inner = [get_args(each)[0] for each in (hint, *get_args(hint)) if get_origin(each) in (Sequence, Iterable)]
+    inner = [get_args(each)[0] for each in (hint, *get_args(hint)) if get_origin(each) in (Sequence, Iterable, tuple)]
     for place, each in enumerate(value if inner and isinstance(value, list | tuple) else ()):
         if not _fits(each, inner[0]):
             return f"but {name}[{place}] is {_shown(each)}"

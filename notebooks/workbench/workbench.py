@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from thermicon.icons import CueErrors, Icon, IconSet, parse
 from thermicon.icons.atomic import OutputError
+from thermicon.icons.model.arguments import checked
 
 from .design_model import DesignModel
 from .document_bar import document_of
@@ -32,6 +33,7 @@ View = Literal["design", "set", "export"]
 VIEWS: tuple[View, ...] = ("design", "set", "export")
 
 
+@checked
 class Workbench:
     """A workbench for one set of icons on one rig, shown as a page where a notebook can show widgets.
 

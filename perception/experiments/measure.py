@@ -61,6 +61,7 @@ AFTER_S = 3.0
 DRAWS, LEAST_DRAWS = 100, 2
 
 
+@checked
 @dataclass(frozen=True, slots=True)
 class Condition:
     """What was measured, and the ramp of the display it was measured with; changes and rates are without sign.

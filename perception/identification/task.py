@@ -16,6 +16,7 @@ import numpy as np
 
 from thermicon.circuit import Rig
 from thermicon.circuit.records import Record, Table
+from thermicon.icons.model.arguments import checked
 
 from ..arrays import Array
 from ..observer.channels import source_of
@@ -115,6 +116,7 @@ def _root_mean_square(values: Sequence[float]) -> float:
 LONGEST_GAP_S = 600.0
 
 
+@checked
 @dataclass(frozen=True, slots=True)
 class Task:
     """An identification task; the default has a long pause before every icon, after which all has faded.

@@ -3,13 +3,12 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Literal
 
-from thermicon.icons.model.arguments import InputError
+from thermicon.icons.model.arguments import InputError, checked
 from thermicon.icons.number_text import count_of
 
 Objective = Literal["worst", "correct", "bits", "bits-per-s"]
-OBJECTIVES: tuple[Objective, ...] = get_args(Objective)
 
 
 class ChoiceError(InputError):
@@ -20,6 +19,7 @@ class UndecidedError(ChoiceError):
     """It remains open whether any choice keeps the totals."""
 
 
+@checked
 @dataclass(frozen=True, slots=True)
 class Selection:
     """A request: how many icons to choose, and what for; a `ChoiceError` for what cannot be requested of any set.
@@ -48,11 +48,7 @@ class Selection:
     most_J: float | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.must, str):
-            raise ChoiceError(f"must is a tuple of names, such as must=({self.must!r},)")
         object.__setattr__(self, "must", tuple(dict.fromkeys(self.must)))
-        if self.objective not in OBJECTIVES:
-            raise ChoiceError(f"the objective is one of {', '.join(OBJECTIVES)}, not {self.objective!r}")
         if self.count < 2:
             raise ChoiceError(f"{self.count} cannot be chosen: at least 2 icons are needed to be distinguished")
         if len(self.must) > self.count:

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from tests.builders import messages
-from thermicon.circuit import Rig
+from thermicon.circuit import InputError, Rig
 from thermicon.circuit.solver.simulate import duration_s, simulate_all
 from thermicon.icons import Icon, IconSet, parse
 from thermicon.perception import choose, draw_people, rank
 from thermicon.perception.selection.appraise import appraise, population_dprime
-from thermicon.perception.selection.request import ChoiceError, Selection
+from thermicon.perception.selection.request import Selection
 
 HEAD = 'cue 1\nset pool "Pool" { site thenar; control display; baseline 32 °C }\n'
 GOOD = (
@@ -138,5 +138,5 @@ CHOICES = messages(__file__)["choice"]
 @pytest.mark.parametrize("asked", CHOICES)
 def test_what_cannot_be_chosen_is_told(asked: str) -> None:
     which, _, words = asked.partition(": ")
-    with pytest.raises(ChoiceError, match=f"^{CHOICES[asked]}"):
+    with pytest.raises(InputError, match=f"^{CHOICES[asked]}"):
         pool_of(which).choose(**{"count": 3, **eval(f"dict({words})")})
