@@ -28,7 +28,8 @@ RIGHT: dict[str, Any] = {
     "goal": "correct >= 50 %", "a": "cooling-step", "b": "warming-step", "n": 2, "time_s": [0, 1, 2],
     "temperature_C": [32, 30, 32], "text": str(DIP), "ranking": lambda: ranked(), "found": lambda: ranked(),
     "trace": lambda: played(), "d_prime": np.ones((2, 2)), "confusion": np.eye(2), "shape": "sine", "every": 1.0,
-    "duration": 1.0, "count": 2, "to": 0.1, "name": "six-icons", "source": "six-icons", "current_A": [0, 0.1], "order": ["cooling-step"],
+    "duration": 1.0, "count": 2, "to": 0.1, "name": "six-icons", "source": "six-icons",
+    "current_A": [0, 0.1], "order": ["cooling-step"],
     "kind": "threshold", "method": "limits", "channel": "cold", "baseline_C": 32.0, "size_K": 12.0,
     "rate_K_per_s": 1.0, "hold_s": 0.0,
 }  # fmt: skip
