@@ -68,10 +68,11 @@ def compare_command(
         one, other = (load_rig(name, rig.changes, named=True) for name in both)
         made = [_played(each.name, (each, each), (one, other), both) for each in icons]
     elif kind == "icon":
-        used = rig.load()
-        made = [_played("", (_named(first, "A"), _named(second, "B")), (used, used), both)]
+        one_icon, other_icon = _named(first, "A"), _named(second, "B")
+        used = rig.load(one_icon, first)
+        made = [_played("", (one_icon, other_icon), (used, used), both)]
     elif kind == "set":
-        made = _sets(both, icon, rig.load())
+        made = _sets(both, icon, rig)
     else:
         made = [_tables(both, icon, theirs_of(column), align)]
     if figure.figure is not None:
@@ -136,9 +137,10 @@ def _named(text: str, option: str) -> Icon:
     return pick(read_set([file]), name)[0]
 
 
-def _sets(names: tuple[str, str], icon: str | None, rig: Rig) -> list[Comparison]:
+def _sets(names: tuple[str, str], icon: str | None, asked: RigOptions) -> list[Comparison]:
     """Compare the icons with the same name, or the one named."""
-    one, other = ({each.name: each for each in pick(read_set([name]), icon)} for name in names)
+    sets = [read_set([name]) for name in names]
+    one, other = ({each.name: each for each in pick(found, icon)} for found in sets)
     common = [name for name in one if name in other]
     alone = [f"{name} ({file})" for file, icons in zip(names, (one, other), strict=True) for name in icons
              if name not in common]  # fmt: skip
@@ -146,6 +148,7 @@ def _sets(names: tuple[str, str], icon: str | None, rig: Rig) -> list[Comparison
         note(f"only in one of the two sets: {', '.join(alone)}")
     if not common:
         raise LogError(f"{names[0]} and {names[1]}: no icon has the same name; write two icons as FILE:ICON")
+    rig = asked.load(sets[0], names[0])
     return [_played(name, (one[name], other[name]), (rig, rig), names) for name in common]
 
 

@@ -17,7 +17,7 @@ from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import number
 
 from ..files.exporting import felt_in, others
-from ..messages import BAD_INPUT, REFUSED, Missing, note, progress_bar, usage
+from ..messages import BAD_INPUT, DEFAULT_RIG, REFUSED, Missing, note, progress_bar, usage
 from ..report.blocks import grid
 from ..report.gate_words import CAUTION, gate_words, steps_of
 from ..report.terminal import show
@@ -81,9 +81,11 @@ def export_command(
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
 
-    where, form = rig.load(), load_format(to)
+    form, whole = load_format(to), read_set([file])
     check_export_folder(folder, replace=force)
-    whole = read_set([file], where)
+    where = rig.load(whole, file)
+    if rig.rig is None and where.name == DEFAULT_RIG:
+        note(f"on the {where.name} rig; --rig names another")
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
     warned: list[str] = []

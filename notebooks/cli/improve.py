@@ -23,7 +23,6 @@ from .options import (
     opt,
     out,
     read_set,
-    warn_of_site,
     write_frame,
     write_text,
 )
@@ -110,9 +109,8 @@ def improve_command(
     check_separate(files, outputs)
     if searched and len(files) > 1:
         raise usage("one file is searched; join its families into one set", "FILE")
-    where = rig.load()
+    where = rig.load(icons, files[0])
     model = crowd.load(where)
-    warn_of_site(files[0], icons, where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
     what = objective or ("correct" if up_to is not None else _objective(wanted))
     if up_to is not None:

@@ -28,7 +28,7 @@ from .options import (
     opt,
     out,
     read_set,
-    warn_of_site,
+    site_warnings,
     write_text,
 )
 
@@ -151,8 +151,8 @@ def rank_command(
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     from ..report.set_report import cures, report_of
 
-    where = rig.load()
-    warnings = (*where.warnings, *warn_of_site(files[0], icons, where))
+    where = rig.load(icons, files[0])
+    warnings = (*where.warnings, *site_warnings(files[0], icons, where))
     model = crowd.load(where)
     draws = crowd.draws(model)
     _say_if_first()
@@ -190,8 +190,7 @@ def doubt_about(
     icons = read_set(files)
     if len(icons) < 2:
         fail(f"{files[0]}: --doubt needs at least two icons, since one alone is never confused")
-    where = rig.load()
-    warn_of_site(files[0], icons, where)
+    where = rig.load(icons, files[0])
     model = crowd.load(where, "what carries the doubt is read from draws of a posterior")
     draws = check_draws(model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
     with progress_bar("doubt") as progress:

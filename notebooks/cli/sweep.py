@@ -66,7 +66,7 @@ class Measured:
 @checked
 def sweep(
     icons: IconSet | Icon | Iterable[Icon] | str | Path,
-    rig: Rig | str | Path,
+    rig: Rig | str | Path | None,
     key: str,
     values: Sequence[float | str],
     *,
@@ -81,7 +81,7 @@ def sweep(
     icons
         Icons to play, or the name or file of a set; those that `measured` measures must be among its set.
     rig
-        Rig to change, or its name or file.
+        Rig to change, or its name or file; None: the usual one for the icons.
     key
         Dotted key of the rig file, `site` or `people.age_years`.
     values
@@ -124,7 +124,8 @@ def sweep(
     from thermicon.icons.files.shipped import icons_of
     from thermicon.perception.ranking.swept import check_conditions
 
-    rig, played = Rig.of(rig), icons_of(icons)
+    played = icons_of(icons)
+    rig = Rig.of(rig, played[0].context.site if played else None)
     for value in values if key in (SITE, AGE) else values[:1]:
         check_conditions({key: value}, rig)
     if key == AGE and measured is None:
@@ -228,8 +229,8 @@ def sweep_command(
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a sweep")
     check_separate([file], [output, figure.figure])
-    where = rig.load()
-    icons = pick(whole := read_set([file], where), icon)
+    icons = pick(whole := read_set([file]), icon)
+    where = rig.load(whole, file)
     measured = Measured(whole, what, people, intervals or 0, seed) if what else None
     with progress_bar("sweep") as progress:
         frame = sweep(icons, where, key, values, tail_s=tail, measured=measured, progress=progress)
