@@ -133,6 +133,36 @@ def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
     return IconSet(name, title, icons.context, icons.metadata, tuple(made))
 
 
+def chosen_set(icons: IconSet, names: Sequence[str], site: str) -> IconSet:
+    """The chosen icons as a set, for this site unless it has one: members of families get numbers, and tags say which
+    they were.
+
+    >>> from thermicon.icons import read_cue
+    >>> six = read_cue("six-icons")
+    >>> [icon.name for icon in chosen_set(six, ["cooling-step", "warming-step"], "thenar")]
+    ['cooling-step', 'warming-step']
+    >>> pool = read_cue("search-space")
+    >>> [icon.name for icon in chosen_set(pool, [icon.name for icon in pool][:2], "thenar")]
+    ['dip-1', 'dip-2']
+    """
+    from thermicon.icons import Icon, IconSet
+
+    counts: dict[str, int] = {}
+    context = replace(icons.context, site=icons.context.site or site)
+    made = []
+    for name in names:
+        icon = replace(icons[name], context=context)
+        family = next((each.name for each in icons.families if name.startswith(f"{each.name}_")), None)
+        if family is not None:
+            counts[family] = counts.get(family, 0) + 1
+            tags = (*icon.metadata.tags, f"from {name.replace('_', ' ')}")
+            spoken = f"{family}-{counts[family]}"
+            icon = Icon(spoken, _unrepeated(icon.statements), context, replace(icon.metadata, tags=tags))
+        made.append(icon)
+    title = f"{icons.title}: the best {len(made)}" if icons.title else f"The best {len(made)}"
+    return IconSet(f"{icons.name}-best" if icons.name else "", title, context, icons.metadata, tuple(made))
+
+
 def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:
     """Parameters of members that lie at an end of a range with a unit, each once.
 
