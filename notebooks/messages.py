@@ -6,13 +6,14 @@ import contextlib
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 import typer
 
+from thermicon.icons.model.arguments import InputError, advised
 from thermicon.icons.model.context import clean, clean_line
 
 if TYPE_CHECKING:
@@ -41,9 +42,27 @@ def interrupted() -> typer.Exit:
     return typer.Exit(INTERRUPTED)
 
 
-def fail(message: str) -> NoReturn:
+def _column(names: Mapping[str, str]) -> str:
+    ((ours, theirs),) = names.items()
+    quote = '"' if set(theirs) & set(" ()[]/&;*|<>$'°#") else ""
+    return f"--column {quote}{ours}={theirs}{quote}"
+
+
+OPTIONS: Mapping[str, Callable[[Any], str]] = {
+    "column": "--column {}".format,
+    "columns": _column,
+    "count": "--choose {}".format,
+    "parameters": "--intervals {}".format,
+    "pause_s": "--pause {:g}".format,
+}
+"""How the command line writes what to change, by the names of arguments in Python."""
+
+
+def fail(message: object) -> NoReturn:
     """Say what is wrong on stderr, and leave with the code for bad input."""
-    typer.echo(clean(message), err=True)
+    if isinstance(message, InputError):
+        message = advised(message.text, message.changes, OPTIONS)
+    typer.echo(clean(str(message)), err=True)
     raise typer.Exit(BAD_INPUT)
 
 

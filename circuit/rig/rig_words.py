@@ -200,6 +200,6 @@ def _site(rig: Rig) -> Iterator[Unusual]:
     there = [shipped for name in rig_names() if (shipped := Rig.load(name)).site == rig.site]
     if any(shipped.skin.layers == rig.skin.layers for shipped in there):
         return
-    names = " or ".join(f"--rig {shipped.name}" for shipped in there)
+    names = " or ".join(f"rig {shipped.name}" for shipped in there)
     cure = f"use {names}, or set skin.layer" if there else "use a rig file of that site, or set skin.layer"
     yield unusual("site", rig=rig, cure=cure)

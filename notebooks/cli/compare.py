@@ -14,7 +14,7 @@ from thermicon.icons.number_text import number
 from ..files.outputs import check_separate
 from ..files.trace_files import Curves, LogError, align, curves_of, quantity, read_curves
 from ..messages import load_rig, note, progress_bar, usage
-from ..report.run_report import Comparison, compare_report, headline
+from ..report.run_report import Comparison, compare_report, outcome_text
 from ..report.sets_report import sets_report
 from ..report.terminal import show
 from .options import MOST_ICONS, FigureOptions, IconName, RigOptions, Theirs, flag, opt, pick, read_set, theirs_of
@@ -178,7 +178,7 @@ def _as_wholes(names: tuple[str, str], asked: RigOptions) -> list[Block]:
 def _played(title: str, icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig], names: tuple[str, str]) -> Comparison:
     """Play two icons, the shorter with a tail at its baseline so that both are equally long, and compare."""
     traces = _equally_long(icons, rigs)
-    outcomes = (headline(traces[0]).partition(": ")[2], headline(traces[1]).partition(": ")[2])
+    outcomes = (outcome_text(traces[0]), outcome_text(traces[1]))
     # Without their folders, unless these are what the names differ in.
     first, second = (Path(name).name for name in names)
     shown = names if first == second else (first, second)

@@ -109,7 +109,7 @@ class Commands(TyperGroup):
                 raise
             if not is_ours(error) or type(error.__cause__) is ValueError:  # which may be a mistake of ours
                 raise
-            fail(str(error))
+            fail(error)
         else:
             return result
 

@@ -203,6 +203,16 @@ class Ranking(Drawn, Tabled):
         return tuple(icon.name for icon in self.icons)
 
     @property
+    def best_first(self) -> tuple[IconScore, ...]:
+        """The icons by proportion correct; those that are not safe or not reached come last."""
+        return tuple(sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name)))
+
+    @property
+    def worst(self) -> PairScore | None:
+        """The pair that is confused most often; None for one icon."""
+        return next((pair for pair in self.pairs if (pair.a, pair.b) == self.worst_pair), None)
+
+    @property
     def marked(self) -> tuple[str, ...]:
         """Names of the icons for pictures: a star behind those that are not safe or not reached."""
         return tuple(icon.name if icon.playable else f"{icon.name} *" for icon in self.icons)
@@ -257,7 +267,7 @@ class Ranking(Drawn, Tabled):
                 "safe": icon.safe,
                 "reason": icon.reason,
             }
-            for icon in sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name))
+            for icon in self.best_first
         ]
 
     def map(self) -> PerceptualMap:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from thermicon.icons.model.parameter import Parameter
 
 MOVED = 0.5
+FOUND = "found by search"
+"""Tag of an icon that a search has found."""
 FINE = 200
 """Parts of a span that a found value is rounded to, at least: 1 to 6 °C by 0.01 °C."""
 UNITS = {"°C": "K", "K": "K", "°C/s": "Kps", "K/s": "Kps", "s": "s", "Hz": "Hz", "A": "A", "": "x"}
@@ -125,7 +127,7 @@ def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
     for each, name in zip(found, names_of(found), strict=True):
         icon = each.icon
         if each.family is not None:
-            tags = (*icon.metadata.tags, "found by search", f"seed {seed}", f"from {icon.name.replace('_', ' ')}")
+            tags = (*icon.metadata.tags, FOUND, f"seed {seed}", f"from {icon.name.replace('_', ' ')}")
             icon = Icon(name, _unrepeated(icon.statements), icon.context, replace(icon.metadata, tags=tags))
         made.append(icon)
     name = f"{icons.name}-found" if icons.name else ""

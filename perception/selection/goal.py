@@ -68,8 +68,7 @@ QUANTITIES: Mapping[str, Quantity] = {
 }
 NEEDS_DRAWS = (
     "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: leave --intervals out or ask for 2 or more (in Python: parameters=128), and use an "
-    "observer that has draws"
+    "posterior: ask for 2 or more, and use an observer that has draws"
 )
 SAFETY = "safety"
 VERDICTS = ("green", "amber")
@@ -98,13 +97,17 @@ class GoalPart:
         return "" if self.people is None else f" for {100.0 * self.people:g} % of people"
 
     @property
+    def unit(self) -> str:
+        """The unit that its limit is written in; empty for a pure number, and for safety."""
+        return "" if self.quantity == SAFETY else next(iter(QUANTITIES[self.quantity].units))
+
+    @property
     def text(self) -> str:
         """The part in canonical form."""
         if self.quantity == SAFETY:
             return f"{SAFETY} {VERDICTS[int(self.limit)]}"
         known = QUANTITIES[self.quantity]
-        unit = next(iter(known.units))
-        value = f"{self.limit / known.units[unit]:g} {unit}".rstrip()
+        value = f"{self.limit / known.units[self.unit]:g} {self.unit}".rstrip()
         return f"{self.quantity} {known.comparison} {value}{self.whose}"
 
 
@@ -177,7 +180,7 @@ class Goal:
     def check_draws(self, draws: int) -> None:
         """Raise a GoalError for a goal for a share of people without draws of the posterior to judge it by."""
         if any(part.people is not None for part in self.parts) and not draws:
-            raise GoalError(NEEDS_DRAWS)
+            raise GoalError(NEEDS_DRAWS).to(parameters=128)
 
     @property
     def text(self) -> str:
