@@ -220,7 +220,7 @@ def sweep_command(
     """
     if len(vary) > 1:
         raise usage("one key is varied at a time; for another one, give a second sweep, with --set", "--vary")
-    key, values, log = read_vary(vary[0])
+    key, values = read_vary(vary[0])
     what = () if measure is None else read_measures(measure, intervals or 0)
     if not what and key == AGE:
         raise usage(f"{AGE} changes what people perceive only; add --measure correct", "--vary")
@@ -242,7 +242,7 @@ def sweep_command(
     if figure.figure is not None:
         from ..figures.sweep_figure import sweep_figure
 
-        figure.write(sweep_figure(frame, key, what, log=log, look=figure.look))
+        figure.write(sweep_figure(frame, figure.look))
     if output is not None:
         write_frame(frame, output)
     elif what:
@@ -264,11 +264,11 @@ def read_measures(text: str, intervals: int) -> tuple[str, ...]:
     return names
 
 
-def read_vary(text: str) -> tuple[str, tuple[float | str, ...], bool]:
-    """Read ``--vary``: a key, its values, and whether these are in equal ratios; another form is a usage error.
+def read_vary(text: str) -> tuple[str, tuple[float | str, ...]]:
+    """Read ``--vary``: a key and its values; another form is a usage error.
 
-    >>> read_vary("contact.area_cm2=4:9:3"), read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log")[1:]
-    (('contact.area_cm2', (4.0, 6.5, 9.0), False), ((0.0001, 0.001, 0.01), True))
+    >>> read_vary("contact.area_cm2=4:9:3"), read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log")[1]
+    (('contact.area_cm2', (4.0, 6.5, 9.0)), (0.0001, 0.001, 0.01))
     """
 
     def no(why: str) -> typer.BadParameter:
@@ -292,7 +292,7 @@ def read_vary(text: str) -> tuple[str, tuple[float | str, ...], bool]:
         values = tuple(parts) if key == SITE else tuple(map(read, parts))
         if len(set(values)) < len(values):
             raise no("the same value is given twice")
-        return key, values, False
+        return key, values
     if key == SITE:
         raise no("sites are names; give them as site=thenar,fingertip")
     low, high, log, number = read(parts[0]), read(parts[1]), parts[2].endswith("log"), parts[2].removesuffix("log")
@@ -306,4 +306,4 @@ def read_vary(text: str) -> tuple[str, tuple[float | str, ...], bool]:
         raise no("equal ratios need both ends above 0; leave out log for equal steps")
     shares = [k / (int(number) - 1) for k in range(int(number))]
     values = tuple(low * (high / low) ** share if log else low + (high - low) * share for share in shares)
-    return key, tuple(float(f"{value:.12g}") for value in values), log
+    return key, tuple(float(f"{value:.12g}") for value in values)

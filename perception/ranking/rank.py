@@ -22,7 +22,7 @@ from ..sensation.percept import perceive
 from .batches import Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
-from .scores import assemble, disagreements, objection, worst_of
+from .scores import assemble, objection, worst_of
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -124,7 +124,6 @@ def rank(
         pairs=pairs,
         worst_pair=worst_of(scored, pairs),
         rules=rig_rules(rig),
-        rules_disagree=disagreements(scored, pairs),
         carry_over=left,
     )
     report()

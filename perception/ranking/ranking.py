@@ -19,7 +19,7 @@ from ..identification.laboratory import NewLaboratory
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .rules import RuleResult
-from .scores import IconScore, PairScore, counted
+from .scores import IconScore, PairScore, counted, disagreements
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,8 +56,6 @@ class Ranking(Drawn, Tabled):
         Names of the pair that is confused most often; None for one icon.
     rules
         Rules on the rig.
-    rules_disagree
-        Where rules and model judge differently.
     carry_over
         What each icon leaves behind for the next where there is a gap; None: nothing.
     new_laboratory
@@ -83,7 +81,6 @@ class Ranking(Drawn, Tabled):
     pairs: tuple[PairScore, ...]
     worst_pair: tuple[str, str] | None
     rules: tuple[RuleResult, ...]
-    rules_disagree: tuple[dict[str, Any], ...]
     carry_over: CarryOver | None = None
     new_laboratory: NewLaboratory | None = None
 
@@ -245,6 +242,11 @@ class Ranking(Drawn, Tabled):
     def rules_score(self) -> float | None:
         """Share of pairs that are distinguishable by rules alone; None for one icon."""
         return sum(pair.rules_pass for pair in self.pairs) / len(self.pairs) if self.pairs else None
+
+    @property
+    def rules_disagree(self) -> tuple[dict[str, Any], ...]:
+        """Where rules and model judge differently."""
+        return disagreements(self.icons, self.pairs)
 
     def rows(self) -> list[dict[str, Any]]:
         """One plain row per icon, the best first; those that are not safe or not reached come last."""
