@@ -7,6 +7,7 @@ their options out beside its own for typer.
 from __future__ import annotations
 
 import inspect
+import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
 from pathlib import Path
@@ -71,6 +72,34 @@ Intervals = Annotated[
         "Draws of the posterior for intervals and goals; 0 for none.  [default: 128, or all there are]",
         0,
         MOST_DRAWS,
+    ),
+]
+
+
+def command_text(files: Sequence[str], *groups: Options, paths: bool = False, command: str = "rank") -> str:
+    """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
+
+    Files are named without their folders, or, with ``paths``, as they were given.
+    """
+    words = ["thermicon", command, *(name if paths else Path(name).name for name in files)]
+    return shlex.join([*words, *(word for group in groups for word in group.words(paths=paths))])
+
+
+def commands(files: Sequence[str], rig: Options, crowd: Options) -> Callable[..., str]:
+    """What writes the command that comes next, by its name and words: for these files, or one, on this rig."""
+
+    def command(name: str, *words: str, file: str | None = None) -> str:
+        groups = (crowd, rig) if name in ("rank", "improve") else (rig,)
+        own = files if file is None else [file]
+        return " ".join(filter(None, [command_text(own, *groups, paths=True, command=name), shlex.join(words)]))
+
+    return command
+
+
+Goals = Annotated[
+    str | None,
+    opt(
+        "TEXT", 'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green".', name="--goal"
     ),
 ]
 

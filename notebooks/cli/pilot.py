@@ -17,13 +17,13 @@ from .options import (
     ObserverOptions,
     RigOptions,
     Theirs,
+    command_text,
     opt,
     out,
     read_set,
     theirs_of,
     write_text,
 )
-from .ranking import command_text
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.measurements_file import Measurements

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from thermicon.icons.number_text import count_of, number, percent, percent_span
+from thermicon.icons.number_text import count_of, number, percent
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
@@ -52,9 +52,9 @@ def laboratory(ranking: Ranking) -> str:
     return f"your laboratory, {ranking.observer}" if ranking.own_laboratory else "a new laboratory"
 
 
-def choice_lines(choice: Choice, where: str = "a new laboratory") -> Iterator[str]:
-    """Report what was chosen, how certain that is, its scores as a set of its own, and the excluded icons."""
-    objective, own, elsewhere = choice.objective, choice.at_own_range, choice.new_laboratory
+def choice_lines(choice: Choice) -> Iterator[str]:
+    """Report what was chosen, how certain that is, and the excluded icons."""
+    objective = choice.objective
     yield f"Best {len(choice.icons)} of {choice.pool}, by {NAMES[objective]}: {', '.join(choice.icons)}"
     score = f"within the range of all {choice.pool}: {scored(objective, choice.value)}"
     yield score + (f" ({' and '.join(choice.worst_pair)})" if objective == "worst" else "")
@@ -65,11 +65,6 @@ def choice_lines(choice: Choice, where: str = "a new laboratory") -> Iterator[st
             f"the best choice found; none exceeds {scored(objective, choice.bound)}, a bound that may be loose "
             f"({count_of(choice.seen, 'choice')} examined)"
         )
-    worst, *others = (scored(name, own.value(name)) for name in ("worst", "correct", "bits", "bits-per-s"))
-    yield f"as a set of their own: {worst} ({' and '.join(own.worst_pair)}), {', '.join(others)}"
-    if elsewhere is not None:
-        (low, high), (least, most) = elsewhere.proportion_correct, elsewhere.information_bits
-        yield f"for {where} (95 %): {percent_span(low, high)} correct, {least:.2f}–{most:.2f} bits"
     energy = "" if math.isnan(choice.total_J) else f", total energy {number(choice.total_J)} J"
     yield f"total duration {number(choice.total_s)} s{energy}"
     yield from (f"excluded: {name} {reason}" for name, reason in choice.excluded[:MOST_EXCLUDED])

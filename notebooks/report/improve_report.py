@@ -23,8 +23,8 @@ REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.search_run`, repeated here to avoid its imports."""
 
 
-def frontier_report(found: Frontier, title: str) -> list[Block]:
-    """Report one row for each number of icons, the names of the largest choices, and what was left out."""
+def frontier_report(found: Frontier, title: str, following: str) -> list[Block]:
+    """Report one row for each number of icons, the largest choice, what was left out, and what follows."""
     heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goals)))
     rows = [
         (
@@ -49,6 +49,7 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
         *_goal(found),
         *(f"Left out: {name} {reason}" for name, reason in largest.excluded[:MOST_EXCLUDED]),
         *([f"and {more} more left out"] if more > 0 else []),
+        f"Next: {following}",
     ]
     return [
         *([Heading(title, 1)] if title else []),
@@ -86,8 +87,8 @@ def _reached(found: Frontier) -> str:
     return "What 95 % of people reach is about people alone, at the nominal constants: milder than in a goal."
 
 
-def search_report(found: SearchResult, before: SetReport, after: SetReport, title: str) -> list[Block]:
-    """Report the found set, its scores next to those of the initial set, the goal, and the caveat."""
+def search_report(found: SearchResult, before: SetReport, after: SetReport, title: str, following: str) -> list[Block]:
+    """Report the found set, its scores next to those of the initial set, the goal, what follows, and the caveat."""
     from thermicon.perception.selection.candidates import FOUND
 
     ranking, icons = after.ranking, found.found
@@ -105,6 +106,7 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
         grid(("", "before", "after"), _scores(found, before, after), ("before", "after")),
         Text("\n".join(said)),
         *goal,
+        Text(f"Next: {following}"),
         Text(
             f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
             f"people, whatever --people is; what they maximised was {NAMES[found.objective]} (seed "

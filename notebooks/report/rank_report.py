@@ -50,14 +50,14 @@ def rank_report(
     if not details and len(notes) > 1:
         notes = [notes[0], Text(f"{count_of(len(notes) - 1, 'more note')}: thermicon rank --details", "warn")]
     advice = edit_text(made, ranking.worst) if ranking.worst else ""
-    chosen = list(choice_lines(made.choice, laboratory(ranking))) if made.choice else []
+    chosen = list(choice_lines(made.choice)) if made.choice else []
     by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
     short = f"Predicted, not measured: {crowd_text(ranking)}{by}."
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
         *([Text("\n".join(goal_lines(made.goal)))] if made.goal else []),
-        Facts(cards(ranking), cards=True),
+        Facts(cards(made), cards=True),
         Text("\n".join(filter(None, [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]))),
         *told,
         *([] if details else edits_blocks(made)),
@@ -104,29 +104,38 @@ def rules_report(ranking: Ranking, title: str) -> list[Block]:
     ]
 
 
-def cards(ranking: Ranking) -> tuple[tuple[str, str], ...]:
-    """The numbers that are asked first: named, bits, detected, and the worst pair; each with its interval."""
-    icons, worst, elsewhere = ranking.icons, ranking.worst, ranking.new_laboratory
+def cards(made: SetReport) -> tuple[tuple[str, str], ...]:
+    """The numbers that are asked first: named, bits, detected, and the worst pair; each with its interval.
+
+    Where icons were chosen, they are those of the chosen as a set of their own.
+    """
+    ranking, choice = made.ranking, made.choice
+    icons, worst = [each for each in ranking.icons if choice is None or each.name in choice.icons], ranking.worst
+    elsewhere = ranking.new_laboratory if choice is None else choice.new_laboratory
     least = min(icons, key=lambda icon: icon.detected_probability)
     mean = sum(icon.detected_probability for icon in icons) / len(icons)
     if worst is None:
         return ((percent(mean), "of trials detected"),)
     correct, bits = "named correctly", "of information"
+    if choice is not None:
+        own = choice.at_own_range
+        share, information, d_prime = own.proportion_correct, own.information_bits, own.d_prime
+        pair = f"nearest pair: {' and '.join(own.worst_pair)}"
+    else:
+        share, information, d_prime = ranking.proportion_correct, ranking.information_bits, worst.d_prime
+        pair = f"worst pair: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}"
     if elsewhere is not None:
         within, ends = f"in {laboratory(ranking)} (95 %)", (elsewhere.proportion_correct, elsewhere.information_bits)
     else:
         within, ends = "middle 95 % of people", (ranking.proportion_correct_interval, ranking.information_bits_interval)
-    if elsewhere is not None or ranking.people > 1:
+    if elsewhere is not None or (choice is None and ranking.people > 1):
         correct += f"; {within}: {percent_span(*ends[0])}"
         bits += f"; {within}: {ends[1][0]:.2f}–{ends[1][1]:.2f}"
     return (
-        (percent(ranking.proportion_correct), correct),
-        (f"{ranking.information_bits:.2f} bits", bits),
+        (percent(share), correct),
+        (f"{information:.2f} bits", bits),
         (percent(mean), f"of trials detected; least: {least.name}, {percent(least.detected_probability)}"),
-        (
-            f"d′ {number(worst.d_prime)}",
-            f"worst pair: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}",
-        ),
+        (f"d′ {number(d_prime)}", pair),
     )
 
 

@@ -43,7 +43,7 @@ def set_html(made: SetReport) -> dict[str, str]:
     meaning = "Confusion: share of trials in which the icon of a row is answered with that of a column."
     simulated = f"Limits of this simulation: {limits}; export judges worst cases."
     return {
-        "scores": shown(Text(ALONE, "note") if len(icons) == 1 else Facts(cards(ranking), cards=True)),
+        "scores": shown(Text(ALONE, "note") if len(icons) == 1 else Facts(cards(made), cards=True)),
         "table": shown(icon_table(ranking.best_first, made)),
         "notes": shown(*(Text(line, "note") for line in (*trouble_lines(icons, {}), *outside_lines(icons)))),
         "caveat": shown(Text(f"{meaning} {caveat(ranking)}{by} {simulated}", "soft"))
