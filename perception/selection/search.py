@@ -97,7 +97,8 @@ def search(
     """Search the parameters of the families for a better set: one icon per family, or `count` in all.
 
     Icons of the file that are not families stay as they are. Spans are continuous between their ends, counts and lists
-    are not. A set with an icon that is not safe or not reached is refused. Same arguments, same set.
+    are not. A set with an icon that is not safe or not reached is refused. The search begins from the best choice of
+    the members that the families count out, and does not end below it. Same arguments, same set.
 
     Parameters
     ----------
@@ -168,7 +169,7 @@ def search(
         if progress is not None:
             progress(min(tried, evaluations), evaluations)
 
-    start = run.start(nominal, rng)
+    start = run.start(few, rng)  # as a choice would
     rounds = max(0, round((evaluations - run.tried) / (BATCH * run.free)))
     last = max(1, rounds // PER_ROUND)
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)

@@ -52,8 +52,10 @@ def test_the_json_says_what_was_chosen_within_its_limits(ranked: Callable[..., d
     if objective == "worst":
         pairs = [p["d_prime"] for p in found["pairs"] if {p["a"], p["b"]} <= set(chosen["icons"])]
         assert chosen["value"] == min(pairs)
-    for words in ("Best 3 of 6, by ", "within the range of all 6: ", "as a set of their own: "):
+    for words in ("Best 3 of 6, by ", "within the range of all 6: ", "nearest pair: "):
         assert words in found["words"]
+    own = chosen["at_own_range"]["proportion_correct"]  # those who know the three alone
+    assert f"{100 * own:.0f} % named correctly" in found["words"]
 
 
 def test_without_families_and_questions_every_close_pair_gets_an_edit(ranked: Callable[..., dict[str, Any]]) -> None:

@@ -5,7 +5,7 @@ from tests.builders import messages
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.verdict import judge_safety
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.perception import rank, search
+from thermicon.perception import Selection, choose, rank, search
 from thermicon.perception.selection import search as searching
 from thermicon.perception.selection.appraise import appraise
 from thermicon.perception.selection.candidates import candidate_at, sample_candidates, value_at
@@ -137,3 +137,17 @@ def test_of_the_sets_held_at_the_end_the_goal_chooses(
     assert best[0] == pytest.approx(-max(0.0, 1.0 - best[1] / 0.99))
     with pytest.raises(GoalError, match="needs draws of the posterior"):
         search(small, rig, goal="correct >= 99 % for 95 % of people", parameters=0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [4, 6])
+def test_a_search_does_not_end_below_the_plain_choice(count: int) -> None:
+    """Two families whose listed members hold good sets: what `choose` finds of them is where a search begins."""
+    icons = parse(
+        "cue 1\n"
+        "icon dip(k in 1..6 step 1 °C, r in 1..3 step 1 °C/s) { cool by k at r; hold for 1 s; return at 3 °C/s }\n"
+        "icon rise(k in 1..5 step 1 °C, r in 1..3 step 1 °C/s) { warm by k at r; hold for 1 s; return at 3 °C/s }"
+    )
+    plain = choose(rank(icons, people=60, parameters=0), Selection(count, "correct"), parameters=0).at_own_range
+    found = search(icons, count=count, objective="correct", evaluations=600, people=60, parameters=0)
+    assert found.after.proportion_correct > plain.proportion_correct - 0.001
