@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, field
 from typing import Literal
 
 from thermicon.icons import Icon
@@ -83,7 +82,7 @@ class Refusal:
     kind: Literal["unsafe", "unreachable", "lossy"]
     cause: str
     tells: tuple[str, ...] = ()
-    changes: Changes = MappingProxyType({})
+    changes: Changes = field(default_factory=dict)
 
     @property
     def forcible(self) -> bool:
