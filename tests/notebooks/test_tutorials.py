@@ -1,7 +1,7 @@
 """The tutorials: thin, without outputs, every cell runs, pictures are there, and a saved copy stays small."""
 
+import os
 import re
-import time
 from itertools import pairwise
 from pathlib import Path
 
@@ -22,6 +22,7 @@ ALONE = {"07_validation": 2, "08_your_rig_from_a_log": 2}
 
 MOST_SAVED = 300_000
 MOST_S = 60.0
+"""Of all cores together, so that other work on the machine does not count."""
 
 
 def read(name: str) -> nbformat.NotebookNode:
@@ -66,9 +67,9 @@ def test_each_tutorial_leads_to_the_next() -> None:
     "name", ["01_first_icon", *(pytest.param(name, marks=pytest.mark.slow) for name in [*sorted(PICTURES)[1:], *ALONE])]
 )
 def test_a_tutorial_runs_and_shows_its_pictures(name: str, tmp_path: Path) -> None:
-    notebook, began = read(name), time.monotonic()
+    notebook, began = read(name), sum(os.times()[2:4])
     outputs = executed(notebook, tmp_path)
-    assert time.monotonic() - began < MOST_S
+    assert sum(os.times()[2:4]) - began < MOST_S
     assert sum("image/png" in output.get("data", {}) for output in outputs) == (PICTURES | ALONE)[name]
     assert len(nbformat.writes(notebook)) < MOST_SAVED
 
