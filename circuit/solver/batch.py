@@ -47,11 +47,6 @@ class Batch:
         """Temperature at cold-receptor depth in °C, (rigs, icons, rows)."""
         return self["cold_receptor_C"]
 
-    @property
-    def warm_C(self) -> Array:
-        """Temperature at warm-receptor depth in °C, (rigs, icons, rows)."""
-        return self["warm_receptor_C"]
-
 
 def usual_tracking(icon: Icon) -> str:
     """Default tracking of a cue: `display` for display control, otherwise `replay`."""

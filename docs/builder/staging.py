@@ -12,9 +12,6 @@ from pygments.lexers import get_lexer_by_name
 from sections import front_page, read_sections, with_toctree
 
 ROOT = Path(__file__).resolve().parents[2]
-TUTORIALS = ("01", "02", "03", "04", "05", "08", "09")
-"""Numbers of the notebooks that the site shows: the other ones compute for minutes or show what pages here show."""
-
 MOVED = {
     "README.md": "start/five-minutes.md",
     "CONTRIBUTING.md": "contribute/contributing.md",
@@ -108,12 +105,9 @@ class Staging:
 
 
 def _notebook(path: Path) -> str:
-    """A tutorial whose links to notebooks that are not on the site are plain words."""
-    shown = "|".join(other.name for other in notebooks())
-    text = path.read_text(encoding="utf-8").replace(
-        '"language_info": {', '"language_info": {"pygments_lexer": "ipython3",', 1
-    )
-    return re.sub(rf"\[([^]\[]+)\]\((?!{shown})[\w]+\.ipynb\)", r"\1", text)
+    """A tutorial whose cells are coloured as IPython."""
+    text = path.read_text(encoding="utf-8")
+    return text.replace('"language_info": {', '"language_info": {"pygments_lexer": "ipython3",', 1)
 
 
 def _coloured(fence: str) -> str:
@@ -137,7 +131,7 @@ def pages() -> list[Path]:
 
 def notebooks() -> list[Path]:
     """Return the tutorials that the site shows, in their order."""
-    return [path for path in sorted((ROOT / "notebooks").glob("[0-9]*.ipynb")) if path.name[:2] in TUTORIALS]
+    return sorted((ROOT / "notebooks").glob("[0-9]*.ipynb"))
 
 
 def staged(path: PurePosixPath) -> PurePosixPath:

@@ -17,14 +17,13 @@ def validate_command(
     """Validate the model: predict published results that it was not calibrated on, and show every miss with its size.
 
     The JSON has all numbers, with predictions from temperature and from heat flow side by side; the notebook
-    07_validation.ipynb, which lab copies, shows them in tables and figures.
+    07_validation.ipynb, which lab copies, asks what they say.
     """
     if draws == 1:
         raise usage("1 draw has no interval; give 2 or more, or 0 for none", "--draws")
     if json is not None:
         check_output(json, (".json",), "JSON")
     from thermicon.perception.evidence.validate import validate
-    from thermicon.perception.evidence.validate_file import report_file
 
     from ..report.terminal import show
     from ..report.validate_report import validate_report
@@ -32,6 +31,6 @@ def validate_command(
     with progress_bar("validating") as progress:
         report = validate(people=people, draws=draws, seed=seed, progress=progress)
     if json is not None:
-        write_text(dumps(report_file(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n", json)
+        write_text(dumps(report.to_dict(), ensure_ascii=False, indent=1, allow_nan=False) + "\n", json)
     if json != STDOUT:
         show(validate_report(report))

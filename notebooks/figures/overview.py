@@ -40,8 +40,7 @@ def overview(
     Parameters
     ----------
     trace
-        The run; a ranking, of which distances and confusions are drawn side by side; or the table of `sweep`, whose
-        quantities are drawn over its key.
+        The run; a ranking, for distances and confusions side by side; or the table of `sweep`.
     percept
         What is felt of it; None: no panel of sensation.
     rig_changes

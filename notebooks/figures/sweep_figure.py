@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -57,7 +56,8 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
 
     Icons that mainly cool are blue, others orange, and each has its own mark; a cross stands for an icon that was not
     reached. What the rig does alike at all values is left out and named below. Of people, bands are the 95 % of a new
-    laboratory, and the black line is the whole set. Values in ratios stand at equal distances.
+    laboratory, and the black line is the whole set. The axis is logarithmic where values of the key
+    are spaced more evenly in ratios than in steps.
     """
     key = str(frame.columns[1])
     what = [name for column in frame for name, columns in MEASURES.items() if columns[0] == column]
@@ -68,7 +68,10 @@ def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
     figure, axes = _small_multiples(len(panels), look.across(2 if what else WIDE))
     handles: dict[str, Any] = {}
     values = sorted(frame[key].unique())
-    log = _in_ratios(values)
+    log = False
+    if len(values) > 2 and not isinstance(values[0], str) and values[0] > 0.0:
+        ratios, steps = np.diff(np.log(values)), np.diff(values)
+        log = bool(np.ptp(ratios) / ratios.mean() < np.ptp(steps) / steps.mean())
     for ax, (columns, label) in zip(axes, panels, strict=True):
         for name, style in _icon_styles(frame).items():
             _draw(ax, frame[frame["icon"] == name], key, columns, style, handles)
@@ -122,18 +125,6 @@ def _small_multiples(count: int, across: int) -> tuple[Figure, list[Axes]]:
         ax.tick_params(labelsize=8, labelbottom=place >= count - across)
         plain(ax)
     return figure, axes[:count]
-
-
-def _in_ratios(values: Sequence[float | str]) -> bool:
-    """Whether rising values are numbers above 0 that are spaced more evenly in ratios than in steps.
-
-    >>> _in_ratios([1.0, 3.0, 10.0]), _in_ratios([1.0, 2.0, 3.0]), _in_ratios(["fingertip", "forearm", "thenar"])
-    (True, False, False)
-    """
-    if len(values) < 3 or isinstance(values[0], str) or values[0] <= 0:
-        return False
-    ratios, steps = (np.diff(each) for each in (np.log(np.asarray(values, float)), values))
-    return bool(np.ptp(ratios) / ratios.mean() < np.ptp(steps) / steps.mean())
 
 
 def _ticks_at_values(ax: Axes, values: list[float]) -> None:

@@ -189,51 +189,29 @@ class Likeness:
     rms: float
 
 
-@dataclass(frozen=True, slots=True)
-class SkinWaves:
-    """Skin temperatures of one group, °C (shapes, rows) on a clock in s, as a display makes them."""
-
-    group: str
-    time_s: Array
-    skin_C: Array
-    display_C: Array
-
-
 def wave_name(shape: str, poles: str, period: int) -> str:
     """Name of an icon of the set, such as sine-bipolar-4s."""
     return f"{shape}-{poles}-{period}s"
 
 
-def skin_waves(rig: Rig) -> tuple[SkinWaves, ...]:
-    """What the display of a rig makes of the waves, a group at a time."""
+def likeness(rig: Rig) -> tuple[Likeness, ...]:
+    """Differences at the skin of every pair of shapes in every group, over the swing of the display."""
     from thermicon.circuit import simulate
     from thermicon.circuit.solver.simulate import duration_s
     from thermicon.icons import load_library
 
-    icons, made = load_library(WAVES), []
+    icons, found = load_library(WAVES), []
     for poles, period in GROUPS:
-        own = [icons[wave_name(shape, poles, period)] for shape in SHAPES]
-        end = max(duration_s(icon, rig) for icon in own) + TAIL_S
-        traces = [simulate(icon, rig, tail_s=end - duration_s(icon, rig)) for icon in own]
-        rows = min(trace.time_s.size for trace in traces)
-        skin, display = (
-            np.stack([getattr(trace, f"{place}_C")[:rows] for trace in traces]) for place in ("skin", "display")
-        )
-        made.append(SkinWaves(f"{poles}, {period} s", traces[0].time_s[:rows], skin, display))
-    return tuple(made)
-
-
-def likeness(waves: tuple[SkinWaves, ...]) -> tuple[Likeness, ...]:
-    """Differences of every pair of shapes in every group, over the swing that is prescribed."""
-    found = []
-    for group in waves:
-        during = group.time_s <= group.time_s[-1] - TAIL_S
-        swing = float(np.ptp(group.display_C[SHAPES.index("triangle")]))
-        for pair in PAIRS:
-            first, second = (group.skin_C[SHAPES.index(shape)][during] for shape in pair)
-            apart = (first - second) / swing
+        own = {shape: icons[wave_name(shape, poles, period)] for shape in SHAPES}
+        end = max(duration_s(icon, rig) for icon in own.values()) + TAIL_S
+        traces = {shape: simulate(icon, rig, tail_s=end - duration_s(icon, rig)) for shape, icon in own.items()}
+        last_s = min(float(trace.time_s[-1]) for trace in traces.values())
+        swing = float(np.ptp(traces["triangle"].display_C[traces["triangle"].time_s <= last_s]))
+        skin = {shape: trace.skin_C[trace.time_s <= last_s - TAIL_S] for shape, trace in traces.items()}
+        for first, second in PAIRS:
+            apart = (skin[first] - skin[second]) / swing
             rms = float(np.sqrt((apart**2).mean()))
-            found.append(Likeness(group.group, pair, float(np.abs(apart).max()), rms))
+            found.append(Likeness(f"{poles}, {period} s", (first, second), float(np.abs(apart).max()), rms))
     return tuple(found)
 
 

@@ -17,7 +17,6 @@ from .identified import (
     likeness,
     show,
     six_icons,
-    skin_waves,
     wave_shapes,
 )
 from .predicted import Predicted
@@ -51,7 +50,7 @@ def collect_evidence(people: int, draws: int, seed: int, trials: int, progress: 
 
     rig, six, waves = Rig.load("thenar"), load_library(SIX), load_library(WAVES)
     both = IconSet(waves.name, waves.title, waves.context, waves.metadata, (*waves.entries, *six.entries))
-    alike = likeness(skin_waves(rig))
+    alike = likeness(rig)
     shown, shown_waves = show(six, rig, people, seed), show(both, rig, people, seed)
     predicted: list[Predicted] = []
     six_named, waves_named = [], []

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from thermicon.circuit.records import Table
+from thermicon.icons.drawn import Tabled
 from thermicon.icons.model.arguments import checked
 
 from ..identification.laboratory import DRAWS
@@ -22,6 +23,8 @@ from .targets import PAIRED, Published, Row, Target, combined, load_targets, pub
 from .verdicts import Verdict, judge_row
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from ..kernels.parallel import Progress
     from .shown import Evidence
 
@@ -75,7 +78,7 @@ class Section:
 
 
 @dataclass(frozen=True, slots=True)
-class ValidationReport:
+class ValidationReport(Tabled):
     """Everything that the validation report shows.
 
     Attributes
@@ -111,6 +114,29 @@ class ValidationReport:
         """How often model, baseline and both are nearest to a published result that was not fitted."""
         lines = [line for s in self.sections for line in s.lines if not line.published.fitted]
         return {who: sum(line.nearer_to_published == who for line in lines) for who in ("model", "baseline", "both")}
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row per published result and variable that receptors may respond to.
+
+        `published` is the number in `unit`, where it is of the same quantity; `low` to `high` is the 95 % interval.
+        """
+        import pandas as pd
+
+        return pd.DataFrame(
+            {"target": f"{section.target.number} {section.target.title}", "row": line.row.label,
+             "variable": one.predicted.variable, "unit": line.row.unit, "fitted": line.published.fitted,
+             "published": line.published.value if line.published.unit == line.row.unit else None,
+             **{name: getattr(one.predicted, name) for name in ("value", "low", "high", "baseline")},
+             "nearer": line.nearer_to_published, "verdict": one.verdict.word, "held_in_draws": one.held,
+             "said": one.verdict.text, "suspected": section.target.mechanism}
+            for section in self.sections for line in section.lines for one in line.judged
+        )  # fmt: skip
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return every number, as `thermicon validate --json` writes it."""
+        from .validate_file import report_file
+
+        return report_file(self)
 
     def __repr__(self) -> str:
         said = ", ".join("{} {} of {}".format(variant, *self.counts(k)) for k, variant in enumerate(VARIABLES))

@@ -106,7 +106,7 @@ def test_temperatures_between_the_nodes_are_those_of_a_run(rig: Rig) -> None:
         batch = simulate_many(icons, rigs, nominal=rig, end_s=8.0, rate_Hz=12.5)
         cold, warm = uncertain.played(0.7, 0.5).felt_by(one)
         assert cold == pytest.approx(batch.cold_C, abs=0.05)
-        assert warm == pytest.approx(batch.warm_C, abs=0.05)
+        assert warm == pytest.approx(batch["warm_receptor_C"], abs=0.05)
     for k, node in enumerate(NODES):
         assert _parabola(node) == pytest.approx(np.eye(3)[k])
 
