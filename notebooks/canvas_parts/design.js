@@ -22,6 +22,7 @@ class DesignView {
     this.timeline = new Timeline(root, (message) => flow.post(message), say);
     this.timeline.onHandle = (line, follow) => this.editor.pointAt(line, follow);
     this.badge = new Badge(say);
+    this.strip = new Strip((text) => flow.post({ type: "goal", text }), say);
     this.element = this.build();
   }
 
@@ -35,7 +36,7 @@ class DesignView {
     this.redo = button("redo", "\u21b7", "Redo", "Ctrl+Shift+Z");
     this.noteList = make("ul", { class: "tm-notes", "aria-label": "Notes", hidden: true });
     const picker = make("label", { class: "tm-pick" }, "Icon ", this.picker);
-    const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.badge.element);
+    const bar = make("div", { class: "tm-bar", role: "toolbar", "aria-label": "Icon and safety" }, picker, this.undo, this.redo, this.strip.element, this.badge.element);
     const split = make("div", { class: "tm-split" }, this.editor.element, this.timeline.element);
     return make("div", { class: "tm-design" }, bar, split, this.noteList);
   }

@@ -21,7 +21,7 @@ class Editor {
     ];
     return [
       CM.lineNumbers({ domEventHandlers: { mousedown: (view, line) => this.onNumber(line) } }), this.liveLine(), CM.lintGutter(),
-      CM.highlightActiveLine(), CM.highlightSpecialChars(), CM.drawSelection(), CM.dropCursor(),
+      CM.EditorView.lineWrapping, CM.highlightActiveLine(), CM.highlightSpecialChars(), CM.drawSelection(), CM.dropCursor(),
       CM.bracketMatching(), CM.closeBrackets(), CM.highlightSelectionMatches(), CM.search({ top: true }),
       CM.EditorState.allowMultipleSelections.of(true), CM.EditorState.tabSize.of(4), CM.indentUnit.of("  "),
       CM.EditorState.languageData.of(() => [{ commentTokens: { line: "#" }, closeBrackets: { brackets: ["(", "[", "{", '"'] } }]),

@@ -6,6 +6,7 @@ const VIEWS = {
   heat: { make: HeatView, read: heatFrame },
 };
 const LATE = "No answer from the kernel: run the cell again to go on";
+const WATCH_MS = 1000;
 const siblings = new Map(); // the workbenches of one model on this page, which show one text
 
 class Workbench {
@@ -30,6 +31,12 @@ class Workbench {
     const view = model.get?.("view");
     if (VIEWS[view]) this.become(view);
     this.flow.hello();
+    this.watch = setInterval(() => this.lost && this.flow.giveUp(), WATCH_MS);
+  }
+
+  /** Whether ipywidgets has marked this view as one whose kernel is gone. */
+  get lost() {
+    return this.root.closest(".jupyter-widgets-disconnected") !== null;
   }
 
   showLate(late) {
@@ -49,6 +56,7 @@ class Workbench {
 
   receive(meta, buffers) {
     if (meta?.type === "alive") this.flow.arrived(0); // nothing is drawn yet
+    if (meta?.type === "strip") this.view?.strip?.show(meta);
     if (meta?.type !== "frame") return;
     const sent = this.flow.arrived(meta.seq ?? 0);
     const older = this.newest; // a frame that is never drawn may still be the one that brings a text
@@ -101,6 +109,7 @@ class Workbench {
 
   stop() {
     cancelAnimationFrame(this.raf);
+    clearInterval(this.watch);
     this.model.off?.("msg:custom", this.onMessage);
     this.flow.stop();
     this.say.cancel();

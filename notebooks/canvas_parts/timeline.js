@@ -99,7 +99,8 @@ class Timeline {
     const base = make("canvas", { class: "tm-base", "aria-hidden": true });
     const over = make("canvas", { class: "tm-over", "aria-hidden": true });
     const plot = make("div", { class: "tm-plot" }, base, over);
-    const legend = make("div", { class: "tm-legend" }, make("span", { class: "tm-panel-title" }, panel.label), wordsOf(panel.terms), ...entries);
+    const title = make("span", { class: "tm-panel-title" }, panel.label);
+    const legend = make("div", { class: "tm-legend" }, panel.folds ? foldOf(panel.label) : "", title, wordsOf(panel.terms), ...entries);
     const attributes = { class: "tm-panel", "data-panel": panel.key, role: "group", "aria-label": panel.label };
     const element = make("div", attributes, legend, plot);
     element.style.flexGrow = panel.height;
@@ -152,6 +153,7 @@ class Timeline {
     this.panels.forEach((parts, k) => {
       const surface = fitted(parts.base, this.boxes.plots[k]);
       const panel = this.frame.panels[k];
+      parts.lay = null; // one that is folded has no place
       if (surface) parts.lay = drawPanel(surface, this.frame, panel, this.view, this.ranges.get(panel.key), this.palette);
     });
     this.drawOver();
@@ -311,6 +313,17 @@ class Timeline {
     cancelAnimationFrame(this.whole);
     cancelAnimationFrame(this.part);
   }
+}
+
+/** Shows and hides the plot of its panel, whose legend still reads it out; the stage's observer draws anew. */
+function foldOf(label) {
+  const fold = make("button", { type: "button", class: "tm-fold", "aria-label": `plot of ${label}`, "aria-expanded": "true" });
+  fold.addEventListener("click", () => {
+    const folded = fold.closest(".tm-panel").classList.toggle("tm-folded");
+    fold.setAttribute("aria-expanded", String(!folded));
+  });
+  fold.addEventListener("keydown", (event) => event.stopPropagation());
+  return fold;
 }
 
 /** A "?" whose tooltip says what words mean, and which opens to a list of them; nothing where there are none. */

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import time
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -22,6 +23,8 @@ MOST_STEPS = 200
 MERGED_S = 0.8
 """Typing goes on as one step while the pauses are shorter than this."""
 Kind = Literal["typing", "drag", "other"]
+GOAL = re.compile(r"^# goal:[ \t]*(.*?)[ \t]*(?:\n|\Z)", re.MULTILINE)
+"""The line of a text that holds its goal: a comment, so that file and versions keep it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +120,17 @@ class Document:
     def text(self) -> str:
         """The text as it is now."""
         return self.history.now.text
+
+    @property
+    def goal(self) -> str:
+        """What is wanted of the set, as its text says in a comment ``# goal: …``; empty where it says nothing."""
+        found = GOAL.search(self.text)
+        return "" if found is None else found[1]
+
+    def aim(self, goal: str) -> None:
+        """Write another goal into the text, as a step that can be undone; an empty one takes the line away."""
+        rest, said = GOAL.sub("", self.text), " ".join(goal.split())
+        self.history = self.history.changed(f"# goal: {said}\n{rest}" if said else rest)
 
     @property
     def dirty(self) -> bool:

@@ -27,7 +27,7 @@ MOST_POINTS = 3_000
 DRAGGED_POINTS = 750
 """The same while a corner is dragged, which is more than the plot has pixels; the last frame of a drag is whole."""
 DASHED, DASH_DOT = [7, 3], [8, 3, 2, 3]
-WORDS: dict[str, dict[str, Any]] = tomllib.loads(
+WORDS: dict[str, Any] = tomllib.loads(
     (files("thermicon.notebooks") / "data" / "workbench.toml").read_text(encoding="utf-8")
 )
 """What words of the field mean, and what is said behind "?"."""
@@ -125,7 +125,7 @@ def _temperature(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
         for moment in drawing.moments
         if moment.kind == "physical peak"
     ]
-    return _panel(drawing, "temperature", "temperature (°C)", 1.6, series, marks=marks)
+    return _panel(drawing, "temperature", "temperature (°C)", 1.7, series, marks=marks)
 
 
 def _heat(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
@@ -135,7 +135,7 @@ def _heat(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
         curves.take("cold", "cold receptor", trace.heat_flow_cold_receptor_W_per_m2 / 1e3, "cool", dash=DASH_DOT),
         curves.take("warm", "warm receptor", trace.heat_flow_warm_receptor_W_per_m2 / 1e3, "warm", dash=DASHED),
     ]
-    return _panel(drawing, "heat", "heat flow into skin (kW/m²)", 1.0, series, missed=False)
+    return _panel(drawing, "heat", "heat flow into skin (kW/m²)", 0.85, series, missed=False, folds=True)
 
 
 def _current(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
@@ -146,7 +146,7 @@ def _current(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     levels = [
         {"at": _number(at), "label": f"driver's limit {signed(at, '.3g')} A", "role": "limit"} for at in (high, low)
     ]
-    return _panel(drawing, "current", "current (A)", 0.9, series, levels=levels)
+    return _panel(drawing, "current", "current (A)", 0.85, series, levels=levels)
 
 
 def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
@@ -164,7 +164,7 @@ def _sensation(drawing: Drawing, curves: _Curves) -> dict[str, Any]:
     # A label that changed with the icon would have the page build its panels anew.
     label = "sensation (d′) of the nominal person, receptor clock"
     terms = terms_of("d′", "sensation ψ", "onset", "clock", "nominal person")
-    return _panel(drawing, "sensation", label, 1.1, series, marks=marks, missed=False, digits=1, terms=terms)
+    return _panel(drawing, "sensation", label, 1.7, series, marks=marks, missed=False, digits=1, terms=terms)
 
 
 def _panel(
@@ -176,10 +176,10 @@ def _panel(
     missed: bool = True,
     **more: Any,
 ) -> dict[str, Any]:
-    """A panel of the canvas; `more` are its levels, marks, digits and terms, where it has any."""
+    """A panel of the canvas; `more` are its levels, marks, digits and terms, and whether it `folds`."""
     spans = [{"from": span.from_s, "to": span.to_s, "label": span.label} for span in drawing.missed if missed]
     own = {"key": key, "label": label, "height": height, "series": series, "spans": spans}
-    return {**own, "levels": [], "marks": [], "digits": 2, "terms": [], **more}
+    return {**own, "levels": [], "marks": [], "digits": 2, "terms": [], "folds": False, **more}
 
 
 def _handles(drawing: Drawing) -> list[dict[str, Any]]:

@@ -38,6 +38,7 @@ PARTS = (
     "troubles",
     "editor",
     "unsaved",
+    "strip",
     "design",
     "heat",
     "main",

@@ -51,6 +51,11 @@ class DesignModel:
         return self.document.text
 
     @property
+    def dragging(self) -> bool:
+        """Whether a corner is being dragged."""
+        return self._drag is not None
+
+    @property
     def observer(self) -> Observer:
         """The nominal person."""
         from thermicon.perception import Observer
@@ -148,6 +153,8 @@ class DesignModel:
                 return self._dragged(message)
             case "undo" | "redo":
                 return self._step(kind)
+            case "goal":
+                return self._aim(str(message.get("text")))
             case "apply":
                 return self._mend(message.get("line"))
         raise ValueError(f"the page sent an unknown message: {kind}")
@@ -189,6 +196,16 @@ class DesignModel:
             return self.text
         self.document.history = history
         self._draw(history.now.icon)
+        return self.text
+
+    def _aim(self, goal: str) -> str:
+        """Write the goal into the text; a GoalError says what is no goal."""
+        from thermicon.perception import Goal
+
+        if goal.strip():
+            Goal.parse(goal)
+        self.document.aim(goal)
+        self._draw()
         return self.text
 
     def _mend(self, line: object) -> str:

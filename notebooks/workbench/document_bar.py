@@ -15,7 +15,7 @@ from thermicon.icons.files.shipped import library_names
 
 from ..files.document import Document
 from ..report.blocks import fragment
-from ..timeline.frames import WORDS, terms_of
+from ..timeline.frames import WORDS
 from .live_view import button, safely
 
 if TYPE_CHECKING:
@@ -262,6 +262,4 @@ def _shipped(name: str) -> str:
 
 def help_html() -> str:
     """Return the sheet as HTML."""
-    meanings = terms_of(*WORDS["terms"], *WORDS["simulated"])
-    sheet = {**WORDS["sheet"], "Words": [f"{name}: {meaning}" for name, meaning in meanings]}
-    return "".join(f"{fragment('block', head, 'th-head')}{fragment('points', lines)}" for head, lines in sheet.items())
+    return fragment("points", WORDS["sheet"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING
 import ipywidgets as widgets
 
 from thermicon.icons.atomic import OutputError
+from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
 
 from ..editing.cue_check import read_text
 from ..files.exporting import felt_in, others
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
     from .design_model import DesignModel
 
 FORMAT = "csv"
+MOST_BYTES = 4_000_000
+"""Of a sidecar that is read for the device that was used last."""
 ExportRequest = tuple[str, "Rig", "str | None", str, str]
 """Text, rig, name of the icon (None: all), device, format."""
 
@@ -46,13 +50,13 @@ class ExportView(LiveView[ExportRequest]):
         from thermicon.circuit.delivery.formats import load_format
 
         names = device_names()
-        usual = load_format(FORMAT).device
+        usual = last_device(folder) or load_format(FORMAT).device
         wide = {"width": "100%"}
         titles = [(f"{name}: {Device.load(name).title}", name) for name in names]
         self.device = widgets.Dropdown(options=titles, value=usual, description="device", layout=wide)
-        self.form = widgets.Dropdown(options=self._forms(usual), value=FORMAT, description="format", layout=wide)
-        which = [("the selected icon", "shown"), ("all icons of the set", "all")]
-        self.which = widgets.Dropdown(options=which, value="shown", description="icons", layout=wide)
+        self.form = widgets.Dropdown(options=self._forms(usual), description="format", layout=wide)
+        which = [("all icons of the set", "all"), ("the selected icon", "shown")]
+        self.which = widgets.Dropdown(options=which, description="icons", layout=wide)
         self.folder = widgets.Text(value=str(folder), description="folder", continuous_update=False, layout=wide)
         self.overwrite = widgets.Checkbox(value=False, description="overwrite existing files", indent=False)
         self.insist = widgets.Checkbox(value=False, description="also export lossy or unreached icons", indent=False)
@@ -195,6 +199,18 @@ class ExportView(LiveView[ExportRequest]):
 
         driven_by, forms = Device.load(device).driven_by, map(load_format, format_names())
         return [(f"{form.name}: {form.title}", form.name) for form in forms if driven_by in form.takes]
+
+
+def last_device(folder: Path) -> str | None:
+    """The shipped device of the newest drive in a folder, as its sidecar has it; None where there is none."""
+    from thermicon.circuit.delivery.device import device_names
+
+    try:
+        newest = max(folder.glob("*.json"), key=lambda path: path.stat().st_mtime)
+        name = json.loads(read_limited(newest, MOST_BYTES))["device"]["name"]
+    except (OSError, ValueError, KeyError, TypeError, NotRegular, TooLarge):
+        return None
+    return name if name in device_names() else None
 
 
 def export_svg(made: Export, place: int) -> str:

@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from thermicon.perception.observer.observer_model import ObserverModel
     from thermicon.perception.ranking.scores import PairScore
 
-QUICK, WELL = (6, 0), (200, 128)
+SetRequest = tuple[str, "Rig"]
+QUICK, WELL = (12, 0), (200, 128)
 """How many people, and how many draws of the parameters: at once, and when there is time."""
 MOST_RANKED = 60
 STYLES: tuple[tuple[list[int], float], ...] = (([], 1.75), ([7, 3], 1.75))
@@ -74,14 +75,18 @@ def rank_set(
     reference: PerceptualMap | None = None,
     progress: Callable[[int, int], None] | None = None,
     observer: ObserverModel | None = None,
+    known: Ranking | None = None,
 ) -> RankedSet:
     """Rank the set of a text; its map is laid onto the ``reference``. Raises ValueError where it cannot be.
 
-    Where the ``observer`` has fewer draws than ``parameters``, all are used.
+    Where the ``observer`` has fewer draws than ``parameters``, all are used. ``known`` is the ranking without them,
+    where it was made already.
     """
     from thermicon.perception import rank
     from thermicon.perception.identification.map import map_of
+    from thermicon.perception.kernels.parallel import step_counter
     from thermicon.perception.plots.draw_heat import clustered_order
+    from thermicon.perception.ranking.rank import with_intervals
 
     began = time.perf_counter()
     reading = read_text(text)
@@ -89,7 +94,10 @@ def rank_set(
         raise ValueError(why)
     draws = parameters if observer is None else observer.most_draws(parameters)
     draws = 0 if draws == 1 else draws  # an interval needs two
-    made = rank(reading.icons, rig, people=people, parameters=draws, progress=progress, observer=observer)
+    if known is None:
+        made = rank(reading.icons, rig, people=people, parameters=draws, progress=progress, observer=observer)
+    else:
+        made = with_intervals(known, draws, step_counter(progress, draws)) if draws else known
     order = tuple(int(k) for k in clustered_order(made.d_prime))
     laid = map_of(made, reference) if len(made.icons) > 1 else None
     ms = 1e3 * (time.perf_counter() - began)

@@ -14,25 +14,19 @@ from ..report.blocks import Bullets, fragment, shown
 from ..report.set_report import SetReport
 from .design_view import SideCanvas
 from .live_view import BackgroundWorker, Job, LiveView
-from .set_model import QUICK, WELL, RankedSet, heat_frame, overlay_frame, rank_set, why_not
+from .set_model import QUICK, WELL, RankedSet, SetRequest, heat_frame, overlay_frame, rank_set, why_not
 from .view_blocks import edit_html, pair_html, set_html
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig
+    from thermicon.perception import Ranking
     from thermicon.perception.identification.map import PerceptualMap
     from thermicon.perception.selection.edit import Edit, NoEdit
 
     from .design_model import DesignModel
 
 ShowText = Callable[[str], None]
-SetRequest = tuple[str, "Rig"]
 SHARES = 10
-SMALL = """cue 1
-icon dip { cool by 2 K at 2 K/s; return at 2 K/s }
-icon glow { warm by 2 K at 2 K/s; return at 2 K/s }
-icon beat { repeat 2 { pulse cool by 2 K for 1 s; rest for 1 s } }
-"""
-"""A set that calls what a first ranking of any set calls: three icons, since two are easier to place."""
 MAP_INCHES = (3.7, 3.3)
 WIDE, BESIDE = "1 1 500px", 6
 """Table and heat maps are side by side for at most this number of icons."""
@@ -41,18 +35,22 @@ WIDE, BESIDE = "1 1 500px", 6
 class SetView(LiveView[SetRequest]):
     """The set of one ``DesignModel``, ranked while its tab is ``shown``; ``box`` holds the widgets.
 
-    ``show_text`` is called with the text after an edit is applied.
+    ``show_text`` is called with the text after an edit is applied; ``known`` gives the ranking of a request without
+    intervals, where another view has made it.
     """
 
     settles_s = 0.25
 
-    def __init__(self, design: DesignModel, show_text: ShowText) -> None:
+    def __init__(
+        self, design: DesignModel, show_text: ShowText, known: Callable[[SetRequest], Ranking | None] = lambda _: None
+    ) -> None:
         super().__init__(design)
+        self._known = known
         self._show_text = show_text
         self.made: RankedSet | None = None
         self.picked: tuple[str, str] | None = None
         self.edit: Edit | NoEdit | None = None
-        self.editor, self._warmer = BackgroundWorker(self._no_edit), BackgroundWorker()
+        self.editor = BackgroundWorker(self._no_edit)
         self._build()
 
     def _build(self) -> None:
@@ -75,13 +73,6 @@ class SetView(LiveView[SetRequest]):
         self.body.layout.display = "none"
         self.stale_parts = self.body, said["scores"]
         self._say("the set is ranked when this tab opens")
-
-    def warm(self) -> None:
-        """Load what ranking needs in the background, so that the first ranking starts at once."""
-        self._warmer.ask(self._load, 1.0)
-
-    def _load(self, job: Job) -> None:
-        rank_set(SMALL, self.design.nominal, *QUICK, progress=job.go_on)
 
     def _mark_outdated(self, request: SetRequest) -> None:
         self._mark(self.made is not None and request != self._source())
@@ -155,7 +146,8 @@ class SetView(LiveView[SetRequest]):
         job.on_page(lambda: self._show(well, request, True, picture))
 
     def _ranked(self, request: SetRequest, how: tuple[int, int], progress: Callable[[int, int], None]) -> RankedSet:
-        return rank_set(*request, *how, None if self.made is None else self.made.map, progress, self.design.model)
+        laid = None if self.made is None else self.made.map
+        return rank_set(*request, *how, laid, progress, self.design.model, self._known(request))
 
     def _failed(self, message: str) -> None:
         super()._failed(f"not ranked: {message}")

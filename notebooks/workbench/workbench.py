@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .design_view import DesignView
     from .document_bar import DocumentBar
     from .export_view import ExportView
+    from .set_strip import SetStrip
     from .set_view import SetView
     from .versions_view import VersionsView
 
@@ -95,6 +96,7 @@ class Workbench:
         self._folder = Path(folder)
         self._page: Any = None
         self.design_view: DesignView | None = None
+        self.set_strip: SetStrip | None = None
         self.set_view: SetView | None = None
         self.export_view: ExportView | None = None
         self.versions_view: VersionsView | None = None
@@ -209,6 +211,7 @@ class Workbench:
         from .design_view import DesignView
         from .document_bar import DocumentBar
         from .export_view import ExportView
+        from .set_strip import SetStrip
         from .set_view import SetView
         from .versions_view import VersionsView
 
@@ -219,19 +222,20 @@ class Workbench:
         def show_text(text: str, icon: str | None = None) -> None:
             design.send(self._design.show_text(text, icon))
 
-        self.set_view = ranked = SetView(self._design, show_text)
+        self.set_strip = strip = SetStrip(self._design, design.canvas.send)
+        self.set_view = ranked = SetView(self._design, show_text, strip.known)
         self.export_view = export = ExportView(self._design, self._folder)
         self.bar = bar = DocumentBar(design)
         self.versions_view = versions = VersionsView(self._design, show_text)
-        design.on_page = {"save": bar.saved_by_key, "left": bar.take_left}
+        design.on_page = {"save": bar.saved_by_key, "left": bar.take_left, "hello": lambda _: strip.tell(anew=True)}
         views = [design.box, ranked.box, export.box, versions.box]
         tabs = widgets.Tab(views, titles=("Design", "Set", "Export", "Versions"))
 
-        live: tuple[SetView | ExportView | VersionsView, ...] = (ranked, export, versions)
+        live: tuple[SetStrip | SetView | ExportView | VersionsView, ...] = (strip, ranked, export, versions)
 
         def shown(change: Any) -> None:
             bar.beside(design=change["new"] == 0)
-            for place, view in enumerate(live, 1):
+            for place, view in enumerate(live):
                 view.shown = change["new"] == place
                 view.renew(0.0)  # who opens a tab has finished typing
 
@@ -239,8 +243,8 @@ class Workbench:
             for view in live:
                 view.renew()
 
-        if has_kernel():
-            ranked.warm()
+        strip.shown = has_kernel()
+        strip.renew(1.0)  # once the page is drawn
         tabs.observe(shown, "selected_index")
         self._design.on_change(changed)
         self.tabs = tabs

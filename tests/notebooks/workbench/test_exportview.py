@@ -48,7 +48,7 @@ def test_a_drive_is_prepared_judged_and_written(tmp_path: Path) -> None:
     assert "safety green" in bench.said("gate")
     assert "<svg" in bench.said("figure")
     bench.view.button.click()
-    assert sorted(path.name for path in (tmp_path / "drives").iterdir()) == ["dip.csv", "dip.json"]
+    assert sorted(path.name for path in (tmp_path / "drives").glob("*.csv")) == ["dip.csv", "glow.csv"]
     assert str(tmp_path / "drives") in bench.said("written")
     assert json.loads((tmp_path / "drives" / "dip.json").read_text(encoding="utf-8"))["safety"]["colour"] == "green"
 
@@ -56,8 +56,6 @@ def test_a_drive_is_prepared_judged_and_written(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_all_icons_are_written_with_the_detection_of_the_ranking_and_kept_unless_overwritten(tmp_path: Path) -> None:
     bench = Bench(tmp_path)
-    bench.view.which.value = "all"
-    bench.wait()
     ranking = rank(parse(TWO), sure_rig(), people=200, parameters=0)
     assert "detected by 200 virtual people" in bench.said("delivered")
     bench.view.button.click()
@@ -71,6 +69,15 @@ def test_all_icons_are_written_with_the_detection_of_the_ranking_and_kept_unless
     bench.view.overwrite.value = True
     bench.view.button.click()
     assert "wrote 2 drives" in bench.said("written")
+
+
+@pytest.mark.parametrize(
+    ("sidecar", "device"),
+    [('{"device": {"name": "dac-12"}}', "dac-12"), ('{"device": {"name": "gone"}}', "dac-16"), ("[", "dac-16")],
+)
+def test_the_device_of_the_newest_drive_is_used_again(tmp_path: Path, sidecar: str, device: str) -> None:
+    (tmp_path / "dip.json").write_text(sidecar, encoding="utf-8")
+    assert ExportView(DesignModel(TWO, sure_rig()), tmp_path).device.value == device
 
 
 @pytest.mark.slow

@@ -1,0 +1,135 @@
+"""The strip beside the badge of the design view: how well the set is named, whether it meets its goal, and one icon.
+
+A rough ranking comes first, then one as of the set view. Nothing is computed while a corner is dragged.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from thermicon.icons.number_text import percent
+
+from ..editing.cue_check import read_text
+from .live_view import Job, LiveView
+from .set_model import QUICK, WELL, SetRequest, why_not
+
+if TYPE_CHECKING:
+    from thermicon.perception import Ranking
+
+    from .design_model import DesignModel
+
+WAITS_S = 0.03
+
+
+class SetStrip(LiveView[SetRequest]):
+    """The set of one ``DesignModel`` in a few numbers, ranked while the design view is ``shown``.
+
+    ``send`` takes a message to the page, which is sent only where something has changed.
+    """
+
+    settles_s = 0.1
+
+    def __init__(self, design: DesignModel, send: Callable[[dict[str, Any]], None]) -> None:
+        super().__init__(design)
+        self._send = send
+        self.ranking: Ranking | None = None
+        self._source: SetRequest | None = None
+        self._sent: dict[str, Any] = {}
+        self._why = ""
+        self._judged: tuple[tuple[str, Ranking | None], bool | None, str] = (("", None), None, "")
+
+    def renew(self, after_s: float | None = None) -> None:
+        """Rank anew if the set has changed, and say what is known until then."""
+        super().renew(after_s)
+        self.tell()
+
+    def known(self, request: SetRequest) -> Ranking | None:
+        """The ranking of a request with as many people as the set view has; None where there is none yet."""
+        whole = self.ranking is not None and self.ranking.people == WELL[0]
+        return self.ranking if whole and self._source == request else None
+
+    def tell(self, anew: bool = False) -> None:
+        """Send what the strip says; ``anew``: to a page that has just been opened too."""
+        said = self._said()
+        if anew or said != self._sent:
+            self._sent = said
+            self._send(said)
+
+    def _said(self) -> dict[str, Any]:
+        ranking, goal = self.ranking, self.design.document.goal
+        whole = icon = felt = "–"
+        if ranking is not None:
+            whole = whole if len(ranking.icons) < 2 else percent(ranking.proportion_correct)
+            for each in ranking.icons:
+                if each.name == self.design.scene.icon:
+                    icon = icon if len(ranking.icons) < 2 else percent(each.proportion_correct)
+                    felt = percent(each.detected_probability)
+        met, binding = self._judge(goal)
+        stale = self._source != self._request()
+        people = 0 if ranking is None else ranking.people
+        about = self._why if stale and self._why else f"predicted for {people} virtual people" if people else ""
+        numbers = {"set": whole, "icon": icon, "felt": felt, "goal": goal, "met": met, "binding": binding}
+        return {"type": "strip", **numbers, "stale": stale, "rough": people < WELL[0], "about": about}
+
+    def _judge(self, goal: str) -> tuple[bool | None, str]:
+        """Whether the ranking meets the goal (None: not known), and what is in the way."""
+        from thermicon.perception.selection.goal_result import judge_goal
+
+        if not goal or self.ranking is None:
+            return None, ""
+        if self._judged[0] != (key := (goal, self.ranking)):
+            try:
+                found = judge_goal(goal, self.ranking)
+                self._judged = key, found.met, "; ".join(found.binding)
+            except ValueError as wrong:
+                self._judged = key, None, str(wrong)
+        return self._judged[1:]
+
+    def _request(self) -> SetRequest:
+        return self.design.text, self.design.rig
+
+    def _obstacle(self, request: SetRequest) -> str | None:
+        return why_not(read_text(request[0]))
+
+    def _job(self, request: SetRequest) -> Callable[[Job], None]:
+        self._why = ""
+        return lambda job: self._rank(job, request)
+
+    def _rank(self, job: Job, request: SetRequest) -> None:
+        """The background job, on one core: the other one draws."""
+        from thermicon.perception import Goal, rank
+        from thermicon.perception.ranking.rank import with_intervals
+
+        text, rig = request
+        while self.design.dragging:
+            job.go_on()
+            time.sleep(WAITS_S)
+        icons, model, goal = read_text(text).icons, self.design.model, self.design.document.goal
+        assert icons is not None
+        for people, _ in (QUICK, WELL):
+            made = rank(icons, rig, people=people, parameters=0, observer=model, workers=1, progress=job.go_on)
+            job.on_page(partial(self._take, made, request))
+        if goal and any(part.people for part in Goal.parse(goal).parts):
+            draws = WELL[1] if model is None else model.most_draws(WELL[1])
+            job.on_page(partial(self._take, with_intervals(made, draws, job.go_on), request))
+        job.on_page(partial(self._finish, request))
+
+    def _take(self, made: Ranking, request: SetRequest) -> None:
+        self.ranking, self._source = made, request
+        self.tell()
+
+    def _finish(self, request: SetRequest) -> None:
+        self._running, self._finished, self._failed_request = None, request, None
+
+    def _show_finished(self) -> None:
+        pass
+
+    def _mark(self, stale: bool) -> None:
+        pass
+
+    def _say(self, text: str, kind: str = "") -> None:
+        self._why = text
+        self.tell()
