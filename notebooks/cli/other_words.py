@@ -1,45 +1,11 @@
 """Words that people try as commands, each with the command that does it; and answers of three lines at most."""
 
-from collections.abc import Sequence
+import tomllib
+from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import typer
-
-SAID = {
-    "version": "--version",
-    "frontier pareto": "improve FILE --up-to 6",
-    "search optimise optimize": "improve FILE --evaluations 2000",
-    "choose select": "improve FILE --choose 4",
-    "goal target": 'improve FILE --goal "correct >= 90 %"',
-    "edit edits": "improve FILE --edits",
-    "plan power sample": "pilot FILE",
-    "answers trials measurements": "pilot FILE --answers TRIALS.csv",
-    "experiment psychopy orders": "study example -o out",
-    "icons sets library": "list icons",
-    "rig rigs": "list rigs",
-    "device devices": "list devices",
-    "format formats": "list formats",
-    "cite methods bibtex": "list --cite FILE",
-    "copy new init create template": "list --copy six-icons mine.cue",
-    "fix lint": "check --fix FILE",
-    "explain": "check --explain E102",
-    "predict confusion confusions report": "rank FILE",
-    "plot figure draw": "rank FILE --figure OUT.png",
-    "doubt sensitivity": "rank FILE --doubt",
-    "run trace play": "simulate FILE",
-    "session": "simulate FILE --random 10",
-    "vary": "sweep FILE --vary contact.area_cm2=4:16:7 -o OUT.csv",
-    "drive drives save write": "export FILE --to csv -o drives",
-    "verify": "export --verify DIR",
-    "json": "convert FILE -o OUT.json",
-    "record recording import": "convert TABLE.csv -o OUT.cue",
-    "diff overlay": "compare A B",
-    "calibrate": "fit LOG.csv",
-    "notebook notebooks jupyter workbench gui": "lab",
-    "test selftest self-test": "doctor",
-}
-"""Words of users, and the command line that answers them."""
 
 
 def answer_to(word: str) -> str:
@@ -52,7 +18,8 @@ def answer_to(word: str) -> str:
         return f"thermicon rank {word}"
     if word.endswith(".toml") and Path(word).is_file():
         return f"thermicon rank six-icons --rig {word}"
-    return next((f"thermicon {line}" for words, line in SAID.items() if word.casefold() in words.split()), "")
+    said = tomllib.loads((resources.files("thermicon.notebooks") / "data" / "other-words.toml").read_text("utf-8"))
+    return next((f"thermicon {line}" for words, line in said.items() if word.casefold() in words.split()), "")
 
 
 def outputs_of(command: Any) -> str:
@@ -60,7 +27,7 @@ def outputs_of(command: Any) -> str:
 
     `command` is as typer makes it.
     """
-    named: Sequence[str] = [each.opts[0] for each in command.params if str(each.metavar or "").startswith("OUT")]
+    named = [each.opts[0] for each in command.params if str(each.metavar or "").startswith("OUT")]
     return f"; what it writes is named by {', '.join(named)}" if named else ""
 
 
