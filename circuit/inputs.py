@@ -101,10 +101,10 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[Exception] = 
         raise error(f"{path}: cannot be read ({getattr(problem, 'strerror', None) or problem})") from None
 
 
-def table_fault(path: str | Path, error: type[Exception] = InputError) -> Fault:
+def table_fault(path: str | Path, error: type[InputError] = InputError) -> Fault:
     """Return what makes `error` out of a fault of the table in a file, for `icons.files.table`."""
 
-    def fault(kind: str, line: int | None, what: str, cure: str) -> Exception:
+    def fault(kind: str, line: int | None, what: str, cure: str) -> InputError:
         return error(f"{path}{f':{line}' if line else ''}: {what}; {cure}")
 
     return fault

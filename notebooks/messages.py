@@ -6,13 +6,14 @@ import contextlib
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextvars import ContextVar
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 import typer
 
+from thermicon.icons.model.arguments import InputError, advised
 from thermicon.icons.model.context import clean, clean_line
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ REFUSED = 3
 INTERRUPTED = 130
 DEFAULT_RIG = "thenar"
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
+_VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
 
 
 def is_ours(error: BaseException) -> bool:
@@ -40,15 +42,34 @@ def interrupted() -> typer.Exit:
     return typer.Exit(INTERRUPTED)
 
 
-def fail(message: str) -> NoReturn:
+def _column(names: Mapping[str, str]) -> str:
+    ((ours, theirs),) = names.items()
+    quote = '"' if set(theirs) & set(" ()[]/&;*|<>$'°#") else ""
+    return f"--column {quote}{ours}={theirs}{quote}"
+
+
+OPTIONS: Mapping[str, Callable[[Any], str]] = {
+    "column": "--column {}".format,
+    "columns": _column,
+    "count": "--choose {}".format,
+    "parameters": "--intervals {}".format,
+    "pause_s": "--pause {:g}".format,
+}
+"""How the command line writes what to change, by the names of arguments in Python."""
+
+
+def fail(message: object) -> NoReturn:
     """Say what is wrong on stderr, and leave with the code for bad input."""
-    typer.echo(clean(message), err=True)
+    if isinstance(message, InputError):
+        message = advised(message.text, message.changes, OPTIONS)
+    typer.echo(clean(str(message)), err=True)
     raise typer.Exit(BAD_INPUT)
 
 
-def be_quiet(wanted: bool) -> None:
-    """From now on show neither progress nor notes; what is wrong is still said."""
+def be_quiet(wanted: bool, verbose: bool = False) -> None:
+    """From now on show neither progress nor notes, or with `verbose` all warnings in full; what is wrong is said."""
     _QUIET.set(wanted)
+    _VERBOSE.set(verbose)
 
 
 def note(message: str, *, always: bool = False) -> None:
@@ -102,20 +123,53 @@ def check_changes(changes: Sequence[str]) -> None:
             raise usage(f"{change!r} is not of the form KEY=VALUE, for example contact.area_cm2=4", "--set")
 
 
-def load_rig(name: str | None, changes: Sequence[str], *, named: bool = False) -> Rig:
-    """Load the rig of ``--rig`` with the changes of ``--set``; its warnings go to stderr.
+def load_rig(name: str | None, changes: Sequence[str], *, site: str | None = None, named: bool = False) -> Rig:
+    """Load the rig of ``--rig``, or the usual one for a site, with the changes of ``--set``, and warn of it.
 
     `named`: warnings say of which rig they are.
     """
     check_changes(changes)
     from thermicon.circuit import Rig
 
-    rig = Rig.load(name or DEFAULT_RIG)
+    rig = Rig.of(name, site)
+    if name is None and rig.name == site != DEFAULT_RIG:
+        note(f"on the {site} rig, since the set is for that site; --rig names another")
     if changes:
         rig = rig.with_set(list(changes))
-    for warning in rig.warnings:
-        note(f"warning: {f'{rig.name}: ' if named else ''}{warning}")
+    warn_of_rig(rig, named)
     return rig
+
+
+def warn_of_rig(rig: Rig, named: bool = False) -> None:
+    """Warn on stderr of what is unusual about a rig: whole sentences where safety needs them, or who reads wants all.
+
+    On a terminal the rest is one short line, once for a rig in a folder.
+    """
+    from thermicon.circuit.rig.rig_words import rig_warnings
+
+    whole, brief = _VERBOSE.get() or not sys.stderr.isatty(), list[str]()
+    for each in rig_warnings(rig):
+        if whole or each.brief is None:
+            note(f"warning: {f'{rig.name}: ' if named else ''}{each.text}")
+        else:
+            brief.append(each.brief)
+    if brief and _is_new(f"{Path.cwd()}\n{rig.document}"):
+        note(f"warning: rig {rig.name}: {'; '.join(brief)} (in full: thermicon -v)")
+
+
+def _is_new(text: str) -> bool:
+    """Whether this was not asked before; an empty file in the cache folder remembers it."""
+    from hashlib import sha256
+
+    from thermicon.icons.atomic import cache_folder
+
+    told = cache_folder() / "told" / sha256(text.encode()).hexdigest()[:20]
+    if told.exists():
+        return False
+    with contextlib.suppress(OSError):
+        told.parent.mkdir(parents=True, exist_ok=True)
+        told.touch()
+    return True
 
 
 def load_observer(file: Path | None, rig: Rig | None = None, needs_draws: str = "") -> ObserverModel:

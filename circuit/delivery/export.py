@@ -131,7 +131,7 @@ class Export:
 @checked
 def export(
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     device: Device | str | None = None,
     format: Format | str = "csv",
     *,
@@ -151,7 +151,7 @@ def export(
     icons
         A set, its name or file, or icons, which may later be played in any order.
     rig
-        The rig, or the name or file of one.
+        The rig, or the name or file of one; None: the shipped rig of the icons' site, else thenar.
     device
         The device that plays the drives, or the name or file of one; None: the usual device of the format.
     format
@@ -190,10 +190,10 @@ def export(
     """
     form = load_format(format) if isinstance(format, str) else format
     played = device if isinstance(device, Device) else Device.load(device or form.device)
-    on = Rig.of(rig)
     chosen = tuple(by_name(icons).values())
     if not chosen:
         raise ExportError("there is no icon to export; give at least one")
+    on = Rig.of(rig, chosen[0].context.site)
     where = None if folder is None else Path(folder)
     try:
         if where is not None:

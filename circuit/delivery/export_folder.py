@@ -18,7 +18,7 @@ from typing import Any
 from thermicon.icons.atomic import MARK, OutputError, check_folder, kept_text, stopped_cleanly
 
 CURE = "give a folder of its own, such as -o drives"
-HOW = "--force replaces the folder"
+HOW = "replace=True replaces the folder"
 
 
 def check_export_folder(folder: Path, replace: bool = False, how: str = HOW) -> Path:

@@ -42,7 +42,7 @@ class Nearest:
 
 
 @checked
-def nearest_reachable(icon: Icon, rig: AnyRig = "thenar") -> Nearest | None:
+def nearest_reachable(icon: Icon, rig: AnyRig = None) -> Nearest | None:
     """Return the nearest cue that the rig reaches.
 
     Parameters
@@ -50,7 +50,7 @@ def nearest_reachable(icon: Icon, rig: AnyRig = "thenar") -> Nearest | None:
     icon
         The cue.
     rig
-        The rig, or the name or file of one.
+        The rig, or the name or file of one; None: the shipped rig of the icons' site, else thenar.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def nearest_reachable(icon: Icon, rig: AnyRig = "thenar") -> Nearest | None:
     >>> nearest_reachable(cue, Rig.load("thenar").with_(**{"driver.current_limit_A": 1.0})).sentence
     'it is reached with its changes 0.8 times as large, in the same time'
     """
-    on = Rig.of(rig)
+    on = Rig.of(rig, icon.context.site)
     if icon.context.control == "current" or _reached(icon, on):
         return None
     base = baseline_C(icon, on)

@@ -33,11 +33,11 @@ def check_names(names: Sequence[str], form: Format) -> None:
         if form.stem(other) == stem:
             raise FormatError(
                 f"{other} and {name}: the files of both would be called {stem} in the format {form.name}; rename one, "
-                f"or export them into two folders, one by one with --icon"
+                f"or export them one by one, into two folders"
             )
         raise FormatError(
             f"{other} and {name}: differ only in capitals, so that one's files would overwrite the other's on disks "
-            f"that make no difference; rename one, or export them into two folders, one by one with --icon"
+            f"that make no difference; rename one, or export them one by one, into two folders"
         )
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Literal
 
 from thermicon.icons import Icon
+from thermicon.icons.model.arguments import Changes, advised
 from thermicon.icons.number_text import signed
 
 from ..rig.rig import Rig
@@ -76,19 +78,25 @@ _HEADS = {"unsafe": "NOT SAFE", "unreachable": "NOT reached", "lossy": "loses to
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """Why a cue is not exported."""
+    """Why a cue is not exported: the `cause` in a sentence, which `tells` what warnings say too, and what to change."""
 
     kind: Literal["unsafe", "unreachable", "lossy"]
-    text: str
+    cause: str
     tells: tuple[str, ...] = ()
+    changes: Changes = MappingProxyType({})
 
     @property
     def forcible(self) -> bool:
         """Whether the export may be forced."""
         return self.kind != "unsafe"
 
+    @property
+    def text(self) -> str:
+        """Kind and cause, without the changes."""
+        return f"{_HEADS[self.kind]}: {self.cause}"
+
     def __str__(self) -> str:
-        return f"{_HEADS[self.kind]}: {self.text}"
+        return advised(self.text, self.changes)
 
 
 def refusals_of(delivery: DeliveredDrive, verdict: Gate, deviation: DeliveryDeviation) -> tuple[Refusal, ...]:
@@ -100,9 +108,9 @@ def refusals_of(delivery: DeliveredDrive, verdict: Gate, deviation: DeliveryDevi
     refusals, narrowed = [], delivery.narrowed if isinstance(delivery, ModuleDrive) else None
     tells = (narrowed.text,) if narrowed else ()
     if verdict.colour == "red":
-        reason = verdict.reason or "the gate says red"
-        more = "" if verdict.mended_by_pause else more_and_cure(verdict.findings)
-        refusals.append(Refusal("unsafe", reason + more))
+        cause, longer = verdict.reason or "the gate says red", verdict.mended_by_pause
+        changes = {"pause_s": verdict.repeated.shortest_pause_s} if longer else {}
+        refusals.append(Refusal("unsafe", cause if longer else cause + more_and_cure(verdict.findings), (), changes))
     lost = lost_text(deviation)
     if delivery.outcome is not None and not delivery.outcome.reached:
         text = _out_of_reach(delivery, delivery.outcome, verdict.colour != "red")

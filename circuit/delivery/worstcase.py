@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermicon.icons.number_text import signed
-
 from ..arrays import Array
 from ..safety.corners import corners_of
 from ..safety.display import DisplayCourse
@@ -48,8 +46,6 @@ def ways_of(delivery: DeliveredDrive) -> tuple[DisplayCourse, ...]:
 ROWS_HZ = 10.0
 """Rows per second in which extremes are searched; the steps of the simulation are finer."""
 
-ADVICE = "where a controller measures the display, play set-points: --device closed-loop-controller --to setpoint-csv"
-
 
 @dataclass(frozen=True, slots=True)
 class OpenLoopSpread:
@@ -57,14 +53,6 @@ class OpenLoopSpread:
 
     baseline_C: tuple[float, float]
     step_K: tuple[float, float]
-
-    def __str__(self) -> str:
-        step = " … ".join(signed(value, "+.1f") for value in self.step_K)
-        low, high = self.baseline_C
-        return (
-            f"open loop: with a module that was not measured the display may rest at {low:.1f} … {high:.1f} °C and "
-            f"move by {step} K; {ADVICE}"
-        )
 
     def to_dict(self) -> dict[str, list[float]]:
         """In the form of a sidecar."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 
-from thermicon.icons.near_words import did_you_mean
+from thermicon.icons.near_words import did_you_mean, nearest_words
 
 from ..inputs import InputError
 from ..rig.rig import Rig
@@ -110,15 +110,14 @@ def _fault(name: str, rig: Rig, known: Sequence[str]) -> str:
     if _PROBE.fullmatch(name):
         sensor = '[{name="thermistor", place="display", lag_s=0.2}]'
         return (
-            f"{name}: rig {rig.name} has no such probe; describe the sensor first, as with --set 'probe={sensor}', and "
+            f"{name}: rig {rig.name} has no such probe; describe the sensor first, by the key probe={sensor}, and "
             f"fit probe.thermistor.lag_s"
         )
-    hint = did_you_mean(name, known, 1)
     generic = re.sub(r"\.(layer|probe)\.[^.]+\.", r".\1.0.", name)
     if generic in rig_keys():
         return f"{name}: is a key of a rig, but no log identifies it; keys that can be fitted: {', '.join(known)}"
-    if hint.startswith("did you"):
-        return f"{name}: cannot be fitted; {hint}"
+    if nearest_words(name, known, cutoff=0.55):
+        return f"{name}: cannot be fitted; {did_you_mean(name, known, 1)}"
     return f"{unknown_key(name)}; keys that can be fitted: {', '.join(known)}"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,7 +48,7 @@ class Log:
     """A log of one clock: `time_s` (rows,) in s, increasing, and columns (rows,), NaN where nothing was recorded.
 
     `sha256` is the digest of its file, empty where it came from none; `notes` say what was adjusted or left out on
-    reading.
+    reading, `lost` which of our columns the file does not call as was said.
 
     Examples
     --------
@@ -62,6 +62,7 @@ class Log:
     time_s: Array
     columns: tuple[tuple[str, Array], ...]
     notes: tuple[str, ...] = ()
+    lost: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         span = self.time_s[-1] - self.time_s[0]
@@ -193,8 +194,8 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     for cell in table.header:
         close = "" if is_known(cell) else absent.get("".join(nearest_words(cell.lower(), absent, 1, MISSPELT)), "")
         if close and cell[-2:] == close[-2:]:
-            cure = f"say so by --column {close}={cell}, or remove the column"
-            raise table.fault("table", table.line, f"{cell}: did you mean {close}? Found {table.found}", cure)
+            said, cure = f"{cell}: did you mean {close}? Found {table.found}", "remove the column, or say so"
+            raise table.fault("table", table.line, said, cure).to(columns={close: cell})
     if table.names.doubtful or not wanted:
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)
@@ -202,4 +203,5 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     said = (*found.notes, *([f"columns that are not used: {unused}"] if unused else []))
     notes = [f"{where.name}: {note}" for note in said]
     digest = hashlib.sha256(data).hexdigest()
-    return Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes)
+    log = Log.of(where.name, {"time_s": found.time_s, **found.columns}, sha256=digest, notes=notes)
+    return replace(log, lost={name: f"{where.name}: {said}" for name, said in table.lost.items()})

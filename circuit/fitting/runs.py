@@ -114,8 +114,8 @@ def runs_of(logs: Sequence[Log], rig: Rig | None = None) -> tuple[Run, ...]:
         deeper = f"{DISPLAY} with skin_C or a probe in the skin"
         if rig is not None and thermode:
             raise LogError(f"rig {rig.name} is a thermode, whose display is the drive: {deeper} is needed ({found})")
-        cure = f"say what the file calls it by --column {DRIVES[0]}=THEIRS"
-        raise LogError(f"no log has a drive: one of {' or '.join(DRIVES)} is needed, or {deeper} ({found}); {cure}")
+        needed = f"one of {' or '.join(DRIVES)} is needed, or {deeper} ({found})"
+        raise LogError(f"no log has a drive: {needed}; say what the file calls it").to(columns={DRIVES[0]: "THEIRS"})
     driven = [log for log in logs if id(log) in drives]
     groups: dict[int, list[Log]] = {id(log): [] for log in driven}
     last = driven[0]
@@ -128,9 +128,9 @@ def runs_of(logs: Sequence[Log], rig: Rig | None = None) -> tuple[Run, ...]:
     silent = [run.name for run in runs if not run.channels]
     if silent:
         raise LogError(
-            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, say what the "
-            f"file calls it by --column display_C=THEIRS, or name the file of the thermometer behind it"
-        )
+            f"{silent[0]}: nothing measured beside the drive; log display_C, and voltage_V where you can, name the "
+            f"file of the thermometer behind it, or say what the file calls it"
+        ).to(columns={"display_C": "THEIRS"})
     return runs
 
 
@@ -215,8 +215,8 @@ def _check_probes(log: Log, rig: Rig) -> None:
             probe = f'probe=[{{name="{name}", place="skin", depth_mm=0.5}}]'
             has = f" (it has {', '.join(there)})" if there else ""
             raise LogError(
-                f"{log.name}: {column}: rig {rig.name} has no such probe{has}; say where it is, as with --set "
-                f"'{probe}', or remove the column"
+                f"{log.name}: {column}: rig {rig.name} has no such probe{has}; say where it is by the key "
+                f"{probe} of the rig, or remove the column"
             )
 
 

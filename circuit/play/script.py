@@ -66,12 +66,12 @@ def reset():
     """Allow playing again after a stop: the rest is held, and the polarity tested, as before a first play."""
     _guard.reset()
 '''
-REST = '    """Hold what a drive begins with, as before a first play; play() does that by itself where nobody did."""'
+REST = '    """Hold {}, as before a first play; play() does that by itself where nobody did."""'
 
 NI = f'''
 
 def rest(drive_file, measured_C=None, second_C=None):
-{REST}
+{REST.format("what a drive begins with")}
     volts = columns_of(_judged(drive_file), "command_V")[1]
     _guard.rest(NiLine(CHANNEL, OFF_V, measured_C), volts[0], second_C)
 
@@ -94,7 +94,7 @@ def _off():
 FUNCTION = f'''
 
 def rest(drive_file, send, off, measured_C=None, second_C=None):
-{REST}
+{REST.format("what a drive begins with")}
     _guard.rest(FunctionLine(send, off, measured_C), columns_of(_judged(drive_file), "display_C")[1][0], second_C)
 
 
@@ -122,7 +122,7 @@ def prepare(port, drive_file):
 
 
 def rest(port, measured_C=None, second_C=None):
-{REST.replace("what a drive begins with", "the baseline of what was prepared")}
+{REST.format("the baseline of what was prepared")}
     if not _course:
         raise Refused("nothing was prepared: call prepare(port, drive_file) first")
     _guard.rest(Tcs2Line(port, measured_C), None, second_C)

@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import TYPE_CHECKING, Annotated, NamedTuple, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
@@ -126,6 +126,23 @@ def sentence(which: str, /, **values: object) -> str:
     """A sentence of ``data/rig-words.toml`` with the values that it names."""
     table, name = which.split(".")
     return _words()[table][name].format(**values)
+
+
+class Unusual(NamedTuple):
+    """What is unusual about a rig: its kind, and a sentence with what to do."""
+
+    kind: str
+    text: str
+
+    @property
+    def brief(self) -> str | None:
+        """The same in a few words; None where safety needs the sentence."""
+        return _words()["brief"].get(self.kind)
+
+
+def unusual(kind: str, /, **values: object) -> Unusual:
+    """What is unusual, with the values that its sentence names."""
+    return Unusual(kind, sentence(f"warnings.{kind}", **values))
 
 
 def rig_faults(table: RigTable) -> list[str]:

@@ -9,7 +9,7 @@ from importlib import resources
 from thermicon.icons.near_words import did_you_mean
 
 from ..records import Record, RecordError, Table, load_records
-from .faults import PARAMETERS, sentence
+from .faults import PARAMETERS, Unusual, sentence, unusual
 from .module import Datasheet, Extraction, Peltier, at_mean_C
 from .rigfile import ModuleTable
 
@@ -36,7 +36,7 @@ class ModuleOrigin:
     """Where the parameters of a rig's module come from, in one sentence, and warnings about them."""
 
     sentence: str
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Unusual, ...] = ()
 
 
 @cache
@@ -92,7 +92,7 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
     if table.name is None and table.datasheet is None:
         alpha, ohm, theta = (float(getattr(table, key)) for key in PARAMETERS)
         return Peltier(alpha, ohm, theta, *plates), ModuleOrigin(f"parameters given: {source or 'no source stated'}")
-    what, warnings = f"data sheet given in the rig ({source or 'no source stated'})", []
+    what, warnings = f"data sheet given in the rig ({source or 'no source stated'})", list[Unusual]()
     if table.name is not None:
         try:
             sheets = load_module(table.name)
@@ -103,7 +103,7 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
         if plate is not None and plates == (plate, plate):
             what += f", plates of {plate:g} J/K a side (assumed from its footprint)"
         if origin.get("origin") != "datasheet":
-            warnings.append(f"module {table.name}: its figures are {origin.source}; expect them within 10 %")
+            warnings.append(unusual("estimated", name=table.name, source=origin.source))
     else:
         sheets = tuple(table.datasheet or ())
     four = all(sheet.q_max_W is not None for sheet in sheets)
@@ -113,7 +113,7 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
     for sheet, found in zip(sheets, extractions, strict=True):  # four figures for three numbers leave one to compare
         span, current = found.greatest(sheet.t_hot_C)
         if abs(span / sheet.dt_max_K - 1.0) > ONE_STAGE:
-            warnings.append(sentence("warnings.not_one_stage", sheet=sheet, span=span, current=current))
+            warnings.append(unusual("not_one_stage", sheet=sheet, span=span, current=current))
     said = f"{what}: {figures} figures with the hot side at {hot} °C, {how}"
     if len(extractions) == 2:
         low, high = sorted(sheet.mean_C for sheet in extractions)
@@ -123,7 +123,9 @@ def module_of(table: ModuleTable, mean_C: float, source: str | None = None) -> t
     return Peltier(*at_mean_C(extractions, mean_C), *plates), ModuleOrigin(said + ".", tuple(warnings))
 
 
-def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tuple[float, float], *, own: bool) -> str:
+def _beyond_sheets(
+    extractions: Sequence[Extraction], mean_C: float, span_C: tuple[float, float], *, own: bool
+) -> Unusual:
     """A mean temperature beyond both sheets of a module: how much the parameters may be off, and what to do."""
     low, high = span_C
     side, end, sheet = ("below", low, "colder") if mean_C < low else ("above", high, "hotter")
@@ -133,7 +135,7 @@ def _beyond_sheets(extractions: Sequence[Extraction], mean_C: float, span_C: tup
     change = max(abs(b - a) / at * steps for a, b, at in zip(first, last, nearest, strict=True))
     cure = f"give a [[module.datasheet]] of a {sheet} side in place of one of the two, or " if own else ""
     ends = {"mean": mean_C, "low": low, "high": high, "end": end, "change": 100 * change}
-    return sentence("warnings.beyond_sheets", side=side, cure=cure, **ends)
+    return unusual("beyond_sheets", side=side, cure=cure, **ends)
 
 
 def _extract(sheets: Sequence[Datasheet], four: bool) -> tuple[Extraction, ...]:

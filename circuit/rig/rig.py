@@ -107,9 +107,9 @@ class Rig:
         return isinstance(other, Rig) and self.document == other.document
 
     @staticmethod
-    def of(rig: AnyRig) -> Rig:
-        """A rig as it is, or that of a name or file."""
-        return rig if isinstance(rig, Rig) else Rig.load(rig)
+    def of(rig: AnyRig, site: str | None = None) -> Rig:
+        """A rig as it is, or that of a name or file; None: the usual rig for icons of this site."""
+        return rig if isinstance(rig, Rig) else Rig.load(usual_rig(site) if rig is None else rig)
 
     @staticmethod
     @checked
@@ -190,7 +190,7 @@ class Rig:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on what is unusual about this rig."""
-        return rig_warnings(self)
+        return tuple(each.text for each in rig_warnings(self))
 
     @property
     def module_source(self) -> str:
@@ -229,14 +229,23 @@ class Rig:
         return self.with_(**changes) if changes else self
 
 
-AnyRig = Rig | str | Path
-"""What is taken where a rig is needed: the rig, or its name or file."""
+AnyRig = Rig | str | Path | None
+"""What is taken where a rig is needed: the rig, or its name or file; None: the usual rig for the icons."""
 
 
 def rig_names() -> tuple[str, ...]:
     """Return the names of the shipped rigs, which `Rig.load` accepts, the default first."""
     names = [path.name.removesuffix(".toml") for path in _rig_folder().iterdir() if path.name.endswith(".toml")]
     return tuple(sorted(names, key=lambda name: (name != "thenar", name)))
+
+
+def usual_rig(site: str | None) -> str:
+    """Name the shipped rig for icons of a site, unless another is given: that of the same name, or thenar.
+
+    >>> usual_rig("fingertip"), usual_rig("cheek"), usual_rig(None)
+    ('fingertip', 'thenar', 'thenar')
+    """
+    return site if site in rig_names() else "thenar"
 
 
 def _rig_folder() -> Any:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from thermicon.icons.number_text import signed
 
 from ..records import load_records
-from .faults import sentence, unit_of
+from .faults import Unusual, unit_of, unusual
 from .modules import build_of, module_names
 from .rigfile import Thermode
 from .settings import changed
@@ -111,13 +111,13 @@ large modules, from the thinnest facial skin to a heel, and within the dermis; a
 
 
 @lru_cache(maxsize=512)
-def rig_warnings(rig: Rig) -> tuple[str, ...]:
-    """Return a sentence for everything unusual: heat loss, blood, loosened limits, origin of the module's numbers."""
+def rig_warnings(rig: Rig) -> tuple[Unusual, ...]:
+    """Return everything unusual: heat loss, blood, loosened limits, origin of the module's numbers."""
     pump = () if rig.pump is None else (*_driver(rig), *rig.pump.origin.warnings, *_module(rig))
     return (*_skin(rig), *_limits(rig), *pump, *_site(rig), *_slips(rig))
 
 
-def _slips(rig: Rig) -> Iterator[str]:
+def _slips(rig: Rig) -> Iterator[Unusual]:
     """Values that are possible, but so unusual that a unit may have been mistaken."""
     skin = rig.skin
     values = {"contact.area_cm2": 1e4 * rig.contact.area_m2}
@@ -131,46 +131,46 @@ def _slips(rig: Rig) -> Iterator[str]:
     for key, value in values.items():
         low, high = USUAL[key]
         if not low <= value <= high:
-            yield sentence("warnings.slip", key=key, value=value, unit=unit_of(key.split(" ")[0]), low=low, high=high)
+            yield unusual("slip", key=key, value=value, unit=unit_of(key.split(" ")[0]), low=low, high=high)
 
 
-def _skin(rig: Rig) -> Iterator[str]:
+def _skin(rig: Rig) -> Iterator[Unusual]:
     """Receptors that an observer does not place, heat loss and blood."""
     if rig.skin.own:
-        yield sentence("warnings.receptors")
+        yield unusual("receptors")
     loss_W_per_m2 = -rig.resting_flux_W_per_m2
     if loss_W_per_m2 > HIGH_RESTING_FLUX_W_PER_M2:
-        yield sentence("warnings.flux", loss=loss_W_per_m2, most=HIGH_RESTING_FLUX_W_PER_M2)
+        yield unusual("flux", loss=loss_W_per_m2, most=HIGH_RESTING_FLUX_W_PER_M2)
     if rig.deep_C < rig.skin.rest_C:
-        yield sentence("warnings.cold_blood", rig=rig)
+        yield unusual("cold_blood", rig=rig)
     if not LIVING_C[0] <= rig.deep_C <= LIVING_C[1]:
-        yield sentence("warnings.living", rig=rig, low=LIVING_C[0], high=LIVING_C[1])
+        yield unusual("living", rig=rig, low=LIVING_C[0], high=LIVING_C[1])
 
 
-def _limits(rig: Rig) -> Iterator[str]:
+def _limits(rig: Rig) -> Iterator[Unusual]:
     """Limits and uncertainties that are looser than shipped, void, or passed at rest."""
     limits, rest_C = rig.limits, rig.skin.rest_C
     if limits.loosened:
-        yield sentence("warnings.loosened", words="; ".join(limits.loosened), reason=limits.reason)
+        yield unusual("loosened", words="; ".join(limits.loosened), reason=limits.reason)
     if claims := tightened(rig.uncertainty):
-        yield sentence("warnings.milder", words="; ".join(claims), reason=rig.uncertainty.reason)
+        yield unusual("milder", words="; ".join(claims), reason=rig.uncertainty.reason)
     if (rule := limits.passed_at_rest(rest_C)) is not None:
         side, colour = "above" if rule.upper else "below", "red" if rule.severity == "hard" else "amber"
         limit = signed(rule.limit)
-        yield sentence("warnings.at_rest", rest=rest_C, rule=rule, side=side, limit=limit, colour=colour)
+        yield unusual("at_rest", rest=rest_C, rule=rule, side=side, limit=limit, colour=colour)
 
 
-def _driver(rig: Rig) -> Iterator[str]:
+def _driver(rig: Rig) -> Iterator[Unusual]:
     """A plate that is faster than the solver."""
     driver, stored = rig.driver, rig.module.cold_plate_J_per_K
     least_s = STEPS * min(STEP_S, 1.0 / driver.update_Hz)
     through = rig.contact.area_m2 / rig.contact.resistance_m2K_per_W + 1.0 / rig.module.thermal_resistance_K_per_W
     if stored < least_s * through:
         numbers = {"lag": 1e3 * stored / through, "least": 1e3 * least_s, "enough": 1.05 * least_s * through}
-        yield sentence("warnings.fast_plate", stored=stored, rate=1.05 * STEPS * through / stored, **numbers)
+        yield unusual("fast_plate", stored=stored, rate=1.05 * STEPS * through / stored, **numbers)
 
 
-def _module(rig: Rig) -> Iterator[str]:
+def _module(rig: Rig) -> Iterator[Unusual]:
     """What does not suit a shipped module: plates of a former one, the face, the driver's limit."""
     document, stated = json.loads(rig.document), changed(rig.changes)
     name = document.get("module", {}).get("name")
@@ -179,18 +179,18 @@ def _module(rig: Rig) -> Iterator[str]:
     build, area_cm2, keys = build_of(name), 1e4 * rig.contact.area_m2, " and ".join(PLATE_KEYS)
     hot, cold, replaced = rig.module.hot_plate_J_per_K, rig.module.cold_plate_J_per_K, stated.get("module.name") == name
     if replaced and build.plate_J_per_K is None and not set(PLATE_KEYS) <= set(stated):
-        yield sentence("warnings.plates_unknown", name=name, hot=hot, cold=cold, keys=keys)
+        yield unusual("plates_unknown", name=name, hot=hot, cold=cold, keys=keys)
     plate, known = build.plate_J_per_K, {*stated, *document.get("source", {})}
     own = [each for key, each in zip(PLATE_KEYS, (hot, cold), strict=True) if key not in known]
     if plate is not None and any(abs(each - plate) > PLATE_SHARE * plate for each in own):
-        yield sentence("warnings.plates_other", name=name, keys=keys, hot=hot, cold=cold, plate=plate)
+        yield unusual("plates_other", name=name, keys=keys, hot=hot, cold=cold, plate=plate)
     if build.face_cm2 is not None and area_cm2 > (1.0 + SAME_FACE) * build.face_cm2:
-        yield sentence("warnings.face_small", name=name, area=area_cm2, face=build.face_cm2)
+        yield unusual("face_small", name=name, area=area_cm2, face=build.face_cm2)
     if replaced and rig.driver.current_max_A > build.i_max_A:
-        yield sentence("warnings.past_imax", name=name, limit=rig.driver.current_max_A, imax=build.i_max_A)
+        yield unusual("past_imax", name=name, limit=rig.driver.current_max_A, imax=build.i_max_A)
 
 
-def _site(rig: Rig) -> Iterator[str]:
+def _site(rig: Rig) -> Iterator[Unusual]:
     """A change that names another site and leaves the skin as it was."""
     from .rig import Rig, rig_names
 
@@ -200,6 +200,6 @@ def _site(rig: Rig) -> Iterator[str]:
     there = [shipped for name in rig_names() if (shipped := Rig.load(name)).site == rig.site]
     if any(shipped.skin.layers == rig.skin.layers for shipped in there):
         return
-    names = " or ".join(f"--rig {shipped.name}" for shipped in there)
+    names = " or ".join(f"rig {shipped.name}" for shipped in there)
     cure = f"use {names}, or set skin.layer" if there else "use a rig file of that site, or set skin.layer"
-    yield sentence("warnings.site", rig=rig, cure=cure)
+    yield unusual("site", rig=rig, cure=cure)

@@ -183,7 +183,7 @@ class WorstCase(Judged):
 def play_session(
     icons: Icons,
     plan: SessionPlan,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     *,
     tracking: str = "replay",
     limits: Limits | None = None,
@@ -198,7 +198,7 @@ def play_session(
     plan
         Order of play and gap.
     rig
-        The rig, or the name or file of one.
+        The rig, or the name or file of one; None: the shipped rig of the icons' site, else thenar.
     tracking
         `replay` plays the current of each icon, designed from rest, open loop, as exported drives are, and its holding
         current in the gaps; with `display` the driver follows each icon's display temperature, as a thermode does.
@@ -226,11 +226,12 @@ def play_session(
     >>> play_session(load_library("six-icons"), plan, Rig.load("thenar"))
     Session(green: 2 plays in 26 s on thenar, skin 26.92 … 34.77 °C, baseline drift -0.80 K, 0 min CEM43)
     """
-    rig, planned = Rig.of(rig), set(plan.names)
+    planned = set(plan.names)
     known = {name: icon for name, icon in by_name(icons).items() if name in planned}
     for name in plan.names:
         if name not in known:
             raise SessionError(f"the plan names {name}, which is not among the icons; {did_you_mean(name, known)}")
+    rig = Rig.of(rig, known[plan.names[0]].context.site)
     played = drive_of(plan, known, rig, tracking)
     trace = simulate_current(played.drive, rig, rate_Hz=played.rate_Hz, start_C=played.start_C)
     rules = rig.limits if limits is None else limits

@@ -115,7 +115,7 @@ def repeated_reason(repeated: Repeated) -> str | None:
     shortest = repeated.shortest_pause_s
     if shortest is None:
         return f"{reason}; no pause up to 10 min makes that safe: use a smaller or shorter change"
-    return f"{reason}; the shortest safe pause is {shortest:g} s (--pause {shortest:g})"
+    return f"{reason}; the shortest safe pause is {shortest:g} s"
 
 
 def _unit(check: Check) -> str:

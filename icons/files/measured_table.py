@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from ..model.arguments import InputError
+
     Array = NDArray[np.float64]
 
 TIME, ROW = "time_s", "remove the row"
@@ -32,7 +34,7 @@ class Measured:
     notes: tuple[str, ...]
 
 
-def missing(table: Table, name: str, what: str) -> Exception:
+def missing(table: Table, name: str, what: str) -> InputError:
     """The fault of a column that a table does not have, or may have twice, and how to say which it is."""
     name, what = (name, what) if TIME in table.header else (TIME, "time in s")
     name, several = next(iter(table.names.doubtful.items()), (name, ()))
@@ -43,9 +45,7 @@ def missing(table: Table, name: str, what: str) -> Exception:
     theirs = several[0] if several else close[0] if len(close) == 1 else "THEIRS"
     said = f"{' and '.join(several)} may be {name}" if several else ""
     said = said or f"the column {name} ({what}) is missing; found {table.found}"
-    quote = '"' if set(theirs) & set(" ()[]/&;*|<>$'°#") else ""
-    cure = f'--column {quote}{name}={theirs}{quote} (in Python read_log or from_csv, columns={{"{name}": "{theirs}"}})'
-    return table.fault("table", table.line, said, f"say which it is: {cure}")
+    return table.fault("table", table.line, said, "say which it is").to(columns={name: theirs})
 
 
 def measured(

@@ -18,6 +18,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from ..model.arguments import InputError
 from .column_names import Named, meant, named, unit_of
 from .table_text import table_text
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Kind = Literal["table", "size", "cell", "empty", "binary", "time", "unit"]
-Fault = Callable[[Kind, int | None, str, str], Exception]
+Fault = Callable[[Kind, int | None, str, str], InputError]
 """Makes the error for a fault: its kind, the line in the file, what is wrong, and the cure."""
 
 MARKS = ("\t", ",", ";", "|", " ")
@@ -50,7 +51,8 @@ FEW, LONGEST_CELL, MOST_ABOVE, LONGEST_LINE = 8, 60, 200, 10_000
 class Table:
     """Rows of cells below a ``header`` of names; ``lines`` are where they stand in the file, ``line`` the header.
 
-    ``names`` says what was renamed, and the units that names in the file say; ``notes`` say what was passed over.
+    ``names`` says what was renamed, and the units that names in the file say; ``notes`` say what was passed over,
+    ``lost`` by our names what the file does not call as was said.
     """
 
     header: tuple[str, ...]
@@ -61,6 +63,7 @@ class Table:
     mark: str
     names: Named
     notes: tuple[str, ...]
+    lost: Mapping[str, str]
 
     @property
     def found(self) -> str:
@@ -197,11 +200,12 @@ def read_table(
     read = [f"{name} from {own!r}" for name, (own, unit) in ours.renamed.items()
             if theirs.get(name) != own or unit[1:] != (1, 0)]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
-    lost = [f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header]
-    there = ", ".join(ours.header[:FEW])
-    notes += [f"no column is called {', and none '.join(lost)}; found {there}"] if lost else []
+    absent = {name: f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header}
+    said = f"no column is called {', and none '.join(absent.values())}; found {', '.join(ours.header[:FEW])}"
+    notes += [said] if absent else []
     decimal = "" if mark == "," and QUOTED_DECIMAL.search(text) else mark
-    return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes))
+    lost = dict.fromkeys(absent, said)
+    return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost)
 
 
 def _line_of_names(text: str, names: Sequence[str], theirs: Mapping[str, str]) -> tuple[int, str, int]:

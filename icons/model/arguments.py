@@ -7,8 +7,8 @@ from functools import update_wrapper
 from importlib import import_module
 from numbers import Integral, Real
 from pathlib import Path
-from types import FunctionType, NoneType, UnionType
-from typing import Any, Literal, TypeVar, Union, cast, get_args, get_origin, is_typeddict
+from types import FunctionType, MappingProxyType, NoneType, UnionType
+from typing import Any, Literal, Self, TypeVar, Union, cast, get_args, get_origin, is_typeddict
 
 from ..near_words import did_you_mean
 from .context import clean
@@ -25,8 +25,20 @@ MADE_BY = {"Icon": 'load_library("six-icons")["cooling-step"]', "IconSet": 'load
 """How an object of a class is made, for those who gave something else."""
 
 
+Changes = Mapping[str, Any]
+"""What to change, by the names of arguments in Python, and to what."""
+
+
+def advised(text: str, changes: Changes, writers: Mapping[str, Callable[[Any], str]] = MappingProxyType({})) -> str:
+    """A sentence with the changes that would help, each by its writer where it is read, or as in Python."""
+    ways = [writers[name](to) if name in writers else f"{name}={to!r}" for name, to in changes.items()]
+    return f"{text} ({', '.join(ways)})" if ways else text
+
+
 class InputError(ValueError):
     """Bad input, reported in plain words (what, where, value, limit, unit, cure) without control characters.
+
+    `text` is the sentence, `changes` what would help.
 
     Examples
     --------
@@ -34,8 +46,23 @@ class InputError(ValueError):
     'hand.toml: contact.area_cm2 = 0; it must be above 0 cm²'
     """
 
+    changes: Changes = MappingProxyType({})
+
     def __init__(self, *texts: object) -> None:
         super().__init__(*(clean(text) if isinstance(text, str) else text for text in texts))
+
+    @property
+    def text(self) -> str:
+        """The sentence without the changes."""
+        return super().__str__()
+
+    def to(self, **changes: object) -> Self:
+        """The same error with the changes that would help."""
+        self.changes = changes
+        return self
+
+    def __str__(self) -> str:
+        return advised(self.text, self.changes)
 
 
 def checked(function: F) -> F:

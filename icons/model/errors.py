@@ -108,7 +108,9 @@ class CueErrors(InputError):
         self.errors = errors
         self.more = more
 
-    def __str__(self) -> str:
+    @property
+    def text(self) -> str:
+        """Every error, one below the other."""
         parts = [error.render() for error in self.errors]
         if self.more:
             least = "at least " if self.more + len(self.errors) >= MOST_READ else ""

@@ -134,7 +134,7 @@ def from_samples(
 
 def _icon(read: "Readings", name: str, control: Control, tolerance_K: float, baseline_C: float | None) -> Icon:
     if not 0 < tolerance_K < math.inf:
-        what = "tolerance_K (--tolerance) must be a positive temperature difference in K"
+        what = "tolerance_K must be a positive temperature difference in K"
         raise InputError(f"{what}, such as 0.05, not {tolerance_K!r}")
     if baseline_C is not None and (found := fault(float(baseline_C), "absolute")):
         raise InputError(f"baseline_C: {found[1]}")
@@ -150,7 +150,7 @@ def _icon(read: "Readings", name: str, control: Control, tolerance_K: float, bas
     try:
         corners = fit_corners(read.time_s, read.level_C, tolerance_K, baseline_C)
     except ValueError as problem:
-        help = "give a larger tolerance (--tolerance, in Python tolerance_K), or smooth or cut the recording"
+        help = "give a larger tolerance, or smooth or cut the recording"
         raise whole_file("E220", read.file, str(problem), help) from None
     context = Context(CONTROL_OF.get(read.column) or control, corners[1][0])
     return Icon(name, tuple(_statements(*corners)), context)
@@ -236,7 +236,7 @@ def _column(place: str, table: Table, column: str | None) -> str:
     known = [cell for cell in table.header if cell in CONTROL_OF]
     if column is None and len(known) > 1:
         what = f"{' and '.join((', '.join(known[:-1]), known[-1]))} are all temperatures"
-        raise whole_file("E013", place, what, f'say which: --column {known[0]} (column="{known[0]}" in Python)')
+        raise whole_file("E013", place, what, "say which").to(column=known[0])
     if column is None and not known:
         raise missing(table, "temperature_C", f"or {', '.join(list(CONTROL_OF)[1:])}")
     chosen = column or known[0]

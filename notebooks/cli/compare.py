@@ -13,14 +13,17 @@ from thermicon.icons.number_text import number
 
 from ..files.outputs import check_separate
 from ..files.trace_files import Curves, LogError, align, curves_of, quantity, read_curves
-from ..messages import load_rig, note, usage
-from ..report.run_report import Comparison, compare_report, headline
+from ..messages import load_rig, note, progress_bar, usage
+from ..report.run_report import Comparison, compare_report, outcome_text
+from ..report.sets_report import sets_report
 from ..report.terminal import show
-from .options import FigureOptions, IconName, RigOptions, Theirs, flag, opt, pick, read_set, theirs_of
+from .options import MOST_ICONS, FigureOptions, IconName, RigOptions, Theirs, flag, opt, pick, read_set, theirs_of
 
 if TYPE_CHECKING:
     from thermicon.circuit import Rig, Trace
     from thermicon.icons import Icon
+
+    from ..report.blocks import Block
 
 DEFAULT_SET, DEFAULT_ICON = "six-icons", "cooling-step"
 NAMES = {"rig": "a rig", "icon": "an icon", "set": "an icon set", "table": "a trace or log"}
@@ -54,8 +57,8 @@ def compare_command(
     """Compare two rigs, icons, sets, or a trace with a measured log, as a table of differences B minus A.
 
     Rigs are names or .toml files, icons are FILE:ICON, sets are .cue files or shipped names, traces and logs are
-    tables with time_s and columns of a trace. Of two sets, the icons with the same name are compared;
-    rank predicts how well each is identified.
+    tables with time_s and columns of a trace. Of two sets, the icons with the same name are compared; where no name is
+    in both, how well people identify each set.
     """
     kind, both = kind_of_both(first, second), (first, second)
     given = (file, icon, rig.rig, rig.changes, column, align)
@@ -68,10 +71,16 @@ def compare_command(
         one, other = (load_rig(name, rig.changes, named=True) for name in both)
         made = [_played(each.name, (each, each), (one, other), both) for each in icons]
     elif kind == "icon":
-        used = rig.load()
-        made = [_played("", (_named(first, "A"), _named(second, "B")), (used, used), both)]
+        one_icon, other_icon = _named(first, "A"), _named(second, "B")
+        used = rig.load(one_icon, first)
+        made = [_played("", (one_icon, other_icon), (used, used), both)]
     elif kind == "set":
-        made = _sets(both, icon, rig.load())
+        made = _sets(both, icon, rig)
+        if not made:
+            if figure.figure is not None:
+                raise usage("draws icons that both sets have, and these have none in common", "--figure")
+            show(_as_wholes(both, rig))
+            return
     else:
         made = [_tables(both, icon, theirs_of(column), align)]
     if figure.figure is not None:
@@ -136,23 +145,40 @@ def _named(text: str, option: str) -> Icon:
     return pick(read_set([file]), name)[0]
 
 
-def _sets(names: tuple[str, str], icon: str | None, rig: Rig) -> list[Comparison]:
-    """Compare the icons with the same name, or the one named."""
-    one, other = ({each.name: each for each in pick(read_set([name]), icon)} for name in names)
+def _sets(names: tuple[str, str], icon: str | None, asked: RigOptions) -> list[Comparison]:
+    """Compare the icons with the same name, or the one named; none where no name is in both."""
+    sets = [read_set([name]) for name in names]
+    one, other = ({each.name: each for each in pick(found, icon)} for found in sets)
     common = [name for name in one if name in other]
     alone = [f"{name} ({file})" for file, icons in zip(names, (one, other), strict=True) for name in icons
              if name not in common]  # fmt: skip
+    if not common:
+        return []
     if alone:
         note(f"only in one of the two sets: {', '.join(alone)}")
-    if not common:
-        raise LogError(f"{names[0]} and {names[1]}: no icon has the same name; write two icons as FILE:ICON")
+    rig = asked.load(sets[0], names[0])
     return [_played(name, (one[name], other[name]), (rig, rig), names) for name in common]
+
+
+def _as_wholes(names: tuple[str, str], asked: RigOptions) -> list[Block]:
+    """Rank two sets for the same people and draws, and compare them."""
+    from thermicon.perception import rank
+
+    sets = [read_set([name]) for name in names]
+    for name, icons in zip(names, sets, strict=True):
+        if not 2 <= len(icons) <= MOST_ICONS:
+            raise LogError(f"{name} has {len(icons):,} icons; sets of 2 to {MOST_ICONS:,} are compared as a whole")
+    rig = asked.load(sets[0], names[0])
+    with progress_bar("ranking") as progress:
+        one, other = (rank(icons, rig, progress=progress) for icons in sets)
+    first, second = (Path(name).stem for name in names)
+    return sets_report((first, second) if first != second else names, (one, other))
 
 
 def _played(title: str, icons: tuple[Icon, Icon], rigs: tuple[Rig, Rig], names: tuple[str, str]) -> Comparison:
     """Play two icons, the shorter with a tail at its baseline so that both are equally long, and compare."""
     traces = _equally_long(icons, rigs)
-    outcomes = (headline(traces[0]).partition(": ")[2], headline(traces[1]).partition(": ")[2])
+    outcomes = (outcome_text(traces[0]), outcome_text(traces[1]))
     # Without their folders, unless these are what the names differ in.
     first, second = (Path(name).name for name in names)
     shown = names if first == second else (first, second)

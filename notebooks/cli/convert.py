@@ -88,7 +88,7 @@ def read(file: str, given: dict[str, Any]) -> IconSet:
         with noted():
             icon = from_csv(file, **given)
     except ValueError as problem:
-        fail(str(problem))
+        fail(problem)
     corners = icon.corners()
     note(f"{icon.name}: {len(corners)} corners, {number(corners.duration_s, 2)} s")
     return IconSet.of(icon)

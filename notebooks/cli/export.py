@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 import stat
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -14,12 +13,13 @@ import typer
 
 from thermicon.circuit.delivery.export_folder import before_of, check_export_folder
 from thermicon.icons.atomic import OutputError
+from thermicon.icons.model.arguments import advised
 from thermicon.icons.number_text import number
 
 from ..files.exporting import felt_in, others
-from ..messages import BAD_INPUT, REFUSED, Missing, note, progress_bar, usage
+from ..messages import BAD_INPUT, DEFAULT_RIG, OPTIONS, REFUSED, Missing, note, progress_bar, usage
 from ..report.blocks import grid
-from ..report.gate_words import CAUTION, gate_words, steps_of
+from ..report.gate_words import CAUTION, gate_words, spread_text, steps_of, warning_lines
 from ..report.terminal import show
 from .options import IconName, NoFile, RigOptions, Tail, flag, opt, out, pick, read_set
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from thermicon.circuit import Export
     from thermicon.circuit.delivery.prepare import Prepared
 
-NUMBER = re.compile(r"\d+(\.\d+)?")
 LONGEST_PAUSE_S = 600.0
 """As in `thermicon.circuit.safety.repeated`, repeated here to avoid its imports."""
+REPLACED = "--force replaces the folder"
 LARGEST = 2**30
 """Bytes; a larger file is no drive of any format's device, and is not read."""
 
@@ -81,9 +81,11 @@ def export_command(
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
 
-    where, form = rig.load(), load_format(to)
-    check_export_folder(folder, replace=force)
-    whole = read_set([file], where)
+    form, whole = load_format(to), read_set([file])
+    check_export_folder(folder, force, REPLACED)
+    where = rig.load(whole, file)
+    if rig.rig is None and where.name == DEFAULT_RIG:
+        note(f"on the {where.name} rig; --rig names another")
     chosen = pick(whole, icon)
     check_names([one.name for one in chosen], form)
     warned: list[str] = []
@@ -93,15 +95,15 @@ def export_command(
             chosen, where, device, form, tail_s=tail, pause_s=pause, force=force, felt=felt, step=progress
         )  # fmt: skip
     for warning in warned:
-        note(warning)
+        note(f"warning: {warning}")
     if refused(ready):
-        for line in (*map(icon_line, ready.prepared), *warning_lines(ready.prepared)):
+        for line in (*map(icon_line, ready.prepared), *(f"warning: {line}" for line in warning_lines(ready.prepared))):
             note(line)
         note(CAUTION)
         note("nothing was written", always=True)
         raise typer.Exit(REFUSED)
     report_icons(ready.prepared)
-    before = ready.write(folder, replace=force)
+    before = ready.write(folder, force, REPLACED)
     count = len(ready.prepared)
     drives = "1 drive with its sidecar" if count == 1 else f"{count} drives with their sidecars"
     note(f"wrote {drives} into {folder}: {', '.join(_shown(list(ready.files)))}")
@@ -119,13 +121,13 @@ def report_icons(ready: Sequence[Prepared]) -> None:
     for one in ready:
         note(icon_line(one))
     for line in warning_lines(ready):
-        note(line)
+        note(f"warning: {line}")
     for about, text in gate_words(ready):
         note(f"{about}: {text}")
     spreads = [(one.spread, one.delivery.icon.name) for one in ready if one.spread is not None]
     if spreads:
         widest, name = max(spreads, key=lambda each: each[0].step_K[1] - each[0].step_K[0])
-        note(f"{name}: {widest}")
+        note(f"{name}: {spread_text(widest)}")
 
 
 def icon_line(one: Prepared) -> str:
@@ -135,22 +137,10 @@ def icon_line(one: Prepared) -> str:
     largest = 1e3 * max(abs(each.largest_K) for each in receptors)
     rms = 1e3 * max(each.rms_K for each in receptors)
     return (
-        f"{delivery.icon.name}: {number(delivery.file_s, 2)} s {steps_of(delivery)} on "
+        f"{delivery.icon.name}: {number(delivery.file_s, 2)} s {' '.join(steps_of(delivery))} on "
         f"{delivery.device.name}, receptors within {number(largest)} mK of the design (RMS {number(rms)} mK), "
         f"safety {one.verdict.colour} in {one.verdict.scenarios} scenarios"
     )
-
-
-def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
-    """Every warning once, for its first icon; those that differ in numbers alone follow by name."""
-    alike: dict[str, tuple[str, list[str]]] = {}
-    for one in ready:
-        for warning in one.warnings:
-            alike.setdefault(NUMBER.sub("#", warning), (warning, []))[1].append(one.delivery.icon.name)
-    for warning, names in alike.values():
-        others = list(dict.fromkeys(names))[1:]
-        more = f"; alike, with numbers in their sidecars: {', '.join(others)}" if others else ""
-        yield f"warning: {names[0]}: {warning}{more}"
 
 
 def refused(ready: Export) -> bool:
@@ -159,9 +149,9 @@ def refused(ready: Export) -> bool:
     final = any(not refusal.forcible for _, refusal in found)
     for name, refusal in found:
         stops = final or not force
+        told = advised(refusal.text, refusal.changes, OPTIONS)
         note(
-            f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{refusal}",
-            always=True,
+            f"{'refused' if stops else 'forced'}: {name} {'is ' if refusal.kind != 'lossy' else ''}{told}", always=True
         )
     forcible = any(refusal.forcible for _, refusal in found)
     if forcible and not force and not final:

@@ -94,11 +94,10 @@ def fit_command(
         check_output(output, RIG_SUFFIXES, "a rig")
     check_separate(logs, [output, figure.figure])
     read = [read_log(log, theirs_of(column)) for log in logs]
+    for name in theirs_of(column):
+        if all(name in log.lost for log in read):
+            raise usage("; ".join(log.lost[name] for log in read), "--column")
     early = [sentence for log in read for sentence in log.notes]
-    for name, own in theirs_of(column).items():
-        lost = [sentence for sentence in early if f"{own!r}, to be {name}" in sentence]
-        if len(lost) == len(read):
-            raise usage("; ".join(lost), "--column")
     for sentence in early:
         note(f"note: {sentence}")
     fitted = fit(read, where, free=keys, offset_K=offset, fixed_skin=fixed_skin)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
-from ..messages import progress_bar, usage
+from ..messages import fail, progress_bar, usage
+from ..report.following import Command, after_choice, after_choices, largest
 from ..report.improve_report import frontier_report, search_report
 from ..report.rank_report import rank_report
 from ..report.set_report import SetReport, cures, report_of
@@ -18,12 +19,13 @@ from .options import (
     CrowdOptions,
     FigureOptions,
     FileNames,
+    Goals,
     RigOptions,
+    commands,
     flag,
     opt,
     out,
     read_set,
-    warn_of_site,
     write_frame,
     write_text,
 )
@@ -32,6 +34,7 @@ if TYPE_CHECKING:
     from thermicon.circuit import Rig
     from thermicon.icons import IconSet
     from thermicon.perception import Goal
+    from thermicon.perception.selection.frontier import Frontier
     from thermicon.perception.selection.search import SearchResult
 
     from ..report.blocks import Block
@@ -46,10 +49,7 @@ def improve_command(
     rig: RigOptions,
     choose: Annotated[int | None, opt("N", "Choose the best N icons.", 2, MOST_CHOSEN)] = None,
     up_to: Annotated[int | None, opt("N", "Choose the best 2, 3, … N icons, as a table.", 2, MOST_CHOSEN)] = None,
-    goal: Annotated[
-        str | None,
-        opt("TEXT", 'What is wanted, such as "correct >= 90 % for 95 % of people, time <= 10 s, safety green".'),
-    ] = None,
+    goal: Goals = None,
     edits: Annotated[
         bool, flag("--edits", "Find the cheapest edit of every pair that is not distinguishable.")
     ] = False,
@@ -72,8 +72,8 @@ def improve_command(
         list[Path] | None,
         out(
             "OUT",
-            "Write what was found: a searched set to .cue, the table of --up-to to .csv or .parquet and its figure to "
-            ".pdf, .svg or .png, a choice with its ranking to .json; - prints it.",
+            "Write what was found: a set to .cue (of --up-to the largest that meets the goal), the table of --up-to to "
+            ".csv or .parquet and its figure to .pdf, .svg or .png, a choice with its ranking to .json; - prints it.",
             "-o",
             "--output",
         ),
@@ -103,29 +103,34 @@ def improve_command(
         )
     if objective is not None and not (choose or up_to or searched):
         raise usage("needs --choose K, --up-to K or a search of families", "--objective")
-    kinds = (".cue",) if searched else (*TRACE_SUFFIXES, *FIGURE_SUFFIXES) if up_to is not None else (".json",)
+    table = (*TRACE_SUFFIXES, *FIGURE_SUFFIXES, ".cue")
+    chooses = (".cue", ".json") if choose is not None else (".json",)
+    kinds = (".cue",) if searched else table if up_to is not None else chooses
     outputs = output or []
     for path in outputs:
         check_output(path, kinds, "what this finds")
     check_separate(files, outputs)
     if searched and len(files) > 1:
         raise usage("one file is searched; join its families into one set", "FILE")
-    where = rig.load()
+    where = rig.load(icons, files[0])
     model = crowd.load(where)
-    warn_of_site(files[0], icons, where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
     what = objective or ("correct" if up_to is not None else _objective(wanted))
+    command = commands(files, rig, crowd)
+    written = next((str(path) for path in outputs if path.suffix == ".cue"), None)
     if up_to is not None:
         from thermicon.perception import frontier
 
         with progress_bar("choosing") as progress:
             tried = frontier(icons, where, most=up_to, objective=what, progress=progress, **how)
         for path in outputs:
-            if path.suffix.lower() in FIGURE_SUFFIXES:
+            if path.suffix == ".cue":
+                write_text(str(_best_of(tried, icons, where)), path)
+            elif path.suffix.lower() in FIGURE_SUFFIXES:
                 FigureOptions(path).write(tried.plot().figure)
             else:
                 write_frame(tried.to_frame(), path)
-        told = frontier_report(tried, icons.title)
+        told = frontier_report(tried, icons.title, after_choices(tried, command, written))
     elif searched:
         from thermicon.perception import search
 
@@ -134,12 +139,16 @@ def improve_command(
             found = search(icons, where, count=choose, objective=what, evaluations=count, progress=progress, **how)
         for path in outputs:
             write_text(str(found.found), path)
-        told = [] if STDOUT in outputs else beside_start(found, icons, where, how)
+        told = [] if STDOUT in outputs else beside_start(found, icons, where, how, command, written)
     else:
         made = chosen(icons, where, choose, what, must, edits, how)
         for path in outputs:
-            write_text(made.to_json() + "\n", path)
-        told = rank_report(made, icons.title, cures(made.ranking, icons, where))
+            if path.suffix == ".cue" and made.choice is not None:
+                write_text(str(_written(icons, made.choice.icons, where)), path)
+            else:
+                write_text(made.to_json() + "\n", path)
+        following = after_choice(made, command, written)
+        told = rank_report(made, icons.title, cures(made.ranking, icons, where), following)
     if STDOUT not in outputs:
         show(told)
 
@@ -175,7 +184,23 @@ def chosen(
     )
 
 
-def beside_start(found: SearchResult, icons: IconSet, rig: Rig, how: dict[str, Any]) -> list[Block]:
+def _best_of(found: Frontier, icons: IconSet, rig: Rig) -> IconSet:
+    """The largest choice that does, as a set; bad input where none does."""
+    if (count := largest(found)) is None:
+        fail(f"no choice {'meets the goal' if found.goals else 'is distinguishable'}, and no set was written")
+    names = next(point.icons for point in found.points if len(point.icons) == count)
+    return _written(icons, names, rig)
+
+
+def _written(icons: IconSet, names: Sequence[str], rig: Rig) -> IconSet:
+    from thermicon.perception.selection.candidates import chosen_set
+
+    return chosen_set(icons, names, rig.site)
+
+
+def beside_start(
+    found: SearchResult, icons: IconSet, rig: Rig, how: dict[str, Any], command: Command, written: str | None
+) -> list[Block]:
     """Rank the found set and its start as the search did, and judge both by the goal."""
     from thermicon.icons import IconSet
     from thermicon.perception import rank
@@ -188,4 +213,4 @@ def beside_start(found: SearchResult, icons: IconSet, rig: Rig, how: dict[str, A
     with progress_bar("ranking") as bar:
         rankings = [rank(each, rig, **asked, progress=bar) for each in (start, found.found)]
     before, after = (SetReport(each, goal=None if goal is None else judge_goal(goal, each)) for each in rankings)
-    return search_report(found, before, after, icons.title)
+    return search_report(found, before, after, icons.title, after_choice(after, command, written))

@@ -1,5 +1,6 @@
 """``thermicon list``: what is shipped, how it is cited, and copies of it to start from."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -9,7 +10,7 @@ from thermicon.icons.atomic import OutputError
 from thermicon.icons.number_text import number
 
 from ..files.outputs import check_output
-from ..messages import usage
+from ..messages import load_rig, note, usage
 from ..report.blocks import grid
 from ..report.terminal import show
 from .options import RigOptions, opt, read_set, write_text
@@ -26,18 +27,20 @@ def list_command(
     ] = None,
     copy: Annotated[
         tuple[str, Path] | None,
-        opt("NAME FILE", "Instead: write a shipped set (.cue), rig or device (.toml) to a new file."),
+        opt("NAME FILE", "Instead: write a shipped set (.cue), rig (with --set) or device (.toml) to a new file."),
     ] = None,
 ) -> None:
     """List shipped icon sets, rigs, devices and file formats of drives; cite them, or copy one to start from."""
-    if rig.given and cite is None:
+    if rig.rig and cite is None:
         raise usage("applies to the paragraph of --cite", "--rig")
+    if rig.set and cite is None and copy is None:
+        raise usage("applies to a copy of a rig, or to the paragraph of --cite", "--set")
     if [what, cite, copy].count(None) < 2:
         raise usage("list, --cite and --copy are different things: ask for one of them", "--cite" if cite else "--copy")
     if cite is not None:
         cite_file(cite, rig)
     elif copy is not None:
-        copy_shipped(*copy)
+        copy_shipped(*copy, rig.changes)
     else:
         shown = {"icons": show_icons, "rigs": show_rigs, "devices": show_devices, "formats": show_formats}
         for place, each in enumerate([what] if what else shown):
@@ -51,13 +54,16 @@ def cite_file(file: str, rig: RigOptions) -> None:
     from thermicon.circuit.rig.rig_words import rig_summary
     from thermicon.icons.files.cite import methods
 
-    where = rig.load() if rig.given else None
-    icons = read_set([file], where)
+    icons = read_set([file])
+    where = rig.load(icons, file) if rig.given else None
     typer.echo(methods(icons, None if where is None else rig_summary(where, for_methods=True)))
 
 
-def copy_shipped(name: str, output: Path) -> None:
-    """Write the file of a shipped set, rig or device under a new name; what is there already is kept."""
+def copy_shipped(name: str, output: Path, changes: Sequence[str] = ()) -> None:
+    """Write the file of a shipped set, rig or device under a new name; what is there already is kept.
+
+    A rig with changes is called by its file.
+    """
     from importlib import resources
 
     from thermicon.circuit.delivery.device import device_names
@@ -75,6 +81,12 @@ def copy_shipped(name: str, output: Path) -> None:
             check_output(output, (ending,), "a copy of it")
             if output.exists():
                 raise OutputError(f"{output} already exists and was kept; give another name")
+            if changes and folder != "rigs":
+                raise usage(f"changes keys of a rig, and {name} is one of the shipped {package}", "--set")
+            if changes:
+                load_rig(name, changes).save(output, output.stem)
+                note(f"wrote {output}")
+                return
             text = resources.files(f"thermicon.{package}").joinpath(folder, name + ending).read_text(encoding="utf-8")
             write_text(text, output)
             return

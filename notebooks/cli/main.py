@@ -129,7 +129,7 @@ class Commands(TyperGroup):
                 raise
             if not is_ours(error) or type(error.__cause__) is ValueError:  # which may be a mistake of ours
                 raise
-            fail(str(error))
+            fail(error)
         else:
             return result
 
@@ -170,12 +170,13 @@ def thermicon(
     quiet: Annotated[
         bool, typer.Option("-q", "--quiet", help="No progress, notes or warnings: results and errors only.")
     ] = False,
+    verbose: Annotated[bool, typer.Option("-v", "--verbose", help="Warnings of a rig in full, each time.")] = False,
     version: Annotated[
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
     """Design thermal icons, simulate them on display and skin, and predict which ones people confuse."""
-    be_quiet(quiet)
+    be_quiet(quiet, verbose)
 
 
 def program(words: Sequence[str] = ()) -> typer.Typer:

@@ -7,6 +7,7 @@ their options out beside its own for typer.
 from __future__ import annotations
 
 import inspect
+import shlex
 from collections.abc import Callable, Sequence
 from dataclasses import Field, dataclass, fields, is_dataclass, replace
 from pathlib import Path
@@ -18,7 +19,7 @@ from thermicon.icons.atomic import complete_or_absent
 
 from ..figures.style import SCREEN, Look, read_width_mm
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, check_output
-from ..messages import DEFAULT_RIG, check_changes, check_draws, load_observer, load_rig, note, usage
+from ..messages import check_changes, check_draws, load_observer, load_rig, note, usage
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -75,6 +76,34 @@ Intervals = Annotated[
 ]
 
 
+def command_text(files: Sequence[str], *groups: Options, paths: bool = False, command: str = "rank") -> str:
+    """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
+
+    Files are named without their folders, or, with ``paths``, as they were given.
+    """
+    words = ["thermicon", command, *(name if paths else Path(name).name for name in files)]
+    return shlex.join([*words, *(word for group in groups for word in group.words(paths=paths))])
+
+
+def commands(files: Sequence[str], rig: Options, crowd: Options) -> Callable[..., str]:
+    """What writes the command that comes next, by its name and words: for these files, or one, on this rig."""
+
+    def command(name: str, *words: str, file: str | None = None) -> str:
+        groups = (crowd, rig) if name in ("rank", "improve") else (rig,)
+        own = files if file is None else [file]
+        return " ".join(filter(None, [command_text(own, *groups, paths=True, command=name), shlex.join(words)]))
+
+    return command
+
+
+Goals = Annotated[
+    str | None,
+    opt(
+        "TEXT", 'What is wanted, such as "90 % correct for 95 % of people, time <= 10 s, safety green".', name="--goal"
+    ),
+]
+
+
 class Options:
     """A group of options: a frozen dataclass whose fields carry their options."""
 
@@ -94,7 +123,9 @@ class Options:
 class RigOptions(Options):
     """The rig, with changes of single keys."""
 
-    rig: Annotated[str | None, opt("RIG", "A shipped rig or a .toml file.  [default: thenar]")] = None
+    rig: Annotated[
+        str | None, opt("RIG", "A shipped rig or a .toml file.  [default: that of the set's site, or thenar]")
+    ] = None
     set: Annotated[list[str] | None, opt("KEY=VALUE", "Change one key of the rig; may be given several times.")] = None
 
     def __post_init__(self) -> None:
@@ -110,13 +141,16 @@ class RigOptions(Options):
         """Whether a rig or a change was asked for."""
         return self.rig is not None or bool(self.set)
 
-    def load(self) -> Rig:
-        """The rig with its changes; its warnings go to stderr."""
-        return load_rig(self.rig, self.changes)
+    def load(self, icons: IconSet | Icon | None = None, file: str = "") -> Rig:
+        """The rig with its changes, the usual one for icons of a file unless one is named; warnings go to stderr."""
+        rig = load_rig(self.rig, self.changes, site=None if icons is None else icons.context.site)
+        for warning in () if icons is None else site_warnings(file, icons, rig):
+            note(f"warning: {warning}")
+        return rig
 
     def words(self, *, paths: bool = False) -> list[str]:
-        """As for any group; the usual rig is left out."""
-        name = None if self.rig == DEFAULT_RIG else self.rig if paths or self.rig is None else Path(self.rig).name
+        """As for any group, with the rig by its path or the name of its file."""
+        name = self.rig if paths or self.rig is None else Path(self.rig).name
         return super(RigOptions, replace(self, rig=name)).words(paths=paths)
 
 
@@ -208,8 +242,8 @@ class JoinError(Exception):
     """Files that cannot be joined: they prescribe different things, or two have an icon of the same name."""
 
 
-def read_set(files: Sequence[str], rig: Rig | None = None) -> IconSet:
-    """Read files and join their icons into one set, and warn where it is for another site than a rig's.
+def read_set(files: Sequence[str]) -> IconSet:
+    """Read files and join their icons into one set.
 
     JoinError when they differ in site, control or baseline, or when two icons share a name.
     """
@@ -235,8 +269,6 @@ def read_set(files: Sequence[str], rig: Rig | None = None) -> IconSet:
         titles = [each.title or Path(file).name for file, each in zip(files, sets, strict=True)]
         title = "; ".join(titles) if any(each.title for each in sets) else ""
         joined = replace(joined, title=title, entries=tuple(entry for each in sets for entry in each.entries))
-    if rig is not None:
-        warn_of_site(files[0], joined, rig)
     return joined
 
 
@@ -248,13 +280,11 @@ def theirs_of(columns: Sequence[str] | None) -> dict[str, str]:
     return {name.strip(): own.strip() for name, _, own in pairs}
 
 
-def warn_of_site(file: str, icons: IconSet, rig: Rig) -> tuple[str, ...]:
-    """Warn on stderr of a set for another site than the rig's; return the warnings."""
+def site_warnings(file: str, icons: IconSet | Icon, rig: Rig) -> tuple[str, ...]:
+    """Warnings of a set for another site than the rig's."""
     if icons.context.site in (None, rig.site):
         return ()
-    warning = f"{file} is for the site {icons.context.site}, the rig {rig.name} is for {rig.site}"
-    note(f"warning: {warning}")
-    return (warning,)
+    return (f"{file} is for the site {icons.context.site}, the rig {rig.name} is for {rig.site}",)
 
 
 def pick(icons: IconSet, name: str | None, most: int = MOST_ICONS) -> list[Icon]:

@@ -17,13 +17,13 @@ from .options import (
     ObserverOptions,
     RigOptions,
     Theirs,
+    command_text,
     opt,
     out,
     read_set,
     theirs_of,
     write_text,
 )
-from .ranking import command_text
 
 if TYPE_CHECKING:
     from thermicon.perception.pilot.measurements_file import Measurements
@@ -134,8 +134,8 @@ def pilot_command(
     from ..report.plan_report import plan_report
     from ..report.terminal import show
 
-    where = rig.load()
-    sets = [read_set([name], where) for name in files]
+    sets = [read_set([name]) for name in files]
+    where = rig.load(sets[0], files[0])
     model = crowd.load(where, NEEDS)
     with progress_bar("simulating experiments") as progress:
         found = plan(
@@ -167,7 +167,8 @@ def open_sealed(
     from ..report.pilot_report import opened_report
     from ..report.terminal import show
 
-    where, icons = rig.load(), read_set(files)
+    icons = read_set(files)
+    where = rig.load(icons, files[0])
     held = read_sealed(sealed, icons, where)
     with noted():
         data = read_trials(answers, held.labels, theirs)
@@ -205,8 +206,8 @@ def condition(
     from ..report.pilot_report import observed_report
     from ..report.terminal import show
 
-    where = rig.load()
-    icons, *others = (read_set([name], where) for name in files)
+    icons, *others = (read_set([name]) for name in files)
+    where = rig.load(icons, files[0])
     model = crowd.load(where, NEEDS)
     data: Trials | Measurements
     if is_measurements(answers, theirs):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -14,6 +13,7 @@ import typer
 
 from ..files.outputs import STDOUT, check_output, check_separate
 from ..messages import check_draws, fail, note, progress_bar, usage
+from ..report.following import after_ranking
 from ..report.rank_report import doubt_report, rank_report, rules_report
 from ..report.terminal import show
 from .options import (
@@ -21,19 +21,22 @@ from .options import (
     CrowdOptions,
     FigureOptions,
     FileNames,
+    Goals,
     Json,
     Options,
     RigOptions,
+    command_text,
+    commands,
     flag,
     opt,
     out,
     read_set,
-    warn_of_site,
+    site_warnings,
     write_text,
 )
 
 if TYPE_CHECKING:
-    from thermicon.perception import Ranking, Task
+    from thermicon.perception import Task
     from thermicon.perception.observer.observer_model import ObserverModel
 
 TRIALS, MOST_WORKERS = 48, 1024
@@ -104,6 +107,7 @@ def rank_command(
     task: TaskOptions,
     rig: RigOptions,
     figure: FigureOptions,
+    goal: Goals = None,
     json: Json = None,
     report: Annotated[Path | None, out("OUT.html", "Write a report as one page to mail.", "--report")] = None,
     doubt: Annotated[
@@ -126,6 +130,8 @@ def rank_command(
     with many draws of the posterior (--people 24 is enough) as new laboratories would see it, and the table says which
     constants their differences come from.
     """
+    from thermicon.perception import Goal
+
     if report is not None:
         check_output(report, (".html", ".htm"), "a report")
         if report == STDOUT:
@@ -136,8 +142,11 @@ def rank_command(
     here = read_workers(workers)
     if crowd.memory == "rules" and (doubt or report is not None):
         raise usage("is about predictions for people: leave out --by rules", "--doubt" if doubt else "--report")
+    if goal is not None and crowd.memory == "rules":
+        raise usage("is about predictions for people: leave out --by rules", "--goal")
+    wanted = None if goal is None else Goal.parse(goal)
     if doubt:
-        given = {"--task": task.task, "--report": report, "--workers": workers, "--details": details}
+        given = {"--task": task.task, "--goal": goal, "--report": report, "--workers": workers, "--details": details}
         for option, value in {**given, "--tracking": crowd.tracking}.items():
             if value:
                 raise usage("belongs to a ranking; leave it out, or --doubt", option)
@@ -151,13 +160,13 @@ def rank_command(
         raise usage(f"{what}; narrow a family, or put its best members into a separate set", "FILE")
     from ..report.set_report import cures, report_of
 
-    where = rig.load()
-    warnings = (*where.warnings, *warn_of_site(files[0], icons, where))
+    where = rig.load(icons, files[0])
+    warnings = (*where.warnings, *site_warnings(files[0], icons, where))
     model = crowd.load(where)
     draws = crowd.draws(model)
     _say_if_first()
     trials, named = task.load()
-    asked = {**crowd.asked, "trials": trials, "task": named, "observer": model}
+    asked = {**crowd.asked, "goal": wanted, "trials": trials, "task": named, "observer": model}
     found = report_of(icons, where, draws, warnings=warnings, workers=here, **asked)
     if json is not None and json != STDOUT:
         write_text(found.to_json() + "\n", json)
@@ -176,7 +185,7 @@ def rank_command(
     elif crowd.memory == "rules":
         show(rules_report(found.ranking, icons.title))
     else:
-        show(rank_report(found, icons.title, near, _following(found.ranking, files, rig, crowd), details))
+        show(rank_report(found, icons.title, near, after_ranking(found, commands(files, rig, crowd)), details))
 
 
 def doubt_about(
@@ -190,8 +199,7 @@ def doubt_about(
     icons = read_set(files)
     if len(icons) < 2:
         fail(f"{files[0]}: --doubt needs at least two icons, since one alone is never confused")
-    where = rig.load()
-    warn_of_site(files[0], icons, where)
+    where = rig.load(icons, files[0])
     model = crowd.load(where, "what carries the doubt is read from draws of a posterior")
     draws = check_draws(model, crowd.intervals, "--intervals", DRAWS, FEWEST_DRAWS)
     with progress_bar("doubt") as progress:
@@ -203,15 +211,6 @@ def doubt_about(
         figure.write(found.plot().figure)
     if json != STDOUT:
         show(doubt_report(found, icons.title))
-
-
-def _following(ranking: Ranking, files: Sequence[str], rig: RigOptions, crowd: CrowdOptions) -> str:
-    """The command that comes next, to be copied: edits where icons are hardly told apart, otherwise the export."""
-    from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
-
-    if any(pair.d_prime < DISTINGUISHABLE_DPRIME for pair in ranking.pairs):
-        return f"{command_text(files, rig, crowd, paths=True, command='improve')} --edits"
-    return f"{command_text(files, rig, paths=True, command='export')} --to csv -o drives"
 
 
 def read_workers(text: str | None) -> int | str | None:
@@ -231,12 +230,3 @@ def _say_if_first() -> None:
     if folder is not None and sys.stderr.isatty() and not (ranked := folder / "ranked").exists():
         note("compiling for this computer, once: this ranking takes about half a minute longer")
         ranked.touch()
-
-
-def command_text(files: Sequence[str], *groups: Options, paths: bool = False, command: str = "rank") -> str:
-    """Return the command that reproduces a ranking, without its outputs: file names and non-default options.
-
-    Files are named without their folders, or, with ``paths``, as they were given.
-    """
-    words = ["thermicon", command, *(name if paths else Path(name).name for name in files)]
-    return shlex.join([*words, *(word for group in groups for word in group.words(paths=paths))])

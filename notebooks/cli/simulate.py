@@ -129,11 +129,11 @@ def simulate_command(
     if current is not None:
         simulate_drive(current, hold, theirs_of(column), rig.load(), rate, output, figure)
     elif file is not None and circuit and output is not None:
-        netlist_file(file, icon, rig.load(), tail or 0.0, output)
+        netlist_file(file, icon, rig, tail or 0.0, output)
     elif file is not None and session:
-        session_file(file, rig.load(), order, random, 10.0 if gap is None else gap, seed or 0, tracking, output, figure)
+        session_file(file, rig, order, random, 10.0 if gap is None else gap, seed or 0, tracking, output, figure)
     elif file is not None:
-        simulate_file(file, icon, rig.load(), rate, tail, output, figure)
+        simulate_file(file, icon, rig, rate, tail, output, figure)
 
 
 def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
@@ -146,7 +146,7 @@ def _refuse(options: Mapping[str, object], where: bool, why: str) -> None:
 def simulate_file(
     file: str,
     icon: str | None,
-    rig: Rig,
+    asked: RigOptions,
     rate_Hz: float,
     tail_s: float | None,
     output: Path | None,
@@ -155,7 +155,8 @@ def simulate_file(
     """Play the icons of a file (or the one named) on the rig; write the traces, or print a summary of each."""
     from thermicon.circuit import nearest_reachable, simulate
 
-    icons = pick(read_set([file], rig), icon)
+    whole = read_set([file])
+    icons, rig = pick(whole, icon), asked.load(whole, file)
     pictures = [] if figure.figure is None else [figure.figure]
     if figure.figure is not None and len(icons) > 1:
         pictures = [figure.figure.with_stem(f"{figure.figure.stem}-{each.name}") for each in icons]
@@ -228,7 +229,7 @@ def write_traces(traces: Sequence[Trace], output: Path) -> None:
     note(f"wrote {output}")
 
 
-def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: Path) -> None:
+def netlist_file(file: str, icon: str | None, asked: RigOptions, tail_s: float, output: Path) -> None:
     """Write the circuit of a rig that plays an icon; what ends with .sp makes ngspice write all probes."""
     from thermicon.circuit import netlist, simulate
     from thermicon.circuit.solver.inverse import design
@@ -236,8 +237,8 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
     check_output(output, NETLIST_SUFFIXES, "a netlist")
     record = f"{output.stem}.txt" if output.suffix.lower() == NGSPICE else None
     check_separate([file], [output])
-    icons = read_set([file], rig)
-    played = only(icons, icon, file)
+    icons = read_set([file])
+    played, rig = only(icons, icon, file), asked.load(icons, file)
     trace = simulate(played, rig, tail_s=tail_s)
     plan = design(played, rig, float(trace.time_s[-1]))
     title = f"{played.name} of {Path(file).name}"
@@ -251,7 +252,7 @@ def netlist_file(file: str, icon: str | None, rig: Rig, tail_s: float, output: P
 
 def session_file(
     file: str,
-    rig: Rig,
+    asked: RigOptions,
     order: Path | None,
     repeats: int | None,
     gap_s: float,
@@ -267,7 +268,8 @@ def session_file(
     if output is not None:
         check_output(output, (*TRACE_SUFFIXES, NUMBERS, ORDER), "a session")
     check_separate([file] if order is None else [file, order], (output, figure.figure))
-    icons = read_set([file], rig)
+    icons = read_set([file])
+    rig = asked.load(icons, file)
     if order is not None:
         plan = SessionPlan(read_order(order, icons), gap_s)
     else:

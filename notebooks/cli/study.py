@@ -9,7 +9,7 @@ import typer
 
 from thermicon.icons.number_text import number
 
-from ..messages import REFUSED, note, progress_bar
+from ..messages import REFUSED, note, progress_bar, warn_of_rig
 from ..report.gate_words import CAUTION
 from .options import out
 
@@ -40,8 +40,7 @@ def study_command(
     materials = read_materials(file)
     _check_free(folder)
     check_export_folder(folder, how=KEPT)
-    for warning in materials.rig.warnings:
-        note(f"warning: {warning}")
+    warn_of_rig(materials.rig)
     try:
         plan = make_plan(materials, progress_bar)
         files = files_of(plan)

@@ -66,7 +66,7 @@ class Measured:
 @checked
 def sweep(
     icons: IconSet | Icon | Iterable[Icon] | str | Path,
-    rig: Rig | str | Path,
+    rig: Rig | str | Path | None,
     key: str,
     values: Sequence[float | str],
     *,
@@ -81,7 +81,7 @@ def sweep(
     icons
         Icons to play, or the name or file of a set; those that `measured` measures must be among its set.
     rig
-        Rig to change, or its name or file.
+        Rig to change, or its name or file; None: the usual one for the icons.
     key
         Dotted key of the rig file, `site` or `people.age_years`.
     values
@@ -124,7 +124,8 @@ def sweep(
     from thermicon.icons.files.shipped import icons_of
     from thermicon.perception.ranking.swept import check_conditions
 
-    rig, played = Rig.of(rig), icons_of(icons)
+    played = icons_of(icons)
+    rig = Rig.of(rig, played[0].context.site if played else None)
     for value in values if key in (SITE, AGE) else values[:1]:
         check_conditions({key: value}, rig)
     if key == AGE and measured is None:
@@ -219,7 +220,7 @@ def sweep_command(
     """
     if len(vary) > 1:
         raise usage("one key is varied at a time; for another one, give a second sweep, with --set", "--vary")
-    key, values, log = read_vary(vary[0])
+    key, values = read_vary(vary[0])
     what = () if measure is None else read_measures(measure, intervals or 0)
     if not what and key == AGE:
         raise usage(f"{AGE} changes what people perceive only; add --measure correct", "--vary")
@@ -228,8 +229,8 @@ def sweep_command(
     if output is not None:
         check_output(output, TRACE_SUFFIXES, "a sweep")
     check_separate([file], [output, figure.figure])
-    where = rig.load()
-    icons = pick(whole := read_set([file], where), icon)
+    icons = pick(whole := read_set([file]), icon)
+    where = rig.load(whole, file)
     measured = Measured(whole, what, people, intervals or 0, seed) if what else None
     with progress_bar("sweep") as progress:
         frame = sweep(icons, where, key, values, tail_s=tail, measured=measured, progress=progress)
@@ -241,7 +242,7 @@ def sweep_command(
     if figure.figure is not None:
         from ..figures.sweep_figure import sweep_figure
 
-        figure.write(sweep_figure(frame, key, what, log=log, look=figure.look))
+        figure.write(sweep_figure(frame, figure.look))
     if output is not None:
         write_frame(frame, output)
     elif what:
@@ -263,11 +264,11 @@ def read_measures(text: str, intervals: int) -> tuple[str, ...]:
     return names
 
 
-def read_vary(text: str) -> tuple[str, tuple[float | str, ...], bool]:
-    """Read ``--vary``: a key, its values, and whether these are in equal ratios; another form is a usage error.
+def read_vary(text: str) -> tuple[str, tuple[float | str, ...]]:
+    """Read ``--vary``: a key and its values; another form is a usage error.
 
-    >>> read_vary("contact.area_cm2=4:9:3"), read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log")[1:]
-    (('contact.area_cm2', (4.0, 6.5, 9.0), False), ((0.0001, 0.001, 0.01), True))
+    >>> read_vary("contact.area_cm2=4:9:3"), read_vary("contact.resistance_m2K_per_W=1e-4:1e-2:3log")[1]
+    (('contact.area_cm2', (4.0, 6.5, 9.0)), (0.0001, 0.001, 0.01))
     """
 
     def no(why: str) -> typer.BadParameter:
@@ -291,7 +292,7 @@ def read_vary(text: str) -> tuple[str, tuple[float | str, ...], bool]:
         values = tuple(parts) if key == SITE else tuple(map(read, parts))
         if len(set(values)) < len(values):
             raise no("the same value is given twice")
-        return key, values, False
+        return key, values
     if key == SITE:
         raise no("sites are names; give them as site=thenar,fingertip")
     low, high, log, number = read(parts[0]), read(parts[1]), parts[2].endswith("log"), parts[2].removesuffix("log")
@@ -305,4 +306,4 @@ def read_vary(text: str) -> tuple[str, tuple[float | str, ...], bool]:
         raise no("equal ratios need both ends above 0; leave out log for equal steps")
     shares = [k / (int(number) - 1) for k in range(int(number))]
     values = tuple(low * (high / low) ** share if log else low + (high - low) * share for share in shares)
-    return key, tuple(float(f"{value:.12g}") for value in values), log
+    return key, tuple(float(f"{value:.12g}") for value in values)

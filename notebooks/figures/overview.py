@@ -14,8 +14,10 @@ from thermicon.icons.model.arguments import checked
 
 from .set_figures import set_figure
 from .style import COOL, GREY, INK, LIMIT, PLACES, TARGET, WARM, on_one_clock
+from .sweep_figure import sweep_figure
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -30,13 +32,16 @@ WIDEST, MOST_LINES = 110, 6
 
 
 @checked
-def overview(trace: Trace | Ranking, percept: Percept | None = None, rig_changes: Sequence[str] = ()) -> Figure:
-    """Draw one icon on one clock (temperatures, heat flow, current, with a percept sensation), or a ranking.
+def overview(
+    trace: Trace | Ranking | pd.DataFrame, percept: Percept | None = None, rig_changes: Sequence[str] = ()
+) -> Figure:
+    """Draw one icon on one clock (temperatures, heat flow, current, with a percept sensation), a ranking or a sweep.
 
     Parameters
     ----------
     trace
-        The run, or a ranking, of which distances and confusions are drawn side by side.
+        The run; a ranking, of which distances and confusions are drawn side by side; or the table of `sweep`, whose
+        quantities are drawn over its key.
     percept
         What is felt of it; None: no panel of sensation.
     rig_changes
@@ -57,8 +62,12 @@ def overview(trace: Trace | Ranking, percept: Percept | None = None, rig_changes
     """
     from matplotlib.figure import Figure
 
-    if not isinstance(trace, Trace):
+    from thermicon.perception import Ranking
+
+    if isinstance(trace, Ranking):
         return set_figure(trace)
+    if not isinstance(trace, Trace):
+        return sweep_figure(trace)
     panels = [_temperatures, _heat_flow, *([_current] if trace.has_current else [])]
     figure = Figure(figsize=(8.0, 8.4 if percept is not None else 6.4), layout="constrained")
     count = len(panels) + (percept is not None)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from thermicon.perception.ranking.swept import ALL, MEASURES
 
 from .style import INK, SCREEN, Look, plain
@@ -50,21 +52,23 @@ BAND = 0.065
 """How dark the band of an icon is; that of the set is twice as dark."""
 
 
-def sweep_figure(
-    frame: pd.DataFrame, key: str, what: Sequence[str] = (), log: bool = False, look: Look = SCREEN
-) -> Figure:
-    """Draw the table that `sweep` returns over its `key`: what the rig does, or `what` was measured of people.
+def sweep_figure(frame: pd.DataFrame, look: Look = SCREEN) -> Figure:
+    """Draw the table that `sweep` returns over its key: what the rig does, or what was measured of people.
 
     Icons that mainly cool are blue, others orange, and each has its own mark; a cross stands for an icon that was not
     reached. What the rig does alike at all values is left out and named below. Of people, bands are the 95 % of a new
-    laboratory, and the black line is the whole set. With `log` the abscissa has equal ratios.
+    laboratory, and the black line is the whole set. Values in ratios stand at equal distances.
     """
+    key = str(frame.columns[1])
+    what = [name for column in frame for name, columns in MEASURES.items() if columns[0] == column]
     panels = [(MEASURES[name], LABELS[name]) for name in what]
     same = [] if what else [label for columns, label in PANELS if _same(frame, columns)]
     if not what:
         panels = [panel for panel in PANELS if panel[1] not in same] or list(PANELS)
     figure, axes = _small_multiples(len(panels), look.across(2 if what else WIDE))
     handles: dict[str, Any] = {}
+    values = sorted(frame[key].unique())
+    log = _in_ratios(values)
     for ax, (columns, label) in zip(axes, panels, strict=True):
         for name, style in _icon_styles(frame).items():
             _draw(ax, frame[frame["icon"] == name], key, columns, style, handles)
@@ -74,7 +78,7 @@ def sweep_figure(
         elif what or columns == ("largest_miss_K",):
             ax.set_ylim(bottom=0.0)
         if log:
-            _ticks_at_values(ax, sorted(frame[key].unique()))
+            _ticks_at_values(ax, values)
     for name in [name for name in (INTERVAL, MISSED) if name in handles]:
         handles[name] = handles.pop(name)  # behind the icons
     key_above: dict[str, Any] = {"loc": "outside upper center", "ncols": 4, "frameon": False, "fontsize": 9}
@@ -118,6 +122,18 @@ def _small_multiples(count: int, across: int) -> tuple[Figure, list[Axes]]:
         ax.tick_params(labelsize=8, labelbottom=place >= count - across)
         plain(ax)
     return figure, axes[:count]
+
+
+def _in_ratios(values: Sequence[float | str]) -> bool:
+    """Whether rising values are numbers above 0 that are spaced more evenly in ratios than in steps.
+
+    >>> _in_ratios([1.0, 3.0, 10.0]), _in_ratios([1.0, 2.0, 3.0]), _in_ratios(["fingertip", "forearm", "thenar"])
+    (True, False, False)
+    """
+    if len(values) < 3 or isinstance(values[0], str) or values[0] <= 0:
+        return False
+    ratios, steps = (np.diff(each) for each in (np.log(np.asarray(values, float)), values))
+    return bool(np.ptp(ratios) / ratios.mean() < np.ptp(steps) / steps.mean())
 
 
 def _ticks_at_values(ax: Axes, values: list[float]) -> None:

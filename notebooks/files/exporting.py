@@ -45,12 +45,12 @@ def felt_in(
         try:
             everyone.append(deliver(icon, rig, device, tail_s=tail_s))
         except InputError as problem:
-            warn(f"warning: {icon.name} cannot be played, so nothing is compared with it: {problem}")
+            warn(f"{icon.name} cannot be played, so nothing is compared with it: {problem}")
     end = max(delivery.end_s for delivery in everyone) + TAIL_S
     run_end = run_end_s(duration_s(delivery.icon, rig) for delivery in everyone)
     groups = [everyone] if len(everyone) <= MOST_COMPARED else [[delivery] for delivery in everyone]
     if len(groups) > 1:
-        warn(f"warning: {len(everyone)} icons are too many to compare with each other; d′ is left out")
+        warn(f"{len(everyone)} icons are too many to compare with each other; d′ is left out")
     felt: list[PerceivedChange] = []
     by_people: list[DeliveredChange | None] = []
     for group in groups:
@@ -63,7 +63,7 @@ def felt_in(
             try:
                 by_people.append(detected_as_delivered(delivery, *traces[place], end_s=run_end))
             except InputError as problem:
-                warn(f"warning: {delivery.icon.name}: detection is that of the nominal person alone: {problem}")
+                warn(f"{delivery.icon.name}: detection is that of the nominal person alone: {problem}")
                 by_people.append(None)
     return tuple(
         change if detection is None else replace(change, detection=detection, people=PEOPLE)

@@ -5,7 +5,8 @@ What holds for all icons of an export is said once, and of what differs the stri
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import number, signed
@@ -13,6 +14,7 @@ from thermicon.icons.number_text import number, signed
 if TYPE_CHECKING:
     from thermicon.circuit.delivery.delivered_drive import DeliveredDrive
     from thermicon.circuit.delivery.prepare import Prepared
+    from thermicon.circuit.delivery.worstcase import OpenLoopSpread
     from thermicon.circuit.safety.checks import Demands
     from thermicon.circuit.safety.gate import Gate
     from thermicon.circuit.safety.repeated import Repeated
@@ -22,6 +24,7 @@ CAUTION = (
     "works without software"
 )
 MOST_NAMES = 6
+NUMBER = re.compile(r"\d+(\.\d+)?")
 QUICKEST_S = 0.02
 """The gate does not look for reactions quicker than this: where none is safe, it states 0."""
 
@@ -129,14 +132,37 @@ def demands_text(gates: Sequence[Named]) -> str:
     return f"{', '.join(parts)}; in any play after {number(pause_s, 1)} s of pause or more"
 
 
-def steps_of(delivery: DeliveredDrive) -> str:
-    """Update rate of a drive, or its number of segments."""
+def warning_lines(ready: Sequence[Prepared]) -> Iterator[str]:
+    """Every warning once, for its first icon; those that differ in numbers alone follow by name."""
+    alike: dict[str, tuple[str, list[str]]] = {}
+    for one in ready:
+        for warning in one.warnings:
+            alike.setdefault(NUMBER.sub("#", warning), (warning, []))[1].append(one.delivery.icon.name)
+    for warning, names in alike.values():
+        others = list(dict.fromkeys(names))[1:]
+        more = f"; alike, with numbers in their sidecars: {', '.join(others)}" if others else ""
+        yield f"{names[0]}: {warning}{more}"
+
+
+def spread_text(spread: OpenLoopSpread) -> str:
+    """What an open loop leaves open, and what does not."""
+    step = " … ".join(signed(value, "+.1f") for value in spread.step_K)
+    low, high = spread.baseline_C
+    return (
+        f"open loop: with a module that was not measured the display may rest at {low:.1f} … {high:.1f} °C and move by "
+        f"{step} K; where a controller measures the display, play set-points: --device closed-loop-controller --to "
+        "setpoint-csv"
+    )
+
+
+def steps_of(delivery: DeliveredDrive) -> tuple[str, str]:
+    """Update rate of a drive, or its number of segments, behind its preposition."""
     from thermicon.circuit.delivery.setpoints import Setpoints
 
     played = delivery.played
     if isinstance(played, Setpoints):
-        return f"in {len(played.segments)} segments"
-    return f"at {number(delivery.rate_Hz, 1)} Hz"
+        return "in", f"{len(played.segments)} segments"
+    return "at", f"{number(delivery.rate_Hz, 1)} Hz"
 
 
 def _recovery(repeated: Repeated) -> float:

@@ -9,7 +9,7 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading, Text, grid
 from .choices import NAMES, goal_lines, laboratory
-from .rank_details import trouble_lines
+from .rank_details import crowd_text, trouble_lines
 from .rank_report import BARELY
 
 if TYPE_CHECKING:
@@ -23,8 +23,8 @@ REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.search_run`, repeated here to avoid its imports."""
 
 
-def frontier_report(found: Frontier, title: str) -> list[Block]:
-    """Report one row for each number of icons, the names of the largest choices, and what was left out."""
+def frontier_report(found: Frontier, title: str, following: str) -> list[Block]:
+    """Report one row for each number of icons, the largest choice, what was left out, and what follows."""
     heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goals)))
     rows = [
         (
@@ -39,9 +39,7 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
         )
         for k, point in enumerate(found.points)
     ]
-    job, largest = found.ranking.job, found.points[-1]
-    crowd = count_of(job.people, "virtual person", "virtual people")
-    what_if = f" with {', '.join(job.rig.changes)}" if job.rig.changes else ""
+    largest = found.points[-1]
     more = len(largest.excluded) - MOST_EXCLUDED
     amber = found.amber(largest)
     names = ", ".join(f"{name} (amber)" if name in amber else name for name in largest.icons)
@@ -51,6 +49,7 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
         *_goal(found),
         *(f"Left out: {name} {reason}" for name, reason in largest.excluded[:MOST_EXCLUDED]),
         *([f"and {more} more left out"] if more > 0 else []),
+        f"Next: {following}",
     ]
     return [
         *([Heading(title, 1)] if title else []),
@@ -58,9 +57,8 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
         Text("\n".join(said)),
         Text(
             f"The best by {largest.objective} of {largest.pool} icons that can be "
-            f"{'chosen' if found.goals else 'played'}, for {crowd} on the {job.rig.name} rig{what_if} (seed "
-            f"{job.seed}). {_reached(found)} These are "
-            "predictions of a model, not measurements."
+            f"{'chosen' if found.goals else 'played'}, for {crowd_text(found.ranking)} (seed {found.ranking.seed}). "
+            f"{_reached(found)} These are predictions of a model, not measurements."
         ),
     ]
 
@@ -74,10 +72,10 @@ def _goal(found: Frontier) -> Iterator[str]:
     if met:
         count, result = met[-1]
         more = "the largest choice here" if count == judged[-1][0] else "by no larger choice of these"
-        yield from goal_lines(result.to_dict(), f"met by the best {count}, {more}")
+        yield from goal_lines(result, f"met by the best {count}, {more}")
     else:
         count, result = judged[0]
-        yield from goal_lines(result.to_dict(), f"met by none of these choices; the best {count}:")
+        yield from goal_lines(result, f"met by none of these choices; the best {count}:")
 
 
 def _reached(found: Frontier) -> str:
@@ -89,15 +87,17 @@ def _reached(found: Frontier) -> str:
     return "What 95 % of people reach is about people alone, at the nominal constants: milder than in a goal."
 
 
-def search_report(found: SearchResult, before: SetReport, after: SetReport, title: str) -> list[Block]:
-    """Report the found set, its scores next to those of the initial set, the goal, and the caveat."""
+def search_report(found: SearchResult, before: SetReport, after: SetReport, title: str, following: str) -> list[Block]:
+    """Report the found set, its scores next to those of the initial set, the goal, what follows, and the caveat."""
+    from thermicon.perception.selection.candidates import FOUND
+
     ranking, icons = after.ranking, found.found
-    tried = [f"{icon.name}: {icon.metadata.tags[-1]}" for icon in icons if "found by search" in icon.metadata.tags]
+    tried = [f"{icon.name}: {icon.metadata.tags[-1]}" for icon in icons if FOUND in icon.metadata.tags]
     said = [*_remarks(found, after), f"After: worst pair {' and '.join(found.after.worst_pair)}"]
     said.append(f"Before: {', '.join(icon.name for icon in found.start)}")
     goal: list[Block] = []
     if after.goal is not None:
-        goal.append(Text("\n".join(goal_lines(after.goal.to_dict()))))
+        goal.append(Text("\n".join(goal_lines(after.goal))))
         goal += [] if after.goal.met else [Text("Not reached by this search: try more --evaluations, or another rig.")]
     return [
         *([Heading(title, 1)] if title else []),
@@ -106,6 +106,7 @@ def search_report(found: SearchResult, before: SetReport, after: SetReport, titl
         grid(("", "before", "after"), _scores(found, before, after), ("before", "after")),
         Text("\n".join(said)),
         *goal,
+        Text(f"Next: {following}"),
         Text(
             f"{found.evaluations} icons were tried on a nominal person and {found.refined} on {REFINING_PEOPLE} "
             f"people, whatever --people is; what they maximised was {NAMES[found.objective]} (seed "
@@ -129,7 +130,7 @@ def _scores(found: SearchResult, before: SetReport, after: SetReport) -> Iterato
     intervals = [each.new_laboratory for each in pair if each.new_laboratory]
     if len(intervals) == len(pair):
         one, other = (percent_span(*each.proportion_correct) for each in intervals)
-        yield f"  {laboratory(pair[1].observer, pair[1].own_laboratory)} (95 %)", one, other
+        yield f"  {laboratory(pair[1])} (95 %)", one, other
     yield "information, bits", f"{a.information_bits:.2f}", f"{b.information_bits:.2f}"
     yield "information rate, bits/s", f"{a.bits_per_s:.2f}", f"{b.bits_per_s:.2f}"
     yield "total duration, s", number(pair[0].total_s), number(pair[1].total_s)
@@ -139,8 +140,7 @@ def _remarks(found: SearchResult, after: SetReport) -> Iterator[str]:
     """Ranges that end too early, and icons that cannot be played, are not green, or that many people will miss."""
     if found.at_ends:
         yield f"At the end of its range: {'; '.join(found.at_ends)}. A wider range may hold a better set."
-    icons = after.to_dict(mapped=False)["icons"]
-    yield from trouble_lines(icons, {})
-    for icon in icons:
-        if icon["detected_probability"] < BARELY:
-            yield f"{icon['name']} is detected in {percent(icon['detected_probability'])} of trials only"
+    yield from trouble_lines(after.ranking.icons, {})
+    for icon in after.ranking.icons:
+        if icon.detected_probability < BARELY:
+            yield f"{icon.name} is detected in {percent(icon.detected_probability)} of trials only"

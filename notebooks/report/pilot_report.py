@@ -144,12 +144,10 @@ def measured_sentences(found: Observed[Measured, MeasurementFit]) -> list[str]:
     if missed:
         lines.append(f"* lies outside its predicted 95 % ({missed} of {len(found.fit.conditions)}).")
     before, after = found.fit.p, found.fit_after.p
-    verdict = misfit(before, after, "values", len(found.conditioned.after))
+    why = misfit(before, after, "values", len(found.conditioned.after), "; check units, method and stimulus")
+    verdict = why or "the measurements are what the prediction allows"
     if values.total < LEAST_VALUES:
         verdict = f"{values.total} values are too few to judge the model by; {LEAST_VALUES} or more can"
-    elif "cannot explain" in verdict:
-        verdict += "; check units, method and stimulus"
-    verdict = verdict or "the measurements are what the prediction allows"
     lines.append(
         f"Test of fit (posterior predictive): p = {p_text(before)} before, {p_text(after)} after the values were used: "
         f"{verdict}"
@@ -280,8 +278,8 @@ def _verdict(found: Observed[Answered, Fit]) -> str:
     return ": the answers are what the prediction allows"
 
 
-def misfit(before: float, after: float, what: str, laboratories: int) -> str:
-    """What a small p says of the model; empty where neither is small.
+def misfit(before: float, after: float, what: str, laboratories: int, cure: str = "") -> str:
+    """What a small p says of the model, with a cure where it cannot explain them; empty where neither is small.
 
     >>> misfit(0.02, 0.3, "answers", 500)
     'the prediction missed, but laboratories that the evidence allows explain the answers'
@@ -292,7 +290,7 @@ def misfit(before: float, after: float, what: str, laboratories: int) -> str:
             f"them: use --draws {2 * LEAST_LABORATORIES} or more"
         )
     if after < POOR:
-        return f"the model cannot explain these {what}, not even with other constants"
+        return f"the model cannot explain these {what}, not even with other constants{cure}"
     if before < POOR:
         return f"the prediction missed, but laboratories that the evidence allows explain the {what}"
     return ""

@@ -1,12 +1,23 @@
 """What stands behind a ranking: notes, its numbers with intervals, the worst pair with its reasons, and assumptions."""
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading
 from .choices import laboratory
+
+if TYPE_CHECKING:
+    from thermicon.perception import Ranking
+    from thermicon.perception.ranking.assumptions import Assumption, Assumptions
+    from thermicon.perception.ranking.scores import IconScore, PairScore
+    from thermicon.perception.ranking.sensitivity import Sensitivity
+    from thermicon.perception.selection.edit import Edit
+
+    from .set_report import SetReport
 
 MOST_EDITS = 20
 NAMES = {f"laboratory, {channel}": f"sensitivity to {channel} in your laboratory" for channel in ("cold", "warm")}
@@ -16,46 +27,44 @@ DETECTED = (
 )
 
 
-def detail_blocks(result: Mapping[str, Any]) -> list[Block]:
+def detail_blocks(made: SetReport) -> list[Block]:
     """The scores of the set, its worst pair, and what they depend on."""
-    scores = [*number_points(result), *norm_points(result), *carried_points(result["icons"])]
+    ranking, worst = made.ranking, made.ranking.worst
+    scores = [*number_points(made), *norm_points(ranking), *carried_points(ranking)]
     found: list[Block] = [Heading("The set"), Bullets(tuple(scores))]
-    if result["set"]["worst_pair"]:
-        first, *reasons = worst_points(result)
-        found += [Heading(first), Bullets(tuple(reasons)), *edits_blocks(result)]
-    return [*found, *assumption_blocks(result["assumptions"])]
+    if worst is not None:
+        confused = f"confused in {percent(worst.confused_probability)} of trials, the mean of both ways"
+        head = f"Worst pair: {worst.a} and {worst.b}, {confused} (d′ {number(worst.d_prime)})"
+        edit = edit_text(made, worst)
+        found += [Heading(head), Bullets((*worst.why, *([edit] if edit else []))), *edits_blocks(made)]
+    return [*found, *assumption_blocks(ranking.assumptions)]
 
 
-def playable(icons: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the icons that are safe and reached; the others are ranked separately."""
-    return [icon for icon in icons if icon["safe"] and icon["reachable"]]
-
-
-def trouble_lines(icons: Sequence[dict[str, Any]], cures: Mapping[str, str]) -> list[str]:
+def trouble_lines(icons: Sequence[IconScore], cures: Mapping[str, str]) -> list[str]:
     """Return one line per icon that is unsafe or not reached, with its cure, and one line on exceeded soft limits."""
     lines = []
     for icon in icons:
-        if icon["reason"]:
-            states = ["NOT SAFE"] * (not icon["safe"]) + ["not reached"] * (not icon["reachable"])
-            cure = f"; {cures[icon['name']]}" if icon["name"] in cures else ""
-            lines.append(f"* {icon['name']} is {' and '.join(states)}: {icon['reason']}{cure}")
+        if icon.reason:
+            states = ["NOT SAFE"] * (not icon.safe) + ["not reached"] * (not icon.reachable)
+            cure = f"; {cures[icon.name]}" if icon.name in cures else ""
+            lines.append(f"* {icon.name} is {' and '.join(states)}: {icon.reason}{cure}")
     if lines:
         lines.append("* ranked separately; the set's numbers include these icons as the rig would play them")
-    amber = [icon for icon in icons if icon["cautions"]]
+    amber = [icon for icon in icons if icon.cautions]
     if amber:
-        names = ", ".join(icon["name"] for icon in amber)
+        names = ", ".join(icon.name for icon in amber)
         verb = "exceed" if len(amber) > 1 else "exceeds"
-        first = f"of {amber[0]['name']}, " if len(amber) > 1 else ""
-        lines.append(f"Caution: {names} {verb} a soft safety limit: {first}{amber[0]['cautions'][0]}")
+        first = f"of {amber[0].name}, " if len(amber) > 1 else ""
+        lines.append(f"Caution: {names} {verb} a soft safety limit: {first}{amber[0].cautions[0]}")
     return lines
 
 
-def outside_lines(icons: Sequence[dict[str, Any]]) -> list[str]:
+def outside_lines(icons: Sequence[IconScore]) -> list[str]:
     """Return one line per way in which icons lie outside the range of the data, with the icons concerned."""
     names_by_reason: dict[str, list[str]] = {}
     for icon in icons:
-        for reason in icon["outside_data"]:
-            names_by_reason.setdefault(reason, []).append(icon["name"])
+        for reason in icon.outside_data:
+            names_by_reason.setdefault(reason, []).append(icon.name)
     every = len(icons) > 1
     return [
         f"Outside the data: {'all icons' if every and len(names) == len(icons) else ', '.join(names)}: {reason}"
@@ -63,65 +72,57 @@ def outside_lines(icons: Sequence[dict[str, Any]]) -> list[str]:
     ]
 
 
-def crowd_text(result: Mapping[str, Any]) -> str:
+def crowd_text(ranking: Ranking | Sensitivity) -> str:
     """For how many people and on which rig, with its changes."""
-    changes = result["rig_changes"]
-    what_if = f" with {', '.join(changes)}" if changes else ""
-    crowd = count_of(result["people"], "virtual person", "virtual people")
-    return f"{crowd} on the {result['rig']} rig{what_if}"
+    what_if = f" with {', '.join(ranking.rig_changes)}" if ranking.rig_changes else ""
+    crowd = count_of(ranking.people, "virtual person", "virtual people")
+    return f"{crowd} on the {ranking.rig} rig{what_if}"
 
 
-def caveat(result: Mapping[str, Any]) -> str:
+def caveat(ranking: Ranking) -> str:
     """Return the sentences that state what the numbers rest on and what they are not."""
-    norm = "" if result["norm"] == "episodes" else f", memory: {result['norm']}"
-    gap_s = result["task"]["gap_s"]
+    memory = "" if ranking.memory == "episodes" else f", memory: {ranking.memory}"
+    gap_s = ranking.task.gap_s
     gap = "" if gap_s is None else f", {gap_s:g} s between icons"
     return (
-        f"Predicted for {crowd_text(result)} (seed {result['seed']}, {result['tracking']} tracking{norm}{gap}). "
+        f"Predicted for {crowd_text(ranking)} (seed {ranking.seed}, {ranking.tracking} tracking{memory}{gap}). "
         f"These are predictions of a model, not measurements. {DETECTED}"
     )
 
 
-def number_points(result: Mapping[str, Any]) -> Iterator[str]:
+def number_points(made: SetReport) -> Iterator[str]:
     """Yield the scores of the set: proportion correct and information, with their intervals."""
-    whole = result["set"]
-    (low, high), bits = whole["proportion_correct_interval"], whole["information_bits"]
-    where = laboratory(result["observer"], whole["own_laboratory"])
-    yield f"{percent(whole['proportion_correct'])} correct" + _range(result, percent_span(low, high))
-    if result["observer"] != "shipped":
-        yield f"predicted with the observer of {result['observer']}"
-    if whole["proportion_correct_interval_new_laboratory"]:
-        low, high = whole["proportion_correct_interval_new_laboratory"]
-        people = count_of(whole["new_laboratory_people"], "person", "people")
-        yield f"mean of {people} in {where} (95 %): {percent_span(low, high)}"
-    elif not result["chosen"]:
+    ranking, elsewhere, where = made.ranking, made.ranking.new_laboratory, laboratory(made.ranking)
+    spread = percent_span(*ranking.proportion_correct_interval)
+    yield f"{percent(ranking.proportion_correct)} correct" + _range(ranking, spread)
+    if ranking.observer != "shipped":
+        yield f"predicted with the observer of {ranking.observer}"
+    if elsewhere is not None:
+        people = count_of(elsewhere.people, "person", "people")
+        yield f"mean of {people} in {where} (95 %): {percent_span(*elsewhere.proportion_correct)}"
+    elif made.choice is None:
         yield "no interval for a new laboratory: --intervals 2 or more and an observer with draws (.csv) give one"
-    if bits is None:
+    if len(ranking.icons) == 1:
         return
-    least, most = whole["information_bits_interval"]
-    yield f"{bits:.2f} bits" + _range(result, f"{least:.2f}–{most:.2f} bits")
-    if (interval := whole["information_bits_interval_new_laboratory"]) is not None:
-        yield f"in {where} (95 %): {interval[0]:.2f}–{interval[1]:.2f} bits"
-    yield f"{whole['bits_per_s']:.2f} bits/s"
-    plugin = whole["information_bits_plugin"]
-    yield f"a {whole['trials']}-trial experiment would report {plugin:.2f} bits (biased upwards)"
+    least, most = ranking.information_bits_interval
+    yield f"{ranking.information_bits:.2f} bits" + _range(ranking, f"{least:.2f}–{most:.2f} bits")
+    if elsewhere is not None:
+        least, most = elsewhere.information_bits
+        yield f"in {where} (95 %): {least:.2f}–{most:.2f} bits"
+    yield f"{ranking.bits_per_s:.2f} bits/s"
+    plugin = float(ranking.felt.plugin.mean())
+    yield f"a {ranking.job.trials}-trial experiment would report {plugin:.2f} bits (biased upwards)"
 
 
-def _range(result: Mapping[str, Any], interval: str) -> str:
+def _range(ranking: Ranking, interval: str) -> str:
     """The interval of the middle 95 % of people, which a goal's 95 % is not; nothing for one person."""
-    return "" if result["people"] == 1 else f"; middle 95 % of people: {interval}"
+    return "" if ranking.people == 1 else f"; middle 95 % of people: {interval}"
 
 
-def norm_points(result: Mapping[str, Any]) -> Iterator[str]:
-    """Yield whether the order would change with the other form of memory; nothing for one icon.
-
-    >>> whole = {"norm_sensitivity": {"naming": 0.7}, "norm_changes": {"naming": [["a", "b"], ["a", "c"]]}}
-    >>> list(norm_points({"pairs": [{}], "set": whole}))
-    ['with the naming distance: 70 % correct, b before a (1 more change of order)']
-    """
-    whole = result["set"] if result["pairs"] else {"norm_sensitivity": {}}
-    for norm, share in whole["norm_sensitivity"].items():
-        changes = whole["norm_changes"][norm]
+def norm_points(ranking: Ranking) -> Iterator[str]:
+    """Yield whether the order would change with the other form of memory; nothing for one icon."""
+    for norm, share in ranking.norm_sensitivity.items() if ranking.pairs else ():
+        changes = ranking.norm_changes[norm]
         if not changes:
             order = "same order"
         else:
@@ -130,77 +131,63 @@ def norm_points(result: Mapping[str, Any]) -> Iterator[str]:
         yield f"with the {norm} distance: {percent(share)} correct, {order}"
 
 
-def carried_points(icons: Sequence[dict[str, Any]]) -> Iterator[str]:
+def carried_points(ranking: Ranking) -> Iterator[str]:
     """Yield which icon is changed most by the icon before it; nothing where all carry-over has faded."""
-    carried = [(icon["carry_over"]["d_prime"], icon["name"], icon["carry_over"]["after"]) for icon in icons
-               if icon["carry_over"]]  # fmt: skip
-    if carried:
-        d_prime, name, before = max(carried)
+    if left := ranking.carry_over:
+        worst = [left.worst_of(place, ranking.memory, ranking.task.counted) for place in range(len(ranking.icons))]
+        d_prime, name, before = max((d, name, before) for name, (before, d) in zip(ranking.labels, worst, strict=True))
         after = "a first play of itself" if before == name else before
         yield f"carry-over: largest for {name} after {after}, d′ {number(d_prime)} from {name} alone"
 
 
-def worst_points(result: Mapping[str, Any]) -> Iterator[str]:
-    """Yield which pair is confused most often, why, and what would separate it."""
-    worst = worst_pair(result)
-    confused = percent(worst["confused_probability"])
-    head = f"Worst pair: {worst['a']} and {worst['b']}"
-    yield f"{head}, confused in {confused} of trials, the mean of both ways (d′ {number(worst['d_prime'])})"
-    yield from worst["why"]
-    if edit := edit_text(worst):
-        yield edit
-
-
-def worst_pair(result: Mapping[str, Any]) -> dict[str, Any]:
-    """The record of the worst pair of a set that has one."""
-    (worst,) = (pair for pair in result["pairs"] if [pair["a"], pair["b"]] == result["set"]["worst_pair"])
-    return dict(worst)
-
-
-def edits_blocks(result: Mapping[str, Any]) -> list[Block]:
+def edits_blocks(made: SetReport) -> list[Block]:
     """The cheapest edits of the other pairs, a point each."""
-    others = [pair for pair in result["pairs"] if [pair["a"], pair["b"]] != result["set"]["worst_pair"]]
-    edits = [f"{pair['a']} and {pair['b']}, d′ {number(pair['d_prime'])}: {text.removeprefix('cheapest edit: ')}"
-             for pair in others if (text := edit_text(pair))]  # fmt: skip
+    worst = made.ranking.worst
+    edits = [f"{pair.a} and {pair.b}, d′ {number(pair.d_prime)}: {text}" for pair in made.ranking.pairs
+             if pair is not worst and (text := edit_text(made, pair, ""))]  # fmt: skip
     if not edits:
         return []
     more = [f"and {len(edits) - MOST_EDITS} more; --json lists all"] * (len(edits) > MOST_EDITS)
     return [Heading("Cheapest edits of the other indistinguishable pairs", 3), Bullets((*edits[:MOST_EDITS], *more))]
 
 
-def edit_text(pair: Mapping[str, Any]) -> str:
+def edit_text(made: SetReport, pair: PairScore, lead: str = "cheapest edit: ") -> str:
     """The cheapest edit that separates a pair, or why there is none; empty if it was not looked for or not needed."""
     from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
+    from thermicon.perception.selection.edit import NoEdit
 
-    if (edit := pair["edit"]) is not None:
-        added = f" ({number(edit['added_s'])} s longer)" if edit["added_s"] >= 0.05 else ""
-        return (
-            f"cheapest edit: in {edit['icon']}, {edit['old']} → {edit['new']}{added}; then d′ {number(edit['d_prime'])}"
-        )
-    return pair["no_edit"] if pair["no_edit"] and pair["d_prime"] < DISTINGUISHABLE_DPRIME else ""
+    edit = made.edits.get((pair.a, pair.b))
+    if isinstance(edit, NoEdit):
+        return edit.reason if pair.d_prime < DISTINGUISHABLE_DPRIME else ""
+    return "" if edit is None else f"{lead}{edit_words(edit)}"
 
 
-def assumption_blocks(found: Mapping[str, Any] | None) -> list[Block]:
+def edit_words(edit: Edit) -> str:
+    """What an edit changes, and how far apart the pair is then."""
+    added = f" ({number(edit.added_s)} s longer)" if edit.added_s >= 0.05 else ""
+    return f"in {edit.icon}, {edit.old} → {edit.new}{added}; then d′ {number(edit.d_prime)}"
+
+
+def assumption_blocks(found: Assumptions) -> list[Block]:
     """The assumptions that move the proportion correct most, what the site rests on, and what was not varied."""
-    if found is None or not (found["moving"] or found["site"]):
+    if not (found.moving or found.site):
         return []
     head = "What this depends on (no single assumption stands out from these people and draws)"
-    if found["moving"]:
+    if found.moving:
         head = "What this depends on most, from the people and draws above"
-    points = [_moving(each) for each in found["moving"]] + ([_site(found["site"])] if found["site"] else [])
-    points += [f"not varied: {', '.join(found['not_varied'])}"] if found["not_varied"] else []
+    points = [_moving(each) for each in found.moving] + ([_site(found.site)] if found.site else [])
+    points += [f"not varied: {', '.join(found.not_varied)}"] if found.not_varied else []
     return [Heading(head), Bullets(tuple(points))]
 
 
-def _moving(each: Mapping[str, Any]) -> str:
-    low, high = percent(each["correct_at_low"]), percent(each["correct_at_high"])
-    if each["source"] == "draws":
-        name = NAMES.get(each["name"], each["name"])
+def _moving(each: Assumption) -> str:
+    low, high = percent(each.correct_at_low), percent(each.correct_at_high)
+    if each.source == "draws":
+        name = NAMES.get(each.name, each.name)
         return f"{name}: {low} correct at the low end of its 95 %, {high} at the high end"
-    unit = each["unit"]
     return (
-        f"{each['name']}: {low} correct at {each['low']:.2g} {unit}, {high} at {each['high']:.2g} {unit} "
-        f"({each['value']:.2g} {unit} assumed)"
+        f"{each.name}: {low} correct at {each.low:.2g} {each.unit}, {high} at {each.high:.2g} {each.unit} "
+        f"({each.value:.2g} {each.unit} assumed)"
     )
 
 

@@ -57,21 +57,21 @@ def report(
     ``icons`` and ``rig`` are those that were ranked, ``command`` reproduces the ranking, ``cures`` explain by name how
     an icon could be reached. No date is printed.
     """
-    result = made.to_dict(mapped=False)  # the map is drawn, not printed
-    title, count = icons.title or "Thermal icons", len(result["icons"])
+    ranking = made.ranking
+    title, count = icons.title or "Thermal icons", len(ranking.icons)
     lead = f"Predicted ranking of {'1 icon' if count == 1 else f'{count} icons'} by thermicon"
     parts = [
         Heading(title, 1),
         Text(f"{lead}: a model's, not measured", "lead"),
-        *(Text(f"warning: {line}", "warn") for line in result["warnings"]),
+        *(Text(f"warning: {line}", "warn") for line in made.warnings),
         *rank_report(made, "", cures, details=True),
-        *_settings(result, rig, command),
-        *view_parts(made.ranking),
-        *_pairs(result),
-        *icon_parts(result, icons, rig),
+        *_settings(ranking, rig, command),
+        *view_parts(ranking),
+        *_pairs(ranking),
+        *icon_parts(ranking, icons, rig),
         Heading("Rig file"),
         Text("The whole rig as it was used, changes included."),
-        Code(result["rig_text"]),
+        Code(ranking.job.rig.toml),
         Heading("Limits of the prediction"),
         Bullets(LIMITS),
         Heading("Safety"),
@@ -80,40 +80,33 @@ def report(
     return as_html(parts, f"{title}: predicted ranking")
 
 
-def _settings(result: dict[str, Any], rig: Rig, command: str) -> Iterator[Block]:
+def _settings(ranking: Ranking, rig: Rig, command: str) -> Iterator[Block]:
+    elsewhere = ranking.new_laboratory
     versions = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy"))
     rows = [
         ("command", command),
-        ("rig", f"{result['rig']}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²"),
-        ("people", f"{result['people']} virtual, seed {result['seed']}"),
-        ("draws of the posterior", str(result["set"]["posterior_draws"] or "")),
-        ("made with", f"thermicon {result['thermicon']}, Python {platform.python_version()}, {versions}"),
-        ("content hash", result["content_hash"]),
+        ("rig", f"{ranking.rig}: {rig.site}, {rig.contact.area_m2 * 1e4:g} cm²"),
+        ("people", f"{ranking.people} virtual, seed {ranking.seed}"),
+        ("draws of the posterior", str(elsewhere.draws) if elsewhere else ""),
+        ("made with", f"thermicon {ranking.version}, Python {platform.python_version()}, {versions}"),
+        ("content hash", ranking.content_hash),
     ]
     yield Heading("Settings")
     yield Facts(tuple(row for row in rows if row[1]))
     yield Text("The hash covers the icons' text, the rig and the observer's parameters: equal hashes mean equal input.")
 
 
-def _sized(value: float | None, unit: str) -> str:
-    """Write a component with its unit; a factor has a multiplication sign."""
-    if value is None:
-        return "–"
-    written = "×" if unit == "1" else unit
-    return f"{value:.2f} {written}" if abs(value) < 10 else f"{value:.1f} {written}"
-
-
-def _pairs(result: dict[str, Any]) -> Iterator[Block]:
-    if not result["pairs"]:
+def _pairs(ranking: Ranking) -> Iterator[Block]:
+    if not ranking.pairs:
         return
     yield Heading("Pairs, the most confused first")
-    rows = sorted(result["pairs"], key=lambda pair: (-pair["confused_probability"], pair["a"], pair["b"]))
-    names = [part["part"] for part in rows[0]["parts"]]
+    rows = sorted(ranking.pairs, key=lambda pair: (-pair.confused_probability, pair.a, pair.b))
+    names = [part.name for part in rows[0].parts]
     cells = [
         [
-            *(pair["a"], pair["b"], Cell(f"{pair['d_prime']:.1f}", "strong")),
-            f"{100 * pair['confused_probability']:.1f} %",
-            *(Cell(_sized(part["value"], part["unit"]), "strong" if part["above"] else "") for part in pair["parts"]),
+            *(pair.a, pair.b, Cell(f"{pair.d_prime:.1f}", "strong")),
+            f"{100 * pair.confused_probability:.1f} %",
+            *(Cell(f"{part.value:.{1 + (part.value < 10)}f} d′", "strong" * part.above) for part in pair.parts),
         ]
         for pair in rows[:MOST_PAIRS]
     ]
@@ -143,8 +136,7 @@ def view_parts(ranking: Ranking) -> Iterator[Block]:
     if found.covariance is not None:
         bent += f" Each ellipse holds half of {found.people} people, whose maps were rotated and shifted onto this one."
     yield _drawn(plot_map(found), "the icons as points of a plane", bent)
-    worst = next((pair for pair in ranking.pairs if (pair.a, pair.b) == ranking.worst_pair), None)
-    if worst is not None:
+    if (worst := ranking.worst) is not None:
         roc = "Hits against false alarms for the pair that is confused most often, whatever the criterion."
         yield _drawn(plot_roc(worst), "receiver operating characteristic of the worst pair", roc)
 
@@ -154,7 +146,7 @@ def _drawn(axes: Axes, said: str, caption: str) -> Picture:
     return Picture(caption, said, round(96 * figure.get_figwidth()), small_png(figure, MAPS))
 
 
-def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Block]:
+def icon_parts(ranking: Ranking, icons: IconSet, rig: Rig) -> Iterator[Block]:
     """Yield every icon: what it scores, its cue text, and an overview of its run."""
     from thermicon.circuit import simulate
 
@@ -164,14 +156,14 @@ def icon_parts(result: dict[str, Any], icons: IconSet, rig: Rig) -> Iterator[Blo
     yield Heading("Icons")
     if len(members) > MOST_OVERVIEWS:
         yield Text(f"Overviews of the first {MOST_OVERVIEWS} icons; simulate FILE --figure OUT draws all of them.")
-    for place, (icon, score) in enumerate(zip(members, result["icons"], strict=True)):
+    for place, (icon, score) in enumerate(zip(members, ranking.icons, strict=True)):
         yield Heading(icon.name, 3)
         facts = [
-            f"{percent(score['proportion_correct'])} correct",
-            f"reported in {percent(score['detected_probability'])} of the trials of all people",
+            f"{percent(score.proportion_correct)} correct",
+            f"reported in {percent(score.detected_probability)} of the trials of all people",
         ]
-        peaks = (f"{number(k, 2)} K at the {name.replace('_', ' ')}" for name, k in score["peak_change_K"].items())
-        yield Text("; ".join([*facts, "largest change " + ", ".join(peaks)]) + ".", "lead")
+        cold, warm = (f"{number(peak, 2)} K at the" for peak in score.peak_change_K)
+        yield Text("; ".join([*facts, f"largest change {cold} cold receptor, {warm} warm receptor"]) + ".", "lead")
         text = str(icon)  # without the head of its file
         yield Code(text[text.find("\nicon ") + 1 :].rstrip("\n"))
         if place < MOST_OVERVIEWS:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from thermicon.icons.number_text import count_of, number, percent, percent_span, seconds
 
@@ -17,13 +17,12 @@ from .rank_details import (
     edit_text,
     edits_blocks,
     outside_lines,
-    playable,
     trouble_lines,
-    worst_pair,
 )
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
+    from thermicon.perception.ranking.scores import IconScore
     from thermicon.perception.ranking.sensitivity import Sensitivity
 
     from .set_report import SetReport
@@ -45,30 +44,27 @@ def rank_report(
     ``cures`` explain by the name of an icon how it could be reached, ``following`` is the command to give next. Without
     ``details``, all but the first note, the reasons and what the numbers depend on are left out.
     """
-    result = made.to_dict(mapped=False)  # the map is drawn, not printed
-    place = {row["icon"]: k for k, row in enumerate(made.ranking.rows())}
-    icons = sorted(result["icons"], key=lambda icon: place[icon["name"]])
-    notes = [*trouble_lines(result["icons"], cures or {}), *outside_lines(icons)]
+    ranking, icons = made.ranking, made.ranking.best_first
+    notes = [Text(line, "warn") for line in trouble_lines(ranking.icons, cures or {})]
+    notes += [Text(line, "note") for line in outside_lines(icons)]
     if not details and len(notes) > 1:
-        notes = [notes[0], f"{count_of(len(notes) - 1, 'more note')}: thermicon rank --details"]
-    advice = edit_text(worst_pair(result)) if result["set"]["worst_pair"] else ""
-    where = laboratory(result["observer"], result["set"]["own_laboratory"])
-    chosen = list(choice_lines(result["chosen"], where)) if result["chosen"] else []
-    said = [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]
-    by = "" if result["observer"] == "shipped" else f", observer {result['observer']}"
-    short = f"Predicted, not measured: {crowd_text(result)}{by}."
+        notes = [notes[0], Text(f"{count_of(len(notes) - 1, 'more note')}: thermicon rank --details", "warn")]
+    advice = edit_text(made, ranking.worst) if ranking.worst else ""
+    chosen = list(choice_lines(made.choice)) if made.choice else []
+    by = "" if ranking.observer == "shipped" else f", observer {ranking.observer}"
+    short = f"Predicted, not measured: {crowd_text(ranking)}{by}."
     told: list[Block] = [Heading(chosen[0], 3), Bullets(tuple(chosen[1:]))] if chosen else []
     return [
         *([Heading(title, 1)] if title else []),
-        *([Text("\n".join(goal_lines(result["goal"])))] if result["goal"] else []),
-        Facts(cards(result, where), cards=True),
-        Text("\n".join(filter(None, said))),
+        *([Text("\n".join(goal_lines(made.goal)))] if made.goal else []),
+        Facts(cards(made), cards=True),
+        Text("\n".join(filter(None, [advice[:1].upper() + advice[1:], f"Next: {following}" if following else ""]))),
         *told,
-        *([] if details else edits_blocks(result)),
-        *(Text(note, "note" if note.startswith("Outside") else "warn") for note in notes),
-        icon_table(icons, result, None if details else MOST_ROWS),
-        *(detail_blocks(result) if details else []),
-        Text(caveat(result) if details else f"{short} More: {'rank ' * (not following)}--details"),
+        *([] if details else edits_blocks(made)),
+        *notes,
+        icon_table(icons, made, None if details else MOST_ROWS),
+        *(detail_blocks(made) if details else []),
+        Text(caveat(ranking) if details else f"{short} More: {'rank ' * (not following)}--details"),
     ]
 
 
@@ -108,50 +104,56 @@ def rules_report(ranking: Ranking, title: str) -> list[Block]:
     ]
 
 
-def cards(result: Mapping[str, Any], where: str) -> tuple[tuple[str, str], ...]:
-    """The numbers that are asked first: named, bits, detected, and the worst pair; each with its interval."""
-    whole, icons = result["set"], result["icons"]
-    least = min(icons, key=lambda icon: float(icon["detected_probability"]))
-    mean = sum(icon["detected_probability"] for icon in icons) / len(icons)
-    felt = "of trials detected"
-    if len(icons) > 1:
-        felt += f"; least: {least['name']}, {percent(least['detected_probability'])}"
-    if whole["information_bits"] is None:
-        return ((percent(mean), felt),)
+def cards(made: SetReport) -> tuple[tuple[str, str], ...]:
+    """The numbers that are asked first: named, bits, detected, and the worst pair; each with its interval.
+
+    Where icons were chosen, they are those of the chosen as a set of their own.
+    """
+    ranking, choice = made.ranking, made.choice
+    icons, worst = [each for each in ranking.icons if choice is None or each.name in choice.icons], ranking.worst
+    elsewhere = ranking.new_laboratory if choice is None else choice.new_laboratory
+    least = min(icons, key=lambda icon: icon.detected_probability)
+    mean = sum(icon.detected_probability for icon in icons) / len(icons)
+    if worst is None:
+        return ((percent(mean), "of trials detected"),)
     correct, bits = "named correctly", "of information"
-    if whole["proportion_correct_interval_new_laboratory"]:
-        correct += f"; in {where} (95 %): {percent_span(*whole['proportion_correct_interval_new_laboratory'])}"
-        low, high = whole["information_bits_interval_new_laboratory"]
-        bits += f"; in {where} (95 %): {low:.2f}–{high:.2f}"
-    elif result["people"] > 1:
-        correct += f"; middle 95 % of people: {percent_span(*whole['proportion_correct_interval'])}"
-        low, high = whole["information_bits_interval"]
-        bits += f"; middle 95 % of people: {low:.2f}–{high:.2f}"
-    worst = worst_pair(result)
-    pair = f"worst pair: {worst['a']} and {worst['b']}, confused in {percent(worst['confused_probability'])}"
+    if choice is not None:
+        own = choice.at_own_range
+        share, information, d_prime = own.proportion_correct, own.information_bits, own.d_prime
+        pair = f"nearest pair: {' and '.join(own.worst_pair)}"
+    else:
+        share, information, d_prime = ranking.proportion_correct, ranking.information_bits, worst.d_prime
+        pair = f"worst pair: {worst.a} and {worst.b}, confused in {percent(worst.confused_probability)}"
+    if elsewhere is not None:
+        within, ends = f"in {laboratory(ranking)} (95 %)", (elsewhere.proportion_correct, elsewhere.information_bits)
+    else:
+        within, ends = "middle 95 % of people", (ranking.proportion_correct_interval, ranking.information_bits_interval)
+    if elsewhere is not None or (choice is None and ranking.people > 1):
+        correct += f"; {within}: {percent_span(*ends[0])}"
+        bits += f"; {within}: {ends[1][0]:.2f}–{ends[1][1]:.2f}"
     return (
-        (percent(whole["proportion_correct"]), correct),
-        (f"{whole['information_bits']:.2f} bits", bits),
-        (percent(mean), felt),
-        (f"d′ {number(worst['d_prime'])}", pair),
+        (percent(share), correct),
+        (f"{information:.2f} bits", bits),
+        (percent(mean), f"of trials detected; least: {least.name}, {percent(least.detected_probability)}"),
+        (f"d′ {number(d_prime)}", pair),
     )
 
 
-def icon_table(icons: Sequence[dict[str, Any]], result: Mapping[str, Any], most: int | None = None) -> Grid:
+def icon_table(icons: Sequence[IconScore], made: SetReport, most: int | None = None) -> Grid:
     """One row per icon in this order; those that are unsafe or not reached have a star and stand apart.
 
     Of more than `most`, the last row says how many were left out.
     """
-    apart = len(playable(icons))
-    labels, chosen = result["confusion"]["labels"], (result["chosen"] or {"icons": ()})["icons"]
+    apart, labels = sum(icon.playable for icon in icons), made.ranking.labels
+    chosen = () if made.choice is None else made.choice.icons
     rows: list[tuple[str | Cell, ...]] = [
         (
-            f"{'✓ ' * (icon['name'] in chosen)}{icon['name']}{' *' * (place >= apart)}",
-            percent(icon["detected_probability"]),
-            seconds(icon["onset_s"]),
-            icon["channel"] or "–",
-            Cell(percent(icon["proportion_correct"]), "strong"),
-            rival(result["confusion"], labels.index(icon["name"])),
+            f"{'✓ ' * (icon.name in chosen)}{icon.name}{' *' * (place >= apart)}",
+            percent(icon.detected_probability),
+            seconds(icon.onset_s),
+            icon.channel or "–",
+            Cell(percent(icon.proportion_correct), "strong"),
+            rival(made.ranking, labels.index(icon.name)),
         )
         for place, icon in enumerate(icons)
     ]
@@ -160,14 +162,14 @@ def icon_table(icons: Sequence[dict[str, Any]], result: Mapping[str, Any], most:
     return grid(RANKED, rows, ("detected", "onset", "correct"), RANKED, apart)
 
 
-def rival(confusion: Mapping[str, Any], place: int) -> str:
+def rival(ranking: Ranking, place: int) -> str:
     """Return the icon that the one at this place is confused with most often, and how often: the mean of both ways."""
-    matrix, labels = confusion["probability"], confusion["labels"]
-    others = [(0.5 * (matrix[place][k] + matrix[k][place]), label) for k, label in enumerate(labels) if k != place]
+    shares = 0.5 * (ranking.confusion[place] + ranking.confusion[:, place])
+    others = [(share, name) for k, (share, name) in enumerate(zip(shares, ranking.labels, strict=True)) if k != place]
     if not others:
         return "–"
-    share, label = max(others)
-    return f"{label} {percent(share)}"
+    share, name = max(others)
+    return f"{name} {percent(share)}"
 
 
 def doubt_report(found: Sensitivity, title: str) -> list[Block]:
@@ -183,8 +185,6 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
         )
         for effect in found.effects[:MOST_CONSTANTS]
     ]
-    what_if = f" with {', '.join(found.rig_changes)}" if found.rig_changes else ""
-    crowd = count_of(found.people, "virtual person", "virtual people")
     lead = "Measure first, by the share of the variance of the proportion correct that would go:"
     return [
         *([Heading(title, 1)] if title else []),
@@ -194,7 +194,7 @@ def doubt_report(found: Sensitivity, title: str) -> list[Block]:
         Text(
             "Shares of the variance between draws of the posterior; constants that trade off share theirs, so that "
             "shares need not add up to 100 %. Beside them the proportion correct expected at both ends of the "
-            f"interval. {found.draws} draws for {crowd} on the {found.rig} rig{what_if} (seed {found.seed}, memory: "
+            f"interval. {found.draws} draws for {crowd_text(found)} (seed {found.seed}, memory: "
             f"{found.memory}): contact and outermost layer of the skin vary too, unlike in the intervals of rank."
         ),
     ]

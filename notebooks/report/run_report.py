@@ -31,8 +31,13 @@ PRINTED: Mapping[str, tuple[float, str, str]] = {
 
 
 def headline(trace: Trace) -> str:
-    """One line about a run: its length, and whether it reached its target or why not."""
-    start = f"{trace.icon or 'drive'}: {number(float(trace.time_s[-1]), 2)} s"
+    """One line about a run: its name, and what it came to."""
+    return f"{trace.icon or 'drive'}: {outcome_text(trace)}"
+
+
+def outcome_text(trace: Trace) -> str:
+    """The length of a run, and whether it reached its target or why not."""
+    start = f"{number(float(trace.time_s[-1]), 2)} s"
     if trace.outcome is None:
         return start
     if not trace.outcome.reached:

@@ -30,11 +30,11 @@ class SetReport:
     edits: Mapping[tuple[str, str], Edit | NoEdit] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
 
-    def to_dict(self, mapped: bool = True) -> dict[str, Any]:
-        """The content of `rank --json` as plain data; the map takes a while and is None where it is not wanted."""
+    def to_dict(self) -> dict[str, Any]:
+        """The content of `rank --json` as plain data."""
         from thermicon.perception.selection.edit import NoEdit
 
-        made = ranking_file(self.ranking, mapped)
+        made = ranking_file(self.ranking)
         made["warnings"] = list(self.warnings)
         made["goal"] = None if self.goal is None else plain(self.goal.to_dict())
         made["chosen"] = None if self.choice is None else plain(self.choice.to_dict())

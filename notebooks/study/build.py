@@ -19,7 +19,7 @@ from thermicon.icons.near_words import did_you_mean
 
 from .judging import Judged, Progress, judge_drives, judge_sessions
 from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
-from .study_file import MOST_ASKED, Study, StudyError, Threshold, parse_study, study_hash, study_text
+from .study_file import MOST_ASKED, Stimuli, Study, StudyError, Threshold, parse_study, study_hash, study_text
 from .timing import Landing, find_gap, find_landing
 
 if TYPE_CHECKING:
@@ -69,18 +69,20 @@ class Plan:
 
 def read_materials(source: str | Path) -> Materials:
     """Read a study file and what it names, beside it or shipped; every fault is raised before anything is simulated."""
-    from thermicon.circuit import Device, Rig
+    from thermicon.circuit import Device
     from thermicon.icons import read_cue
 
     text = study_text(source)
     study = parse_study(text, str(source))
     folder = Path(source).parent
     stimuli = study.stimuli
-    rig = Rig.load(_beside(stimuli.rig, folder))
-    if stimuli.rig_changes:
-        rig = rig.with_set(list(stimuli.rig_changes))
+    if study.threshold:
+        rig = _rig_of(stimuli, folder, None)
+        icons = level_icons(study.threshold, rig)
+    else:
+        icons = read_cue(_beside(stimuli.set or "", folder))
+        rig = _rig_of(stimuli, folder, icons.context.site)
     device = Device.load(_beside(stimuli.device, folder))
-    icons = level_icons(study.threshold, rig) if study.threshold else read_cue(_beside(stimuli.set or "", folder))
     if not stimuli.icons:
         check_counts(study, len(icons))
     for name in stimuli.icons:
@@ -99,6 +101,14 @@ def read_materials(source: str | Path) -> Materials:
         "device": json.dumps(asdict(device), sort_keys=True, default=str),
     }
     return Materials(study, text, icons, chosen, rig, device, study_hash(study, contents))
+
+
+def _rig_of(stimuli: Stimuli, folder: Path, site: str | None) -> Rig:
+    """The rig of a study with its changes; unless one is named, the usual one for a site."""
+    from thermicon.circuit import Rig
+
+    rig = Rig.of(None if stimuli.rig is None else _beside(stimuli.rig, folder), site)
+    return rig.with_set(list(stimuli.rig_changes)) if stimuli.rig_changes else rig
 
 
 def _beside(name: str, folder: Path) -> str:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+from thermicon.icons.model.arguments import advised
+
 from ..files.exporting import felt_in
 from .schedule import Course
 from .study_file import StudyError
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 ALL_JUDGED = 4
 """Participants up to whom every session is judged in all corners; of more, those whose run is the most extreme."""
 
+KEYS: Mapping[str, Callable[[float], str]] = {"pause_s": "timing.gap_s = {:g}".format}
+"""How a study file writes what to change."""
 Progress = Callable[[int, int], None]
 
 
@@ -81,9 +85,7 @@ def judge_drives(
         if longer != gap:
             ready, gap = prepared(longer.gap_s), longer
     if ready.refused:
-        # The gate names the option of the command; here a key of the study takes its place.
-        reasons = [f"{name}: {refusal}".replace("(--pause ", "(timing.gap_s = ") for name, refusal in ready.refused]
-        raise Refused(reasons)
+        raise Refused([f"{name}: {advised(one.text, one.changes, KEYS)}" for name, one in ready.refused])
     return ready, gap
 
 

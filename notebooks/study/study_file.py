@@ -40,7 +40,7 @@ class Stimuli(Table):
 
     set: Name | None = None
     icons: Annotated[list[Name], Field(max_length=MOST_ASKED)] = []
-    rig: Name = "thenar"
+    rig: Name | None = None
     rig_changes: Annotated[list[Line], Field(max_length=100)] = []
     device: Name = "ni-analogue-output"
     format: Literal["psychopy"] = "psychopy"

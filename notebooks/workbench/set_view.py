@@ -180,8 +180,7 @@ class SetView(LiveView[SetRequest]):
             frame = heat_frame(made, pair)
             self.heat.frame(frame.meta, frame.buffers)
         self._mark(False)
-        result = SetReport(ranking).to_dict(mapped=False)  # the map exists already, aligned with the one before
-        for name, html in set_html(ranking, result).items():
+        for name, html in set_html(SetReport(ranking)).items():
             said[name].value = html
         people = f"{ranking.people} people"
         self._say(people if well else f"preliminary: {people}; refining …")

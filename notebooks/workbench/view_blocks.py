@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 from thermicon.icons.number_text import number, percent
 
-from ..cli.export import warning_lines
 from ..report.blocks import Bullets, Cell, Facts, Heading, Text, fragment, grid, shown
-from ..report.choices import laboratory
-from ..report.gate_words import CAUTION, gate_words, steps_of
-from ..report.rank_details import caveat, edit_text, outside_lines, trouble_lines
+from ..report.gate_words import CAUTION, gate_words, steps_of, warning_lines
+from ..report.rank_details import caveat, edit_words, outside_lines, trouble_lines
 from ..report.rank_report import cards, icon_table
 from ..timeline.frames import WORDS, terms_of
 
@@ -20,10 +18,11 @@ if TYPE_CHECKING:
     from thermicon.circuit import Export
     from thermicon.circuit.delivery.prepare import Prepared
     from thermicon.circuit.safety.checks import Check
-    from thermicon.perception import Ranking
     from thermicon.perception.identification.delivered import PerceivedChange
     from thermicon.perception.ranking.scores import PairScore
     from thermicon.perception.selection.edit import Edit, NoEdit
+
+    from ..report.set_report import SetReport
 
 ALONE = "The set has only one icon, so there are no distances to show."
 COLOURS = {"green": "th-good", "amber": "th-caution", "red": "th-bad"}
@@ -31,25 +30,23 @@ ASKED = ("d′", "bits", "detected", "felt", "onset", "proportion correct", "mid
 """Words that are explained below a set."""
 
 
-def set_html(ranking: Ranking, result: dict[str, Any]) -> dict[str, str]:
-    """What is said of a ranking, which ``result`` has as plain data, by the names of its parts.
+def set_html(made: SetReport) -> dict[str, str]:
+    """What is said of a ranking, by the names of its parts.
 
     Parts are: scores with the interval of the laboratory that is predicted; one row per icon, the best first; notes of
     what is unsafe, out of reach or out of the range of the data; and what the numbers rest on.
     """
-    icons, observer = result["icons"], result["observer"]
-    rows = {icon["name"]: icon for icon in icons}
-    where = laboratory(observer, result["set"]["own_laboratory"])
-    past = sum(not icon["safe"] for icon in icons)
+    ranking, icons, observer = made.ranking, made.ranking.icons, made.ranking.observer
+    past = sum(not icon.safe for icon in icons)
     limits = f"{past} past a hard limit" if past else "no icon past a hard limit"
     by = "" if observer == "shipped" else f" Predicted with the observer of {observer}."
     meaning = "Confusion: share of trials in which the icon of a row is answered with that of a column."
     simulated = f"Limits of this simulation: {limits}; export judges worst cases."
     return {
-        "scores": shown(Text(ALONE, "note") if len(icons) == 1 else Facts(cards(result, where), cards=True)),
-        "table": shown(icon_table([rows[row["icon"]] for row in ranking.rows()], result)),
+        "scores": shown(Text(ALONE, "note") if len(icons) == 1 else Facts(cards(made), cards=True)),
+        "table": shown(icon_table(ranking.best_first, made)),
         "notes": shown(*(Text(line, "note") for line in (*trouble_lines(icons, {}), *outside_lines(icons)))),
-        "caveat": shown(Text(f"{meaning} {caveat(result)}{by} {simulated}", "soft"))
+        "caveat": shown(Text(f"{meaning} {caveat(ranking)}{by} {simulated}", "soft"))
         + fragment("terms", terms_of(*ASKED)),
     }
 
@@ -68,7 +65,7 @@ def edit_html(edit: Edit | NoEdit | None) -> str:
         return shown(Text("looking for the cheapest edit …", "status"))
     if isinstance(edit, NoEdit):
         return shown(Text(f"no edit: {edit.reason}", "soft"))
-    return shown(Text(edit_text({"edit": edit.to_dict()})))
+    return shown(Text(f"cheapest edit: {edit_words(edit)}"))
 
 
 def delivered_html(ready: Export, remarks: Sequence[str] = ()) -> str:
@@ -80,13 +77,11 @@ def delivered_html(ready: Export, remarks: Sequence[str] = ()) -> str:
     whose = ", ".join(dict.fromkeys(change.detected_by for change in felt.values()))
     detected = f"detected by {whose}" if whose else "detected"
     columns = ("icon", "duration", "rate", "receptors within", "rms", detected, "d′ changes by", "safety")
-    lines = (*remarks, *warning_lines(ready.prepared))
-    told = dict.fromkeys(line.removeprefix("warning: ") for line in lines)
     return shown(
         grid(columns, [_delivered(icon, felt.get(icon.delivery.icon.name)) for icon in ready.prepared]),
         Facts(tuple(gate_words(ready.prepared))),
         *(Text(f"{name}: {refusal}", "note th-bad") for name, refusal in ready.refused),
-        *(Text(line, "note") for line in told),
+        *(Text(line, "note") for line in dict.fromkeys((*remarks, *warning_lines(ready.prepared)))),
     )
 
 
@@ -97,7 +92,7 @@ def _delivered(icon: Prepared, felt: PerceivedChange | None) -> tuple[str | Cell
     return (
         delivery.icon.name,
         f"{number(delivery.file_s, 2)} s",
-        steps_of(delivery).removeprefix("at ").removeprefix("in "),
+        steps_of(delivery)[1],
         f"{number(1e3 * largest[0])} mK at {largest[1]:.2f} s",
         f"{number(1e3 * max(place.rms_K for place in receptors))} mK",
         f"{percent(felt.detection.designed)} → {percent(felt.detection.delivered)}" if felt else "–",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from html import escape
 from importlib.resources import files
 from pathlib import Path
@@ -43,7 +44,7 @@ class Workbench:
         Cue text, the path of a cue file, the name of a shipped set, an icon or a set; None: six-icons. Errors in a cue
         text are shown on the page.
     rig
-        A rig, its name, or the path of a rig file; None: thenar.
+        A rig, its name, or the path of a rig file; None: the shipped rig of the set's site, else thenar.
     icon
         Name of the icon that is shown first; None: the first.
     folder
@@ -81,11 +82,14 @@ class Workbench:
     ) -> None:
         from thermicon.circuit import Rig
 
-        loaded = rig if isinstance(rig, Rig) else Rig.load("thenar" if rig is None else rig)
         try:
             document = document_of(text, keeps=has_kernel())
         except OutputError as wrong:
             raise ValueError(str(wrong)) from None
+        site = None
+        with suppress(CueErrors):
+            site = parse(document.text).context.site
+        loaded = Rig.of(rig, site)
         self._design = DesignModel(document, loaded, icon, _observer_of(observer))
         self._check_icon(icon)
         self._folder = Path(folder)

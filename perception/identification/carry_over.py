@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -46,11 +46,11 @@ class CarryOver:
         """Root mean square (norms, icons) over some icons before, each of them as likely as the next."""
         return np.asarray(np.sqrt((self.apart[:, list(places)] ** 2).mean(axis=1)))
 
-    def worst_of(self, place: int, norm: Norm, places: Sequence[int] = ()) -> dict[str, Any]:
-        """After which icon (of some) one feels least like itself, and by how many d′ from memory, for `rank --json`."""
+    def worst_of(self, place: int, norm: Norm, places: Sequence[int] = ()) -> tuple[str, float]:
+        """After which icon (of some) one feels least like itself, and by how many d′ from memory."""
         k, some = NORMS.index(norm), list(places or range(len(self.names)))
         before = some[int(self.apart[k, some, place].argmax())]
-        return {"after": self.names[before], "d_prime": float(self.apart[k, before, place])}
+        return self.names[before], float(self.apart[k, before, place])
 
 
 def carry_over(

@@ -72,6 +72,16 @@ class NewLaboratory:
             "detected": self.each.persons_detected.reshape(-1),
         }
 
+    def ahead_of(self, other: NewLaboratory) -> float:
+        """How often a person names these icons better than the other's, on the same draws; a tie counts half.
+
+        People are paired where both sets were judged by equally many.
+        """
+        mine, theirs = self.each.persons_correct[..., None], other.each.persons_correct[:, None]
+        if mine.shape[1] == theirs.shape[2]:
+            mine, theirs = self.each.persons_correct, other.each.persons_correct
+        return float((mine > theirs).mean() + 0.5 * (mine == theirs).mean())
+
     def rows(self, names: Sequence[str]) -> list[dict[str, Any]]:
         """The intervals of every icon, by the keys of `rank --json`."""
         named = [self.pair(k, k, "confused") for k in range(len(names))]

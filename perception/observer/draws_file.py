@@ -34,7 +34,7 @@ FIRST_LINE = "# written by thermicon calibrate from inputs "
 LABORATORY_LINE = "# written by thermicon observed from inputs "
 """How the draws of one laboratory begin."""
 CURE = "write it again with python -m thermicon.perception.evidence sample -o FILE"
-KEEP_AGAIN = "keep it again from its answers: pilot FILE --answers TRIALS.csv --keep LAB.toml"
+KEEP_AGAIN = "keep it again, by a pilot with its answers"
 CONSTANTS = DATA / "constants.csv"
 APPROXIMATE = "normal approximation"
 
@@ -159,7 +159,7 @@ def read_draws(path: Path) -> tuple[DrawsHeader, Columns, Columns]:
     lines = read_text(path, "table of posterior draws", MOST_MB, RecordError).splitlines()
     head = [line for line in lines if line.startswith("#")]
     if not head or not head[0].startswith((FIRST_LINE, LABORATORY_LINE)):
-        laboratory = "pilot FILE --answers TRIALS.csv --keep LAB.toml makes one of answers"
+        laboratory = "a pilot with answers keeps one of its laboratory"
         raise RecordError(f"{path.name}, line 1: this is not a table of posterior draws: {CURE}; {laboratory}")
     header = _header(path.name, head)
     _check_table(path.name, head, lines[len(head) :])

@@ -148,7 +148,7 @@ def _plain(fit: Fit | MeasurementFit) -> dict[str, Any]:
 def observed(
     trials: Trials | Measurements,
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     *,
     crowd: Crowd = EVERYBODY,
     others: Sequence[IconSet | str | Path] = (),
@@ -166,7 +166,8 @@ def observed(
     icons
         The set whose prediction is wanted; its icons were all the answers that there were.
     rig
-        The rig, or its name or file, that plays it, and on which the answers were given or the values measured.
+        The rig, or its name or file, that plays it, and on which the answers were given or the values measured;
+        None: as in `rank`.
     crowd
         Who feels and remembers the icons.
     others
@@ -201,8 +202,8 @@ def observed(
     """
     if "people" in words:
         raise InputError("observed: people are the participants; leave it out")
-    icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
-    names, seed = tuple(icon.name for icon in icons), crowd.seed
+    icons, crowd = set_of(icons), crowd.but(**words)
+    rig, names, seed = Rig.of(rig, icons.context.site), tuple(icon.name for icon in icons), crowd.seed
     if isinstance(trials, Trials) and trials.icons != names:
         raise ValueError(f"the answers are to other icons than those of the set ({', '.join(names[:6])})")
     if draws < LEAST_DRAWS:

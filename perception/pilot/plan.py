@@ -132,7 +132,7 @@ class Plan(Tabled):
 @checked
 def plan(
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     other: Icons | None = None,
     *,
     crowd: Crowd = EVERYBODY,
@@ -185,8 +185,9 @@ def plan(
     _check(participants, trials, wanted, draws)
     if "people" in words:
         raise InputError("plan: people are the participants; leave it out")
-    rig, crowd = Rig.of(rig), crowd.but(**words)
+    crowd = crowd.but(**words)
     sets, seed = [set_of(each) for each in (icons, other) if each is not None], crowd.seed
+    rig = Rig.of(rig, sets[0].context.site)
     prior = LaboratoryPrior.of(crowd.observer, crowd.memory)
     number = laboratories_for(max(2, *(len(list(each)) for each in sets)), draws)
     laboratories = prior.first(number, seed)

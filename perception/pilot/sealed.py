@@ -67,8 +67,8 @@ class Opened:
 
 
 def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> Sealed:
-    """Read what `rank --json` wrote of these icons on this rig; a `SealedError` says what does not fit."""
-    data, again = read_bytes(Path(path), WHAT, MOST_MB, SealedError), "give the file that rank --json wrote, as it was"
+    """Read the JSON of a ranking of these icons on this rig; a `SealedError` says what does not fit."""
+    data, again = read_bytes(Path(path), WHAT, MOST_MB, SealedError), "give the JSON of a ranking, as it was written"
     try:
         held = json.loads(data)
         version, digests, named = str(held["thermicon"]), dict(held["sha256"]), held["confusion"]
@@ -84,7 +84,7 @@ def read_sealed(path: str | Path, icons: IconSet, rig: Rig) -> Sealed:
         raise SealedError(f"{path}: predicts other icons than those given ({shown}); give those, in their order")
     for name, digest in digests_of(icons, rig).items():
         if digest != digests.get(name):
-            cure = "the cue files unchanged" if name == "icons" else "the same --rig and --set"
+            cure = "the cue files unchanged" if name == "icons" else "the same rig and changes"
             raise SealedError(f"{path}: sealed for other {name}; give {cure}, or open it with thermicon {version}")
     if confusion.shape != (len(labels),) * 2 or not (confusion >= 0).all() or (abs(confusion.sum(1) - 1) > 1e-6).any():
         raise SealedError(f"{path}: confusion.probability has no row of probabilities for each icon; {again}")

@@ -22,7 +22,7 @@ from ..sensation.percept import perceive
 from .batches import Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
-from .scores import assemble, disagreements, objection, worst_of
+from .scores import assemble, objection, worst_of
 
 if TYPE_CHECKING:
     from thermicon.icons import IconSet
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 @checked
 def rank(
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     *,
     crowd: Crowd = EVERYBODY,
     trials: int = 48,
@@ -51,7 +51,7 @@ def rank(
     icons
         The set, its name or file, or its icons.
     rig
-        The rig that plays it, or its name or file.
+        The rig that plays it, or its name or file; None: the shipped rig of the icons' site, else thenar.
     crowd
         Who feels and remembers the icons.
     trials
@@ -92,8 +92,8 @@ def rank(
     """
     from thermicon.circuit.solver.simulate import duration_s, simulate_all
 
-    icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
-    members, model = list(icons), crowd.model
+    icons, crowd = set_of(icons), crowd.but(**words)
+    rig, members, model = Rig.of(rig, icons.context.site), list(icons), crowd.model
     draws = model.draw_count(parameters, DRAWS)
     if isinstance(workers, int) and workers < 1:
         raise ValueError(f"at least one worker is needed, not {workers}")
@@ -124,7 +124,6 @@ def rank(
         pairs=pairs,
         worst_pair=worst_of(scored, pairs),
         rules=rig_rules(rig),
-        rules_disagree=disagreements(scored, pairs),
         carry_over=left,
     )
     report()

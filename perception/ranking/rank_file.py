@@ -26,14 +26,15 @@ ICON_KEYS = (
     "outside_data",
 )
 TWO_NUMBERS = ("peak_change_K", "attack_K_per_s", "delay_s")
+CARRIED = ("after", "d_prime")
 AT_RECEPTORS = ("cold_receptor", "warm_receptor")
 OFTEN_CONFUSED = 0.05
 """Pairs confused more often than this have an interval of it."""
 
 
-def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
-    """The keys of the contract, in their order; the map takes a while and is left None where it is not wanted."""
-    asked, left = ranking.new_laboratory, ranking.carry_over
+def ranking_file(ranking: Ranking) -> dict[str, Any]:
+    """The keys of the contract, in their order."""
+    asked, left, played = ranking.new_laboratory, ranking.carry_over, (ranking.memory, ranking.task.counted)
     elsewhere: list[dict[str, Any]] = (
         asked.rows(ranking.labels) if asked else [dict.fromkeys(NEW_LABORATORY) for _ in ranking.icons]
     )
@@ -57,7 +58,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
                 {
                     **_icon(icon),
                     **intervals,
-                    "carry_over": left and left.worst_of(place, ranking.memory, ranking.task.counted),
+                    "carry_over": left and dict(zip(CARRIED, left.worst_of(place, *played), strict=True)),
                 }
                 for place, (icon, intervals) in enumerate(zip(ranking.icons, elsewhere, strict=True))
             ],
@@ -73,7 +74,7 @@ def ranking_file(ranking: Ranking, mapped: bool = True) -> dict[str, Any]:
             "assumptions": ranking.assumptions.to_dict(),
             "goal": None,
             "chosen": None,
-            "map": _map(ranking) if mapped and len(ranking.icons) > 1 else None,
+            "map": _map(ranking) if len(ranking.icons) > 1 else None,
         }
     )
     return made

@@ -19,7 +19,7 @@ from ..identification.laboratory import NewLaboratory
 from ..observer.observer_model import Crowd, ObserverModel
 from .assumptions import Assumptions, assumptions_of
 from .rules import RuleResult
-from .scores import IconScore, PairScore, counted
+from .scores import IconScore, PairScore, counted, disagreements
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -56,8 +56,6 @@ class Ranking(Drawn, Tabled):
         Names of the pair that is confused most often; None for one icon.
     rules
         Rules on the rig.
-    rules_disagree
-        Where rules and model judge differently.
     carry_over
         What each icon leaves behind for the next where there is a gap; None: nothing.
     new_laboratory
@@ -83,7 +81,6 @@ class Ranking(Drawn, Tabled):
     pairs: tuple[PairScore, ...]
     worst_pair: tuple[str, str] | None
     rules: tuple[RuleResult, ...]
-    rules_disagree: tuple[dict[str, Any], ...]
     carry_over: CarryOver | None = None
     new_laboratory: NewLaboratory | None = None
 
@@ -203,6 +200,16 @@ class Ranking(Drawn, Tabled):
         return tuple(icon.name for icon in self.icons)
 
     @property
+    def best_first(self) -> tuple[IconScore, ...]:
+        """The icons by proportion correct; those that are not safe or not reached come last."""
+        return tuple(sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name)))
+
+    @property
+    def worst(self) -> PairScore | None:
+        """The pair that is confused most often; None for one icon."""
+        return next((pair for pair in self.pairs if (pair.a, pair.b) == self.worst_pair), None)
+
+    @property
     def marked(self) -> tuple[str, ...]:
         """Names of the icons for pictures: a star behind those that are not safe or not reached."""
         return tuple(icon.name if icon.playable else f"{icon.name} *" for icon in self.icons)
@@ -236,6 +243,11 @@ class Ranking(Drawn, Tabled):
         """Share of pairs that are distinguishable by rules alone; None for one icon."""
         return sum(pair.rules_pass for pair in self.pairs) / len(self.pairs) if self.pairs else None
 
+    @property
+    def rules_disagree(self) -> tuple[dict[str, Any], ...]:
+        """Where rules and model judge differently."""
+        return disagreements(self.icons, self.pairs)
+
     def rows(self) -> list[dict[str, Any]]:
         """One plain row per icon, the best first; those that are not safe or not reached come last."""
         apart = Counter(name for pair in self.pairs if pair.rules_pass for name in (pair.a, pair.b))
@@ -257,7 +269,7 @@ class Ranking(Drawn, Tabled):
                 "safe": icon.safe,
                 "reason": icon.reason,
             }
-            for icon in sorted(self.icons, key=lambda icon: (not icon.playable, -icon.proportion_correct, icon.name))
+            for icon in self.best_first
         ]
 
     def map(self) -> PerceptualMap:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +17,7 @@ import numpy as np
 from thermicon.icons.number_text import decimals, significant
 
 from ..criteria import DISTINGUISHABLE_DPRIME, FELT_FROM
-from ..identification.episodes import remembered
+from ..identification.episodes import Episodes, remembered
 from ..observer.observer import Channel, Norm, Observer
 from ..sensation.coverage import outside_data
 from ..sensation.detection import channel_name
@@ -51,8 +52,8 @@ class IconScore:
         Share of trials with the right name, 0–1.
     reachable, safe, reason
         Whether the rig reaches the icon, whether no hard safety limit is exceeded, and why not; None where it is fine.
-    rules, rules_score, rules_margin
-        Rules of thumb, the share passed of them and of its pairs, and the smallest normalised margin among them.
+    rules, pairs
+        Rules of thumb on the icon, and the pairs that it is in.
     cautions, outside_data
         Soft safety limits that it exceeds, and where no data support the prediction.
     duration_s, energy_J
@@ -71,12 +72,21 @@ class IconScore:
     safe: bool
     reason: str | None
     rules: tuple[RuleResult, ...]
-    rules_score: float
-    rules_margin: float | None
     cautions: tuple[str, ...] = ()
     outside_data: tuple[str, ...] = ()
     duration_s: float = math.nan
     energy_J: float = math.nan
+    pairs: tuple[PairScore, ...] = field(default=(), repr=False, compare=False)
+
+    @property
+    def rules_score(self) -> float:
+        """Share passed of its rules and of its pairs."""
+        return icon_score(self.rules, [(pair.rules_pass, pair.rules_margin) for pair in self.pairs])[0]
+
+    @property
+    def rules_margin(self) -> float | None:
+        """The smallest normalised margin among them; None where nothing has one."""
+        return icon_score(self.rules, [(pair.rules_pass, pair.rules_margin) for pair in self.pairs])[1]
 
     @property
     def playable(self) -> bool:
@@ -85,23 +95,55 @@ class IconScore:
 
 
 @dataclass(frozen=True, slots=True)
+class Compared:
+    """What reasons and rules of pairs are read off: the icons on the nominal rig, as a nominal person feels them."""
+
+    traces: Sequence[Trace]
+    percepts: Sequence[Percept]
+    episodes: Episodes
+    observer: Observer
+    norm: Norm
+
+
+@dataclass(frozen=True)
 class PairScore:
     """One pair of icons, `a` and `b`: how far apart they are, how often they are confused, and why.
 
     `d_prime` is the median from memory over people, `confused_probability` the share of trials in which one is named as
     the other, the mean of both directions (0–1). `why` are reasons in words and `parts` components of the distance, for
     a nominal person. `rules_margin` is that by which `rules` separate the pair, in shares of a threshold; None: by
-    direction alone.
+    direction alone. These four are made when they are first read, of the two `places` of what is `compared`.
     """
 
     a: str
     b: str
     d_prime: float
     confused_probability: float
-    why: tuple[str, ...]
-    rules: tuple[RuleResult, ...]
-    rules_margin: float | None = None
-    parts: tuple[DistanceComponent, ...] = ()
+    places: tuple[int, int] = field(repr=False)
+    compared: Compared = field(repr=False, compare=False)
+
+    @cached_property
+    def why(self) -> tuple[str, ...]:
+        """What separates the two, or fails to, in sentences."""
+        held, (i, j) = self.compared, self.places
+        felt = held.percepts[i], held.percepts[j]
+        return pair_reasons(held.traces[i], held.traces[j], felt, held.observer, held.norm, held.episodes, self.places)
+
+    @cached_property
+    def rules(self) -> tuple[RuleResult, ...]:
+        """Rules of thumb on the pair."""
+        i, j = self.places
+        return pair_rules(self.compared.traces[i], self.compared.traces[j])
+
+    @cached_property
+    def rules_margin(self) -> float | None:
+        """Margin by which rules separate the two."""
+        return pair_margin(self.rules)
+
+    @cached_property
+    def parts(self) -> tuple[DistanceComponent, ...]:
+        """Components of the distance."""
+        return components_of(self.compared.episodes, *self.places, self.compared.observer)
 
     @property
     def rules_pass(self) -> bool:
@@ -178,24 +220,18 @@ def assemble(
     """Scores of all icons and of all pairs, in file order."""
     middle, pooled, detected = all_.middle, all_.pooled, all_.detected
     onsets, channels = all_.detection.onset_s, all_.detection.channel
-    pairs = []
-    episodes = remembered(percepts, observer)
-    for i, j in combinations(range(len(icons)), 2):
-        felt = percepts[i], percepts[j]
-        why = pair_reasons(traces[i], traces[j], felt, observer, norm, episodes, (i, j))
-        rules = pair_rules(traces[i], traces[j])
-        pairs.append(
-            PairScore(
-                a=icons[i].name,
-                b=icons[j].name,
-                d_prime=float(middle[i, j]),
-                confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
-                why=why,
-                rules=rules,
-                rules_margin=pair_margin(rules),
-                parts=components_of(episodes, i, j, observer),
-            )
+    compared = Compared(traces, percepts, remembered(percepts, observer), observer, norm)
+    pairs = [
+        PairScore(
+            a=icons[i].name,
+            b=icons[j].name,
+            d_prime=float(middle[i, j]),
+            confused_probability=float(0.5 * (pooled[i, j] + pooled[j, i])),
+            places=(i, j),
+            compared=compared,
         )
+        for i, j in combinations(range(len(icons)), 2)
+    ]
     of_icon: dict[str, list[PairScore]] = {icon.name: [] for icon in icons}
     for pair in pairs:
         of_icon[pair.a].append(pair)
@@ -203,8 +239,6 @@ def assemble(
     scored = []
     for k, (icon, trace, lasting, percept) in enumerate(zip(icons, traces, durations_s, percepts, strict=True)):
         safe, reason, cautions = _verdict(trace)
-        own = icon_rules(trace, percept)
-        share, margin = icon_score(own, [(pair.rules_pass, pair.rules_margin) for pair in of_icon[icon.name]])
         scored.append(
             IconScore(
                 name=icon.name,
@@ -219,12 +253,11 @@ def assemble(
                 safe=safe,
                 reason=reason,
                 cautions=cautions,
-                rules=own,
-                rules_score=share,
-                rules_margin=margin,
+                rules=icon_rules(trace, percept),
                 outside_data=outside_data(trace),
                 duration_s=lasting,
                 energy_J=energy_J(trace, lasting),
+                pairs=tuple(of_icon[icon.name]),
             )
         )
     return tuple(scored), tuple(pairs)

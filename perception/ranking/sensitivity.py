@@ -188,7 +188,7 @@ class Sensitivity(Drawn, Tabled):
 @checked
 def sensitivity(
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     *,
     crowd: Crowd = FEW,
     draws: int | None = None,
@@ -211,8 +211,8 @@ def sensitivity(
     """
     from thermicon.circuit.solver.simulate import duration_s
 
-    rig, crowd = Rig.of(rig), crowd.but(**words)
-    members, model, seed = list(set_of(icons)), crowd.model, crowd.seed
+    icons, crowd = set_of(icons), crowd.but(**words)
+    rig, members, model, seed = Rig.of(rig, icons.context.site), list(icons), crowd.model, crowd.seed
     if len(members) < 2:
         raise ValueError("a sensitivity needs at least two icons: one alone is never confused")
     if model.posterior is None:

@@ -74,7 +74,7 @@ class Appraisal:
 @checked
 def appraise(
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     *,
     crowd: Crowd = EVERYBODY,
     task: Task = USUAL,
@@ -90,10 +90,10 @@ def appraise(
     >>> appraise([six["cooling-step"], six["warming-step"]], Rig.load("thenar"), people=4).worst_pair
     ('cooling-step', 'warming-step')
     """
-    icons, rig, crowd = icons_of(icons), Rig.of(rig), crowd.but(**words)
+    icons, crowd = icons_of(icons), crowd.but(**words)
     if len(icons) < 2:
         raise InputError("at least two icons are needed to be distinguished")
-    model = crowd.model
+    rig, model = Rig.of(rig, icons[0].context.site), crowd.model
     people, nominal = model.people(crowd.people, crowd.seed), model.nominal
     felt, durations = population_response(icons, rig, people, crowd.tracking, observer=nominal)
     d_prime, named = identify(felt, crowd.memory, people, nominal, crowd.seed, task=task)

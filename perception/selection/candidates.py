@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from thermicon.icons.model.parameter import Parameter
 
 MOVED = 0.5
+FOUND = "found by search"
+"""Tag of an icon that a search has found."""
 FINE = 200
 """Parts of a span that a found value is rounded to, at least: 1 to 6 °C by 0.01 °C."""
 UNITS = {"°C": "K", "K": "K", "°C/s": "Kps", "K/s": "Kps", "s": "s", "Hz": "Hz", "A": "A", "": "x"}
@@ -125,12 +127,42 @@ def found_set(icons: IconSet, found: Sequence[Candidate], seed: int) -> IconSet:
     for each, name in zip(found, names_of(found), strict=True):
         icon = each.icon
         if each.family is not None:
-            tags = (*icon.metadata.tags, "found by search", f"seed {seed}", f"from {icon.name.replace('_', ' ')}")
+            tags = (*icon.metadata.tags, FOUND, f"seed {seed}", f"from {icon.name.replace('_', ' ')}")
             icon = Icon(name, _unrepeated(icon.statements), icon.context, replace(icon.metadata, tags=tags))
         made.append(icon)
     name = f"{icons.name}-found" if icons.name else ""
     title = f"{icons.title}, found by search" if icons.title else "Found by search"
     return IconSet(name, title, icons.context, icons.metadata, tuple(made))
+
+
+def chosen_set(icons: IconSet, names: Sequence[str], site: str) -> IconSet:
+    """The chosen icons as a set, for this site unless it has one: members of families get numbers, and tags say which
+    they were.
+
+    >>> from thermicon.icons import read_cue
+    >>> six = read_cue("six-icons")
+    >>> [icon.name for icon in chosen_set(six, ["cooling-step", "warming-step"], "thenar")]
+    ['cooling-step', 'warming-step']
+    >>> pool = read_cue("search-space")
+    >>> [icon.name for icon in chosen_set(pool, [icon.name for icon in pool][:2], "thenar")]
+    ['dip-1', 'dip-2']
+    """
+    from thermicon.icons import Icon, IconSet
+
+    counts: dict[str, int] = {}
+    context = replace(icons.context, site=icons.context.site or site)
+    made = []
+    for name in names:
+        icon = replace(icons[name], context=context)
+        family = next((each.name for each in icons.families if name.startswith(f"{each.name}_")), None)
+        if family is not None:
+            counts[family] = counts.get(family, 0) + 1
+            tags = (*icon.metadata.tags, f"from {name.replace('_', ' ')}")
+            spoken = f"{family}-{counts[family]}"
+            icon = Icon(spoken, _unrepeated(icon.statements), context, replace(icon.metadata, tags=tags))
+        made.append(icon)
+    title = f"{icons.title}: the best {len(made)}" if icons.title else f"The best {len(made)}"
+    return IconSet(f"{icons.name}-best" if icons.name else "", title, context, icons.metadata, tuple(made))
 
 
 def at_ends(found: Sequence[Candidate]) -> tuple[str, ...]:

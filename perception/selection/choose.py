@@ -162,7 +162,7 @@ class Chooser:
         job, model = ranking.job, ranking.model
         self.ranking, self.asked, self.crowd = ranking, asked, model.people(job.people, job.seed)
         whole = Pool.of(job.icons, job.rig, model.nominal, end_s=job.end_s, rate_Hz=RATE_HZ)
-        self.places, self.excluded = whole.usable(asked, model.nominal, goal)
+        self.places, self.excluded = whole.usable(asked, model.nominal, goal, ranking.felt.detected)
         self.pool = whole.some(self.places)
         self.d = ranking.felt.d_prime[:, self.places][:, :, self.places]
         self.must = [k for k, icon in enumerate(self.pool.icons) if icon.name in asked.must]

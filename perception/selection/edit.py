@@ -23,7 +23,7 @@ from ..identification.carry_over import prepare_task
 from ..identification.population import memory_dprime, run_end_s
 from ..identification.task import USUAL, Task
 from ..observer.people import People
-from .appraise import population_response
+from .appraise import appraise, population_response
 from .candidate_edits import CandidateEdit, Screening, Vain, offers, worse
 from .pool import POOL_HZ, Pool
 
@@ -39,7 +39,9 @@ MOST_NEAR, NEAR = 5, 3.0
 MOST_CONFIRMED = 8
 """Edits that are checked with people before the search gives up."""
 MOST_RECOUNTED = 50
-"""People whose episodes are counted again with the edit."""
+"""People who meet the set, and whose episodes are counted, again with the edit."""
+ROUNDING = 0.005
+"""A proportion correct is printed in whole per cent: an edit that changes it by no more than half of one is none."""
 EDITS = ("worst", "all", "none")
 
 
@@ -92,7 +94,8 @@ def cheapest_edit(ranking: Ranking, a: str, b: str, *, wanted: float = DISTINGUI
     """Find the cheapest edit of one of two icons that separates them by a median d′.
 
     Every edit that is offered is read back from its text, simulated, safe and reachable, and makes no other pair worse
-    by more than 0.1 d′ below twice `wanted`. The people of the ranking confirm it, in its task.
+    by more than 0.1 d′ below twice `wanted`, and raises the proportion correct of the set by more than half a point.
+    The people of the ranking confirm it, in its task.
 
     Parameters
     ----------
@@ -167,6 +170,11 @@ def _searched(ranking: Ranking, pair: tuple[int, int], wanted: float) -> Edit | 
         end_s = max(kept.end_s, run_end_s([float(kept.durations_s[one.place]) + one.added_s], POOL_HZ))
         parted, harmed = _with_people(ranking, screening, one, crowd, end_s)
         if parted >= wanted and not harmed and parse(str(one.icon))[one.icon.name].statements == one.icon.statements:
+            gain = _gain(ranking, one)
+            if gain <= ROUNDING:
+                return NoEdit(
+                    f"separating them changes the proportion correct of the set by {100 * gain:+.1f} points only"
+                )
             recounted = _recounted(ranking, one, crowd, end_s)
             return Edit(one.icon.name, one.old, one.new, one.cost, one.added_s, parted, one.icon, recounted)
         vain.opposed |= harmed
@@ -210,6 +218,14 @@ def _with_people(
     rest = np.triu(np.ones_like(after, dtype=bool), 1)
     rest[min(i, j), max(i, j)] = False
     return float(after[i, j]), bool(worse(before[rest], after[rest], screening.wanted).any())
+
+
+def _gain(ranking: Ranking, one: CandidateEdit) -> float:
+    """By how much an edit raises the proportion correct of the set, for the first people."""
+    job, crowd = ranking.job, ranking.crowd.but(people=min(ranking.people, MOST_RECOUNTED))
+    edited = [one.icon if k == one.place else icon for k, icon in enumerate(job.icons)]
+    before, after = (appraise(icons, job.rig, crowd=crowd, task=job.task) for icons in (job.icons, edited))
+    return after.proportion_correct - before.proportion_correct
 
 
 def _recounted(ranking: Ranking, one: CandidateEdit, crowd: People, end_s: float) -> float:

@@ -87,7 +87,7 @@ class Frontier(Drawn, Tabled):
 @checked
 def frontier(
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     *,
     crowd: Crowd = EVERYBODY,
     most: int = MOST,
@@ -104,7 +104,7 @@ def frontier(
     icons
         The pool, its name or file; families count with all their members.
     rig
-        The rig that plays it, or its name or file.
+        The rig that plays it, or its name or file; None: the shipped rig of the icons' site, else thenar.
     crowd
         Who feels and remembers the icons.
     most

@@ -7,6 +7,7 @@ Rankings are judged by it in `thermicon.perception.selection.goal_result`.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,10 +24,11 @@ start: part ("," part)*
 part: WORD COMPARISON NUMBER [UNIT] [people]  -> number
     | WORD NUMBER                             -> exactly
     | WORD WORD                               -> verdict
+    | NUMBER [UNIT] WORD [people]             -> stated
 people: "for" NUMBER "%" "of" "people"
 COMPARISON: ">=" | "<=" | "≥" | "≤" | "=" | ">" | "<"
 NUMBER: /[-−]?[0-9]+(\.[0-9]+)?/
-UNIT: "%" | "ms" | "min" | "s" | "mJ" | "kJ" | "J" | "bits" | "bit"
+UNIT.2: /%|(ms|min|s|mJ|kJ|J|bits?)(?![a-z_])/
 WORD: /(?!for\b)[a-z_][a-z_'′-]*/
 %ignore /\s+/
 """
@@ -66,8 +68,7 @@ QUANTITIES: Mapping[str, Quantity] = {
 }
 NEEDS_DRAWS = (
     "a goal for a share of people is about people and the uncertainty of the model together, and needs draws of the "
-    "posterior: leave --intervals out or ask for 2 or more (in Python: parameters=128), and use an "
-    "observer that has draws"
+    "posterior: ask for 2 or more, and use an observer that has draws"
 )
 SAFETY = "safety"
 VERDICTS = ("green", "amber")
@@ -96,13 +97,17 @@ class GoalPart:
         return "" if self.people is None else f" for {100.0 * self.people:g} % of people"
 
     @property
+    def unit(self) -> str:
+        """The unit that its limit is written in; empty for a pure number, and for safety."""
+        return "" if self.quantity == SAFETY else next(iter(QUANTITIES[self.quantity].units))
+
+    @property
     def text(self) -> str:
         """The part in canonical form."""
         if self.quantity == SAFETY:
             return f"{SAFETY} {VERDICTS[int(self.limit)]}"
         known = QUANTITIES[self.quantity]
-        unit = next(iter(known.units))
-        value = f"{self.limit / known.units[unit]:g} {unit}".rstrip()
+        value = f"{self.limit / known.units[self.unit]:g} {self.unit}".rstrip()
         return f"{self.quantity} {known.comparison} {value}{self.whose}"
 
 
@@ -140,8 +145,8 @@ class Goal:
         """Read a goal: parts joined by commas; a `GoalError` says what cannot be read, and where.
 
         A part is a quantity (`correct`, `detected`, `bits`, `d_prime`, `time`, `energy`, `onset`, `count`), its
-        comparison, a number with its unit, and for the first three `for N % of people`; or `safety green`, `safety
-        amber`.
+        comparison, a number with its unit, and for the first three `for N % of people`; or number, unit and quantity,
+        as in `90 % correct`; or `safety green`, `safety amber`.
         """
         from lark.exceptions import UnexpectedInput
 
@@ -175,7 +180,7 @@ class Goal:
     def check_draws(self, draws: int) -> None:
         """Raise a GoalError for a goal for a share of people without draws of the posterior to judge it by."""
         if any(part.people is not None for part in self.parts) and not draws:
-            raise GoalError(NEEDS_DRAWS)
+            raise GoalError(NEEDS_DRAWS).to(parameters=128)
 
     @property
     def text(self) -> str:
@@ -203,7 +208,7 @@ def _parser() -> Lark:
 
 def _part(number: int, text: str, tree: Any) -> GoalPart:
     where = f"goal, part {number} {text[tree.meta.start_pos : tree.meta.end_pos]!r}"
-    name = str(tree.children[0]).replace("-", "_").replace("d'", "d_prime").replace("d′", "d_prime")
+    name = _name(tree.children[2 if tree.data == "stated" else 0])
     if name == SAFETY:
         wanted = str(tree.children[1]) if tree.data == "verdict" else ""
         if wanted not in VERDICTS:
@@ -242,11 +247,20 @@ def _part(number: int, text: str, tree: Any) -> GoalPart:
     return GoalPart(name, limit, people)
 
 
+def _name(word: Any) -> str:
+    """The quantity that a word names."""
+    return str(word).replace("-", "_").replace("d'", "d_prime").replace("d′", "d_prime")
+
+
 def _pieces(tree: Any) -> tuple[str | None, float, str, float | None]:
     """Comparison, number, unit and share of people of a part; a count may be said to be equal to a number."""
     if tree.data == "exactly":
         return None, _number(tree.children[1]), "", None
-    name, comparison, number, unit, people = tree.children
+    if tree.data == "stated":  # 90 % correct for 95 % of people
+        number, unit, name, people = tree.children
+        comparison = QUANTITIES[_name(name)].comparison
+    else:
+        name, comparison, number, unit, people = tree.children
     signs = {"≥": ">=", ">": ">=", "≤": "<=", "<": "<=", "=": ">=" if name == "count" else "="}
     share = None if people is None else _number(people.children[0]) / 100.0
     return signs.get(str(comparison), str(comparison)), _number(number), str(unit or ""), share
@@ -258,6 +272,8 @@ def _number(token: Any) -> float:
 
 def _where(text: str, problem: Any) -> str:
     place, token = getattr(problem, "pos_in_stream", None), getattr(problem, "token", None)
+    if comma := re.search(r"\d,\d", text):
+        return f"goal {text!r}: {comma[0]!r} is no number; write {comma[0].replace(',', '.')}, with a decimal point"
     if place is None or not 0 <= place < len(text) or (token is not None and token.type == "$END"):
         if text.rstrip().endswith(","):
             return f"goal {text!r}: it ends with a comma: leave it out, or add another part such as 'safety green'"

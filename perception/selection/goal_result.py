@@ -103,13 +103,15 @@ class GoalPartResult:
     met: bool
     binding: str
 
+    @property
+    def verdict(self) -> str | None:
+        """The colour of safety; None for other parts."""
+        return (*VERDICTS, "red")[int(self.value)] if self.part.quantity == SAFETY and self.value is not None else None
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`; of safety, value and limit are words."""
-        wanted: float | str = self.part.limit
-        value: float | str | None = self.value
-        if self.part.quantity == SAFETY and value is not None:
-            value, wanted = (*VERDICTS, "red")[int(value)], VERDICTS[int(wanted)]
-        return {"text": self.part.text, "met": self.met, "value": value, "wanted": wanted}
+        wanted = VERDICTS[int(self.part.limit)] if self.part.quantity == SAFETY else self.part.limit
+        return {"text": self.part.text, "met": self.met, "value": self.verdict or self.value, "wanted": wanted}
 
 
 @dataclass(frozen=True, slots=True)

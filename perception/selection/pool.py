@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 POOL_HZ = 25.0
 """Rows a second of a pool that is only tried out."""
+AN_ALERT = 0.5
+"""What fewer trials than these report is no alert: it is chosen only if asked for. A choice of this project."""
 BLOCK = 4
 """Fewer icons are solved together with repetitions: by the code that people need anyway, not by another for one."""
 
@@ -116,25 +118,31 @@ class Pool:
         ]
         return f"a total of {' and '.join(totals)}"
 
-    def objections(self, goal: Goal | None, observer: Observer) -> tuple[str | None, ...]:
-        """What speaks against each icon: it cannot be played, or it misses what a goal asks of single icons."""
+    def objections(
+        self, goal: Goal | None, observer: Observer, must: Sequence[str] = (), detected: Array | None = None
+    ) -> tuple[str | None, ...]:
+        """What speaks against each icon: it cannot be played, or misses what a goal asks of single icons.
+
+        Unless the goal says how often an icon is to be detected, those that `must` be in need not be, and others in
+        half of the trials: of `detected`, or for the nominal person.
+        """
         green = goal is not None and goal.of(SAFETY) == 0.0
         found = [objection(trace, soft=green) for trace in self.traces]
-        detected, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
-        if detected is None and onset is None:
-            return tuple(found)
+        wanted, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
         felt = detect(self.cold, self.warm, self.dt_s, observer, path_m=observer.path_m(self.rig.site))
-        for place, (share, felt_s) in enumerate(zip(felt.probability.tolist(), felt.onset_s.tolist(), strict=True)):
+        shares = felt.probability if detected is None or wanted is not None else detected
+        for place, (share, felt_s) in enumerate(zip(shares.tolist(), felt.onset_s.tolist(), strict=True)):
+            least = wanted if wanted is not None else 0.0 if self.icons[place].name in must else AN_ALERT
             if found[place] is not None:
                 continue
-            if detected is not None and share < detected:
+            if share < least:
                 found[place] = f"is detected in {100.0 * share:.0f} % of trials only"
             elif onset is not None and not felt_s <= onset:
                 found[place] = "is not felt" if math.isnan(felt_s) else f"is felt at {felt_s:.2f} s only"
         return tuple(found)
 
     def usable(
-        self, asked: Selection, observer: Observer, goal: Goal | None = None
+        self, asked: Selection, observer: Observer, goal: Goal | None = None, detected: Array | None = None
     ) -> tuple[list[int], tuple[tuple[str, str], ...]]:
         """Places of the icons that can be chosen, and why others cannot: they move like an earlier one, or have an
         objection.
@@ -149,7 +157,7 @@ class Pool:
             )
         shapes: dict[object, str] = {}
         excluded: dict[str, str] = {}
-        objections = self.objections(goal, observer)
+        objections = self.objections(goal, observer, asked.must, detected)
         for k in sorted(range(len(self)), key=lambda k: (names[k] not in asked.must, k)):
             why = objections[k]
             twin = None if why else shapes.setdefault(_shape_of(self.icons[k], self.rig), names[k])

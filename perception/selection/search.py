@@ -83,7 +83,7 @@ class SearchResult:
 @checked
 def search(
     icons: Icons,
-    rig: AnyRig = "thenar",
+    rig: AnyRig = None,
     *,
     crowd: Crowd = EVERYBODY,
     count: int | None = None,
@@ -104,7 +104,7 @@ def search(
     icons
         The set with its families, or its name or file.
     rig
-        The rig that plays it, or its name or file.
+        The rig that plays it, or its name or file; None: the shipped rig of the icons' site, else thenar.
     crowd
         Who appraises the result; its seed is also that of the search.
     count
@@ -145,8 +145,8 @@ def search(
     >>> result.after.d_prime >= result.before.d_prime
     True
     """
-    icons, rig, crowd = set_of(icons), Rig.of(rig), crowd.but(**words)
-    seed, wanted = crowd.seed, Goal.parse(goal) if isinstance(goal, str) else goal
+    icons, crowd = set_of(icons), crowd.but(**words)
+    rig, seed, wanted = Rig.of(rig, icons.context.site), crowd.seed, Goal.parse(goal) if isinstance(goal, str) else goal
     if wanted is not None:
         wanted.check_count(count)
     if count is None and wanted is not None and wanted.of("count") is not None:

@@ -180,7 +180,7 @@ def split_icons(icons: IconSet, count: int | None) -> tuple[list[Icon], int]:
     fixed = [entry for entry in icons.entries if isinstance(entry, Icon)]
     wanted = len(fixed) + len(icons.families) if count is None else count
     if wanted < 2:
-        raise ChoiceError("one icon is never confused: ask for 2 or more with --choose K, or give a second family")
+        raise ChoiceError("one icon is never confused: give a second family, or ask for 2 or more").to(count=2)
     if wanted <= len(fixed):
         raise ChoiceError(f"{wanted} icons leave nothing to search: {len(fixed)} that are not families must stay")
     return fixed, wanted - len(fixed)

@@ -1,5 +1,6 @@
 """``thermicon compare``: rigs, icons, sets, traces and logs; one table of differences, one figure."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +37,21 @@ def test_two_icons_the_shorter_waits_at_its_baseline(cli: Cli, two: Path) -> Non
     assert lines[0] == "A  two.cue:cool-step: 8 s, reached (everywhere within 1 mK)"
     assert lines[1].startswith("B  two.cue:warm-step: 8 s, reached")
     assert row(said, "target")[1:5] == ["10", "K", "2.00", "s"]
+
+
+def test_two_sets_without_a_common_name_are_compared_as_a_whole(cli: Cli, two: Path, tmp_path: Path) -> None:
+    """The same icons under other names tie; against the easier set of two, six are named worse."""
+    other = tmp_path / "other.cue"
+    other.write_text(
+        two.read_text(encoding="utf-8").replace("cool-step", "x").replace("warm-step", "y"), encoding="utf-8"
+    )
+    lines = cli.good("compare", two, other).stdout.splitlines()
+    rows = {line[:22].strip(): line[22:].split() for line in lines[2:8]}
+    assert rows["named correctly"][:2] == rows["named correctly"][2:]
+    assert "by 50 % of people" in " ".join(lines)
+    said = " ".join(cli.good("compare", "six-icons", other).stdout.split())
+    assert re.search(r"other is named better than six-icons by \d+ % of people, with the uncertainty", said)
+    assert "none in common" in cli("compare", two, other, "--figure", tmp_path / "a.png").stderr
 
 
 def test_a_trace_and_a_log_are_compared_at_the_times_of_the_log(cli: Cli, two: Path, tmp_path: Path) -> None:

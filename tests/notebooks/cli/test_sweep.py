@@ -11,9 +11,8 @@ from tests.notebooks.conftest import Cli
 from thermicon.circuit import Rig, simulate
 from thermicon.circuit.safety.verdict import summarise
 from thermicon.icons import read_cue
-from thermicon.notebooks import sweep
+from thermicon.notebooks import overview, sweep
 from thermicon.notebooks.cli.sweep import Measured
-from thermicon.notebooks.figures.sweep_figure import sweep_figure
 from thermicon.perception import rank
 from thermicon.perception.selection.goal_result import judge_goal
 from thermicon.perception.sensation.features import attack_K_per_s, delay_s, peak_change_K
@@ -59,7 +58,7 @@ def test_every_number_is_that_of_the_run(two: Path) -> None:
 
 
 def test_colours_tell_cooling_from_warming(two: Path) -> None:
-    figure = sweep_figure(swept(two, CONTACT, [3e-4, 1e-3, 3e-3]), CONTACT, log=True)
+    figure = overview(swept(two, CONTACT, [3e-4, 1e-3, 3e-3]))
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert names == ["cool-step", "warm-step"]
     cool, warm = tuple(line.get_color() for line in figure.legends[0].get_lines())

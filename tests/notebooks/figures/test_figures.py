@@ -14,7 +14,7 @@ from thermicon.notebooks.figures.overview import MOST_LINES, scene_figure
 from thermicon.notebooks.figures.print_figure import restyle
 from thermicon.notebooks.figures.set_figures import set_figure
 from thermicon.notebooks.figures.style import COOL, WARM
-from thermicon.notebooks.figures.sweep_figure import COOLS, WARMS, sweep_figure
+from thermicon.notebooks.figures.sweep_figure import COOLS, WARMS
 from thermicon.notebooks.timeline.scene import scene
 from thermicon.perception import Percept, perceive, rank
 
@@ -69,7 +69,7 @@ def test_a_sweep_marks_what_was_not_reached_and_bands_of_people() -> None:
         "correct_high": [0.9, 0.96, 0.9, 0.96],
     })  # fmt: skip
     frame["reached"] = frame["reached"].astype("boolean")
-    figure = sweep_figure(frame, "driver.current_limit_A", ["correct"])
+    figure = overview(frame)
     (ax,) = figure.axes
     assert ax.get_ylim()[0] < 72.0 and ax.get_ylim()[1] == 100.5
     said = [text.get_text() for text in figure.legends[0].get_texts()]

@@ -138,7 +138,7 @@ class TestFiles:
         out = tmp_path / "out"
         assert publish(drive("a", b"1"), out) is None
         with pytest.raises(
-            OutputError, match=r"a\.csv and 1 more already exist and were kept; --force replaces the folder"
+            OutputError, match=r"a\.csv and 1 more already exist and were kept; replace=True replaces the folder"
         ):
             publish(drive("b", b"2"), out)
         assert held(out) == drive("a", b"1")

@@ -13,8 +13,8 @@ from markupsafe import escape
 
 from thermicon.circuit import Rig
 from thermicon.icons import IconSet, load_library, parse
-from thermicon.notebooks.cli.options import CrowdOptions, RigOptions
-from thermicon.notebooks.cli.ranking import TaskOptions, command_text
+from thermicon.notebooks.cli.options import CrowdOptions, RigOptions, command_text
+from thermicon.notebooks.cli.ranking import TaskOptions
 from thermicon.notebooks.report.rank_page import LIMITS, SAFETY, report
 from thermicon.notebooks.report.set_report import SetReport
 from thermicon.perception import Ranking, rank

@@ -39,6 +39,17 @@ def test_what_cannot_be_read_is_said_with_its_place_and_cure(text: str) -> None:
     assert MESSAGES["goal"][text] in str(raised.value)
 
 
+@pytest.mark.parametrize(
+    ("said", "meant"),
+    [
+        ("90 % correct for 95 % of people", "correct >= 90 % for 95 % of people"),
+        ("95 % detected, 10 s time, safety green", "detected >= 95 %, time <= 10 s, safety green"),
+    ],
+)
+def test_a_goal_can_be_said_as_people_say_it(said: str, meant: str) -> None:
+    assert Goal.parse(said) == Goal.parse(meant)
+
+
 def test_every_quantity_can_be_asked_for() -> None:
     for name, known in QUANTITIES.items():
         unit = next(iter(known.units))

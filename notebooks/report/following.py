@@ -1,0 +1,103 @@
+"""What to do next about a set: the command that helps with what is in the way, or the reason why none does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from thermicon.perception import Goal
+    from thermicon.perception.selection.frontier import Frontier
+
+    from .set_report import SetReport
+
+Command = Callable[..., str]
+"""Writes a command for the set and rig of the run, from its name and the words that are added."""
+
+PLAYED = ("--to", "csv", "-o", "drives")
+WIDER = "A larger contact area, another site or icons of another kind would help more than these."
+OF_ICONS = ("detected", "onset")
+
+
+def after_ranking(found: SetReport, command: Command) -> str:
+    """The command for what is in the way of a set: its play, its detection, its confusions; otherwise the export."""
+    from thermicon.perception.selection.pool import AN_ALERT
+
+    missed = [] if found.goal is None else [each.part.quantity for each in found.goal.parts if not each.met]
+    icons, wanted = found.ranking.icons, _goal(None if found.goal is None else found.goal.goal)
+    lost = next((icon.name for icon in icons if not (icon.safe and icon.reachable)), None)
+    if lost is not None:
+        return command("simulate", "--icon", lost)
+    if any(each in OF_ICONS for each in missed) or (not missed and min(found.ranking.felt.detected) < AN_ALERT):
+        return _wider(found, command)
+    if missed and len(icons) > 2:
+        return command("improve", "--up-to", str(len(icons)), *wanted)
+    if missed or _close(found):
+        return command("improve", "--edits", *wanted)
+    return command("export", *PLAYED)
+
+
+def after_choices(found: Frontier, command: Command, written: str | None) -> str:
+    """The largest choice that meets the goal, or whose icons are all distinguishable: to be written, or exported."""
+    if written is not None:
+        return command("export", *PLAYED, file=written)
+    count = largest(found)
+    if count is None:
+        return f"no choice of these icons {'meets the goal' if found.goals else 'is distinguishable'}. {WIDER}"
+    objective, goal = found.points[0].objective, _goal(found.goals[0].goal if found.goals else None)
+    return command("improve", "--choose", str(count), "--objective", objective, *goal, "-o", "best.cue")
+
+
+def after_choice(found: SetReport, command: Command, written: str | None) -> str:
+    """To export what was written, unless its goal is missed."""
+    if found.goal is not None and not found.goal.met:
+        return f"{'; '.join(found.goal.binding)}. {WIDER}"
+    if found.choice is None and found.edits:
+        return _after_edits(found, command)
+    return command("export", *PLAYED, file=written) if written else "add -o best.cue, which is then exported"
+
+
+def _after_edits(found: SetReport, command: Command) -> str:
+    """To make the edits, or fewer icons where no edit helps."""
+    count = len(found.ranking.icons)
+    if _edited(found):
+        return f"change the lines above, then {command('rank')}"
+    if not _close(found):
+        return command("export", *PLAYED)
+    return command("improve", "--up-to", str(count)) if count > 2 else f"no edit helps. {WIDER}"
+
+
+def largest(found: Frontier) -> int | None:
+    """How many icons the largest choice has that meets the goal, or, without one, is distinguishable throughout."""
+    from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
+
+    good = (
+        [goal.met for goal in found.goals]
+        if found.goals
+        else [point.at_own_range.d_prime >= DISTINGUISHABLE_DPRIME for point in found.points]
+    )
+    return max((len(point.icons) for point, met in zip(found.points, good, strict=True) if met), default=None)
+
+
+def _goal(goal: Goal | None) -> tuple[str, ...]:
+    return () if goal is None else ("--goal", goal.text)
+
+
+def _close(found: SetReport) -> bool:
+    """Whether two icons are hardly distinguishable."""
+    from thermicon.perception.criteria import DISTINGUISHABLE_DPRIME
+
+    return any(pair.d_prime < DISTINGUISHABLE_DPRIME for pair in found.ranking.pairs)
+
+
+def _edited(found: SetReport) -> bool:
+    from thermicon.perception.selection.edit import Edit
+
+    return any(isinstance(each, Edit) for each in found.edits.values())
+
+
+def _wider(found: SetReport, command: Command) -> str:
+    """How detection grows with the area of the contact."""
+    area_cm2 = 1e4 * found.ranking.job.rig.contact.area_m2
+    areas = f"contact.area_cm2={area_cm2:.3g}:{4.0 * area_cm2:.3g}:5log"
+    return command("sweep", "--vary", areas, "--measure", "detected")

@@ -1,0 +1,44 @@
+"""Two sets beside each other: which is named better, and how sure that is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from thermicon.icons.number_text import count_of, number, percent
+
+from .blocks import Block, Text, grid
+
+if TYPE_CHECKING:
+    from thermicon.perception import Ranking
+
+
+def sets_report(names: tuple[str, str], sets: tuple[Ranking, Ranking]) -> list[Block]:
+    """Report the scores of both, what 95 % of people reach with each, and how often one is named better."""
+    from thermicon.perception.selection.appraise import REACHED_BY
+
+    one, other = sets
+    rows = [
+        ("icons", *(str(len(each.icons)) for each in sets)),
+        ("named correctly", *(percent(each.proportion_correct) for each in sets)),
+        ("information, bits", *(f"{each.information_bits:.2f}" for each in sets)),
+        ("worst pair", *(" and ".join(each.worst_pair or ("–",)) for each in sets)),
+        ("smallest d′", *(number(min(pair.d_prime for pair in each.pairs)) for each in sets)),
+    ]
+    tail = "These are predictions of a model, not measurements."
+    if one.new_laboratory is not None and other.new_laboratory is not None:
+        reached = (
+            np.quantile(each.new_laboratory.persons["correct"], 1.0 - REACHED_BY)
+            for each in sets
+            if each.new_laboratory is not None
+        )
+        rows.insert(2, (f"{percent(REACHED_BY)} of people", *(f"from {percent(float(each))}" for each in reached)))
+        share = one.new_laboratory.ahead_of(other.new_laboratory)
+        better, worse = names if share >= 0.5 else names[::-1]
+        tail = (
+            f"{better} is named better than {worse} by {percent(max(share, 1.0 - share))} of people, with the "
+            f"uncertainty of the model ({one.new_laboratory.draws} draws). {tail}"
+        )
+    crowd = count_of(one.people, "virtual person", "virtual people")
+    return [grid(("", *names), rows, names), Text(f"For {crowd} on the {one.rig} rig. {tail}")]
