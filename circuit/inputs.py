@@ -6,8 +6,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from thermicon.icons.files.shipped import NotRegular, TooLarge, read_limited
+from thermicon.icons.files.shipped import NotRegular, TooLarge, beside, read_limited
 from thermicon.icons.files.table import Fault
+from thermicon.icons.installing import install
 from thermicon.icons.model.arguments import InputError as InputError
 from thermicon.icons.model.context import clean_line, first_control
 
@@ -94,7 +95,8 @@ def read_bytes(path: Path, what: str, limit_MB: float, error: type[Exception] = 
             f"{path}: {found.size / 1e6:.0f} MB is too large for a {what}; the limit is {limit_MB:g} MB"
         ) from None
     except FileNotFoundError:
-        raise error(f"{path}: no such {what}") from None
+        meant = beside(path)
+        raise error(f"{path}: no such {what}{f'; did you mean {meant}?' if meant else ''}") from None
     except (OSError, ValueError) as problem:
         raise error(f"{path}: cannot be read ({getattr(problem, 'strerror', None) or problem})") from None
 
@@ -114,13 +116,16 @@ def require_pyarrow(path: str | Path, error: type[Exception] = InputError) -> No
         import pyarrow  # noqa: F401
     except ImportError:
         raise error(
-            f"{path}: Parquet files need pyarrow, which is not installed: "
-            'pip install "thermicon[parquet]", or use a .csv file'
+            f"{path}: Parquet files need pyarrow, which is not installed: {install('pyarrow')}, or use a .csv file"
         ) from None
 
 
-def read_toml(text: str, where: str, error: type[Exception] = InputError) -> dict[str, Any]:
-    """A TOML text as a dictionary; raises `error`, which says which line is wrong.
+def read_toml(
+    text: str, where: str, what: str, own: Sequence[str], error: type[Exception] = InputError
+) -> dict[str, Any]:
+    """The TOML text of a kind `what` ("rig file") as a dictionary; raises `error`, which says which line is wrong.
+
+    Without a key of its `own` it may be a file of another kind, which is then said.
 
     So are tables nested more deeply than Python's reader can follow, and whole numbers beyond 64 bits, TOML's own
     range.
@@ -130,14 +135,24 @@ def read_toml(text: str, where: str, error: type[Exception] = InputError) -> dic
     try:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
+        _check_kind(text, where, what, error)
         raise error(f"{where}: not a valid TOML file: {problem}") from None
     except RecursionError:
         raise error(f"{where}: tables and lists are {TOO_DEEP}") from None
     except ValueError:  # whole numbers of more than 4,300 digits
         raise error(f"{where}: a whole number has thousands of digits; numbers have at most {MOST_DIGITS}") from None
+    if not any(key in document for key in own):
+        _check_kind(text, where, what, error)
     if fault := _unreadable(document):
         raise error(f"{where}: {fault}")
     return document
+
+
+def _check_kind(text: str, where: str, what: str, error: type[Exception]) -> None:
+    from thermicon.icons.kinds_of_files import other_kind
+
+    if wrong := other_kind(text, what):
+        raise error(f"{where}: {'; '.join(wrong)}")
 
 
 def _unreadable(document: dict[str, Any]) -> str | None:
@@ -205,7 +220,7 @@ def _in_words(
             limit, words = 0, "greater than"
         return f"{subject}{behind}: must be {words} {limit:g}{behind}"
     if kind in NUMBERS:
-        quotes = ", without quotes" if isinstance(value, str) else ""
+        quotes = ", without quotes or unit" if isinstance(value, str) else ""
         return f"{subject}: must be a {NUMBERS[kind]}{behind and f' in{behind}'}{quotes}"
     if kind == "bool_type":
         return f"{subject}: must be true or false"

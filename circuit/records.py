@@ -154,7 +154,7 @@ def load_records(path: Path | Traversable | str, *, extra: Iterable[str] = ()) -
     file = Path(path) if isinstance(path, str) else path
     what = "table of records"
     text = read_text(file, what, MOST_MB, RecordError) if isinstance(file, Path) else file.read_text(encoding="utf-8")
-    tree = read_toml(text, file.name, RecordError)
+    tree = read_toml(text, file.name, what, ("record",), RecordError)
     if set(tree) != {"record"} or not isinstance(tree["record"], list):
         raise RecordError(f"{file.name}: a table of records has [[record]] blocks and nothing else")
     declared = tuple(extra)

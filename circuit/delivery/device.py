@@ -9,6 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from thermicon.icons.files.shipped import beside
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean
 
@@ -90,10 +91,12 @@ class Device:
         A file with the name of a shipped device is read in its place; a folder of that name is not.
         """
         path, names = Path(source), device_names()
-        if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
+        named = path.suffix == ".toml" and path.stem not in names
+        if named or (path.exists() and not (path.is_dir() and str(source) in names)):
             return _build(read_text(path, "device file", 1, DeviceError), str(path))
         if str(source) not in names:
-            raise DeviceError(f"{source}: no such device; {did_you_mean(str(source), names)}")
+            hint = did_you_mean(path.stem, names, beside="" if path.stem in names else beside(path, ".toml"))
+            raise DeviceError(f"{source}: no such device; {hint}")
         return _shipped(str(source))
 
     def record(self, quantity: str) -> Record | None:

@@ -69,7 +69,7 @@ class DeviceTable(_Table):
 
 def read_device_table(text: str, where: str) -> DeviceTable:
     """Return the checked table of a device file's text, or raise DeviceError with all its faults at once."""
-    document = read_toml(text, where, DeviceError)
+    document = read_toml(text, where, "device file", ("driven_by",), DeviceError)
     try:
         table = DeviceTable.model_validate(document)
     except ValidationError as problem:

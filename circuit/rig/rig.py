@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from thermicon.icons.atomic import OutputError, complete_or_absent
+from thermicon.icons.files.shipped import beside
 from thermicon.icons.model.arguments import checked
 from thermicon.icons.near_words import did_you_mean
 
@@ -119,11 +120,13 @@ class Rig:
         every fault of the file on a line of its own, or the nearest name where there is no such rig.
         """
         path, names = Path(source), rig_names()
-        if path.suffix == ".toml" or (path.exists() and not (path.is_dir() and str(source) in names)):
+        named = path.suffix == ".toml" and path.stem not in names
+        if named or (path.exists() and not (path.is_dir() and str(source) in names)):
             text = read_text(path, "rig file", 1, RigError)
             return _build(parse_toml(text, str(path)), str(path))
         if str(source) not in names:
-            raise RigError(f"{source}: no such rig; {did_you_mean(str(source), names)}")
+            hint = did_you_mean(path.stem, names, beside="" if path.stem in names else beside(path, ".toml"))
+            raise RigError(f"{source}: no such rig; {hint}")
         return _shipped(str(source))
 
     @property

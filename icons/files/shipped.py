@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from importlib.resources.abc import Traversable
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -17,10 +18,13 @@ from ..model.family import Family
 from ..model.icon import Icon
 from ..model.iconset import IconSet, UnknownIcon
 from ..model.words import nearest
+from ..near_words import nearest_words
 
 if TYPE_CHECKING:
     import pandas as pd
 
+MOST_LOOKED_AT = 1000
+"""Files of a folder among which a similar name is looked for."""
 FileKind = Literal["folder", "device", "pipe", "socket"]
 
 
@@ -171,6 +175,22 @@ def library_names() -> tuple[str, ...]:
     )
 
 
+def beside(path: str | Path, ending: str = "") -> str:
+    """The file that may have been meant by one that is missing: of the same folder and ending, with a similar name.
+
+    `ending` is that of a name without one. Empty where there is none.
+    """
+    wanted = Path(path)
+    try:
+        there = [each for each in islice(wanted.parent.iterdir(), MOST_LOOKED_AT) if not each.name.startswith(".")]
+    except (OSError, ValueError):
+        return ""
+    alike = [each for each in there if each.suffix == (wanted.suffix or ending or each.suffix)]
+    names = {each.name if wanted.suffix else each.stem: each.name for each in alike}
+    close = nearest_words(wanted.name, names, cutoff=0.7)
+    return str(wanted.with_name(names[close[0]])) if close else ""
+
+
 @checked
 def load_library(name: str) -> IconSet:
     """Return a shipped set.
@@ -197,7 +217,7 @@ def load_library(name: str) -> IconSet:
     """
     names = library_names()
     if name not in names:
-        close = nearest(name, names)
+        close = " or ".join(filter(None, (nearest(name, names), beside(name, ".cue"))))
         hint = f"did you mean {close}? " if close else ""
         help = f"{hint}shipped sets are: {', '.join(names)}"
         raise whole_file(

@@ -6,6 +6,9 @@ import io
 import re
 from typing import TYPE_CHECKING
 
+from ..installing import install
+from ..kinds_of_files import HEAD, other_kind
+
 if TYPE_CHECKING:
     from .table import Fault
 
@@ -30,6 +33,8 @@ def table_text(data: bytes, fault: Fault, example: str) -> str:
     for begin, (kind, cure) in OTHERS.items():
         if data.lstrip().startswith(begin):
             raise fault("binary", None, f"this is {kind}, not a table", cure)
+    if wrong := other_kind(data[:HEAD].decode("utf-8", "replace"), "table"):
+        raise fault("binary", None, *wrong)
     if data.startswith(b"TDSm"):
         return _tdms_text(data, fault)
     head = data[:200_000].replace(b"\0", b"")
@@ -55,7 +60,7 @@ def _tdms_text(data: bytes, fault: Fault) -> str:
     try:
         from nptdms import TdmsFile
     except ImportError:
-        cure = 'pip install "thermicon[hardware]", or save it as CSV'
+        cure = f"{install('npTDMS')}, or save it as CSV"
         raise fault("binary", None, "TDMS needs npTDMS, which is not installed", cure) from None
     try:
         file = TdmsFile.read(io.BytesIO(data))

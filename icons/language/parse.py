@@ -1,9 +1,10 @@
 """Cue text in, icon set out: or everything that is wrong with it, each with a corrected line that was tried out."""
 
 from ..model.arguments import checked
-from ..model.errors import MOST_ERRORS, CueError, CueErrors
+from ..model.errors import MOST_ERRORS, CueError, CueErrors, whole_file
 from ..model.iconset import IconSet
 from .assemble import analyse
+from .recover import other_format
 from .source import Edit, Finding, Source, decode
 
 # Suggestions cost a parse each; beyond this many characters read again, errors come without one.
@@ -50,6 +51,8 @@ def parse(text: str | bytes, file: str = "<text>") -> IconSet:
       did you mean:  cue 1; icon dip { cool by 6 °C at 3 °C/s }
     """
     source = Source(file, decode(text, file))
+    if other := other_format(source):
+        raise whole_file("E101", file, *other)
     analysis = analyse(source)
     if analysis.icons is not None:
         return analysis.icons

@@ -20,6 +20,7 @@ DEEPEST = 20
 _OPENERS = {"ICON": "icon", "SET": "set", "REPEAT": "repeat"}
 _BRACED = re.compile(r"\{[ \t]*([^\W\d_][\w-]*)[ \t]*\}")
 _CELL = re.compile(r"[-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?")
+_LISTED = re.compile(r"[\w .-]+([,\t][\w .-]+)+")
 _NAMED = re.compile(r"icon\s+([^\W\d][\w-]*)")
 # Characters of a line that are looked at: a file may be one endless line.
 _WIDE = 2000
@@ -46,32 +47,30 @@ class Reading:
 
 def read(source: Source) -> Reading:
     """Parse a source; never raises, whatever the text."""
-    if found := _other_format(source):
-        from lark import Token, Tree
-
-        return Reading(Tree("start", [Token("BROKEN", "")]), (found,), 0)
     return _Reader(source).run()
 
 
-def _other_format(source: Source) -> Finding | None:
-    """What is plainly another format, reported once instead of line by line."""
-    said = ((n, line) for n, line in enumerate(source.lines) if line.strip() and not line.startswith(("#", "sep=")))
-    rows = list(islice(said, 2))
+def other_format(source: Source) -> tuple[str, str] | None:
+    """What a text is that is plainly of another format, and what to do: told once instead of line by line."""
+    rows = list(islice((line for line in source.lines if line.strip() and not line.startswith(("#", "sep="))), 2))
     if not rows:
         return None
-    place, line = rows[0]
-    head = "".join(row[:_WIDE].strip() for _, row in rows).casefold()
+    head = "".join(row[:_WIDE].strip() for row in rows).casefold()
+    if head.startswith("cue"):
+        return None
+    from ..kinds_of_files import other_kind
+
+    if found := other_kind(source.text, "cue file"):
+        return found
     what = next((what for mark, what in _FORMATS.items() if head.startswith(mark)), None)
     help = "a cue file is plain text; save it as such, in UTF-8"
-    tables = [[cell.strip(' "') for cell in re.split(r"[,;\t]", row[:_WIDE])] for _, row in rows]
+    tables = [[cell.strip(' "') for cell in re.split(r"[,;\t]", row[:_WIDE])] for row in rows]
     if any(len(cells) > 1 and all(map(_CELL.fullmatch, cells)) for cells in tables) or (
-        "time_s" in tables[0] and not head.startswith("cue")
+        "time_s" in tables[0] or all(_LISTED.fullmatch(row[:_WIDE]) for row in rows)
     ):
         what = "this is a table, perhaps a recording"
         help = "thermicon convert makes an icon of a recording in CSV"
-    if what is None:
-        return None
-    return Finding("E101", source.starts[place], source.starts[place] + len(line), what, help)
+    return None if what is None else (what, help)
 
 
 class _Reader:

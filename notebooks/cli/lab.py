@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from thermicon.icons.atomic import check_folder, complete_or_absent, stopped_cleanly
+from thermicon.icons.installing import install
 
 from ..messages import fail, interrupted, note, usage
 from .options import flag, opt
@@ -50,7 +51,7 @@ def lab_command(
     if folder.suffix.lower() in FILES:
         raise usage(f"{str(folder)!r} is the name of a file, not of a folder; give one, such as {FOLDER}", "DIR")
     if not files_only and find_spec("jupyterlab") is None:
-        fail("lab needs jupyterlab, which is not installed: pip install jupyterlab")
+        fail(f"lab needs jupyterlab, which is not installed: {install('jupyterlab')}")
     written, kept = copy_notebooks(folder, force)
     there = f", {len(kept)} there already (--force replaces them)" if kept else ""
     note(f"{folder}: wrote {len(written)} notebooks{there}")

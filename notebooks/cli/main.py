@@ -17,6 +17,7 @@ from typer.core import TyperGroup
 
 from ..messages import be_quiet, fail, interrupted, into_nowhere, is_ours
 from .options import flat
+from .other_words import answer_to, in_three_lines, outputs_of
 
 WRITE, SIMULATE, PREDICT = "Write icons", "Simulate a rig", "Predict perception"
 PLAY, NOTEBOOKS, INSTALLATION = "Play on hardware", "Notebooks", "Installation"
@@ -76,6 +77,20 @@ class Commands(TyperGroup):
             return super().make_context(*arguments, **extra)
         except KeyboardInterrupt:
             raise interrupted() from None
+        except Exception as error:
+            in_three_lines(error)
+            raise
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the command that a line begins with; ``help NAME`` is its help, other words are answered with theirs."""
+        if args[0] == "help" and args[1:2]:
+            return super().resolve_command(ctx, [args[1], "--help"])
+        if args[0] == "help":
+            typer.echo(ctx.get_help())
+            raise typer.Exit
+        if args[0] not in COMMANDS and (line := answer_to(args[0])):
+            ctx.fail(f"No such command '{args[0]}'; try: {line}")
+        return super().resolve_command(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command; bad input exits with 1, Ctrl-C with 130, a reader that went away with 0."""
@@ -101,8 +116,13 @@ class Commands(TyperGroup):
         except Exception as error:
             if isinstance(error, RuntimeError) and "Symlink loop" in str(error):  # pathlib's words, before 3.13
                 fail(f"a path cannot be followed because its links form a circle: {str(error).partition('from ')[2]}")
+            in_three_lines(error)
             if (option := getattr(error, "option_name", None)) in RENAMED:
                 error.message = f"{option} is called {RENAMED[option]} now"  # type: ignore[attr-defined]
+                raise
+            if option in ("-o", "--output") and type(error).__name__ == "NoSuchOption":
+                error.possibilities = ()  # type: ignore[attr-defined]
+                error.message += outputs_of(error.ctx.command)  # type: ignore[attr-defined]
                 raise
             if isinstance(error, typer.BadParameter):
                 reworded(error)
@@ -120,6 +140,7 @@ def reworded(error: Any) -> None:
     `error` is a bad parameter of the command line; others stay as they are.
     """
     from thermicon.circuit.inputs import quoted
+    from thermicon.icons.near_words import nearest_words
 
     param, faults = getattr(error, "param", None), getattr(error.__cause__, "errors", None)
     if param is None or faults is None:
@@ -132,7 +153,9 @@ def reworded(error: Any) -> None:
         error.message = f"{float(text):.10g}{unit} is outside {param.min:.10g} to {param.max:.10g}{unit}"
     else:
         wrong, joint, choices = error.message.removeprefix("Value error, ").removesuffix(".").partition(" is not one ")
-        error.message = wrong + joint + choices.replace("'", "")
+        choices = choices.replace("'", "")
+        near = nearest_words(text, choices.removeprefix("of ").split(", "), cutoff=0.55)
+        error.message = wrong + joint + choices + (f"; did you mean {near[0]}?" if near else "")
 
 
 def _print_version(wanted: bool) -> None:

@@ -124,6 +124,10 @@ def pilot_command(
         raise usage("a plan is for one set, or for two that are to be distinguished", "FILE")
     if wanted is not None and not 0.0 < wanted < 100.0:
         raise usage(f"{wanted:g} is outside 0 to 100", "--wanted")
+    if wanted is not None and wanted < 1.0 and len(files) == 2:
+        raise usage(
+            f"{wanted:g} % of experiments is next to nothing; give per cent, such as {100 * wanted:g}", "--wanted"
+        )
     check_separate(files, [json])
     from thermicon.perception.pilot.plan import plan
 

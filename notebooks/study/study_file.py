@@ -148,7 +148,7 @@ def parse_study(text: str, where: str) -> Study:
     >>> parse_study(study_text("example"), "example").trials.order
     'balanced'
     """
-    document = read_toml(text, where, StudyError)
+    document = read_toml(text, where, "study file", ("stimuli",), StudyError)
     try:
         study = Study.model_validate(document)
     except ValidationError as problem:

@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
+from thermicon.icons.installing import install
+
 from .batches import BatchResult, Job, code_digest, run
 
 PATIENCE_S = 5.0
@@ -45,8 +47,7 @@ def _client(address: str) -> Iterator[Any]:
     try:
         distributed: Any = import_module("distributed")
     except ImportError as error:
-        cure = "pip install 'thermicon[cluster]'"
-        raise ClusterError(f"a cluster needs the package distributed: install it with {cure}") from error
+        raise ClusterError(f"a cluster needs distributed, which is not installed: {install('distributed')}") from error
     if not ADDRESS.fullmatch(address):
         raise ClusterError(f"{address!r} is not the address of a scheduler: give one such as tcp://127.0.0.1:8786")
     with _quiet():

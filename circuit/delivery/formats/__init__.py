@@ -1,5 +1,6 @@
 """thermicon.circuit.delivery.formats: a delivered drive → the bytes of a file; writers are loaded when asked for."""
 
+import re
 from importlib import import_module
 
 from thermicon.icons.near_words import did_you_mean
@@ -25,7 +26,10 @@ def format_names() -> tuple[str, ...]:
 def load_format(name: str) -> Format:
     """Return a format by name; raises FormatError with the nearest."""
     if name not in MODULES:
-        raise FormatError(f"{name}: no such format; {did_you_mean(name, MODULES, most=2)}")
+        known = {each: load_format(each) for each in MODULES}
+        words = {each: re.split(r"\W+", f"{form.device} {form.title}".casefold()) for each, form in known.items()}
+        meant = [f"{each} (for {known[each].device})" for each in known if name and name.casefold() in words[each]]
+        raise FormatError(f"{name}: no such format; {did_you_mean(name, MODULES, 2, ' or '.join(meant[:2]))}")
     there = vars(import_module(f"{__name__}.{MODULES[name]}")).values()
     return next(each for each in there if isinstance(each, Format) and each.name == name)
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 from itertools import groupby, pairwise
 
 import numpy as np
 
+from thermicon.icons.installing import install
 from thermicon.icons.model.corners import Corners
 
 from ...arrays import Array
@@ -112,7 +114,7 @@ class Format:
     `device` is used where none is named; `stem` makes the file's name from the icon's, `suffix_by` the suffix where it
     depends on the device; `how` explains how to play it. `write` gives the bytes of one drive, `columns` what is in
     them, `facts` further facts for the sidecar. `player` gives the files of the whole set, named in
-    `set_files`, from all its drives and what the hardware must prevent.
+    `set_files`, from all its drives and what the hardware must prevent. `needs` is the package that writes it.
     """
 
     name: str
@@ -129,6 +131,7 @@ class Format:
     facts: Callable[[DeliveredDrive], dict[str, object]] | None = None
     player: Callable[[Sequence[Played], MustPrevent], dict[str, bytes]] | None = None
     set_files: tuple[str, ...] = ()
+    needs: str = ""
 
     def __repr__(self) -> str:
         return f"Format({self.name!r}, *{self.suffix}, for {', '.join(self.takes)})"
@@ -139,12 +142,14 @@ class Format:
         return check_name(self.stem(delivery.icon.name) + suffix)
 
     def check(self, device: Device) -> None:
-        """Raise FormatError where a device does not play what this format holds."""
+        """Raise FormatError where a device does not play what this format holds, or its package is not installed."""
         if device.driven_by not in self.takes:
             raise FormatError(
                 f"{self.name} is for devices driven by {' or '.join(self.takes)}; {device.name} is driven by "
                 f"{device.driven_by}"
             )
+        if self.needs and find_spec(self.needs.lower()) is None:
+            raise FormatError(f"{self.name} needs {self.needs}, which is not installed: {install(self.needs)}")
 
 
 def check_name(name: str) -> str:

@@ -88,10 +88,9 @@ def tdms_columns(delivery: DeliveredDrive) -> tuple[Column, ...]:
 
 def tdms_write(delivery: DeliveredDrive) -> bytes:
     """The file; raises FormatError where npTDMS is not installed."""
-    try:
-        from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
-    except ImportError:
-        raise FormatError('tdms needs npTDMS, which is not installed: pip install "thermicon[hardware]"') from None
+    TDMS.check(delivery.device)
+    from nptdms import ChannelObject, GroupObject, RootObject, TdmsWriter
+
     samples = samples_of(delivery)
     if samples.scale.highest > LARGEST or samples.scale.lowest < -LARGEST - 1:
         raise FormatError(
@@ -137,4 +136,5 @@ TDMS = Format(
     how="play channel command_V at 1/wf_increment, samps_per_chan = wf_samples, finite",
     write=tdms_write,
     columns=tdms_columns,
+    needs="npTDMS",
 )

@@ -1,6 +1,7 @@
 """Where files go: looked at early, complete or absent."""
 
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from thermicon.notebooks.files.outputs import STDOUT, TRACE_SUFFIXES, check_outp
         ("absent/out.csv", r"the folder .*absent does not exist; make it first"),
         (".", "it is a folder; give the name of a file"),
         ("file/out.csv", "is a file, not a folder"),
-        ("a.parquet", r'a\.parquet.* pyarrow.*pip install "thermicon\[parquet\]".*\.csv'),
+        ("a.parquet", r"a\.parquet.* pyarrow.*pip install .*pyarrow.*\.csv"),
     ],
 )
 def test_a_name_that_cannot_be_is_told_before_anything_is_computed(
@@ -28,6 +29,25 @@ def test_a_name_that_cannot_be_is_told_before_anything_is_computed(
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match=words):
         check_output(tmp_path / name, TRACE_SUFFIXES, "a trace")
+
+
+@pytest.mark.parametrize(
+    ("mark", "command"),
+    [
+        ("conda-meta", "conda install -c conda-forge pyarrow,"),
+        ("pipx_metadata.json", "pipx inject thermicon pyarrow,"),
+        ("uv-receipt.toml", "uv tool install thermicon --with pyarrow,"),
+        ("pyvenv.cfg", f"{sys.executable} -m pip install pyarrow,"),
+    ],
+)
+def test_the_cure_adds_to_the_environment_that_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, mark: str, command: str
+) -> None:
+    (tmp_path / mark).touch()
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(OutputError, match=re.escape(command)):
+        check_output(tmp_path / "a.parquet", TRACE_SUFFIXES, "a trace")
 
 
 def test_a_file_is_no_folder_for_figures(tmp_path: Path) -> None:

@@ -1,0 +1,25 @@
+"""What a text file is, by words that only one kind has: said where it is given in place of another kind."""
+
+import re
+
+KINDS = {
+    "cue file": (r"cue\s+\d", "give it where FILE is asked for, as in thermicon check FILE"),
+    "study file": (r"\[(stimuli|participants|trials)\]", "thermicon study takes it"),
+    "device file": (r"driven_by\s*=", "--device takes it"),
+    "rig file": (r"(base\s*=|\[\[?(skin|contact|heat_sink|module|thermode)\b)", "--rig takes it"),
+    "table of records": (r"\A(#.*\n|\s)*\[\[record\]\]", "--observer takes it"),
+}
+"""How a line of each kind begins, which no kind before it has, and where it belongs."""
+HEAD = 20_000
+
+
+def other_kind(text: str, expected: str) -> tuple[str, str] | None:
+    """What a text is that is not of the `expected` kind, and where it belongs; None where no other kind is plain.
+
+    >>> other_kind("# mine\\n[contact]\\narea_cm2 = 4\\n", "study file")
+    ('this is a rig file, not a study file', '--rig takes it')
+    >>> other_kind("[contact]\\narea_cm2 = 4\\n", "rig file")
+    """
+    marked = (kind for kind, (mark, _) in KINDS.items() if re.search(rf"(?m)^[ \t]*{mark}", text[:HEAD]))
+    found = next(marked, expected)
+    return None if found == expected else (f"this is a {found}, not a {expected}", KINDS[found][1])
