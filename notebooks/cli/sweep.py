@@ -27,6 +27,7 @@ from .options import (
     Seed,
     Table,
     Tail,
+    command_text,
     opt,
     pick,
     read_set,
@@ -246,7 +247,8 @@ def sweep_command(
     if output is not None:
         write_frame(frame, output)
     elif what:
-        show(sweep_report(frame, key, what))
+        again = command_text([file], rig, paths=True)
+        show([*sweep_report(frame, key, what), f"Next: take a value that helps into the rig, then {again}"])
 
 
 def read_measures(text: str, intervals: int) -> tuple[str, ...]:

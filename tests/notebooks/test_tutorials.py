@@ -32,7 +32,7 @@ def read(name: str) -> nbformat.NotebookNode:
 def executed(notebook: nbformat.NotebookNode, folder: Path) -> list[nbformat.NotebookNode]:
     """Run all cells in a folder; the outputs, of which none is a warning."""
     # As JupyterLab saves: the state of widgets stays out of the file unless a person asks for it.
-    options = {"timeout": 120, "kernel_name": "python3", "store_widget_state": False}
+    options = {"timeout": 300, "kernel_name": "python3", "store_widget_state": False}
     NotebookClient(notebook, **options, resources={"metadata": {"path": str(folder)}}).execute()
     outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
     assert not [output.text for output in outputs if output.get("name") == "stderr"]
