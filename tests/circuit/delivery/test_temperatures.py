@@ -142,9 +142,6 @@ class TestSpread:
         assert open_loop_spread(deliver(STEP, RIG, Device.load(name))) is None
 
     def test_export_and_sidecar_say_it(self) -> None:
-        form = load_format("csv")
         warming, bridge = load_library("six-icons")["warming-step"], Device.load("pwm-h-bridge-10")
-        ready = prepare(warming, RIG, bridge, form, gate=GreenVerdict)
-        assert ready.spread.step_K[0] > 0.0
-        low, high = ready.spread.baseline_C
-        assert low < 32.0 < high
+        spread = prepare(warming, RIG, bridge, load_format("csv"), gate=GreenVerdict).spread
+        assert spread.step_K[0] > 0.0 and spread.baseline_C[0] < 32.0 < spread.baseline_C[1]
