@@ -19,12 +19,10 @@ def nodes(*folders: str) -> Iterator[tuple[Path, ast.AST]]:
 
 
 def text_of(node: ast.AST) -> str:
-    """The literal text that a node is, or has between its values."""
     return "".join(each.value for each in ast.walk(node) if isinstance(each, ast.Constant) and type(each.value) is str)
 
 
 def test_no_code_reads_a_sentence() -> None:
-    """What a caller needs of a message is a value beside it."""
     read = []
     for path, node in nodes("circuit", "perception", "notebooks"):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in READING:

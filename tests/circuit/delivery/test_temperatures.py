@@ -140,8 +140,3 @@ class TestSpread:
     @pytest.mark.parametrize("name", ["qst-tcs2", "closed-loop-controller"])
     def test_a_loop_leaves_none_open(self, name: str) -> None:
         assert open_loop_spread(deliver(STEP, RIG, Device.load(name))) is None
-
-    def test_export_and_sidecar_say_it(self) -> None:
-        warming, bridge = load_library("six-icons")["warming-step"], Device.load("pwm-h-bridge-10")
-        spread = prepare(warming, RIG, bridge, load_format("csv"), gate=GreenVerdict).spread
-        assert spread.step_K[0] > 0.0 and spread.baseline_C[0] < 32.0 < spread.baseline_C[1]
