@@ -194,8 +194,8 @@ def read_log(path: str | Path | pd.DataFrame, columns: Mapping[str, str] | None 
     for cell in table.header:
         close = "" if is_known(cell) else absent.get("".join(nearest_words(cell.lower(), absent, 1, MISSPELT)), "")
         if close and cell[-2:] == close[-2:]:
-            said, cure = f"{cell}: did you mean {close}? Found {table.found}", "remove the column, or say so"
-            raise table.fault("table", table.line, said, cure).to(columns={close: cell})
+            what, cure = f"{cell}: did you mean {close}? Found {table.found}", "remove the column, or say so"
+            raise table.fault("table", table.line, what, cure).to(columns={close: cell})
     if table.names.doubtful or not wanted:
         raise missing(table, "display_C", f"one of {', '.join(NAMES[1:])}")
     found = measured(table, wanted, CURE)

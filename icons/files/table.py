@@ -201,10 +201,10 @@ def read_table(
             if theirs.get(name) != own or unit[1:] != (1, 0)]  # fmt: skip
     notes += [f"read {', '.join(read[:FEW])}{', …' if len(read) > FEW else ''}"] if read else []
     absent = {name: f"{own!r}, to be {name}" for name, own in theirs.items() if own not in header}
-    said = f"no column is called {', and none '.join(absent.values())}; found {', '.join(ours.header[:FEW])}"
-    notes += [said] if absent else []
+    missed = f"no column is called {', and none '.join(absent.values())}; found {', '.join(ours.header[:FEW])}"
+    notes += [missed] if absent else []
     decimal = "" if mark == "," and QUOTED_DECIMAL.search(text) else mark
-    lost = dict.fromkeys(absent, said)
+    lost = dict.fromkeys(absent, missed)
     return Table(ours.header, line, tuple(rows), tuple(places), fault, decimal, ours, tuple(notes), lost)
 
 

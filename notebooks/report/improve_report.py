@@ -66,15 +66,11 @@ def frontier_report(found: Frontier, title: str, following: str) -> list[Block]:
 def _goal(found: Frontier) -> Iterator[str]:
     """The largest choice that meets the goal with its parts, or the smallest with what is in its way."""
     judged = [(len(point.icons), goal) for point, goal in zip(found.points, found.goals, strict=False)]
-    if not judged:
-        return
-    met = [each for each in judged if each[1].met]
-    if met:
+    if met := [each for each in judged if each[1].met]:
         count, result = met[-1]
         more = "the largest choice here" if count == judged[-1][0] else "by no larger choice of these"
         yield from goal_lines(result, f"met by the best {count}, {more}")
-    else:
-        count, result = judged[0]
+    for count, result in judged[:1] if not met else ():
         yield from goal_lines(result, f"met by none of these choices; the best {count}:")
 
 

@@ -102,7 +102,7 @@ def _pairs(ranking: Ranking) -> Iterator[Block]:
     yield Heading("Pairs, the most confused first")
     rows = sorted(ranking.pairs, key=lambda pair: (-pair.confused_probability, pair.a, pair.b))
     names = [part.name for part in rows[0].parts]
-    cells = [
+    cells: list[list[str | Cell]] = [
         [
             *(pair.a, pair.b, Cell(f"{pair.d_prime:.1f}", "strong")),
             f"{100 * pair.confused_probability:.1f} %",

@@ -181,7 +181,7 @@ def require(path: Path, table: Table, needed: Sequence[str], example: str) -> No
     if missing := [name for name in needed if name not in table.header]:
         raise TrialsError(
             f"{path}:{table.line}: {'column' if len(missing) == 1 else 'columns'} missing: {', '.join(missing)}; "
-            f"found: {table.found}; write a line such as: {example}, or say what they are called"
+            f"found: {table.found}; write a line such as: {example}; or say what they are called"
         ).to(columns={missing[0]: "THEIRS"})
     if not table.rows:
         raise TrialsError(f"{path}: no row below the names of the columns; write one row per trial")

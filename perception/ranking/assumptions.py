@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from statistics import NormalDist
 from typing import TYPE_CHECKING, Any
 
@@ -135,14 +135,6 @@ class Assumptions:
     moving: tuple[Assumption, ...]
     site: Mapping[str, Any] | None
     not_varied: tuple[str, ...] = NOT_VARIED
-
-    def to_dict(self) -> dict[str, Any]:
-        """The key `assumptions` of the ranking file."""
-        return {
-            "moving": [asdict(each) for each in self.moving],
-            "site": None if self.site is None else dict(self.site),
-            "not_varied": list(self.not_varied),
-        }
 
 
 def assumptions_of(

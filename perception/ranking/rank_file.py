@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -71,7 +72,7 @@ def ranking_file(ranking: Ranking) -> dict[str, Any]:
             },
             "set": _set(ranking, asked),
             "persons": {"proportion_correct": list(ranking.persons)},
-            "assumptions": ranking.assumptions.to_dict(),
+            "assumptions": asdict(ranking.assumptions),
             "goal": None,
             "chosen": None,
             "map": _map(ranking) if len(ranking.icons) > 1 else None,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
@@ -62,13 +62,7 @@ class Appraisal:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, for JSON."""
-        return {
-            "worst_pair": list(self.worst_pair),
-            "d_prime": self.d_prime,
-            "proportion_correct": self.proportion_correct,
-            "information_bits": self.information_bits,
-            "bits_per_s": self.bits_per_s,
-        }
+        return {name: value for name, value in asdict(self).items() if name != "reached"}
 
 
 @checked

@@ -28,6 +28,9 @@ from .subset_identification import SubsetIdentification, pick
 if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
 
+TOLD = ("icons", "objective", "value", "optimal", "bound", "worst_pair", "total_s", "total_J", "pool", "people")
+"""What `rank --json` calls alike, in its order."""
+
 
 @dataclass(frozen=True, slots=True)
 class Choice:
@@ -80,16 +83,7 @@ class Choice:
         elsewhere, own = self.new_laboratory, self.at_own_range
         a, b = (self.icons.index(name) for name in own.worst_pair)
         return {
-            "icons": list(self.icons),
-            "objective": self.objective,
-            "value": self.value,
-            "optimal": self.optimal,
-            "bound": self.bound,
-            "worst_pair": list(self.worst_pair),
-            "total_s": self.total_s,
-            "total_J": self.total_J,
-            "pool": self.pool,
-            "people": self.people,
+            **{name: getattr(self, name) for name in TOLD},
             "looked_at": self.seen,
             "excluded": [{"icon": name, "reason": reason} for name, reason in self.excluded],
             "at_own_range": {

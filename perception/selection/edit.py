@@ -71,15 +71,8 @@ class Edit:
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data for `rank --json`."""
-        return {
-            "icon": self.icon,
-            "old": self.old,
-            "new": self.new,
-            "cost": self.cost,
-            "added_s": self.added_s,
-            "d_prime": self.d_prime,
-            "recounted_share": self.recounted,
-        }
+        told = {name: getattr(self, name) for name in ("icon", "old", "new", "cost", "added_s", "d_prime")}
+        return {**told, "recounted_share": self.recounted}
 
 
 @dataclass(frozen=True, slots=True)

@@ -140,11 +140,3 @@ class TestSpread:
     @pytest.mark.parametrize("name", ["qst-tcs2", "closed-loop-controller"])
     def test_a_loop_leaves_none_open(self, name: str) -> None:
         assert open_loop_spread(deliver(STEP, RIG, Device.load(name))) is None
-
-    def test_export_and_sidecar_say_it(self) -> None:
-        form = load_format("csv")
-        warming, bridge = load_library("six-icons")["warming-step"], Device.load("pwm-h-bridge-10")
-        ready = prepare(warming, RIG, bridge, form, gate=GreenVerdict)
-        assert ready.spread.step_K[0] > 0.0
-        low, high = ready.spread.baseline_C
-        assert low < 32.0 < high

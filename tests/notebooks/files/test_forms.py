@@ -326,7 +326,7 @@ def test_a_column_of_another_unit_is_not_taken_and_a_cure_names_none(tmp_path: P
     good, told = outcome(DOORS[door], tmp_path / "a.csv", {name: other})
     assert not good and f"{other!r} is in another unit" in told
     good, told = outcome(DOORS[door], tmp_path / "a.csv", {})
-    assert not good and f"={theirs}" in told
+    assert not good and f"{theirs!r}}})" in told
     assert outcome(DOORS[door], tmp_path / "a.csv", {name: theirs})[0]
 
 

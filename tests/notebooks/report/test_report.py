@@ -115,16 +115,13 @@ def test_what_people_wrote_is_text(made: str) -> None:
 
 def test_it_tells_what_the_ranking_found(made: str, ranking: Ranking, icons: IconSet) -> None:
     words = " ".join(read(made).text.split())
-    result = ranking.to_dict()
     for text in (*LIMITS, SAFETY, ranking.content_hash, f"thermicon {ranking.version}", "6 virtual, seed 0"):
         assert text in words
-    for pair in result["pairs"]:
-        if [pair["a"], pair["b"]] == result["set"]["worst_pair"]:
-            assert all(reason in words for reason in pair["why"])
-            assert f"Worst pair: {pair['a']} and {pair['b']}" in words
+    assert all(reason in words for reason in ranking.worst.why)
+    assert f"Worst pair: {ranking.worst.a} and {ranking.worst.b}" in words
     for icon in icons:
         assert " ".join(str(icon)[str(icon).index("icon ") :].split()) in words
-    low, high = result["set"]["proportion_correct_interval"]
+    low, high = ranking.proportion_correct_interval
     assert f"95 % of people: {100 * low:.0f}–{100 * high:.0f} %" in words
     for part in ("direction", "intensity", "rate", "duration", "pause"):
         assert part in words

@@ -14,12 +14,12 @@ def chosen(objective: Objective, seen: int, people: int) -> Choice:
 
 
 def test_a_choice_of_one_person_is_said_in_the_singular() -> None:
-    worst = "\n".join(choice_lines(chosen("worst", 1, 1)))
-    assert "(1 threshold)" in worst
-    correct = "\n".join(choice_lines(chosen("correct", 1, 1)))
-    assert "no other choice is better: it is the only one, evaluated with 1 person" in correct
-    many = "\n".join(choice_lines(chosen("correct", 3, 24)))
-    assert "all 3 choices were evaluated, with 24 people" in many
+    for asked, words in (
+        (("worst", 1, 1), "(1 threshold)"),
+        (("correct", 1, 1), "no other choice is better: it is the only one, evaluated with 1 person"),
+        (("correct", 3, 24), "all 3 choices were evaluated, with 24 people"),
+    ):
+        assert words in "\n".join(choice_lines(chosen(*asked)))
 
 
 def test_an_icon_that_is_not_reached_is_said_apart_from_safety() -> None:
@@ -39,6 +39,5 @@ def test_what_a_share_of_people_means_is_said_once_and_in_a_short_line() -> None
     assert lines[-1] == "  For a share of people: what at least so many reach, with the uncertainty of the model."
     assert sum("For a share" in line for line in lines) == 1
     assert max(map(len, lines)) <= 100
-    mean = GoalResult(Goal((goal.parts[2],)), parts[2:])
-    assert not any("share" in line for line in goal_lines(mean))
+    assert not any("share" in line for line in goal_lines(GoalResult(Goal((goal.parts[2],)), parts[2:])))
     assert not any("For a share" in line for line in goal_lines(GoalResult(goal, parts), "met by the best 4"))
