@@ -43,7 +43,7 @@ def study_command(
     for warning in materials.rig.warnings:
         note(f"warning: {warning}")
     try:
-        plan = make_plan(materials, progress_bar)
+        plan = make_plan(materials, progress_bar, note)
         files = files_of(plan)
     except Refused as refused:
         for reason in refused.reasons:

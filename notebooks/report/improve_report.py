@@ -39,7 +39,7 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
         )
         for k, point in enumerate(found.points)
     ]
-    job, largest = found.ranking.job, found.points[-1]
+    job, largest = found.job, found.points[-1]
     crowd = count_of(job.people, "virtual person", "virtual people")
     what_if = f" with {', '.join(job.rig.changes)}" if job.rig.changes else ""
     more = len(largest.excluded) - MOST_EXCLUDED
@@ -62,6 +62,7 @@ def frontier_report(found: Frontier, title: str) -> list[Block]:
             f"{job.seed}). {_reached(found)} These are "
             "predictions of a model, not measurements."
         ),
+        *([Text(f"Rough: {crowd}; each per cent within about 3 points; refining …")] if found.rough else []),
     ]
 
 

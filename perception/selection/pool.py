@@ -116,6 +116,12 @@ class Pool:
         ]
         return f"a total of {' and '.join(totals)}"
 
+    @property
+    def amber(self) -> tuple[str, ...]:
+        """Names of the icons that pass a soft limit of safety, and no hard one."""
+        found = zip(self.icons, self.traces, strict=True)
+        return tuple(icon.name for icon, trace in found if objection(trace) is None and objection(trace, soft=True))
+
     def objections(self, goal: Goal | None, observer: Observer) -> tuple[str | None, ...]:
         """What speaks against each icon: it cannot be played, or it misses what a goal asks of single icons."""
         green = goal is not None and goal.of(SAFETY) == 0.0
