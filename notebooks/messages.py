@@ -25,9 +25,24 @@ Progress = Callable[[int, int], None]
 BAD_INPUT = 1
 REFUSED = 3
 INTERRUPTED = 130
+USUAL_COLUMNS = 80
 DEFAULT_RIG = "thenar"
 _QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 _VERBOSE: ContextVar[bool] = ContextVar("verbose", default=False)
+
+
+def shown_at_once() -> bool:
+    """Whether somebody watches results as they come, who may be shown a rough one before the final one."""
+    return sys.stdout.isatty() and not _QUIET.get()
+
+
+@contextlib.contextmanager
+def bars_aside() -> Iterator[None]:
+    """Clear the progress bars while something is printed."""
+    from tqdm import tqdm
+
+    with tqdm.external_write_mode():
+        yield
 
 
 def is_ours(error: BaseException) -> bool:
@@ -223,13 +238,15 @@ def check_draws(model: ObserverModel, asked: int | None, option: str, usual: int
 
 @contextlib.contextmanager
 def progress_bar(what: str) -> Iterator[Progress | None]:
-    """Give a function of (done, total) that draws a bar, or None when stderr is not a terminal."""
+    """Give a function of (done, total) that draws a bar with the time left, or None when stderr is not a terminal."""
     if _QUIET.get() or not sys.stderr.isatty():
         yield None
         return
     from tqdm import tqdm
 
-    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format="{desc}: {bar} {n_fmt}/{total_fmt}") as bar:
+    form = "{desc}: {bar} {n_fmt}/{total_fmt}, {remaining} left"
+    with tqdm(desc=what, leave=False, file=sys.stderr, bar_format=form) as bar:
+        bar.ncols = bar.ncols or USUAL_COLUMNS  # some terminals do not say how wide they are
 
         def advance(done: int, total: int) -> None:
             bar.total = total

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from thermicon.icons.number_text import number, percent
+
 from ..files.outputs import FIGURE_SUFFIXES, STDOUT, TRACE_SUFFIXES, check_output, check_separate
-from ..messages import fail, progress_bar, usage
+from ..messages import bars_aside, fail, note, progress_bar, shown_at_once, usage
 from ..report.following import Command, after_choice, after_choices, largest
 from ..report.improve_report import frontier_report, search_report
 from ..report.rank_report import rank_report
@@ -119,10 +121,7 @@ def improve_command(
     command = commands(files, rig, crowd)
     written = next((str(path) for path in outputs if path.suffix == ".cue"), None)
     if up_to is not None:
-        from thermicon.perception import frontier
-
-        with progress_bar("choosing") as progress:
-            tried = frontier(icons, where, most=up_to, objective=what, progress=progress, **how)
+        tried = _frontier(icons, where, outputs, most=up_to, objective=what, **how)
         for path in outputs:
             if path.suffix == ".cue":
                 write_text(str(_best_of(tried, icons, where)), path)
@@ -132,11 +131,8 @@ def improve_command(
                 write_frame(tried.to_frame(), path)
         told = frontier_report(tried, icons.title, after_choices(tried, command, written))
     elif searched:
-        from thermicon.perception import search
-
         count = USUAL_EVALUATIONS if evaluations is None else evaluations
-        with progress_bar("searching") as progress:
-            found = search(icons, where, count=choose, objective=what, evaluations=count, progress=progress, **how)
+        found = _searched(icons, where, outputs, count=choose, objective=what, evaluations=count, **how)
         for path in outputs:
             write_text(str(found.found), path)
         told = [] if STDOUT in outputs else beside_start(found, icons, where, how, command, written)
@@ -151,6 +147,63 @@ def improve_command(
         told = rank_report(made, icons.title, cures(made.ranking, icons, where), following)
     if STDOUT not in outputs:
         show(told)
+
+
+def _frontier(icons: IconSet, rig: Rig, outputs: Sequence[Path], **how: Any) -> Frontier:
+    """The table of choices; who watches it come is shown a rough one first, which stays if the rest is interrupted."""
+    from thermicon.perception import frontier
+
+    told: list[Frontier] = []
+
+    def tell(rough: Frontier) -> None:
+        with bars_aside():
+            show([*frontier_report(rough, icons.title), ""])
+        told.append(rough)
+
+    first = tell if shown_at_once() and STDOUT not in outputs else None
+    try:
+        with progress_bar("choosing") as progress:
+            return frontier(icons, rig, progress=progress, rough=first, **how)
+    except KeyboardInterrupt:
+        if told:
+            note(f"the table above is the rough one, for {told[0].job.people} people: its refinement was ended")
+        raise
+
+
+def _searched(icons: IconSet, rig: Rig, outputs: Sequence[Path], **how: Any) -> SearchResult:
+    """Search the families; an interrupted search leaves the best set that it held, as its outputs too."""
+    from thermicon.perception import search
+
+    held: list[IconSet] = []
+
+    def hold(best: IconSet) -> None:
+        if not held and shown_at_once() and STDOUT not in outputs:
+            with bars_aside():
+                typer.echo(f"Rough, where the search starts: {_roughly(best, rig, how)}; searching …\n")
+        held[:] = [best]
+
+    try:
+        with progress_bar("searching") as progress:
+            return search(icons, rig, progress=progress, best_so_far=hold, **how)
+    except KeyboardInterrupt:
+        if held:
+            for path in outputs:
+                write_text(str(held[0]), path)
+            if STDOUT not in outputs:
+                typer.echo(f"The best set so far, rough: {_roughly(held[0], rig, how)}")
+            note("the search was ended early: more of it may find a better set")
+        raise
+
+
+def _roughly(icons: IconSet, rig: Rig, how: dict[str, Any]) -> str:
+    """The icons of a set, and how well a few people name them."""
+    from thermicon.perception.selection.appraise import appraise
+    from thermicon.perception.selection.search_run import PEOPLE
+
+    crowd = {key: value for key, value in how.items() if key in ("seed", "tracking", "memory", "observer")}
+    found = appraise(icons, rig, people=PEOPLE, **crowd)
+    named = f"{percent(found.proportion_correct)} correct, worst pair d′ {number(found.d_prime)}"
+    return f"{', '.join(icon.name for icon in icons)}: {named}, for {PEOPLE} people"
 
 
 def _objective(goal: Goal | None) -> Objective:

@@ -15,7 +15,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from ..messages import be_quiet, fail, interrupted, into_nowhere, is_ours
+from ..messages import INTERRUPTED, be_quiet, fail, interrupted, into_nowhere, is_ours
 from .options import flat
 from .other_words import answer_to, in_three_lines, outputs_of
 
@@ -214,7 +214,15 @@ def main() -> None:
     try:
         program(sys.argv[1:])(prog_name="thermicon")
     except KeyboardInterrupt:
-        sys.exit(interrupted().exit_code)
+        interrupted()
+    except SystemExit as end:
+        if end.code != INTERRUPTED:
+            raise
+    else:
+        return
+    # Threads that are still at work would be waited for.
+    sys.stdout.flush()
+    os._exit(INTERRUPTED)
 
 
 if __name__ == "__main__":

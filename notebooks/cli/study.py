@@ -42,7 +42,7 @@ def study_command(
     check_export_folder(folder, how=KEPT)
     warn_of_rig(materials.rig)
     try:
-        plan = make_plan(materials, progress_bar)
+        plan = make_plan(materials, progress_bar, note)
         files = files_of(plan)
     except Refused as refused:
         for reason in refused.reasons:

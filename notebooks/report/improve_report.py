@@ -9,7 +9,7 @@ from thermicon.icons.number_text import count_of, number, percent, percent_span
 
 from .blocks import Block, Bullets, Heading, Text, grid
 from .choices import NAMES, goal_lines, laboratory
-from .rank_details import crowd_text, trouble_lines
+from .rank_details import trouble_lines
 from .rank_report import BARELY
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ REFINING_PEOPLE = 24
 """As in `thermicon.perception.selection.search_run`, repeated here to avoid its imports."""
 
 
-def frontier_report(found: Frontier, title: str, following: str) -> list[Block]:
+def frontier_report(found: Frontier, title: str, following: str = "") -> list[Block]:
     """Report one row for each number of icons, the largest choice, what was left out, and what follows."""
     heads = ("icons", "correct", "95 % of people", "d′", "bits", "time", "energy", *(["goal"] * bool(found.goals)))
     rows = [
@@ -39,7 +39,9 @@ def frontier_report(found: Frontier, title: str, following: str) -> list[Block]:
         )
         for k, point in enumerate(found.points)
     ]
-    largest = found.points[-1]
+    job, largest = found.job, found.points[-1]
+    crowd = count_of(job.people, "virtual person", "virtual people")
+    what_if = f" with {', '.join(job.rig.changes)}" if job.rig.changes else ""
     more = len(largest.excluded) - MOST_EXCLUDED
     amber = found.amber(largest)
     names = ", ".join(f"{name} (amber)" if name in amber else name for name in largest.icons)
@@ -49,7 +51,7 @@ def frontier_report(found: Frontier, title: str, following: str) -> list[Block]:
         *_goal(found),
         *(f"Left out: {name} {reason}" for name, reason in largest.excluded[:MOST_EXCLUDED]),
         *([f"and {more} more left out"] if more > 0 else []),
-        f"Next: {following}",
+        *([f"Next: {following}"] if following else []),
     ]
     return [
         *([Heading(title, 1)] if title else []),
@@ -57,9 +59,10 @@ def frontier_report(found: Frontier, title: str, following: str) -> list[Block]:
         Text("\n".join(said)),
         Text(
             f"The best by {largest.objective} of {largest.pool} icons that can be "
-            f"{'chosen' if found.goals else 'played'}, for {crowd_text(found.ranking)} (seed {found.ranking.seed}). "
-            f"{_reached(found)} These are predictions of a model, not measurements."
+            f"{'chosen' if found.goals else 'played'}, for {crowd} on the {job.rig.name} rig{what_if} (seed "
+            f"{job.seed}). {_reached(found)} These are predictions of a model, not measurements."
         ),
+        *([Text(f"Rough: {crowd}; each per cent within about 3 points; refining …")] if found.rough else []),
     ]
 
 

@@ -16,10 +16,21 @@ from thermicon.icons import Icon, IconSet
 from thermicon.icons.model.context import Context, Metadata
 from thermicon.icons.model.statements import Hold, Ramp, Return
 from thermicon.icons.near_words import did_you_mean
+from thermicon.icons.number_text import count_of
 
 from .judging import Judged, Progress, judge_drives, judge_sessions
 from .schedule import Course, Trial, check_counts, check_session_time, courses_of, seed_of
-from .study_file import MOST_ASKED, Stimuli, Study, StudyError, Threshold, parse_study, study_hash, study_text
+from .study_file import (
+    MOST_ASKED,
+    Stimuli,
+    Study,
+    StudyError,
+    Threshold,
+    labels_of,
+    parse_study,
+    study_hash,
+    study_text,
+)
 from .timing import Landing, find_gap, find_landing
 
 if TYPE_CHECKING:
@@ -117,8 +128,11 @@ def _beside(name: str, folder: Path) -> str:
     return str(place) if place.is_file() else name
 
 
-def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
-    """Derive the pauses, order the trials, and judge drives and sessions; raises Refused, StudyError, InputError."""
+def make_plan(materials: Materials, bar: ProgressBar, say: Callable[[str], None] = lambda _: None) -> Plan:
+    """Derive the pauses, order the trials, and judge drives and sessions; raises Refused, StudyError, InputError.
+
+    `say` is told the plan before the judgement, which takes most of the time.
+    """
     from thermicon.circuit.delivery.formats import load_format
     from thermicon.circuit.delivery.pack import check_names
     from thermicon.circuit.solver.simulate import duration_s
@@ -131,10 +145,16 @@ def make_plan(materials: Materials, bar: ProgressBar) -> Plan:
     mean_s = sum(duration_s(icon, rig) for icon in icons) / len(icons)
     plays = plays_of(study, len(icons))
     check_session_time(plays, mean_s, study.timing.gap_s or 0.0)
-    gap = find_gap(icons, rig, study.timing, held)
+    with bar("gap") as progress:
+        gap = find_gap(icons, rig, study.timing, held, progress)
     check_session_time(plays, mean_s, gap.gap_s)
     landing = find_landing(icons[0], rig, study.timing, held)
     courses = courses_of(study, tuple(icon.name for icon in icons), materials.seed)
+    minutes = (landing.landing_s + plays * mean_s + (plays - 1) * gap.gap_s) / 60.0
+    say(
+        f"planned: {count_of(len(labels_of(study)), 'participant', 'participants')}, {plays} plays each, about "
+        f"{minutes:.0f} min each, gap {gap.gap_s:g} s: {gap.reason}; judging drives and sessions …"
+    )
     rig = _whole_session(rig, plays, mean_s, gap.gap_s)
     with bar("drives") as progress:
         ready, gap = judge_drives(icons, rig, study, gap, materials.device, progress)

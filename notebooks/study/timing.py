@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -69,13 +69,23 @@ def carried_over(icons: Sequence[Icon], rig: Rig, gap_s: float, held: bool) -> t
     return float(d_prime.max()), (icons[before].name, icons[after].name)
 
 
-def find_gap(icons: Sequence[Icon], rig: Rig, timing: Timing, held: bool) -> Gap:
+def find_gap(
+    icons: Sequence[Icon], rig: Rig, timing: Timing, held: bool, progress: Callable[[int, int], None] | None = None
+) -> Gap:
     """Return the given gap, or the shortest from which on no icon carries over by more than the wanted d′.
 
     Raises StudyError where no gap up to 10 min suffices.
     """
-    wanted = timing.carry_over_d_prime
-    carried = lru_cache(maxsize=None)(lambda gap_s: carried_over(icons, rig, gap_s, held))
+    from thermicon.perception.kernels.parallel import step_counter
+
+    wanted, step = timing.carry_over_d_prime, step_counter(progress, len(GAPS_S))
+
+    @cache
+    def carried(gap_s: float) -> tuple[float, tuple[str, str]]:
+        found = carried_over(icons, rig, gap_s, held)
+        step()
+        return found
+
     if timing.gap_s is not None:
         d_prime, pair = carried(timing.gap_s)
         return Gap(timing.gap_s, "given", d_prime, pair)

@@ -89,7 +89,7 @@ def in_order(
             while waiting:
                 yield waiting.pop(0).result()
         finally:
-            pool.shutdown(cancel_futures=True)
+            pool.shutdown(wait=False, cancel_futures=True)  # who interrupts waits for nothing that is still at work
 
 
 def beside(work: Callable[[], Result], threads: int | None = None) -> Callable[[], Result]:

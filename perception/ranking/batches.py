@@ -19,11 +19,19 @@ from thermicon.circuit.program import code_digest as digest_of
 from ..arrays import Array
 from ..identification.confusion import NAMED_SAMPLES, SAMPLES, normalised, sampling_error
 from ..identification.measures import experiments_bits, information_bits
-from ..identification.population import RATE_HZ, ReceptorTemperatures, identify, respond
+from ..identification.population import (
+    RATE_HZ,
+    PopulationResponse,
+    ReceptorTemperatures,
+    identify,
+    memory_dprime,
+    respond,
+)
 from ..identification.task import USUAL, Task
 from ..kernels.parallel import in_order, own_arrays
-from ..observer.observer import NORMS, Norm
-from ..observer.observer_model import ObserverModel, Tracking
+from ..observer.observer import NORMS, Norm, Observer
+from ..observer.observer_model import Crowd, ObserverModel, Tracking
+from ..observer.people import People
 from ..sensation.detection import Detection, report_step
 from ..sensation.detection import pooled as pooled_detection
 
@@ -35,6 +43,8 @@ DT_S = 1.0 / RATE_HZ
 SAMPLES_AT_ONCE = 1_200_000
 """Instants × icons × people of a batch, about 150 bytes each at the peak; a batch has at least one person."""
 OTHER_SAMPLES, OTHER_NAMED = 512, 1152
+TRIALS = 48
+"""Trials of an experiment, unless it is another."""
 EXPERIMENTS = 20
 
 
@@ -83,6 +93,16 @@ class Job:
     task: Task = USUAL
     observer: ObserverModel | None = None
 
+    @classmethod
+    def of(
+        cls, icons: Sequence[Icon], rig: Rig, crowd: Crowd, end_s: float, trials: int = TRIALS, task: Task = USUAL
+    ) -> Job:
+        """The job of ranking icons by a crowd."""
+        # Batches need no draws, and of the shipped model nothing, which every worker has.
+        other = replace(crowd.model, posterior=None) if crowd.model.key else None
+        own = crowd.people, crowd.seed, trials, crowd.tracking, crowd.memory
+        return cls(tuple(icons), rig, end_s, *own, task, other)
+
     @property
     def at_once(self) -> int:
         """Number of people in a batch."""
@@ -104,13 +124,18 @@ class Job:
         return next(norm for norm in NORMS if norm != self.norm)
 
 
+def _respond(job: Job, number: int) -> tuple[People, Observer, PopulationResponse]:
+    """The people of one batch, the nominal observer, and what these people feel."""
+    model = ObserverModel.of(job.observer)
+    crowd, observer = model.people(job.people, job.seed).part(*job.span(number)), model.nominal
+    played = ReceptorTemperatures.simulated(job.icons, crowd, job.rig, observer, job.end_s, RATE_HZ, job.tracking)
+    return crowd, observer, respond(played, crowd, observer, times=True)
+
+
 def run(job: Job, number: int) -> BatchResult:
     """Compute one batch."""
-    start, stop = job.span(number)
-    model = ObserverModel.of(job.observer)
-    crowd, observer = model.people(job.people, job.seed).part(start, stop), model.nominal
-    played = ReceptorTemperatures.simulated(job.icons, crowd, job.rig, observer, job.end_s, RATE_HZ, job.tracking)
-    felt = respond(played, crowd, observer, times=True)
+    start, _ = job.span(number)
+    crowd, observer, felt = _respond(job, number)
     d_prime, confusion = identify(felt, job.norm, crowd, observer, job.seed, SAMPLES, start, job.task)
     # Fewer trials than of the norm that counts, the fewer the more templates naming goes through.
     fewer = OTHER_SAMPLES if job.other_norm != "naming" else max(4, OTHER_NAMED // len(job.icons) ** 2)
@@ -131,17 +156,46 @@ def run(job: Job, number: int) -> BatchResult:
 
 
 @dataclass(frozen=True, slots=True)
-class PooledResult:
-    """Responses of all people to m icons.
-
-    `detection` (m,) is that of a person drawn at random; `pairs` (people, m(m − 1)/2) d′ from memory; `pooled` (m, m);
-    `each_correct` (people, m); `bits`, `plugin` (people,); `other_correct` (m,) proportion correct of each icon by the
-    other norm. `standard_error` and `person_standard_error` are the largest sampling errors of a cell, pooled and
-    of one person.
-    """
+class FeltResult:
+    """What people feel of m icons: `detection` (m,) by one drawn at random, `pairs` (people, m(m − 1)/2) of d′."""
 
     detection: Detection
     pairs: Array
+
+    @property
+    def detected(self) -> Array:
+        """Probability that a person drawn at random reports each icon, (m,)."""
+        return self.detection.probability
+
+    @property
+    def middle(self) -> Array:
+        """Median d′ of every pair over people, (m, m)."""
+        return np.asarray(self.square(np.median(self.pairs, axis=0)[None])[0])
+
+    @property
+    def d_prime(self) -> Array:
+        """d′ of every pair for every person, (people, m, m)."""
+        return self.square(self.pairs)
+
+    def square(self, pairs: Array) -> Array:
+        """Pairs (people, m(m − 1)/2) as matrices (people, m, m)."""
+        icons = len(self.detected)
+        first, second = np.triu_indices(icons, 1)
+        matrix = np.zeros((len(pairs), icons, icons))
+        matrix[:, first, second] = pairs
+        matrix[:, second, first] = pairs
+        return matrix
+
+
+@dataclass(frozen=True, slots=True)
+class PooledResult(FeltResult):
+    """Responses of all people to m icons.
+
+    `pooled` (m, m); `each_correct` (people, m); `bits`, `plugin` (people,); `other_correct` (m,) proportion correct of
+    each icon by the other norm. `standard_error` and `person_standard_error` are the largest sampling errors of a cell,
+    pooled and of one person.
+    """
+
     pooled: Array
     each_correct: Array
     bits: Array
@@ -154,32 +208,32 @@ class PooledResult:
         own_arrays(self, "pooled")
 
     @property
-    def detected(self) -> Array:
-        """Probability that a person drawn at random reports each icon, (m,)."""
-        return self.detection.probability
-
-    @property
     def correct(self) -> Array:
         """Proportion correct of every person, (people,)."""
         return np.asarray(self.each_correct.mean(axis=1))
 
-    @property
-    def middle(self) -> Array:
-        """Median d′ of every pair over people, (m, m)."""
-        return np.asarray(self._square(np.median(self.pairs, axis=0)[None])[0])
 
-    @property
-    def d_prime(self) -> Array:
-        """d′ of every pair for every person, (people, m, m)."""
-        return self._square(self.pairs)
+def felt_by_people(job: Job, first: int, step: Callable[[], None]) -> Iterator[FeltResult]:
+    """What about as many people as `first` feel, where they are fewer batches than all, and then what all feel.
 
-    def _square(self, pairs: Array) -> Array:
-        icons = len(self.detected)
-        first, second = np.triu_indices(icons, 1)
-        matrix = np.zeros((len(pairs), icons, icons))
-        matrix[:, first, second] = pairs
-        matrix[:, second, first] = pairs
-        return matrix
+    Icons are not named, which takes most of the time of many icons; `step` is called after each batch.
+    """
+    one, other = np.triu_indices(len(job.icons), 1)
+
+    def felt_in(number: int) -> tuple[Array, ...]:
+        crowd, observer, felt = _respond(job, number)
+        d_prime, found = memory_dprime(felt, job.norm, crowd.memory, observer, job.task), felt.detected
+        return found.probability, found.cold_share, d_prime[:, one, other], found.reported_sum()[0]
+
+    held: list[tuple[Array, ...]] = []
+    reports = np.zeros(())
+    for number, (*each, reported) in enumerate(in_order(felt_in, range(job.batches), cores()), 1):
+        held.append(tuple(each))
+        reports = reports + reported
+        step()
+        if number in (-(-first // job.at_once), job.batches):
+            detected, cold, pairs = (np.concatenate(values) for values in zip(*held, strict=True))
+            yield FeltResult(pooled_detection(detected, cold, reports, report_step(DT_S)), pairs)
 
 
 def collect_batches(job: Job, workers: int | str | None, step: Callable[[], None]) -> PooledResult:

@@ -19,7 +19,7 @@ from ..identification.task import USUAL, Task
 from ..kernels.parallel import Progress, step_counter
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..sensation.percept import perceive
-from .batches import Job, collect_batches
+from .batches import TRIALS, Job, collect_batches
 from .ranking import Ranking
 from .rules import rig_rules
 from .scores import assemble, objection, worst_of
@@ -34,7 +34,7 @@ def rank(
     rig: AnyRig = None,
     *,
     crowd: Crowd = EVERYBODY,
-    trials: int = 48,
+    trials: int = TRIALS,
     parameters: int | None = None,
     task: Task = USUAL,
     workers: int | str | None = None,
@@ -103,10 +103,7 @@ def rank(
     traces = list(simulate_all(members, rig, end_s=end, rate_Hz=RATE_HZ))
     fine = [] if task.gap_s is None else [k for k, trace in enumerate(traces) if objection(trace) is None]
     task, left = prepare_task(task, members, rig, end, fine, crowd.tracking, nominal)
-    # Batches need no draws, and of the shipped model nothing, which every worker has.
-    other = replace(model, posterior=None) if model.key else None
-    own = crowd.people, crowd.seed, trials, crowd.tracking, crowd.memory
-    job = Job(tuple(members), rig, end, *own, task, other)
+    job = Job.of(members, rig, crowd, end, trials, task)
     report = step_counter(progress, 2 + job.batches + draws)
     percepts = [perceive(trace, nominal) for trace in traces]
     report()

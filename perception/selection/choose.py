@@ -19,13 +19,16 @@ from ..identification.carry_over import task_among
 from ..identification.laboratory import DRAWS, NewLaboratory, Nominal, new_laboratory
 from ..identification.population import RATE_HZ
 from ..kernels.parallel import Progress, step_counter
+from ..observer.observer_model import Crowd, ObserverModel
 from .appraise import REACHED_BY, Appraisal, appraise, nearest_two
 from .goal import Goal
 from .pool import Pool
 from .request import ChoiceError, Objective, Selection
-from .subset_identification import SubsetIdentification, pick
+from .subset_identification import PEOPLE, SubsetIdentification, pick
 
 if TYPE_CHECKING:
+    from ..identification.carry_over import CarryOver
+    from ..ranking.batches import FeltResult, Job
     from ..ranking.ranking import Ranking
 
 TOLD = ("icons", "objective", "value", "optimal", "bound", "worst_pair", "total_s", "total_J", "pool", "people")
@@ -139,7 +142,8 @@ def choose(
     2
     """
     draws = ranking.model.draw_count(parameters, DRAWS)
-    chooser = Chooser(ranking, asked)
+    chooser = Chooser(ranking.job, ranking.model, asked, left=ranking.carry_over)
+    chooser.feel(ranking.felt)
     found = chooser.best(asked.count, draws, step_counter(progress, 1 + draws))
     if found is None:
         raise ChoiceError(chooser.pool.nothing_fits(asked))
@@ -147,48 +151,56 @@ def choose(
 
 
 class Chooser:
-    """The icons of a ranking that can be chosen by a request, and who is named what among them, for any number.
+    """The icons of a pool that can be chosen by a request, and who is named what among them, for any number.
 
-    A goal leaves icons out that miss what it asks of single ones. Raises `ChoiceError` where too few are left.
+    The pool is that of a job, as its people feel it; of fewer people, it is chosen and judged by these. A goal leaves
+    icons out that miss what it asks of single ones. Raises `ChoiceError` where too few are left.
     """
 
-    def __init__(self, ranking: Ranking, asked: Selection, goal: Goal | None = None) -> None:
-        job, model = ranking.job, ranking.model
-        self.ranking, self.asked, self.crowd = ranking, asked, model.people(job.people, job.seed)
-        whole = Pool.of(job.icons, job.rig, model.nominal, end_s=job.end_s, rate_Hz=RATE_HZ)
-        self.places, self.excluded = whole.usable(asked, model.nominal, goal, ranking.felt.detected)
-        self.pool = whole.some(self.places)
-        self.d = ranking.felt.d_prime[:, self.places][:, :, self.places]
+    def __init__(
+        self, job: Job, model: ObserverModel, asked: Selection, goal: Goal | None = None, left: CarryOver | None = None
+    ) -> None:
+        self.job, self.model, self.asked, self.left = job, model, asked, left
+        self.whole = Pool.of(job.icons, job.rig, model.nominal, end_s=job.end_s, rate_Hz=RATE_HZ)
+        self.places, self.excluded = self.whole.usable(asked, model.nominal, goal)
+        self.pool = self.whole.some(self.places)
         self.must = [k for k, icon in enumerate(self.pool.icons) if icon.name in asked.must]
         self.limits = self.pool.limits(asked.most_s, asked.most_J)
+
+    def feel(self, felt: FeltResult) -> None:
+        """Choose from now on by what some people feel, the first of the job or all of them."""
+        self.felt, self.middle, people = felt, felt.middle, len(felt.pairs)
+        self.crowd = Crowd(people, self.job.seed, self.job.tracking, self.job.norm, self.model)
+        self.people = self.model.people(people, self.job.seed)
         self.namings = None
-        if asked.objective != "worst":
-            self.namings = SubsetIdentification.of(self.d, self.crowd.lapse, self.pool.durations_s, job.seed)
+        if self.asked.objective != "worst":
+            d = felt.square(felt.pairs[:PEOPLE])[:, self.places][:, :, self.places]
+            self.namings = SubsetIdentification.of(d, self.people.lapse, self.pool.durations_s, self.job.seed)
 
     def best(self, count: int, draws: int, step: Callable[[], None]) -> Choice | None:
         """The best choice of so many, judged as a set of its own by people and draws; None where none keeps the totals.
 
         `step` is called once, and after each draw.
         """
-        ranking, asked, pool, namings = self.ranking, self.asked, self.pool, self.namings
-        job, felt, model = ranking.job, ranking.felt, ranking.model
-        picked = pick(np.median(self.d, axis=0), namings, count, asked.objective, self.must, self.limits, job.seed)
+        job, felt, asked, pool, namings = self.job, self.felt, self.asked, self.pool, self.namings
+        middle = self.middle[np.ix_(self.places, self.places)]
+        picked = pick(middle, namings, count, asked.objective, self.must, self.limits, job.seed)
         if picked is None:
             return None
         chosen = [self.places[k] for k in picked.chosen]
-        names, middle = [job.icons[k].name for k in chosen], felt.middle[np.ix_(chosen, chosen)]
+        icons, middle = [job.icons[k] for k in chosen], self.middle[np.ix_(chosen, chosen)]
+        names = [icon.name for icon in icons]
         a, b = nearest_two(middle)
-        task = task_among(job.task, ranking.carry_over, chosen)
-        own = appraise([job.icons[k] for k in chosen], job.rig, crowd=ranking.crowd, task=task)
+        task = task_among(job.task, self.left, chosen)
+        own = appraise(icons, job.rig, crowd=self.crowd, task=task)
         step()
         found = None
         if draws:
             onset_s = felt.detection.onset_s[chosen]
             alone = Nominal(own.proportion_correct, own.information_bits, felt.detected[chosen], middle, onset_s)
-            icons = [job.icons[k] for k in chosen]
             found = new_laboratory(
-                icons, job.rig, job.end_s, self.crowd, alone, job.norm,
-                tracking=job.tracking, model=model, draws=draws, seed=job.seed, task=task, step=step,
+                icons, job.rig, job.end_s, self.people, alone, job.norm,
+                tracking=job.tracking, model=self.model, draws=draws, seed=job.seed, task=task, step=step,
             )  # fmt: skip
         return Choice(
             icons=tuple(names),
@@ -200,7 +212,7 @@ class Chooser:
             total_s=math.fsum(pool.durations_s[list(picked.chosen)]),
             total_J=math.fsum(pool.energies_J[list(picked.chosen)]),
             pool=len(self.places),
-            people=len(self.d) if namings is None else len(namings.lapse),
+            people=len(self.people) if namings is None else len(namings.lapse),
             seen=picked.seen,
             excluded=self.excluded,
             at_own_range=own,

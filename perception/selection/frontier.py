@@ -6,51 +6,75 @@ reach depends, as in a goal, on people and on the uncertainty of the model.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import takewhile
 from typing import TYPE_CHECKING, Any, Unpack
 
-from thermicon.circuit.rig.rig import AnyRig
+from thermicon.circuit.rig.rig import AnyRig, Rig
 from thermicon.icons.drawn import Drawn, Tabled
-from thermicon.icons.files.shipped import Icons
+from thermicon.icons.files.shipped import Icons, set_of
 from thermicon.icons.model.arguments import checked
 
 from ..identification.laboratory import DRAWS
+from ..identification.population import run_end_s
 from ..kernels.parallel import Progress, step_counter
-from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
+from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords, ObserverModel
+from ..ranking.batches import FeltResult, Job, felt_by_people
 from ..ranking.rank import rank
-from ..ranking.ranking import Ranking
 from .choose import Choice, Chooser
 from .goal import Goal
-from .goal_result import GoalResult, judge_goal
+from .goal_result import GoalResult, SetOutcome, judge_goal
 from .request import ChoiceError, Objective, Selection
+from .subset_identification import PEOPLE
 
 if TYPE_CHECKING:
     import pandas as pd
 
+    from thermicon.icons import IconSet
+
+    from ..ranking.ranking import Ranking
+
+ROUGH_DRAWS = 64
+"""Draws of the posterior behind a rough frontier, whose people are the first that choices are compared by."""
 
 MOST = 12
 """Most icons that a choice has unless more are asked for."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Frontier(Drawn, Tabled):
-    """Best choices of rising size, the `points`, from one pool as it was ranked, with `draws` of the posterior.
+    """Best choices of rising size, the `points`, from one pool as the people of a job feel it.
 
-    `goals` say of each point whether it meets the goal; empty without one.
+    `goals` say of each point whether it meets the goal; empty without one. `draws` are those of the posterior behind
+    what people reach, and `cautioned` the names of the icons that pass a soft limit of safety. A `rough` one is of few
+    people and draws, whose per cents lie within about 3 points of those of all.
 
     See Also
     --------
     frontier : Makes it.
     """
 
-    ranking: Ranking
+    icons: IconSet
+    job: Job
+    model: ObserverModel
     points: tuple[Choice, ...]
     goals: tuple[GoalResult, ...]
     draws: int
+    cautioned: tuple[str, ...]
+    rough: bool = False
+
+    @cached_property
+    def ranking(self) -> Ranking:
+        """The whole pool, ranked when it is first asked for: naming all icons takes longer than all choices."""
+        job = self.job
+        crowd = Crowd(job.people, job.seed, job.tracking, job.norm, self.model)
+        return rank(self.icons, job.rig, crowd=crowd, parameters=0)
 
     def amber(self, point: Choice) -> tuple[str, ...]:
         """Names of the icons of a choice that pass a soft limit of safety."""
-        return tuple(icon.name for icon in self.ranking.icons if icon.name in point.icons and icon.cautions)
+        return tuple(name for name in self.cautioned if name in point.icons)
 
     def rows(self) -> list[dict[str, Any]]:
         """One plain row for each size."""
@@ -79,7 +103,7 @@ class Frontier(Drawn, Tabled):
         return pd.DataFrame(self.rows())
 
     def __repr__(self) -> str:
-        first, job = self.points[0], self.ranking.job
+        first, job = self.points[0], self.job
         sizes = f"{len(first.icons)} to {len(self.points[-1].icons)}"
         return f"Frontier({sizes} of {first.pool} icons by {first.objective} on {job.rig.name}, {job.people} people)"
 
@@ -95,6 +119,7 @@ def frontier(
     goal: Goal | str | None = None,
     parameters: int | None = None,
     progress: Progress | None = None,
+    rough: Callable[[Frontier], None] | None = None,
     **words: Unpack[CrowdWords],
 ) -> Frontier:
     """Choose the best 2, 3, … icons of a pool, and judge each choice with people who know it alone.
@@ -119,6 +144,8 @@ def frontier(
         none).
     progress
         Called with (steps done, steps in all).
+    rough
+        Called with a rough frontier, of few people and draws, as soon as it stands, where there are many to wait for.
     **words
         Single words of the crowd, such as ``people=50``.
 
@@ -143,6 +170,8 @@ def frontier(
     >>> [len(point.icons) for point in found.points]
     [2, 3]
     """
+    from thermicon.circuit.solver.simulate import duration_s
+
     crowd = crowd.but(**words)
     crowd = crowd.but(observer=crowd.model)  # a file is read once
     if most < 2:
@@ -153,16 +182,29 @@ def frontier(
         wanted.check_draws(draws)
     time, energy = (None, None) if wanted is None else wanted.totals
     asked = Selection(2, objective, most_s=time, most_J=energy)
-    ranking = rank(icons, rig, crowd=crowd, parameters=0, progress=progress)
-    chooser = Chooser(ranking, asked, wanted)
-    largest = min(most, len(chooser.pool))
-    step = step_counter(progress, (largest - 1) * (1 + draws))
-    points: list[Choice] = []
-    for count in range(2, largest + 1):
-        if (choice := chooser.best(count, draws, step)) is None:  # nor will more keep the limits
-            break
-        points.append(choice)
-    if not points:
-        raise ChoiceError(chooser.pool.nothing_fits(asked))
-    goals = () if wanted is None else tuple(judge_goal(wanted, ranking, point) for point in points)
-    return Frontier(ranking, tuple(points), goals, draws)
+    icons = set_of(icons)
+    rig = Rig.of(rig, icons.context.site)
+    end_s = run_end_s([duration_s(icon, rig) for icon in icons])
+    job = Job.of(tuple(icons), rig, crowd, end_s)
+    chooser = Chooser(job, crowd.model, asked, wanted)
+    sizes = range(2, min(most, len(chooser.pool)) + 1)
+    step = step_counter(progress, job.batches + len(sizes) * (1 + draws))
+
+    def judged(felt: FeltResult, draws: int, step: Callable[[], None]) -> Frontier:
+        chooser.feel(felt)
+        each = (chooser.best(count, draws, step) for count in sizes)
+        points = tuple(takewhile(lambda choice: choice is not None, each))  # where none keeps the limits, nor do more
+        if not points:
+            raise ChoiceError(chooser.pool.nothing_fits(asked))
+        outcome = SetOutcome.of_pool(chooser.whole, felt)
+        goals = () if wanted is None else tuple(judge_goal(wanted, outcome, point) for point in points)
+        people = len(felt.pairs)
+        own = replace(job, people=people)
+        return Frontier(icons, own, crowd.model, points, goals, draws, chooser.whole.amber, people < job.people)
+
+    for felt in felt_by_people(job, PEOPLE, step):
+        if len(felt.pairs) == job.people:
+            return judged(felt, draws, step)
+        if rough is not None:
+            rough(judged(felt, min(draws, ROUGH_DRAWS), lambda: None))
+    raise AssertionError("the last are all people")

@@ -20,7 +20,9 @@ from .choose import Choice
 from .goal import SAFETY, VERDICTS, Goal, GoalPart
 
 if TYPE_CHECKING:
+    from ..ranking.batches import FeltResult
     from ..ranking.ranking import Ranking
+    from .pool import Pool
 
 TOLERANCE = 1e-9
 
@@ -73,6 +75,13 @@ class SetOutcome:
             persons={} if ranking.new_laboratory is None else ranking.new_laboratory.persons,
             unreached=tuple(icon.name for icon in icons if not icon.reachable),
         )
+
+    @classmethod
+    def of_pool(cls, pool: Pool, felt: FeltResult) -> SetOutcome:
+        """What goals for choices out of a pool are judged by, of which nobody named all icons."""
+        names, energies_J = tuple(icon.name for icon in pool.icons), pool.energies_J
+        where = felt.detected, felt.detection.onset_s, pool.durations_s, energies_J
+        return cls(names, math.nan, math.nan, math.nan, *where, None, None, pool.amber, (), {})
 
     def of_choice(self, choice: Choice) -> SetOutcome:
         """The same for the chosen icons alone, as a set of their own."""

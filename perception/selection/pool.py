@@ -118,20 +118,23 @@ class Pool:
         ]
         return f"a total of {' and '.join(totals)}"
 
-    def objections(
-        self, goal: Goal | None, observer: Observer, must: Sequence[str] = (), detected: Array | None = None
-    ) -> tuple[str | None, ...]:
+    @property
+    def amber(self) -> tuple[str, ...]:
+        """Names of the icons that pass a soft limit of safety, and no hard one."""
+        found = zip(self.icons, self.traces, strict=True)
+        return tuple(icon.name for icon, trace in found if objection(trace) is None and objection(trace, soft=True))
+
+    def objections(self, goal: Goal | None, observer: Observer, must: Sequence[str] = ()) -> tuple[str | None, ...]:
         """What speaks against each icon: it cannot be played, or misses what a goal asks of single icons.
 
-        Unless the goal says how often an icon is to be detected, those that `must` be in need not be, and others in
-        half of the trials: of `detected`, or for the nominal person.
+        Unless the goal says how often an icon is to be detected, the nominal person detects it in half of the trials,
+        but for those that `must` be in.
         """
         green = goal is not None and goal.of(SAFETY) == 0.0
         found = [objection(trace, soft=green) for trace in self.traces]
         wanted, onset = (None, None) if goal is None else (goal.of("detected"), goal.of("onset"))
         felt = detect(self.cold, self.warm, self.dt_s, observer, path_m=observer.path_m(self.rig.site))
-        shares = felt.probability if detected is None or wanted is not None else detected
-        for place, (share, felt_s) in enumerate(zip(shares.tolist(), felt.onset_s.tolist(), strict=True)):
+        for place, (share, felt_s) in enumerate(zip(felt.probability.tolist(), felt.onset_s.tolist(), strict=True)):
             least = wanted if wanted is not None else 0.0 if self.icons[place].name in must else AN_ALERT
             if found[place] is not None:
                 continue
@@ -142,7 +145,7 @@ class Pool:
         return tuple(found)
 
     def usable(
-        self, asked: Selection, observer: Observer, goal: Goal | None = None, detected: Array | None = None
+        self, asked: Selection, observer: Observer, goal: Goal | None = None
     ) -> tuple[list[int], tuple[tuple[str, str], ...]]:
         """Places of the icons that can be chosen, and why others cannot: they move like an earlier one, or have an
         objection.
@@ -157,7 +160,7 @@ class Pool:
             )
         shapes: dict[object, str] = {}
         excluded: dict[str, str] = {}
-        objections = self.objections(goal, observer, asked.must, detected)
+        objections = self.objections(goal, observer, asked.must)
         for k in sorted(range(len(self)), key=lambda k: (names[k] not in asked.must, k)):
             why = objections[k]
             twin = None if why else shapes.setdefault(_shape_of(self.icons[k], self.rig), names[k])

@@ -8,7 +8,7 @@ one that comes nearest to the goal, or has the best objective, is the result.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Unpack
 
@@ -24,7 +24,7 @@ from ..kernels.parallel import Progress
 from ..observer.observer_model import EVERYBODY, Crowd, CrowdWords
 from ..ranking.rank import rank
 from .appraise import Appraisal, appraise
-from .candidates import at_ends, found_set, names_of
+from .candidates import Candidate, at_ends, found_set, names_of
 from .goal import Goal, GoalPart
 from .request import Objective
 from .search_run import PEOPLE, Evaluator, SearchRun
@@ -92,6 +92,7 @@ def search(
     goal: Goal | str | None = None,
     parameters: int | None = None,
     progress: Progress | None = None,
+    best_so_far: Callable[[IconSet], None] | None = None,
     **words: Unpack[CrowdWords],
 ) -> SearchResult:
     """Search the parameters of the families for a better set: one icon per family, or `count` in all.
@@ -122,6 +123,8 @@ def search(
         Draws from the posterior, as in `rank`, for a goal for a share of people (None: 128, or as many as there are).
     progress
         Called with (steps done, steps in all).
+    best_so_far
+        Called with the set that the search starts from, and with that which it holds after each of its rounds.
     **words
         Single words of the crowd, such as ``people=50``.
 
@@ -165,11 +168,14 @@ def search(
         parts = sorted(judged, key=lambda part: (part.people is None, -(part.people or 0.0)))
     rng = np.random.default_rng(np.random.SeedSequence([seed, 8]))
 
-    def tell(tried: int) -> None:
+    def tell(tried: int, held: list[Candidate]) -> None:
         if progress is not None:
             progress(min(tried, evaluations), evaluations)
+        if best_so_far is not None:
+            best_so_far(found_set(icons, held, seed))
 
     start = run.start(few, rng)  # as a choice would
+    tell(run.tried, start)
     rounds = max(0, round((evaluations - run.tried) / (BATCH * run.free)))
     last = max(1, rounds // PER_ROUND)
     held = run.improve(start, nominal, rounds, BATCH, rng, WIDEST, tell)

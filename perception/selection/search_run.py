@@ -107,7 +107,7 @@ class SearchRun:
         batch: int,
         rng: np.random.Generator,
         step: float,
-        tell: Callable[[int], None],
+        tell: Callable[[int, list[Candidate]], None],
     ) -> list[Candidate]:
         """The best set of pools that surround the best before, in steps that shrink where nothing better is found."""
         for _ in range(rounds):
@@ -118,7 +118,7 @@ class SearchRun:
             moved = better is not None and [g.icon for g in better] != [g.icon for g in held]
             held = better if better is not None else held
             step = step if moved else max(SHRINK * step, FINEST)
-            tell(self.tried)
+            tell(self.tried, held)
         return held
 
     def best(

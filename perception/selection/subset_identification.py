@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from thermicon.circuit.compiled import kernel
+from thermicon.circuit.cores import quiet_blas
 
 from ..arrays import Array
 from ..identification.confusion import embed
@@ -95,9 +96,59 @@ def _replaced(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others:
     return each
 
 
+def _right(half: Any, push: Any, lapse: Any, chosen: Any, place: int, others: Any) -> Any:
+    """The proportions correct (others, people) of `replaced` alone, in loops that the processor does several steps of
+    at once.
+    """
+    people, draws, size = push.shape[0], push.shape[2], chosen.size
+    correct = np.empty((others.size, people))
+    near, nearest, counts = np.empty((size, draws)), np.empty(draws), np.zeros(size, dtype=np.int64)
+    kept = counts.copy()
+    for p in range(people):
+        for a in range(size):
+            if a == place:
+                continue
+            _approach(half[p, chosen[a]], push[p], chosen, a, place, nearest)
+            kept[a] = 0
+            for s in range(draws):
+                own = -push[p, chosen[a], s]
+                # Where it is not named right, nothing that comes nearer can lose it a trial.
+                near[a, s] = own if own <= nearest[s] else -math.inf
+                kept[a] += own <= nearest[s]
+        for k in range(others.size):
+            other = push[p, others[k]]
+            for a in range(size):
+                edge, lost = half[p, chosen[a], others[k]], 0
+                for s in range(draws if a != place else 0):
+                    lost += edge - other[s] < near[a, s]
+                counts[a] = kept[a] - lost
+            _approach(half[p, others[k]], push[p], chosen, place, place, nearest)
+            counts[place] = 0
+            for s in range(draws):
+                counts[place] += -other[s] <= nearest[s]
+            total = 0.0
+            for a in range(size):
+                total += (1.0 - lapse[p]) * counts[a] / draws + lapse[p] / size
+            correct[k, p] = total / size
+    return correct
+
+
+def _to_nearest(half: Any, push: Any, chosen: Any, a: int, place: int, nearest: Any) -> None:
+    """How far the nearest of the chosen is in each draw, without those at two places."""
+    nearest[:] = math.inf
+    for b in range(chosen.size):
+        if b not in (a, place):
+            edge, one = half[chosen[b]], push[chosen[b]]
+            for s in range(nearest.size):
+                value = edge - one[s]
+                nearest[s] = value if value < nearest[s] else nearest[s]
+
+
 _compile: Any = kernel(nogil=True)
+_approach: Any = _compile(_to_nearest)
 tally: Callable[..., tuple[float, float]] = _compile(_tally)
 replaced: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_replaced)
+right: Callable[[Array, Array, Array, Any, int, Any], Array] = _compile(_right)
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +167,8 @@ class SubsetIdentification:
         cls, d_prime: Array, lapse: Array, durations_s: Array, seed: int, most: int = PEOPLE
     ) -> SubsetIdentification:
         """The first `most` people of d′ (people, n, n); a person's noise does not depend on how many they are."""
-        points = embed(d_prime[:most])
+        with quiet_blas():
+            points = embed(d_prime[:most])
         people, _, axes = points.shape
         noise = np.random.default_rng(np.random.SeedSequence([seed, 5])).standard_normal((people, HALF, axes))
         push = np.einsum("psa,pna->pns", noise, points)
@@ -135,14 +187,15 @@ class SubsetIdentification:
     def replaced(self, chosen: Sequence[int], place: int, others: Sequence[int], objective: Objective) -> Array:
         """Scores (others,) of the chosen with the one at a place replaced by each of `others`."""
         index, tried = np.asarray(chosen, dtype=np.int64), np.asarray(others, dtype=np.int64)
-        each = replaced(self.half, self.push, self.lapse, index, place, tried)
+        asked = self.half, self.push, self.lapse, index, place, tried
+        each = right(*asked) if objective == "correct" else replaced(*asked)[1]
         # A running sum does not depend on how many are scored together, so that equal choices have equal scores.
-        correct, bits = np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1]
+        mean = np.asarray(np.add.accumulate(each, axis=-1)[..., -1] / each.shape[-1])
         if objective != "bits-per-s":
-            return np.asarray(correct if objective == "correct" else bits)
+            return mean
         trials = np.repeat(index[None], tried.size, axis=0)
         trials[:, place] = tried
-        return np.asarray(bits / self.durations_s[trials].mean(axis=1))
+        return np.asarray(mean / self.durations_s[trials].mean(axis=1))
 
     def swapped(self, chosen: Sequence[int], objective: Objective, allowed: NDArray[np.bool_]) -> Array:
         """Scores (k, n) with one chosen icon replaced by another; −inf where `allowed` (k, n) says no."""

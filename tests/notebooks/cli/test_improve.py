@@ -10,6 +10,9 @@ import pytest
 
 from tests.notebooks.conftest import Cli
 from thermicon.icons import parse
+from thermicon.perception.ranking import batches
+from thermicon.perception.selection.choose import Chooser
+from thermicon.perception.selection.search_run import SearchRun
 
 FEW = ("--people", 12, "--intervals", 0)
 CHOSEN = ["icons", "objective", "value", "optimal", "bound", "at_own_range"]
@@ -127,3 +130,44 @@ def test_a_row_for_each_number_of_icons(cli: Cli, tmp_path: Path) -> None:
 def test_a_goal_is_judged_at_every_number(cli: Cli, options: tuple[object, ...], told: tuple[str, ...]) -> None:
     words = " ".join(cli("improve", "six-icons", "--people", 4, *options).stdout.split())
     assert [each for each in told if each not in words] == [], words
+
+
+def test_who_watches_is_shown_a_rough_table_first_which_stays_when_the_rest_is_interrupted(
+    cli: Cli, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(batches, "SAMPLES_AT_ONCE", 1)
+    asked = ("improve", "six-icons", "--up-to", 3, "--people", 26, "--intervals", 2)
+    whole = cli.good(*asked).stdout
+    assert "Rough" not in whole
+    monkeypatch.setattr("thermicon.notebooks.cli.improve.shown_at_once", lambda: True)
+    rough, _, rest = cli.good(*asked).stdout.partition("Rough: 24 virtual people; each per cent within about 3 points")
+    assert "for 24 virtual people" in " ".join(rough.split())
+    assert rest.endswith(whole)
+    feel = Chooser.feel
+
+    def interrupted(chooser: Chooser, felt: Any) -> None:
+        if len(felt.pairs) == 26:
+            raise KeyboardInterrupt
+        feel(chooser, felt)
+
+    monkeypatch.setattr(Chooser, "feel", interrupted)
+    said = cli(*asked)
+    assert (said.exit_code, said.stdout[: len(rough)]) == (130, rough)
+    assert "the table above is the rough one, for 24 people" in said.stderr
+
+
+def test_an_interrupted_search_leaves_the_best_set_so_far(
+    cli: Cli, families: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    improve, out = SearchRun.improve, tmp_path / "found.cue"
+
+    def interrupted(run: SearchRun, *given: Any) -> None:
+        improve(run, *given[:2], 2, *given[3:])
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(SearchRun, "improve", interrupted)
+    said = cli("improve", families, "--choose", 3, "--evaluations", 2000, *FEW, "-o", out)
+    assert said.exit_code == 130
+    names = [icon.name for icon in parse(out.read_text(encoding="utf-8"))]
+    assert f"The best set so far, rough: {', '.join(names)}: " in " ".join(said.stdout.split())
+    assert "the search was ended early" in said.stderr

@@ -11,7 +11,7 @@ from thermicon.perception import Ranking, rank
 from thermicon.perception.identification.confusion import NAMED_SAMPLES as NAMED
 from thermicon.perception.identification.confusion import sampling_error
 from thermicon.perception.plots.draw_heat import plot_distance
-from thermicon.perception.ranking import batches
+from thermicon.perception.ranking import batches, scores
 
 TOP = (
     "thermicon rig rig_changes rig_text observer warnings seed people tracking by norm content_hash sha256 task icons "
@@ -149,6 +149,19 @@ def test_what_rules_and_model_disagree_on_says_by_how_much() -> None:
     assert found["text"].startswith("a and b: rules: distinguishable; model: d′ ")
     assert float(found["text"].split("d′ ")[1].split(",")[0]) < 2.563
     assert found["text"].endswith(", below the 2.563 criterion")
+
+
+def test_nobody_waits_for_reasons_and_rules_of_pairs_that_nobody_reads(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[str] = []
+    for name in ("pair_reasons", "pair_rules", "components_of"):
+        each = getattr(scores, name)
+        monkeypatch.setattr(scores, name, lambda *given, name=name, each=each: made.append(name) or each(*given))
+    ranking = rank(steps(a=-3, b=-3.3, c=2), RIG, people=2, parameters=0)
+    assert (repr(ranking)[:7], made) == ("Ranking", [])
+    assert ranking.pairs[0].why and ranking.pairs[0].why is ranking.pairs[0].why
+    assert made == ["pair_reasons"]
+    ranking.to_json()
+    assert sorted(made) == sorted(3 * ["pair_reasons", "pair_rules", "components_of"])
 
 
 def test_what_does_not_exist_is_null() -> None:

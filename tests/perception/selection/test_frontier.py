@@ -1,4 +1,5 @@
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
@@ -6,6 +7,7 @@ from thermicon.circuit import Rig
 from thermicon.icons import IconSet, parse
 from thermicon.perception import choose, frontier, rank
 from thermicon.perception.observer.observer_model import ObserverModel
+from thermicon.perception.ranking import batches
 from thermicon.perception.selection.frontier import Frontier
 from thermicon.perception.selection.goal import GoalError
 from thermicon.perception.selection.goal_result import judge_goal
@@ -74,6 +76,26 @@ def test_what_95_percent_reach_is_the_number_of_a_goal(six: IconSet, rig: Rig) -
     assert value == seen.goals[1].parts[0].value == point.reached
     assert row["proportion_correct_95_percent_of_people_and_model"] == value
     assert row["meets_goal"] is seen.goals[1].met
+
+
+def test_a_rough_table_of_few_people_comes_first_and_is_near(
+    six: IconSet, rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[Frontier] = []
+    asked: Any = {"people": 60, "most": 4, "parameters": 80}
+    whole = frontier(six, rig, **asked, rough=told.append)
+    assert not told, "people of one batch are waited for"
+    monkeypatch.setattr(batches, "SAMPLES_AT_ONCE", 1)
+    assert frontier(six, rig, **asked, rough=told.append).rows() == whole.rows()
+    (rough,) = told
+    assert (rough.rough, rough.job.people, rough.draws, whole.rough, whole.draws) == (True, 24, 64, False, 80)
+    for key in ("proportion_correct", "proportion_correct_95_percent_of_people_and_model"):
+        ours, theirs = ([row[key] for row in each.rows()] for each in (rough, whole))
+        assert ours == pytest.approx(theirs, abs=0.03)
+
+
+def test_the_pool_of_a_frontier_is_ranked_when_it_is_asked_for(found: Frontier, six: IconSet, rig: Rig) -> None:
+    assert found.ranking.to_json() == rank(six, rig, people=12, seed=3, parameters=0).to_json()
 
 
 def test_a_goal_leaves_icons_out_and_says_why(rig: Rig) -> None:

@@ -16,7 +16,7 @@ from thermicon.perception.identification.measures import information_bits, propo
 from thermicon.perception.selection import max_min_subset as max_min
 from thermicon.perception.selection.max_min_subset import Limits, max_min_subset, nearest_pair
 from thermicon.perception.selection.request import Objective, UndecidedError
-from thermicon.perception.selection.subset_identification import SubsetIdentification, ceiling, pick
+from thermicon.perception.selection.subset_identification import SubsetIdentification, ceiling, pick, replaced, right
 
 Array = NDArray[np.float64]
 
@@ -128,6 +128,15 @@ def test_enumeration_is_brute_force(objective: Objective, n: int, count: int, mu
     assert found.chosen == allowed[int(np.argmax(scores))]
     assert found.value == found.bound == max(scores)
     assert found.seen == len(allowed)
+
+
+@pytest.mark.parametrize("place", range(3))
+def test_what_is_named_right_is_the_same_with_and_without_the_errors(place: int) -> None:
+    held = pool(3, 9)
+    half = held.half.copy()
+    half[:, 0, 4] = half[:, 4, 0] = 0.0  # equally near, where the icon itself is named
+    asked = half, held.push, held.lapse, np.array([1, 4, 6]), place, np.array([0, 2, 3, 5, 7, 8])
+    assert np.array_equal(right(*asked), replaced(*asked)[0])
 
 
 def test_enumeration_keeps_limits() -> None:
