@@ -114,7 +114,7 @@ def improve_command(
     model = crowd.load(where)
     warn_of_site(files[0], icons, where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
-    what = objective or ("correct" if up_to is not None else _objective(wanted))
+    what = objective or ("correct" if up_to is not None else objective_of(wanted))
     if up_to is not None:
         from thermicon.perception import frontier
 
@@ -144,7 +144,7 @@ def improve_command(
         show(told)
 
 
-def _objective(goal: Goal | None) -> Objective:
+def objective_of(goal: Goal | None) -> Objective:
     """What a goal wants most of: the worst pair, unless it is about the proportion correct or bits."""
     wanted = [name for name in ("correct", "bits") if goal is not None and goal.of(name) is not None]
     return "worst" if not wanted else "correct" if wanted[0] == "correct" else "bits"
