@@ -117,17 +117,13 @@ def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> N
 
 
 def test_a_choice_is_that_of_the_command_and_says_what_is_in_its_way(ranked: Bench) -> None:
-    ranked.view.count.value = 2
-    ranked.view.choose_best()
-    wait(ranked.view.chooser)
     how = {"goal": None, "people": 24, "parameters": 2}
-    found = chosen(parse(THREE), Rig.load("thenar"), 2, "worst", None, False, how)
-    assert found.choice is not None
-    assert missing([f"Best 2 of 3, by the worst pair: {', '.join(found.choice.icons)}"], ranked.said("choice")) == []
-    ranked.view.count.value = 4
-    ranked.view.choose_best()
-    wait(ranked.view.chooser)
-    assert missing(["no choice", "4"], ranked.said("choice")) == []
+    found: Any = chosen(parse(THREE), Rig.load("thenar"), 2, "worst", None, False, how).choice
+    for count, words in ((2, ["Best 2 of 3, by the worst pair", ", ".join(found.icons)]), (4, ["no choice", "4"])):
+        ranked.view.count.value = count
+        ranked.view.choose_best()
+        wait(ranked.view.chooser)
+        assert missing(words, ranked.said("choice")) == []
 
 
 def test_both_icons_lie_over_each_other_on_one_clock(ranked: Bench) -> None:
