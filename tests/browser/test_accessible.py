@@ -47,6 +47,7 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str
     page.wait_for_timeout(3000)
     wrong["set"] = findings(page)
     open_tab(page, "Export")
+    page.get_by_label("icons", exact=True).select_option("the selected icon")  # six take longer to judge
     expect(page.locator(".thermicon-export")).to_contain_text("ready to be written", timeout=30_000)
     wrong["export"] = findings(page)
     open_tab(page, "Versions")
