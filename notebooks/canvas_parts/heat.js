@@ -18,6 +18,7 @@ class HeatView {
     const shape = JSON.stringify([frame.labels, frame.matrices.map(({ key, label }) => [key, label])]);
     if (shape !== this.shape) this.build(shape);
     frame.matrices.forEach((matrix, k) => this.fill(matrix, k));
+    this.maps.querySelectorAll(".tm-rough").forEach((mark) => setText(mark, frame.rough));
     this.outline(frame.picked);
     this.point(this.pointed); // its numbers may be new
     this.fit();
@@ -50,7 +51,7 @@ class HeatView {
     );
     grid.style.setProperty("--tm-count", labels.length);
     grid.style.setProperty("--tm-label", `${clamp(7 * Math.max(...labels.map((name) => name.length)) + 8, 40, 150)}px`);
-    return make("figure", { class: "tm-map", "data-matrix": matrix.key }, make("figcaption", {}, matrix.label, " ", wordsOf(matrix.terms)), grid, this.scaleOf(matrix));
+    return make("figure", { class: "tm-map", "data-matrix": matrix.key }, make("figcaption", {}, matrix.label, " ", wordsOf(matrix.terms), " ", make("span", { class: "tm-rough" })), grid, this.scaleOf(matrix));
   }
 
   makeCell(k, row, column) {
@@ -176,6 +177,6 @@ function cellText(value, matrix) {
 }
 
 function heatFrame(meta, buffers) {
-  const defaults = { seq: 0, labels: [], matrices: [], picked: null, ms: null };
+  const defaults = { seq: 0, labels: [], matrices: [], picked: null, rough: "", ms: null };
   return { ...defaults, ...meta, arrays: (buffers ?? []).map(floatsOf) };
 }

@@ -117,7 +117,7 @@ def improve_command(
     where = rig.load(icons, files[0])
     model = crowd.load(where)
     how = {**crowd.asked, "goal": wanted, "parameters": crowd.draws(model), "observer": model}
-    what = objective or ("correct" if up_to is not None else _objective(wanted))
+    what = objective or ("correct" if up_to is not None else objective_of(wanted))
     command = commands(files, rig, crowd)
     written = next((str(path) for path in outputs if path.suffix == ".cue"), None)
     if up_to is not None:
@@ -206,7 +206,7 @@ def _roughly(icons: IconSet, rig: Rig, how: dict[str, Any]) -> str:
     return f"{', '.join(icon.name for icon in icons)}: {named}, for {PEOPLE} people"
 
 
-def _objective(goal: Goal | None) -> Objective:
+def objective_of(goal: Goal | None) -> Objective:
     """What a goal wants most of: the worst pair, unless it is about the proportion correct or bits."""
     wanted = [name for name in ("correct", "bits") if goal is not None and goal.of(name) is not None]
     return "worst" if not wanted else "correct" if wanted[0] == "correct" else "bits"

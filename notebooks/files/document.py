@@ -128,8 +128,15 @@ class Document:
         return "" if found is None else found[1]
 
     def aim(self, goal: str) -> None:
-        """Write another goal into the text, as a step that can be undone; an empty one takes the line away."""
+        """Write another goal into the text, as a step that can be undone; an empty one takes the line away.
+
+        Raises GoalError for what is no goal.
+        """
+        from thermicon.perception import Goal
+
         rest, said = GOAL.sub("", self.text), " ".join(goal.split())
+        if said:
+            Goal.parse(said)
         self.history = self.history.changed(f"# goal: {said}\n{rest}" if said else rest)
 
     @property

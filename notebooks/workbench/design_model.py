@@ -154,7 +154,9 @@ class DesignModel:
             case "undo" | "redo":
                 return self._step(kind)
             case "goal":
-                return self._aim(str(message.get("text")))
+                self.document.aim(str(message.get("text")))
+                self._draw()
+                return self.text
             case "apply":
                 return self._mend(message.get("line"))
         raise ValueError(f"the page sent an unknown message: {kind}")
@@ -196,16 +198,6 @@ class DesignModel:
             return self.text
         self.document.history = history
         self._draw(history.now.icon)
-        return self.text
-
-    def _aim(self, goal: str) -> str:
-        """Write the goal into the text; a GoalError says what is no goal."""
-        from thermicon.perception import Goal
-
-        if goal.strip():
-            Goal.parse(goal)
-        self.document.aim(goal)
-        self._draw()
         return self.text
 
     def _mend(self, line: object) -> str:

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from .design_model import DesignModel
 
 FORMAT = "csv"
-MOST_BYTES = 4_000_000
-"""Of a sidecar that is read for the device that was used last."""
 ExportRequest = tuple[str, "Rig", "str | None", str, str]
 """Text, rig, name of the icon (None: all), device, format."""
 
@@ -207,7 +205,7 @@ def last_device(folder: Path) -> str | None:
 
     try:
         newest = max(folder.glob("*.json"), key=lambda path: path.stat().st_mtime)
-        name = json.loads(read_limited(newest, MOST_BYTES))["device"]["name"]
+        name = json.loads(read_limited(newest, 4_000_000))["device"]["name"]
     except (OSError, ValueError, KeyError, TypeError, NotRegular, TooLarge):
         return None
     return name if name in device_names() else None

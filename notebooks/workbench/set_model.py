@@ -92,8 +92,7 @@ def rank_set(
     reading = read_text(text)
     if (why := why_not(reading)) is not None or reading.icons is None:
         raise ValueError(why)
-    draws = parameters if observer is None else observer.most_draws(parameters)
-    draws = 0 if draws == 1 else draws  # an interval needs two
+    draws = draws_of(observer, parameters)
     if known is None:
         made = rank(reading.icons, rig, people=people, parameters=draws, progress=progress, observer=observer)
     else:
@@ -102,6 +101,12 @@ def rank_set(
     laid = map_of(made, reference) if len(made.icons) > 1 else None
     ms = 1e3 * (time.perf_counter() - began)
     return RankedSet(text, rig, tuple(reading.icons), made, laid, order, ms)
+
+
+def draws_of(observer: ObserverModel | None, wanted: int = WELL[1]) -> int:
+    """How many draws an interval rests on: as many as the observer has, but not one."""
+    draws = wanted if observer is None else observer.most_draws(wanted)
+    return 0 if draws == 1 else draws
 
 
 def why_not(reading: Reading) -> str | None:
@@ -139,6 +144,7 @@ def heat_frame(made: RankedSet, picked: tuple[str, str] | None, seq: int = 0) ->
             {"key": "confusion", "label": "answered", "buffer": 1, "unit": "", "low": 0,
              "high": 1, "text": "0%", "terms": terms_of("confusion matrix")},
         ],
+        "rough": f"rough: {made.ranking.people} people" if made.ranking.people < WELL[0] else "",
         "picked": None if picked is None else [labels.index(name) for name in picked],
         "ms": made.ms,
     }  # fmt: skip

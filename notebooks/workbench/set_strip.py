@@ -14,14 +14,12 @@ from thermicon.icons.number_text import percent
 
 from ..editing.cue_check import read_text
 from .live_view import Job, LiveView
-from .set_model import QUICK, WELL, SetRequest, why_not
+from .set_model import QUICK, WELL, SetRequest, draws_of, why_not
 
 if TYPE_CHECKING:
     from thermicon.perception import Ranking
 
     from .design_model import DesignModel
-
-WAITS_S = 0.03
 
 
 class SetStrip(LiveView[SetRequest]):
@@ -39,7 +37,8 @@ class SetStrip(LiveView[SetRequest]):
         self._source: SetRequest | None = None
         self._sent: dict[str, Any] = {}
         self._why = ""
-        self._judged: tuple[tuple[str, Ranking | None], bool | None, str] = (("", None), None, "")
+        self._met: bool | None = None
+        self._binding = ""
 
     def renew(self, after_s: float | None = None) -> None:
         """Rank anew if the set has changed, and say what is known until then."""
@@ -67,26 +66,11 @@ class SetStrip(LiveView[SetRequest]):
                 if each.name == self.design.scene.icon:
                     icon = icon if len(ranking.icons) < 2 else percent(each.proportion_correct)
                     felt = percent(each.detected_probability)
-        met, binding = self._judge(goal)
         stale = self._source != self._request()
         people = 0 if ranking is None else ranking.people
         about = self._why if stale and self._why else f"predicted for {people} virtual people" if people else ""
-        numbers = {"set": whole, "icon": icon, "felt": felt, "goal": goal, "met": met, "binding": binding}
+        numbers = {"set": whole, "icon": icon, "felt": felt, "goal": goal, "met": self._met, "binding": self._binding}
         return {"type": "strip", **numbers, "stale": stale, "rough": people < WELL[0], "about": about}
-
-    def _judge(self, goal: str) -> tuple[bool | None, str]:
-        """Whether the ranking meets the goal (None: not known), and what is in the way."""
-        from thermicon.perception.selection.goal_result import judge_goal
-
-        if not goal or self.ranking is None:
-            return None, ""
-        if self._judged[0] != (key := (goal, self.ranking)):
-            try:
-                found = judge_goal(goal, self.ranking)
-                self._judged = key, found.met, "; ".join(found.binding)
-            except ValueError as wrong:
-                self._judged = key, None, str(wrong)
-        return self._judged[1:]
 
     def _request(self) -> SetRequest:
         return self.design.text, self.design.rig
@@ -106,19 +90,27 @@ class SetStrip(LiveView[SetRequest]):
         text, rig = request
         while self.design.dragging:
             job.go_on()
-            time.sleep(WAITS_S)
+            time.sleep(0.03)
         icons, model, goal = read_text(text).icons, self.design.model, self.design.document.goal
         assert icons is not None
         for people, _ in (QUICK, WELL):
             made = rank(icons, rig, people=people, parameters=0, observer=model, workers=1, progress=job.go_on)
             job.on_page(partial(self._take, made, request))
         if goal and any(part.people for part in Goal.parse(goal).parts):
-            draws = WELL[1] if model is None else model.most_draws(WELL[1])
-            job.on_page(partial(self._take, with_intervals(made, draws, job.go_on), request))
+            job.on_page(partial(self._take, with_intervals(made, draws_of(model), job.go_on), request))
         job.on_page(partial(self._finish, request))
 
     def _take(self, made: Ranking, request: SetRequest) -> None:
-        self.ranking, self._source = made, request
+        """Show a ranking, and whether it meets the goal, which is part of its text."""
+        from thermicon.perception.selection.goal_result import judge_goal
+
+        self.ranking, self._source, self._met, self._binding = made, request, None, ""
+        try:
+            if goal := self.design.document.goal:
+                found = judge_goal(goal, made)
+                self._met, self._binding = found.met, "; ".join(found.binding)
+        except ValueError as wrong:  # no goal, or one that waits for the draws of the last ranking
+            self._binding = str(wrong)
         self.tell()
 
     def _finish(self, request: SetRequest) -> None:

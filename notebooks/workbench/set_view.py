@@ -11,10 +11,11 @@ from ..editing.cue_check import read_text
 from ..editing.number_literals import with_edit
 from ..figures.print_figure import themed_svg
 from ..report.blocks import Bullets, fragment, shown
+from ..report.rank_report import rank_report
 from ..report.set_report import SetReport
 from .design_view import SideCanvas
-from .live_view import BackgroundWorker, Job, LiveView
-from .set_model import QUICK, WELL, RankedSet, SetRequest, heat_frame, overlay_frame, rank_set, why_not
+from .live_view import BackgroundWorker, Job, LiveView, button
+from .set_model import QUICK, WELL, RankedSet, SetRequest, draws_of, heat_frame, overlay_frame, rank_set, why_not
 from .view_blocks import edit_html, pair_html, set_html
 
 if TYPE_CHECKING:
@@ -50,18 +51,22 @@ class SetView(LiveView[SetRequest]):
         self.made: RankedSet | None = None
         self.picked: tuple[str, str] | None = None
         self.edit: Edit | NoEdit | None = None
-        self.editor = BackgroundWorker(self._no_edit)
+        self.editor, self.chooser = BackgroundWorker(self._no_edit), BackgroundWorker(self._no_choice)
         self._build()
 
     def _build(self) -> None:
         self.heat, self.overlay = SideCanvas("heat"), SideCanvas("traces")
         self.heat.on_message(self._receive)
-        names = ("scores", "status", "table", "notes", "pair", "edit_text", "why", "map", "caveat")
+        names = ("scores", "status", "choice", "table", "notes", "pair", "edit_text", "why", "map", "caveat")
         self.said = {name: widgets.HTML() for name in names}
         said = self.said
         self.apply = widgets.Button(description="Apply edit", disabled=True, layout={"width": "100px"})
         self.apply.on_click(lambda _: self._safely(self.apply_edit))
-        top = _row(said["scores"], said["status"]).add_class("thermicon-top")
+        self.count = widgets.BoundedIntText(value=3, min=2, description="best", layout={"width": "96px"})
+        self.count.style.description_width = "32px"
+        choose = button("Choose", "as thermicon improve --choose does", lambda: self._safely(self.choose_best))
+        ask = widgets.Box([self.count, choose]).add_class("thermicon-ask")
+        top = _row(said["scores"], said["status"], ask).add_class("thermicon-top")
         table = self._table = widgets.VBox([said["table"]]).add_class("thermicon-side")
         self._maps = widgets.VBox([self.heat], layout={"flex": WIDE, "min_width": "0"})
         overlay = widgets.VBox([self.overlay], layout={"flex": "3 1 400px", "min_width": "0"})
@@ -69,9 +74,10 @@ class SetView(LiveView[SetRequest]):
         placed = widgets.VBox([said["map"]], layout={"flex": "2 1 270px", "min_width": "0"})
         self._below = _row(overlay, reasons, placed).add_class("thermicon-pair")
         self.body = widgets.VBox([_row(table, self._maps), said["notes"], self._below, said["caveat"]])
-        self.box = widgets.VBox([top, self.body]).add_class("thermicon-set")
+        said["choice"].add_class("thermicon-choice").layout.display = "none"
+        self.box = widgets.VBox([top, said["choice"], self.body]).add_class("thermicon-set")
         self.body.layout.display = "none"
-        self.stale_parts = self.body, said["scores"]
+        self.stale_parts = self.body, said["scores"], said["choice"]
         self._say("the set is ranked when this tab opens")
 
     def _mark_outdated(self, request: SetRequest) -> None:
@@ -85,6 +91,8 @@ class SetView(LiveView[SetRequest]):
 
     def _job(self, request: SetRequest) -> Callable[[Job], None]:
         self._say("ranking …")
+        self.chooser.forget()
+        self._show_choice("")
         return lambda job: self._rank(job, request)
 
     def _show_finished(self) -> None:
@@ -124,6 +132,30 @@ class SetView(LiveView[SetRequest]):
         self.apply.disabled = True
         self.said["edit_text"].value = fragment("marked", f"applied: {edit.new}", "th-good")
         self._show_text(text)
+
+    def choose_best(self) -> None:
+        """Choose the best few icons for the goal of the text, as ``thermicon improve --choose`` does."""
+        text, rig = self._request()
+        if (reason := why_not(read_text(text))) is not None:
+            raise ValueError(reason)
+        count, goal = self.count.value, self.design.document.goal
+        self._show_choice(fragment("marked", "choosing …", "th-status"))
+        self.chooser.ask(lambda job: self._choose(job, text, rig, count, goal))
+
+    def _choose(self, job: Job, text: str, rig: Rig, count: int, goal: str) -> None:
+        from thermicon.perception import Goal
+
+        from ..cli.improve import chosen, objective_of
+
+        icons, model, wanted = read_text(text).icons, self.design.model, Goal.parse(goal) if goal else None
+        assert icons is not None
+        how = {"goal": wanted, "people": WELL[0], "parameters": draws_of(model), "observer": model}
+        made = chosen(icons, rig, count, objective_of(wanted), None, False, how)
+        told = [part for part in rank_report(made, "")[:-1] if part.type in ("heading", "text", "bullets")]
+        job.on_page(lambda: self._show_choice(shown(*told)))
+
+    def _show_choice(self, html: str) -> None:
+        self.said["choice"].value, self.said["choice"].layout.display = html, "" if html else "none"
 
     def _rank(self, job: Job, request: SetRequest) -> None:
         """The background job: a quick ranking with a few people, then one with enough for the final numbers."""
@@ -175,7 +207,10 @@ class SetView(LiveView[SetRequest]):
         for name, html in set_html(SetReport(ranking)).items():
             said[name].value = html
         people = f"{ranking.people} people"
-        self._say(people if well else f"preliminary: {people}; refining …")
+        rough = ranking.people < WELL[0]
+        self._say(people if well else f"rough: {people}; refining …" if rough else f"{people}; intervals follow …")
+        for part in (said["scores"], self._table):
+            (part.add_class if rough else part.remove_class)("thermicon-rough")
         if alone:
             return
         if picture:  # the one before stays until the ranking is refined
@@ -188,6 +223,9 @@ class SetView(LiveView[SetRequest]):
 
         found = cheapest_edit(made.ranking, a, b)
         job.on_page(lambda: self._offer_edit(found))
+
+    def _no_choice(self, said: str) -> None:
+        self._show_choice(fragment("marked", f"no choice: {said}", "th-caution"))
 
     def _no_edit(self, said: str) -> None:
         self.said["edit_text"].value = fragment("marked", f"no edit: {said}", "th-caution")

@@ -6,6 +6,7 @@ its number as long as it is large enough to hold one; then a colour bar says wha
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
     from ..ranking.ranking import Ranking
 
 LIGHT = ("#ffffff", "#d7e5f2", "#93bcdc", COOL, "#0f3a69")
-LIGHT_TEXT_FROM = 0.55
+EQUAL_CONTRAST = 0.179
+"""Relative luminance from which black stands out more than white; either then has 4.5 : 1 at least."""
 MOST_NUMBERED = 30
 LONGEST_LABEL = 44
 
@@ -109,11 +111,18 @@ def heat(
         return axes
     number = 9.0 if len(rows) <= 16 else 7.0
     for (i, j), value in np.ndenumerate(values):
-        colour = "w" if (value / highest) ** bend > LIGHT_TEXT_FROM else "#222222"
+        colour = ink_on(drawn.cmap(norm(value)))
         # Two digits at most, as in 100, 9.9 and 0.
         said = f"{value:.0f}" if value >= 9.95 or value < 0.05 else f"{value:.1f}"
         axes.text(j, i, said, ha="center", va="center", fontsize=number, color=colour)
     return axes
+
+
+def ink_on(shade: Sequence[float]) -> str:
+    """Black or white, whichever can be read better on a shade (red, green and blue, 0–1)."""
+    linear = (part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in shade)
+    luminance = sum(weight * part for weight, part in zip((0.2126, 0.7152, 0.0722), linear, strict=False))
+    return "black" if luminance > EQUAL_CONTRAST else "white"
 
 
 def light_map() -> Colormap:

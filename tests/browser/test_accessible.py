@@ -10,6 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.jupyter import dark
 from tests.browser.onbench import TWO, open_tab, type_text, wait_until_refined
+from tests.browser.staticpage import open_bench
 
 RULES = {"runOnly": {"type": "tag", "values": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"]}}
 SERIOUS = ("serious", "critical")
@@ -46,6 +47,7 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str
     page.wait_for_timeout(3000)
     wrong["set"] = findings(page)
     open_tab(page, "Export")
+    page.get_by_label("icons", exact=True).select_option("the selected icon")  # six take longer to judge
     expect(page.locator(".thermicon-export")).to_contain_text("ready to be written", timeout=30_000)
     wrong["export"] = findings(page)
     open_tab(page, "Versions")
@@ -63,6 +65,24 @@ def test_no_view_of_the_workbench_has_a_serious_finding(bench: Page, scheme: str
     wrong["error"] = findings(page)
     wrong = {view: found for view, found in wrong.items() if found}
     assert wrong == {}, json.dumps(wrong, indent=1, ensure_ascii=False)
+
+
+@pytest.mark.parametrize("key", ["distance", "confusion"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_numbers_can_be_read_on_every_shade_and_a_rough_matrix_says_so(page: Page, scheme: Any, key: str) -> None:
+    page.emulate_media(color_scheme=scheme)
+    made = open_bench(page)
+    made.show("heat")
+    one = {"key": key, "label": key, "buffer": 0, "unit": "", "low": 0, "high": 1, "text": "0%"}
+    meta = {"type": "frame", "view": "heat", "labels": [f"i{k}" for k in range(16)], "matrices": [one]}
+    made.frame({**meta, "rough": "rough: 12 people"}, [k / 255 for k in range(256)])
+    expect(page.locator("figcaption")).to_contain_text("rough: 12 people")
+    found = Axe().run(page, context=".tm-grid", options={"runOnly": ["color-contrast"]}).response
+    assert found["violations"] == []
+    judged = [node["html"] for each in found["passes"] for node in each["nodes"]]
+    assert sum("tm-cell" in html for html in judged) == 256
+    made.frame(meta, [k / 255 for k in range(256)])
+    expect(page.locator("figcaption")).not_to_contain_text("rough")
 
 
 def test_a_report_has_no_serious_finding(page: Page, tmp_path: Path) -> None:

@@ -114,7 +114,7 @@ def test_it_designs_below_the_first_screen_compares_and_exports(bench: Page, lab
     expect(pair.get_by_role("button", name="Apply edit")).to_be_enabled(timeout=SETTLES_MS)
     open_tab(bench, "Export")
     view = bench.locator(".thermicon-export")
-    expect(view).to_contain_text("ready to be written", timeout=SETTLES_MS)
+    expect(view).to_contain_text("ready to be written", timeout=2 * SETTLES_MS)
     expect(view.locator("table.asked")).to_contain_text("shortest safe pause")
     where = view.locator(".widget-text", has_text="folder").locator("input")
     where.fill(str(lab.folder / "drives"))

@@ -12,6 +12,7 @@ from tests.notebooks.workbench.openbench import SAID, wait
 from thermicon.circuit import Rig
 from thermicon.icons import parse
 from thermicon.notebooks import Workbench
+from thermicon.notebooks.cli.improve import chosen
 from thermicon.notebooks.editing.number_literals import CannotEdit, with_edit
 from thermicon.notebooks.workbench.design_model import DesignModel
 from thermicon.notebooks.workbench.live_view import BackgroundWorker, Job, Superseded
@@ -113,6 +114,16 @@ def test_a_click_shows_the_pair_with_its_reasons_and_an_edit(ranked: Bench) -> N
     assert "two different icons" in ranked.said("edit_text")
     ranked.click(0, 9)
     assert "there is no cell" in ranked.said("status")
+
+
+def test_a_choice_is_that_of_the_command_and_says_what_is_in_its_way(ranked: Bench) -> None:
+    how = {"goal": None, "people": 24, "parameters": 2}
+    found: Any = chosen(parse(THREE), Rig.load("thenar"), 2, "worst", None, False, how).choice
+    for count, words in ((2, ["Best 2 of 3, by the worst pair", ", ".join(found.icons)]), (4, ["no choice", "4"])):
+        ranked.view.count.value = count
+        ranked.view.choose_best()
+        wait(ranked.view.chooser)
+        assert missing(words, ranked.said("choice")) == []
 
 
 def test_both_icons_lie_over_each_other_on_one_clock(ranked: Bench) -> None:

@@ -50,13 +50,16 @@ def test_heat_maps_are_in_that_order_and_say_every_number(ranking: Ranking) -> N
 
 
 def test_shades_grow_darker_all_the_way_in_grey_and_numbers_are_readable_on_each() -> None:
-    places = np.linspace(0.0, 1.0, 21)
+    places = np.linspace(0.0, 1.0, 256)
     grey = light_map()(places)[:, :3] @ [0.299, 0.587, 0.114]
     assert np.all(np.diff(grey) < 0)
     assert grey[0] > 0.99
     axes = heat(["a"] * places.size, ["b"], places[None])
-    for text, shade in zip(axes.texts, grey.tolist(), strict=True):
-        assert abs(shade - (1.0 if text.get_color() == "w" else 0.13)) > 0.35
+    shades = light_map()(places)[:, :3]
+    linear = np.where(shades <= 0.04045, shades / 12.92, ((shades + 0.055) / 1.055) ** 2.4)
+    for text, shade in zip(axes.texts, linear @ [0.2126, 0.7152, 0.0722], strict=True):
+        light, dark = (1.0, shade) if text.get_color() == "white" else (shade, 0.0)
+        assert (light + 0.05) / (dark + 0.05) >= 4.5
 
 
 def test_many_icons_have_a_colour_bar_instead_of_numbers() -> None:
