@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,13 +30,15 @@ LONGEST_LANDING_S = 1800.0
 class Gap:
     """The least time between icons in s, why it is that long, and what the icon before still changes after it.
 
-    `carry_over_d_prime` is the largest difference from the icon by itself, after any other icon, in d′ from memory.
+    `carry_over_d_prime` is the largest difference from the icon by itself, after any other icon, in d′ from memory;
+    `tried` has it beside every gap that was looked at.
     """
 
     gap_s: float
     reason: str
     carry_over_d_prime: float
     carried_by: tuple[str, str] | None
+    tried: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +76,13 @@ def find_gap(icons: Sequence[Icon], rig: Rig, timing: Timing, held: bool) -> Gap
     Raises StudyError where no gap up to 10 min suffices.
     """
     wanted = timing.carry_over_d_prime
-    carried = lru_cache(maxsize=None)(lambda gap_s: carried_over(icons, rig, gap_s, held))
+    seen: dict[float, tuple[float, tuple[str, str]]] = {}
+
+    def carried(gap_s: float) -> tuple[float, tuple[str, str]]:
+        if gap_s not in seen:
+            seen[gap_s] = carried_over(icons, rig, gap_s, held)
+        return seen[gap_s]
+
     if timing.gap_s is not None:
         d_prime, pair = carried(timing.gap_s)
         return Gap(timing.gap_s, "given", d_prime, pair)
@@ -87,7 +94,8 @@ def find_gap(icons: Sequence[Icon], rig: Rig, timing: Timing, held: bool) -> Gap
             f"{worst:.2g}; allow more, or give timing.gap_s"
         )
     d_prime, pair = carried(gap_s)
-    return Gap(gap_s, f"carry-over falls below d′ = {wanted:g}", d_prime, pair)
+    tried = tuple((each, carried(each)[0]) for each in sorted(seen))
+    return Gap(gap_s, f"carry-over falls below d′ = {wanted:g}", d_prime, pair, tried)
 
 
 def shortest_gap_s(passes: Callable[[float], bool]) -> float | None:
